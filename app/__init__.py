@@ -1,0 +1,1 @@
+"""The lab: the only place with viser, threads and a clock."""

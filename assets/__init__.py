@@ -1,0 +1,19 @@
+"""Data files of the project: robot parameters, pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+def asset_path(name: str) -> Path:
+    """Path of a data file in this folder.
+
+    Raises:
+        FileNotFoundError: no such file; the message lists those there are.
+    """
+    folder = Path(__file__).parent
+    path = folder / name
+    if not path.is_file():
+        known = ", ".join(sorted(p.name for p in folder.iterdir() if p.is_file()))
+        raise FileNotFoundError(f"no asset {name!r}; there are: {known}")
+    return path

@@ -1,0 +1,1 @@
+"""Lessons: texts and pure checks on what happened in a run."""

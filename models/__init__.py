@@ -1,0 +1,1 @@
+"""The mathematics of path following: systems, paths, virtual outputs, controllers, closed loops."""
