@@ -14,10 +14,9 @@ import casadi as ca
 import numpy as np
 
 from assets import asset_path
-from models.system import Array, MechanicalSystem, lagrangian_system
+from models.system import Array, MechanicalSystem, mechanical_system
 
 GRAVITY = 9.81  # [m/s^2]
-COULOMB_VELOCITY = 0.02  # [rad/s], width of the smooth sign in Coulomb friction
 HOME = np.array([np.pi / 2, np.pi])
 
 
@@ -41,7 +40,6 @@ class FiveBarParameters:
     link4: Link
     viscous1: float  # [N m s]
     viscous2: float  # [N m s]
-    coulomb: float = 0.0  # [N m], both joints
 
     def spoiled(self, removed: float, payload: float) -> FiveBarParameters:
         """The same linkage with part of its counterweights gone and a mass at the end-point.
@@ -91,7 +89,6 @@ class FiveBarParameters:
             "G2": GRAVITY * (two.mass * two.centre_of_mass + three.mass * two.length - moment4),
             "b1": self.viscous1,
             "b2": self.viscous2,
-            "coulomb": self.coulomb,
             "l1": one.length,
             "l4": four.length,
         }
@@ -109,32 +106,38 @@ def five_bar() -> MechanicalSystem:
 
     Source: eqs. (12)-(13), and Spong and Vidyasagar 6.4.1 for the coupling and gravity terms.
     """
-    names = ("M11", "M22", "M12", "G1", "G2", "b1", "b2", "coulomb", "l1", "l4")
+    names = ("M11", "M22", "M12", "G1", "G2", "b1", "b2", "l1", "l4")
     parameters = ca.SX.sym("parameters", len(names))
     p = dict(zip(names, ca.vertsplit(parameters), strict=True))
     q, v = ca.SX.sym("q", 2), ca.SX.sym("v", 2)
     c1, s1, c2, s2 = ca.cos(q[0]), ca.sin(q[0]), ca.cos(q[1]), ca.sin(q[1])
-    coupling = p["M12"] * (c1 * c2 + s1 * s2)  # cos(q2 - q1)
-    kinetic = (
-        0.5 * p["M11"] * v[0] ** 2 + 0.5 * p["M22"] * v[1] ** 2 + coupling * v[0] * v[1]
+    coupling = p["M12"] * (c1 * c2 + s1 * s2)  # M12 cos(q2 - q1)
+    turning = p["M12"] * (s2 * c1 - c2 * s1)  # M12 sin(q2 - q1)
+    bias = ca.vertcat(
+        p["G1"] * c1 + p["b1"] * v[0] - turning * v[1] ** 2,
+        p["G2"] * c2 + p["b2"] * v[1] + turning * v[0] ** 2,
     )
-    dry = p["coulomb"] * v / ca.sqrt(v**2 + COULOMB_VELOCITY**2)
-    output = ca.vertcat(
-        p["l1"] * c1 - p["l4"] * c2 - p["l4"], p["l1"] * s1 - p["l4"] * s2 - p["l1"]
-    )
-    return lagrangian_system(
+    tip = ca.vertcat(p["l1"] * c1 - p["l4"] * c2, p["l1"] * s1 - p["l4"] * s2)
+    return mechanical_system(
         name="five_bar",
         q=q,
         v=v,
         parameters=parameters,
         parameter_names=names,
-        kinetic_energy=kinetic,
-        potential_energy=p["G1"] * s1 + p["G2"] * s2,
-        dissipation=ca.vertcat(p["b1"], p["b2"]) * v + dry,
+        mass=ca.blockcat([[p["M11"], coupling], [coupling, p["M22"]]]),
+        bias=bias,
         inputs=2,
-        output=output,
-        solve=lambda mass, rhs: ca.inv_minor(mass) @ rhs,
+        output=tip - ca.vertcat(p["l4"], p["l1"]),
+        potential_energy=p["G1"] * s1 + p["G2"] * s2,
+        solve=_solve_symmetric,
     )
+
+
+def _solve_symmetric(mass: ca.SX, rhs: ca.SX) -> ca.SX:
+    """M^-1 R of a symmetric 2 x 2 matrix by its adjugate."""
+    a, b, d = mass[0, 0], mass[0, 1], mass[1, 1]
+    inverse = 1 / (a * d - b**2)
+    return inverse * ca.vertcat(d * rhs[0, :] - b * rhs[1, :], a * rhs[1, :] - b * rhs[0, :])
 
 
 def inverse_kinematics(y: Array, l1: float, l4: float) -> Array:

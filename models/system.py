@@ -24,29 +24,33 @@ class MechanicalSystem:
         name: how the robot is called in files and on the command line.
         q: generalized coordinates, (n, 1); the first m of them are the actuated joints.
         v: their velocities, (n, 1).
+        tau: generalized forces B u + J_h^T F, (n, 1).
         parameters: numbers that a run may change without rebuilding, (k, 1).
         parameter_names: k names.
-        drift: f_v(q, v), accelerations without input or external force, (n, 1).
-        input_gain: g_v(q), accelerations per input, (n, m).
-        force_gain: accelerations per external force at the end-point, (n, p).
+        mass: M(q), (n, n).
+        bias: c(q, v), (n, 1).
+        acceleration: v' = M^-1 (tau - c), (n, 1).
+        drift: f_v(q, v) = -M^-1 c, (n, 1).
+        input_gain: g_v(q) = M^-1 B, (n, m).
         output: h(q), the actual end-point, (p, 1), [m].
         controlled_output: what a controller is given instead of h, (p, 1), [m]; often h itself.
         energy: total mechanical energy, (1, 1), [J].
-        mass: M(q), (n, n).
     """
 
     name: str
     q: ca.SX
     v: ca.SX
+    tau: ca.SX
     parameters: ca.SX
     parameter_names: tuple[str, ...]
+    mass: ca.SX
+    bias: ca.SX
+    acceleration: ca.SX
     drift: ca.SX
     input_gain: ca.SX
-    force_gain: ca.SX
     output: ca.SX
     controlled_output: ca.SX
     energy: ca.SX
-    mass: ca.SX
 
     @property
     def n(self) -> int:
@@ -64,61 +68,73 @@ class MechanicalSystem:
         return self.output.numel()
 
     def function(self, *names: str) -> ca.Function:
-        """Numeric function (q, v, parameters) -> the named attributes, for use outside the loop."""
+        """Numeric function (q, v, parameters) -> the named attributes (not `acceleration`)."""
         outputs = [getattr(self, name) for name in names]
         return ca.Function("_".join(names), [self.q, self.v, self.parameters], outputs)
+
+    def with_rate(self, output: ca.SX) -> ca.Function:
+        """(q, v, parameters) -> an output of the configuration, and its rate of change."""
+        rate = ca.jtimes(output, self.q, self.v)
+        return ca.Function("with_rate", [self.q, self.v, self.parameters], [output, rate])
 
     def parameter_vector(self, values: dict[str, float]) -> Array:
         """`values` by name, in the order of `parameters`, shape (k,)."""
         return np.array([values[name] for name in self.parameter_names])
 
 
-def lagrangian_system(
+def mechanical_system(
     *,
     name: str,
     q: ca.SX,
     v: ca.SX,
     parameters: ca.SX,
     parameter_names: tuple[str, ...],
-    kinetic_energy: ca.SX,
-    potential_energy: ca.SX,
-    dissipation: ca.SX,
+    mass: ca.SX,
+    bias: ca.SX,
     inputs: int,
     output: ca.SX,
+    potential_energy: ca.SX,
     controlled_output: ca.SX | None = None,
     solve: Callable[[ca.SX, ca.SX], ca.SX] = ca.solve,
 ) -> MechanicalSystem:
-    """Equations of motion from the energies; the first `inputs` coordinates are actuated.
+    """A system from M, c and h; B selects the first `inputs` coordinates.
 
     Args:
-        kinetic_energy: T(q, v), [J]; quadratic in v.
-        potential_energy: V(q), [J].
-        dissipation: generalized friction forces opposing motion, (n, 1).
+        mass: M(q), (n, n).
+        bias: c(q, v), Coriolis, gravity, elastic and viscous terms, (n, 1).
+        potential_energy: [J]; only for the energy balance.
         solve: returns M^-1 R for (M, R); replace it where M has structure.
 
     Source: eqs. (1)-(3).
     """
-    momentum = ca.gradient(kinetic_energy, v)
-    mass = ca.jacobian(momentum, v)
-    coriolis = ca.jacobian(momentum, q) @ v - ca.gradient(kinetic_energy, q)
-    bias = coriolis + ca.gradient(potential_energy, q) + dissipation
     n = q.numel()
-    selection = ca.SX.eye(n)[:, :inputs]
-    gains = solve(mass, ca.horzcat(-bias, selection, ca.jacobian(output, q).T))
+    tau = ca.SX.sym("tau", n)
+    gains = solve(mass, ca.horzcat(-bias, ca.SX.eye(n)[:, :inputs]))
     return MechanicalSystem(
         name=name,
         q=q,
         v=v,
+        tau=tau,
         parameters=parameters,
         parameter_names=parameter_names,
+        mass=mass,
+        bias=bias,
+        acceleration=solve(mass, tau - bias),
         drift=gains[:, 0],
-        input_gain=gains[:, 1 : 1 + inputs],
-        force_gain=gains[:, 1 + inputs :],
+        input_gain=gains[:, 1:],
         output=output,
         controlled_output=output if controlled_output is None else controlled_output,
-        energy=kinetic_energy + potential_energy,
-        mass=mass,
+        energy=0.5 * ca.dot(v, mass @ v) + potential_energy,
     )
+
+
+def lagrange_bias(
+    q: ca.SX, v: ca.SX, kinetic_energy: ca.SX, potential_energy: ca.SX, friction: ca.SX
+) -> ca.SX:
+    """c(q, v) = d/dt (dT/dv) at v' = 0 - dT/dq + dV/dq + friction, by differentiation."""
+    momentum = ca.gradient(kinetic_energy, v)
+    turning = ca.jtimes(momentum, q, v) - ca.gradient(kinetic_energy, q)
+    return turning + ca.gradient(potential_energy, q) + friction
 
 
 def decoupling_matrix(system: MechanicalSystem) -> ca.Function:

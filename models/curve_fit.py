@@ -1,0 +1,119 @@
+"""Curves from what a hand gives: control points or a freehand stroke.
+
+Periodic resampling at equal arc length, then FFT, low-passed (closed), or a Chebyshev fit (open).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.interpolate import CubicSpline
+
+from models.curves import HARMONICS, Curve, chebyshev_curve, fourier
+from models.system import Array
+
+SAMPLES = 256
+SHORTEST = 0.02  # [m], total length below which a stroke is no path
+
+
+def closed_through(points: Array) -> Curve:
+    """A smooth closed curve through (nearly: it is low-passed) the points, in their order.
+
+    Args:
+        points: shape (n, 2) with n >= 3, [m].
+
+    Raises:
+        ValueError: too few points, or all of them in one place.
+    """
+    points = _distinct(points, least=3)
+    ring = np.vstack([points, points[:1]])
+    spline = CubicSpline(_chords(ring), ring, bc_type="periodic")
+    samples = _equal_arc(spline, endpoint=False)
+    spectrum = np.fft.rfft(samples, axis=0) / SAMPLES
+    harmonics = spectrum[1 : HARMONICS + 1] * _half_turns()[:, None]
+    return fourier(spectrum[0].real, 2 * harmonics.real, -2 * harmonics.imag)
+
+
+def open_through(points: Array) -> Curve:
+    """A smooth open curve near the points, from the first to the last; two give a segment.
+
+    Raises:
+        ValueError: too few points, or all of them in one place.
+    """
+    points = _distinct(points, least=2)
+    if len(points) == 2:
+        return chebyshev_curve(np.stack([points.mean(0), (points[1] - points[0]) / 2]))
+    spline = CubicSpline(_chords(points), points, bc_type="natural")
+    samples = _equal_arc(spline, endpoint=True)
+    x = np.linspace(-1, 1, SAMPLES)
+    return chebyshev_curve(chebyshev.chebfit(x, samples, HARMONICS))
+
+
+def from_stroke(points: Array, closed: bool, passes: int = 40) -> Curve:
+    """A curve from a freehand stroke: evened out, smoothed, then fitted.
+
+    Args:
+        points: the stroke as it was drawn, shape (n, 2), [m].
+        closed: whether to join the ends.
+        passes: rounds of smoothing of 96 evenly spaced points; takes the tremor out.
+
+    Raises:
+        ValueError: the stroke is too short.
+    """
+    points = _distinct(points, least=3)
+    if closed:
+        points = np.vstack([points, points[:1]])
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    even = np.linspace(0, s[-1], 96, endpoint=not closed)
+    line = np.column_stack([np.interp(even, s, points[:, i]) for i in range(2)])
+    for _ in range(passes):
+        if closed:
+            line = (np.roll(line, 1, 0) + 2 * line + np.roll(line, -1, 0)) / 4
+        else:
+            line[1:-1] = (line[:-2] + 2 * line[1:-1] + line[2:]) / 4
+    return closed_through(line) if closed else open_through(line)
+
+
+def control_points(curve: Curve, count: int) -> Array:
+    """`count` points on the curve, evenly spaced by arc length, shape (count, 2), [m]."""
+    theta = np.linspace(-np.pi, np.pi, 2049)
+    points = curve.at(theta)
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    even = np.linspace(0, s[-1], count, endpoint=not curve.closed)
+    return curve.at(np.interp(even, s, theta))
+
+
+def _distinct(points: Array, least: int) -> Array:
+    points = np.asarray(points, dtype=float)
+    if points.ndim != 2 or points.shape[1] != 2 or not np.all(np.isfinite(points)):
+        raise ValueError("a path needs finite points, shape (n, 2)")
+    gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    points = points[np.concatenate([[True], gaps > 1e-4])]
+    if len(points) < least:
+        raise ValueError(f"a path needs at least {least} points apart from each other")
+    if gaps.sum() < SHORTEST:
+        raise ValueError(f"the path is too short: {gaps.sum() * 1e3:.0f} mm, at least 20 mm")
+    if np.linalg.norm(points[0] - points[-1]) < 1e-4:
+        points = points[:-1]
+    if len(points) < least:
+        raise ValueError(f"a path needs at least {least} points apart from each other")
+    return points
+
+
+def _chords(points: Array) -> Array:
+    """Centripetal knots: no loops between unevenly spaced points."""
+    gaps = np.sqrt(np.linalg.norm(np.diff(points, axis=0), axis=1))
+    return np.concatenate([[0.0], np.cumsum(gaps)])
+
+
+def _equal_arc(spline: CubicSpline, endpoint: bool) -> Array:
+    knots = np.linspace(spline.x[0], spline.x[-1], 16 * SAMPLES + 1)
+    points = spline(knots)
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    even = np.linspace(0, s[-1], SAMPLES, endpoint=endpoint)
+    return spline(np.interp(even, s, knots))
+
+
+def _half_turns() -> Array:
+    """theta starts at -pi, the FFT at 0."""
+    return (-1.0) ** np.arange(1, HARMONICS + 1)

@@ -1,0 +1,171 @@
+"""Paths: closed curves as truncated Fourier series, open ones as Chebyshev series.
+
+A curve and its first three derivatives are series over one basis {1, C_1..C_K, S_1..S_K}:
+closed, C_k = cos k theta and S_k = sin k theta; open, C_k = T_k(theta / pi) and S is unused.
+Their coefficients are run-time parameters of the compiled loop, so that dragging a curve never
+rebuilds anything. theta runs over [-pi, pi]; an open curve goes on along its end tangents.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from models.system import Array
+
+HARMONICS = 12
+TERMS = 2 * HARMONICS + 1
+ORDERS = 4  # the curve and three derivatives
+TABLE_SHAPE = (2 * ORDERS, TERMS)
+PERIOD = 2 * np.pi
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """A planar curve sigma(theta), theta in [-pi, pi] (periodic when closed).
+
+    Attributes:
+        closed: whether the ends meet.
+        series: coefficients of sigma and its derivatives, shape (ORDERS, TERMS, 2); per order a
+            constant, K rows of C_k, K rows of S_k, [m] (per rad to the order).
+    """
+
+    closed: bool
+    series: Array
+
+    def at(self, theta: Array, order: int = 0) -> Array:
+        """sigma or a derivative of it at theta, shape (...,) -> (..., 2)."""
+        theta = np.asarray(theta, dtype=float)
+        inner = theta if self.closed else np.clip(theta, -np.pi, np.pi)
+        value = _basis(inner, self.closed) @ self.series[order]
+        if self.closed:
+            return value
+        beyond = (theta - inner)[..., None]
+        if order == 0:
+            return value + beyond * self.at(inner, 1)
+        return value if order == 1 else np.where(beyond == 0, value, 0.0)
+
+    def table(self) -> Array:
+        """The coefficients as the compiled loop takes them: TABLE_SHAPE, by columns, flat.
+
+        Rows are the two coordinates of sigma, then of its derivatives; columns the basis.
+        """
+        return np.ascontiguousarray(self.series.transpose(1, 0, 2)).ravel()
+
+    def sample(self, count: int = 256) -> Array:
+        """Evenly spaced theta over the curve, shape (count,), without the repeated end if closed."""
+        return np.linspace(-np.pi, np.pi, count, endpoint=not self.closed)
+
+    def curvature(self, theta: Array) -> Array:
+        """Signed curvature, positive where the curve turns left, [1/m]."""
+        first, second = self.at(theta, 1), self.at(theta, 2)
+        speed = np.maximum(np.hypot(first[..., 0], first[..., 1]), 1e-12)
+        return (first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]) / speed**3
+
+    def length(self) -> float:
+        """Arc length, [m]."""
+        theta = self.sample(1024)
+        speed = np.linalg.norm(self.at(theta, 1), axis=-1)
+        if self.closed:
+            return float(speed.mean() * PERIOD)
+        return float(np.trapezoid(speed, theta))
+
+    def nearest(self, y: Array, samples: int = 256) -> tuple[Array, Array]:
+        """Closest points by global search, refined; the reference for every other projection.
+
+        Args:
+            y: points, shape (n, 2), [m].
+
+        Returns:
+            theta, shape (n,), [rad], and the distances, shape (n,), [m].
+
+        Source: eq. (7).
+        """
+        y = np.atleast_2d(y)
+        grid = self.sample(samples)
+        points = self.at(grid)
+        squared = ((y[:, None, :] - points[None]) ** 2).sum(-1)
+        theta = grid[squared.argmin(axis=1)]
+        step = grid[1] - grid[0]
+        theta = _golden(self, y, theta - step, theta + step)
+        return theta, np.linalg.norm(y - self.at(theta), axis=-1)
+
+
+def _basis(theta: Array, closed: bool) -> Array:
+    k = np.arange(1, HARMONICS + 1)
+    ones = np.ones((*theta.shape, 1))
+    if closed:
+        angle = theta[..., None] * k
+        return np.concatenate([ones, np.cos(angle), np.sin(angle)], axis=-1)
+    angle = np.arccos(np.clip(theta / np.pi, -1, 1))[..., None] * k
+    return np.concatenate([ones, np.cos(angle), np.zeros_like(angle)], axis=-1)
+
+
+def _golden(curve: Curve, y: Array, low: Array, high: Array) -> Array:
+    """Golden-section search for the smallest distance, then two Newton steps."""
+    ratio = (np.sqrt(5) - 1) / 2
+    for _ in range(24):
+        span = ratio * (high - low)
+        left, right = high - span, low + span
+        closer_left = ((y - curve.at(left)) ** 2).sum(-1) < ((y - curve.at(right)) ** 2).sum(-1)
+        low, high = np.where(closer_left, low, left), np.where(closer_left, right, high)
+    theta = (low + high) / 2
+    for _ in range(2):
+        gap, first, second = curve.at(theta) - y, curve.at(theta, 1), curve.at(theta, 2)
+        slope = (first**2).sum(-1) + (gap * second).sum(-1)
+        step = (gap * first).sum(-1) / np.where(slope > 0, slope, np.inf)
+        theta = theta - np.clip(step, low - high, high - low)
+    return theta
+
+
+def fourier(constant: Array, cosine: Array, sine: Array) -> Curve:
+    """A closed curve from its Fourier coefficients.
+
+    Args:
+        constant: a0, shape (2,), [m].
+        cosine, sine: a_k and b_k for k = 1.., shape (up to HARMONICS, 2), [m].
+    """
+    k = np.arange(1, HARMONICS + 1)[:, None]
+    a, b = np.zeros((HARMONICS, 2)), np.zeros((HARMONICS, 2))
+    a[: len(cosine)], b[: len(sine)] = cosine, sine
+    orders = [np.vstack([constant, a, b])]
+    for _ in range(ORDERS - 1):
+        a, b = k * b, -k * a
+        orders.append(np.vstack([np.zeros(2), a, b]))
+    return Curve(True, np.stack(orders))
+
+
+def chebyshev_curve(coefficients: Array) -> Curve:
+    """An open curve from Chebyshev coefficients in x = theta / pi, shape (up to K + 1, 2), [m]."""
+    orders: list[Array] = []
+    for order in range(ORDERS):
+        table = np.zeros((TERMS, 2))
+        derived = chebyshev.chebder(coefficients, order) if order else coefficients
+        table[: len(derived)] = derived / np.pi**order
+        orders.append(table)
+    return Curve(False, np.stack(orders))
+
+
+def ellipse(half_axes: tuple[float, float], centre: tuple[float, float] = (0.0, 0.0)) -> Curve:
+    """An axis-parallel ellipse, exact; theta is its eccentric anomaly. [m]"""
+    return fourier(
+        np.array(centre), np.array([[half_axes[0], 0.0]]), np.array([[0.0, half_axes[1]]])
+    )
+
+
+def circle(radius: float, centre: tuple[float, float] = (0.0, 0.0)) -> Curve:
+    """A circle, exact; theta is the angle. [m]. Source: eq. (15)."""
+    return ellipse((radius, radius), centre)
+
+
+def segment(start: tuple[float, float], end: tuple[float, float]) -> Curve:
+    """A straight segment from start to end, [m]."""
+    a, b = np.array(start), np.array(end)
+    return chebyshev_curve(np.stack([(a + b) / 2, (b - a) / 2]))
+
+
+def blend(old: Curve, new: Curve, fraction: float) -> Curve:
+    """Between two curves of the same kind: `old` at 0, `new` at 1."""
+    return Curve(new.closed, (1 - fraction) * old.series + fraction * new.series)

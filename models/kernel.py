@@ -1,0 +1,332 @@
+"""The closed loop as one function: one control tick of one robot under one controller.
+
+A tick is: measure, project, control, saturate, push, integrate, log. State, settings and curve are
+inputs, so that nothing a user turns ever rebuilds the function. Time passes in steps of dt (1 ms;
+0.5 ms at 2 kHz); the controller acts at every `hold_ticks`-th tick and its torque is held between.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from models import controllers, forces
+from models.controllers import Gains, Task
+from models.curves import TABLE_SHAPE
+from models.frames import Frame
+from models.layout import Layout
+from models.projection import LocalCurve, basis
+from models.system import MechanicalSystem
+from models.virtual_output import LevelSet, VirtualOutput, virtual_output
+
+GAINS = ("K1", "K2", "K3", "K4", "K5")
+Fields = dict[str, ca.SX]
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """What a loop is made of; all else is a run-time setting.
+
+    Attributes:
+        controller: one of `controllers.NAMES`.
+        closed: whether its path is a closed curve.
+        level_set: lambda is the paper's s(y) instead of the distance.
+        encoder: the controller sees encoder steps and filtered velocities, not the truth.
+    """
+
+    controller: str
+    closed: bool = True
+    level_set: bool = False
+    encoder: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Kernel:
+    """One tick of one closed loop, and what its flat vectors hold.
+
+    Attributes:
+        step: (state, settings, curve table) -> (state, log row).
+    """
+
+    step: ca.Function
+    state: Layout
+    settings: Layout
+    log: Layout
+
+
+def state_layout(system: MechanicalSystem) -> Layout:
+    """What one robot carries from tick to tick, the same for both controllers."""
+    n, m, p = system.n, system.m, system.p
+    return Layout(
+        (
+            ("q", n),
+            ("v", n),
+            ("theta", 1),  # closest point
+            ("theta_rate", 1),  # predicts the next one
+            ("theta_ref", 1),  # the tracker's reference point
+            ("integral", p),  # of xi, or of the tracking error
+            ("encoder", m),  # last reading
+            ("encoder_rate", m),  # filtered velocity
+            ("u", m),  # torque being held
+            ("phase", 1),  # ticks since the controller acted
+        )
+    )
+
+
+def settings_layout(system: MechanicalSystem) -> Layout:
+    """All that may change between ticks, but for the curve's coefficients."""
+    p, k = system.p, len(system.parameter_names)
+    scalars = (*GAINS, "position", "target", "speed")
+    realism = ("torque_limit", "coulomb", "encoder_step", "encoder_filter", "hold_ticks", "dt")
+    return Layout(
+        (
+            *((name, 1) for name in scalars),
+            ("level_centre", 2),
+            ("level_weights", 2),
+            ("level_constant", 1),
+            *((name, 1) for name in realism),
+            ("hand_active", 1),
+            ("hand_target", p),
+            ("hold_active", 1),
+            ("hold_anchor", p),
+            ("hold_tangent", p),
+            ("plant", k),
+            ("model", k),
+        )
+    )
+
+
+def log_layout(system: MechanicalSystem) -> Layout:
+    """One row: the instant a tick begins, and the torque and force during it."""
+    n, m, p = system.n, system.m, system.p
+    return Layout(
+        (
+            ("q", n),
+            ("v", n),
+            ("y", p),
+            ("theta", 1),
+            ("theta_rate", 1),
+            ("theta_ref", 1),
+            ("xi", p - 1),
+            ("xi_rate", p - 1),
+            ("u", m),
+            ("force", p),
+        )
+    )
+
+
+def build_kernel(
+    system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int = 1
+) -> Kernel:
+    """Assemble the tick.
+
+    The curve enters by one dense product, table times basis, outside the scalar graphs: an
+    interpreter runs that at compiled speed.
+
+    Args:
+        substeps: Runge-Kutta steps per tick; the fastest mode times dt / substeps must stay
+            below 2.8.
+
+    Raises:
+        ValueError: an unknown controller.
+    """
+    if kind.controller not in controllers.NAMES:
+        raise ValueError(f"controller {kind.controller!r}: expected one of {controllers.NAMES}")
+    layouts = state_layout(system), settings_layout(system), log_layout(system)
+    state = ca.MX.sym("state", layouts[0].size)
+    settings = ca.MX.sym("settings", layouts[1].size)
+    table = ca.MX.sym("curve", *TABLE_SHAPE)
+    values = table @ _bases(system, kind)(state, settings)
+    outputs = _tick(system, frame, kind, substeps)(state, settings, values)
+    return Kernel(ca.Function("tick", [state, settings, table], outputs), *layouts)
+
+
+def _tracks(kind: Kind) -> bool:
+    return kind.controller == "trajectory_tracking"
+
+
+def _predicted(state: Fields, settings: Fields) -> ca.SX:
+    return state["theta"] + settings["dt"] * state["theta_rate"]
+
+
+def _bases(system: MechanicalSystem, kind: Kind) -> ca.Function:
+    """(state, settings) -> basis at the predicted closest point and, tracking, the reference."""
+    state_symbol, state = state_layout(system).symbols("state")
+    settings_symbol, settings = settings_layout(system).symbols("settings")
+    columns = basis(_predicted(state, settings), kind.closed)
+    if _tracks(kind):
+        columns = ca.horzcat(columns, basis(state["theta_ref"], kind.closed))
+    return ca.Function("bases", [state_symbol, settings_symbol], [ca.densify(columns)])
+
+
+def _tick(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int) -> ca.Function:
+    """(state, settings, curve values) -> (state, log row), all scalar operations of a tick."""
+    state_symbol, state = state_layout(system).symbols("state")
+    settings_symbol, settings = settings_layout(system).symbols("settings")
+    values = ca.SX.sym("values", TABLE_SHAPE[0], 2 if _tracks(kind) else 1)
+
+    q, v, reading = _measure(system, kind, state, settings)
+    y, y_rate = system.with_rate(system.controlled_output)(q, v, settings["model"])
+    output = _coordinates(frame, kind, state, settings, values[:, 0], y, y_rate)
+    command, error, reference_rate = _command(
+        frame, kind, state, settings, values, (y, y_rate), output
+    )
+    u, acts, saturated = _torque(system, state, settings, q, v, command)
+    tip, force, effort = _push(system, state, settings, u)
+    next_q, next_v = _integrate(system, state, settings, effort, substeps)
+
+    integrates = acts * (1 - saturated) * (1 - settings["hold_active"])
+    interval = settings["dt"] * settings["hold_ticks"]
+    phase = state["phase"] + 1
+    after = {
+        "q": next_q,
+        "v": next_v,
+        "theta": output.theta,
+        "theta_rate": output.theta_rate,
+        "theta_ref": state["theta_ref"] + settings["dt"] * reference_rate,
+        "integral": state["integral"] + integrates * interval * error,
+        "encoder": _held(kind, acts, reading, state["encoder"]),
+        "encoder_rate": _held(kind, acts, v[: system.m], state["encoder_rate"]),
+        "u": u,
+        "phase": phase * (phase < settings["hold_ticks"] - 0.5),
+    }
+    row = {
+        "q": state["q"],
+        "v": state["v"],
+        "y": tip,
+        "theta": output.theta,
+        "theta_rate": output.theta_rate,
+        "theta_ref": state["theta_ref"],
+        "xi": output.xi,
+        "xi_rate": output.xi_rate,
+        "u": u,
+        "force": force,
+    }
+    outputs = ca.cse([state_layout(system).join(after), log_layout(system).join(row)])
+    return ca.Function("scalars", [state_symbol, settings_symbol, values], outputs)
+
+
+def _measure(
+    system: MechanicalSystem, kind: Kind, state: Fields, settings: Fields
+) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """q and v as the controller sees them, and the encoders' reading.
+
+    Without encoders it sees the truth; with them joint angles come in steps and velocities from
+    their filtered differences. Coordinates without a motor are seen exactly.
+    """
+    q, v, m = state["q"], state["v"], system.m
+    if not kind.encoder:
+        return q, v, q[:m]
+    step, dt = settings["encoder_step"], settings["dt"] * settings["hold_ticks"]
+    reading = step * ca.floor(q[:m] / step + 0.5)
+    weight = dt / (settings["encoder_filter"] + dt)
+    difference = (reading - state["encoder"]) / dt
+    rate = state["encoder_rate"] + weight * (difference - state["encoder_rate"])
+    return ca.vertcat(reading, q[m:]), ca.vertcat(rate, v[m:]), reading
+
+
+def _held(kind: Kind, acts: ca.SX, new: ca.SX, old: ca.SX) -> ca.SX:
+    """What the encoders remember: exact sensing needs no sampling."""
+    return ca.if_else(acts, new, old) if kind.encoder else new
+
+
+def _coordinates(
+    frame: Frame,
+    kind: Kind,
+    state: Fields,
+    settings: Fields,
+    values: ca.SX,
+    y: ca.SX,
+    y_rate: ca.SX,
+) -> VirtualOutput:
+    names = ("level_centre", "level_weights", "level_constant")
+    level = LevelSet(*[settings[name] for name in names]) if kind.level_set else None
+    start = LocalCurve.from_values(_predicted(state, settings), kind.closed, values)
+    return virtual_output(start.project(frame.split(y)[0]), frame, level, y, y_rate)
+
+
+def _command(
+    frame: Frame,
+    kind: Kind,
+    state: Fields,
+    settings: Fields,
+    values: ca.SX,
+    measured: tuple[ca.SX, ca.SX],
+    output: VirtualOutput,
+) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """Commanded y'', the error to integrate (p, 1), and the reference point's speed."""
+    gains = Gains(*[settings[name] for name in GAINS])
+    task = Task(settings["position"], settings["target"], settings["speed"])
+    integral, theta_ref = state["integral"], state["theta_ref"]
+    rate = controllers.reference_rate(theta_ref, kind.closed, task, settings["dt"])
+    if not _tracks(kind):
+        across = integral[: frame.p - 1]
+        command = controllers.path_following(output, kind.closed, gains, task, across)
+        return command, ca.vertcat(output.xi, 0), rate
+    reference = LocalCurve.from_values(theta_ref, kind.closed, values[:, 1])
+    error, error_rate, feedforward = controllers.tracking_error(
+        reference, frame, *measured, rate
+    )
+    command = controllers.trajectory_tracking(error, error_rate, feedforward, gains, integral)
+    return command, error, rate
+
+
+def _torque(
+    system: MechanicalSystem,
+    state: Fields,
+    settings: Fields,
+    q: ca.SX,
+    v: ca.SX,
+    command: ca.SX,
+) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """Torque of this tick, whether the controller acts in it, whether it saturates."""
+    wanted = controllers.linearization(system, q, v, settings["model"], command)
+    limit = settings["torque_limit"]
+    acts = state["phase"] < 0.5
+    fresh = ca.fmin(ca.fmax(wanted, -limit), limit)
+    return ca.if_else(acts, fresh, state["u"]), acts, ca.mmax(ca.fabs(wanted)) > limit
+
+
+def _push(
+    system: MechanicalSystem, state: Fields, settings: Fields, u: ca.SX
+) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """The actual end-point, the force on it, and all generalized forces, held over the tick."""
+    y, y_rate = system.with_rate(system.output)(state["q"], state["v"], settings["plant"])
+    pull = forces.hand(y, y_rate, settings["hand_target"], settings["hand_active"])
+    brake = forces.hold(
+        y, y_rate, settings["hold_anchor"], settings["hold_tangent"], settings["hold_active"]
+    )
+    force = ca.SX.sym("force", system.p)
+    transposed = ca.Function(
+        "transposed",
+        [system.q, system.parameters, force],
+        [ca.jtimes(system.output, system.q, force, True)],
+    )
+    pushed = transposed(state["q"], settings["plant"], pull + brake)
+    motors = u + forces.dry_friction(state["v"][: system.m], settings["coulomb"])
+    return y, pull + brake, pushed + ca.vertcat(motors, ca.SX(system.n - system.m, 1))
+
+
+def _integrate(
+    system: MechanicalSystem, state: Fields, settings: Fields, tau: ca.SX, substeps: int
+) -> tuple[ca.SX, ca.SX]:
+    """Classical Runge-Kutta of the plant over one tick with generalized forces tau held."""
+    slope = ca.Function(
+        "slope",
+        [system.q, system.v, system.tau, system.parameters],
+        [system.acceleration],
+    )
+    q, v, h = state["q"], state["v"], settings["dt"] / substeps
+    half, sixth, plant = h / 2, h / 6, settings["plant"]
+    for _ in range(substeps):
+        a1 = slope(q, v, tau, plant)
+        v2 = v + half * a1
+        a2 = slope(q + half * v, v2, tau, plant)
+        v3 = v + half * a2
+        a3 = slope(q + half * v2, v3, tau, plant)
+        v4 = v + h * a3
+        a4 = slope(q + h * v3, v4, tau, plant)
+        q = q + sixth * (v + 2 * (v2 + v3) + v4)
+        v = v + sixth * (a1 + 2 * (a2 + a3) + a4)
+    return q, v

@@ -1,0 +1,190 @@
+"""Two ways to run a kernel, with one interface: interpreted by CasADi, or compiled to C.
+
+Both take many ticks in one call and agree to 1e-12 over 1000 ticks. The interpreted loop needs no
+compiler; the compiled one is an order of magnitude faster and lets other threads run meanwhile.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import Any, Protocol
+
+import casadi as ca
+import numpy as np
+
+from models.kernel import Kernel
+from models.system import Array
+
+BLOCK = 16  # ticks per call of the interpreted loop, about one frame
+FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fPIC", "-shared")
+
+_DRIVER = """
+int onpath_run(const double* settings, const double* curve, double* state, double* log,
+               long long ticks) {{
+  const double* arg[{sz_arg}]; double* res[{sz_res}]; long long iw[{sz_iw}]; double w[{sz_w}];
+  double next[{state}];
+  for (long long k = 0; k < ticks; ++k) {{
+    arg[0] = state; arg[1] = settings; arg[2] = curve;
+    res[0] = next; res[1] = log + k * {log};
+    if (onpath_tick(arg, res, iw, w, 0)) return 1;
+    for (int i = 0; i < {state}; ++i) state[i] = next[i];
+  }}
+  return 0;
+}}
+"""
+
+
+class Loop(Protocol):
+    """A kernel that runs."""
+
+    @property
+    def kernel(self) -> Kernel:
+        """What runs."""
+        ...
+
+    def run(
+        self, state: Array, settings: Array, table: Array, ticks: int
+    ) -> tuple[Array, Array]:
+        """Advance by `ticks`.
+
+        Args:
+            state, settings: flat vectors, laid out as the kernel says.
+            table: `Curve.table()`.
+
+        Returns:
+            The new state, shape (kernel.state.size,), and the rows, (ticks, kernel.log.size).
+        """
+        ...
+
+
+class InterpretedLoop:
+    """Runs in CasADi's virtual machine. One thread at a time."""
+
+    def __init__(self, kernel: Kernel) -> None:
+        self.kernel = kernel
+        self._blocks = {size: _Block(kernel, size) for size in (BLOCK, 1)}
+
+    def run(
+        self, state: Array, settings: Array, table: Array, ticks: int
+    ) -> tuple[Array, Array]:
+        """See `Loop.run`."""
+        rows = np.empty((ticks, self.kernel.log.size))
+        done = 0
+        while done < ticks:
+            size = BLOCK if ticks - done >= BLOCK else 1
+            block = self._blocks[size]
+            state = block.run(state, settings, table, rows[done : done + size])
+            done += size
+        return state, rows
+
+
+class _Block:
+    """A fixed number of ticks as one function with buffers of its own."""
+
+    def __init__(self, kernel: Kernel, ticks: int) -> None:
+        state, settings, table = (ca.MX.sym(n, *kernel.step.size_in(i)) for i, n in enumerate("spc"))
+        after, rows = state, []
+        for _ in range(ticks):
+            after, row = kernel.step(after, settings, table)
+            rows.append(row)
+        block = ca.Function("block", [state, settings, table], [after, ca.horzcat(*rows)])
+        self._arguments = [np.zeros(block.nnz_in(i)) for i in range(3)]
+        self._results = [np.zeros(block.nnz_out(i)) for i in range(2)]
+        buffer: Any
+        buffer, self._evaluate = block.buffer()
+        for i, argument in enumerate(self._arguments):
+            buffer.set_arg(i, memoryview(argument))
+        for i, result in enumerate(self._results):
+            buffer.set_res(i, memoryview(result))
+        self._buffer = buffer  # keeps the memory alive
+
+    def run(self, state: Array, settings: Array, table: Array, rows: Array) -> Array:
+        for own, given in zip(self._arguments, (state, settings, table), strict=True):
+            own[:] = given
+        self._evaluate()
+        rows[:] = self._results[1].reshape(rows.shape)
+        return self._results[0].copy()
+
+
+class CompiledLoop:
+    """Runs machine code through ctypes, which lets other Python threads run. Re-entrant."""
+
+    def __init__(self, kernel: Kernel, library: Path) -> None:
+        self.kernel = kernel
+        self._run = ctypes.CDLL(str(library)).onpath_run
+        self._run.argtypes = [ctypes.c_void_p] * 4 + [ctypes.c_longlong]
+
+    def run(
+        self, state: Array, settings: Array, table: Array, ticks: int
+    ) -> tuple[Array, Array]:
+        """See `Loop.run`."""
+        after = np.array(state, dtype=float)
+        rows = np.empty((ticks, self.kernel.log.size))
+        inputs = [np.ascontiguousarray(part, dtype=float) for part in (settings, table)]
+        pointers = [array.ctypes.data for array in (*inputs, after, rows)]
+        if self._run(*pointers, ticks):
+            raise RuntimeError("the compiled loop failed")
+        return after, rows
+
+
+def find_compiler() -> str | None:
+    """Path of the system's C compiler, or None."""
+    return shutil.which(os.environ.get("CC", "cc"))
+
+
+def compile_loop(kernel: Kernel, folder: Path, compiler: str) -> CompiledLoop:
+    """Compile a kernel, or take it from the cache in `folder`.
+
+    The cache key is a hash of the source, the compiler and the flags, so that a stale or foreign
+    library is never loaded.
+
+    Raises:
+        RuntimeError: the compiler failed; the message has its first lines.
+    """
+    source = generate_source(kernel)
+    version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=False)
+    key = "\n".join((source, version.stdout, *FLAGS, _processor()))
+    name = hashlib.sha256(key.encode()).hexdigest()[:24]
+    library = folder / f"{name}.so"
+    if not library.exists():
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        with tempfile.TemporaryDirectory(dir=folder) as scratch:
+            file, built = Path(scratch) / "loop.c", Path(scratch) / "loop.so"
+            file.write_text(source)
+            command = [compiler, *FLAGS, str(file), "-o", str(built), "-lm"]
+            outcome = subprocess.run(command, capture_output=True, text=True, check=False)
+            if outcome.returncode:
+                raise RuntimeError(f"{compiler} failed: {outcome.stderr.strip()[:500]}")
+            os.replace(built, library)
+    return CompiledLoop(kernel, library)
+
+
+def generate_source(kernel: Kernel) -> str:
+    """C of the kernel's tick and the loop around it."""
+    tick = ca.Function("onpath_tick", kernel.step.mx_in(), kernel.step(*kernel.step.mx_in()))
+    generator = ca.CodeGenerator("loop", {"with_header": False})
+    generator.add(tick)
+    sizes = {
+        "sz_arg": max(tick.sz_arg(), 3),
+        "sz_res": max(tick.sz_res(), 2),
+        "sz_iw": max(tick.sz_iw(), 1),
+        "sz_w": max(tick.sz_w(), 1),
+        "state": kernel.state.size,
+        "log": kernel.log.size,
+    }
+    return generator.dump() + _DRIVER.format(**sizes)
+
+
+def _processor() -> str:
+    """What -march=native depends on."""
+    try:
+        info = Path("/proc/cpuinfo").read_text()
+    except OSError:
+        return ""
+    return "".join(line for line in info.splitlines() if line.startswith("flags"))[:4000]
