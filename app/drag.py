@@ -1,0 +1,94 @@
+"""From a pointer on the screen to a point on a robot's plane. Pure geometry."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+PARALLEL_COSINE = 1e-3
+"""Rays that meet the plane at a flatter angle than this [rad] are taken as parallel to it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """A plane in a robot's frame.
+
+    Attributes:
+        point: a point on it, shape (3,), [m].
+        normal: shape (3,), any length.
+    """
+
+    point: np.ndarray
+    normal: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """An axis-aligned box in a robot's frame.
+
+    Attributes:
+        lower: smallest coordinates, shape (3,), [m].
+        upper: largest coordinates, shape (3,), [m].
+    """
+
+    lower: np.ndarray
+    upper: np.ndarray
+
+    def clamp(self, point: np.ndarray) -> np.ndarray:
+        """The nearest point of the box, shape (3,), [m]."""
+        return np.minimum(np.maximum(point, self.lower), self.upper)
+
+
+VERTICAL_PLANE = Plane(np.zeros(3), np.array([0.0, 1.0, 0.0]))
+REACHABLE = Box(np.full(3, -0.6), np.full(3, 0.6))
+
+
+def intersect_ray_plane(
+    origin: np.ndarray, direction: np.ndarray, plane_point: np.ndarray, plane_normal: np.ndarray
+) -> np.ndarray | None:
+    """Where a ray meets a plane, or None if it does not.
+
+    Args:
+        origin: start of the ray, shape (3,), [m].
+        direction: of the ray, shape (3,), any length.
+        plane_point: a point on the plane, shape (3,), [m].
+        plane_normal: shape (3,), any length.
+
+    Returns:
+        The point, shape (3,), [m]; None when the ray runs parallel to the plane, when the plane
+        lies behind its origin, or when anything is not finite.
+    """
+    lengths = np.linalg.norm(direction) * np.linalg.norm(plane_normal)
+    closing = float(np.dot(direction, plane_normal))
+    if not np.isfinite(lengths) or abs(closing) <= PARALLEL_COSINE * lengths:
+        return None
+    along = float(np.dot(np.subtract(plane_point, origin), plane_normal)) / closing
+    if not along >= 0.0:
+        return None
+    point = np.asarray(origin, dtype=float) + along * np.asarray(direction, dtype=float)
+    return point if np.isfinite(point).all() else None
+
+
+def pointer_on_plane(
+    camera: np.ndarray, pointer: np.ndarray, base: np.ndarray, plane: Plane, box: Box = REACHABLE
+) -> np.ndarray | None:
+    """What the pointer means on a robot's plane.
+
+    A drag reports the pointer on a plane that faces the camera, not on the robot's own; both lie
+    on one ray from the camera.
+
+    Args:
+        camera: position of the camera in the world, shape (3,), [m].
+        pointer: any point of the world under the pointer, shape (3,), [m].
+        base: origin of the robot's frame in the world, shape (3,), [m].
+        plane: the robot's plane.
+        box: what the answer is clamped to.
+
+    Returns:
+        The point in the robot's frame, shape (3,), [m], or None if there is none.
+    """
+    origin = np.asarray(camera, dtype=float)
+    direction = np.asarray(pointer, dtype=float) - origin
+    hit = intersect_ray_plane(origin - base, direction, plane.point, plane.normal)
+    return None if hit is None else box.clamp(hit)

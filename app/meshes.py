@@ -1,0 +1,187 @@
+"""The parts of the machine as meshes, in a robot's frame: x right, y away from the camera, z up.
+
+Every shape is a loft: closed rings of equally many points, joined in order and capped. Edges
+sharper than 30 degrees are split, so that a viewer's smooth shading keeps them crisp.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import trimesh
+
+SHARP = np.radians(30.0)
+ROUND = 40  # points of a full circle
+
+FRONT_LAYER = 0.022  # centre of the layer of links 2 and 4 behind the robot's plane [m]
+BACK_LAYER = 0.038  # the same for links 1 and 3 [m]
+BOSS = (FRONT_LAYER + BACK_LAYER) / 2  # centre of the bearings, which span both layers [m]
+LINK_THICKNESS = 0.012
+FLOOR_DEPTH = 0.17  # of the floor below the base pivot [m]
+
+
+def loft(rings: np.ndarray) -> trimesh.Trimesh:
+    """A closed solid through rings.
+
+    Args:
+        rings: shape (m, n, 3), neighbouring rings corresponding point by point, each ring convex.
+
+    Returns:
+        A mesh whose faces look outward.
+    """
+    m, n, _ = rings.shape
+    start = np.arange(m - 1)[:, None] * n
+    here, there = np.arange(n), np.roll(np.arange(n), -1)
+    a, b = start + here, start + there
+    sides = np.stack([np.stack([a, b, a + n], -1), np.stack([b, b + n, a + n], -1)]).reshape(-1, 3)
+    first, last = m * n, m * n + 1
+    caps = [
+        np.column_stack([there, here, np.full(n, first)]),
+        np.column_stack([here + (m - 1) * n, there + (m - 1) * n, np.full(n, last)]),
+    ]
+    vertices = np.concatenate([rings.reshape(-1, 3), [rings[0].mean(0), rings[-1].mean(0)]])
+    mesh = trimesh.Trimesh(vertices, np.concatenate([sides, *caps]), process=False)
+    if mesh.volume < 0.0:
+        mesh.invert()
+    return mesh
+
+
+def crisp(*solids: trimesh.Trimesh) -> trimesh.Trimesh:
+    """The solids as one mesh, its sharp edges split."""
+    whole = trimesh.util.concatenate(
+        [trimesh.graph.smooth_shade(solid, angle=SHARP, facet_minarea=None) for solid in solids]
+    )
+    assert isinstance(whole, trimesh.Trimesh)
+    return whole
+
+
+def turned(profile: list[tuple[float, float]], points: int = ROUND) -> trimesh.Trimesh:
+    """A solid of revolution about y, from (radius, y) pairs [m]."""
+    angle = np.linspace(0.0, 2.0 * np.pi, points, endpoint=False)
+    circle = np.column_stack([np.cos(angle), np.zeros(points), np.sin(angle)])
+    return loft(np.stack([radius * circle + [0.0, y, 0.0] for radius, y in profile]))
+
+
+def extruded(outline: np.ndarray, front: float, back: float, chamfer: float) -> trimesh.Trimesh:
+    """A plate with chamfered edges.
+
+    Args:
+        outline: convex outline in (x, z), counter-clockwise, shape (n, 2), [m].
+        front: y of the front face [m].
+        back: y of the back face [m].
+        chamfer: width of the chamfer [m].
+    """
+    low, high = outline.min(0), outline.max(0)
+    centre, half = (low + high) / 2, (high - low) / 2
+    inner = centre + (outline - centre) * (1.0 - chamfer / half)
+    layers = [(inner, front), (outline, front + chamfer), (outline, back - chamfer), (inner, back)]
+    return loft(np.stack([np.insert(ring, 1, y, axis=1) for ring, y in layers]))
+
+
+def _stadium(inset: float, half_width: float, cap: float) -> np.ndarray:
+    """Outline of a bar along x with round ends, shape (n, 2)."""
+    angle = np.linspace(-np.pi / 2, np.pi / 2, ROUND // 2)
+    right = np.column_stack([1.0 + cap * np.cos(angle) - inset, half_width * np.sin(angle)])
+    left = np.column_stack([inset - cap * np.cos(angle), -half_width * np.sin(angle)])
+    return np.concatenate([right, left])
+
+
+@lru_cache
+def link() -> trimesh.Trimesh:
+    """A machined bar from x = 0 to 1, to be scaled along x: chamfered, a pocket in either face.
+
+    Its round ends become half ellipses when scaled; they are right for 0.2 m, and the bearings
+    cover them anyway.
+    """
+    half, chamfer, pocket = LINK_THICKNESS / 2, 0.0016, 0.0024
+    rim, edge = _stadium(0.008, 0.0104, 0.055), _stadium(0.0, 0.012, 0.055)
+    mouth, bed = _stadium(0.13, 0.0062, 0.03), _stadium(0.138, 0.0046, 0.03)
+    layers = [(bed, pocket - half), (mouth, -half), (rim, -half), (edge, chamfer - half)]
+    mirrored = [(ring, -y) for ring, y in reversed(layers)]
+    return crisp(loft(np.stack([np.insert(ring, 1, y, axis=1) for ring, y in layers + mirrored])))
+
+
+@lru_cache
+def bearing() -> trimesh.Trimesh:
+    """A bearing through both layers with a bolt head towards the camera, axis y, about its centre.
+
+    Also, scaled per instance: the pen, and the flat discs that mark points.
+    """
+    shell = [(0.0108, 0.0165), (0.012, 0.015), (0.012, -0.015), (0.0108, -0.0165)]
+    bolt = [(0.0075, -0.0165), (0.0075, -0.0152), (0.0052, -0.0152), (0.0052, -0.0195)]
+    return crisp(turned(shell + bolt + [(0.0044, -0.0203)]))
+
+
+@lru_cache
+def coin() -> trimesh.Trimesh:
+    """A disc of radius 1 m and thickness 0.2 m with its face at y = 0, to be scaled down."""
+    return crisp(turned([(0.93, 0.0), (1.0, 0.07), (1.0, 0.2)]))
+
+
+@lru_cache
+def motors() -> trimesh.Trimesh:
+    """Two coaxial motors on the base pivot: one before, one behind the links."""
+    front = [(0.024, -0.004), (0.026, -0.006), (0.026, -0.034), (0.0235, -0.037)]
+    cap = [(0.018, -0.037), (0.018, -0.041), (0.0165, -0.0425)]
+    back = [(0.026, 0.064), (0.026, 0.108), (0.023, 0.111)]
+    return crisp(turned(front + cap), turned(back))
+
+
+@lru_cache
+def base() -> trimesh.Trimesh:
+    """Base plate on the floor and the two uprights that carry the motors."""
+    floor = -FLOOR_DEPTH
+    angle = np.linspace(0.0, np.pi, ROUND)
+    head = 0.03 * np.column_stack([np.cos(angle), np.sin(angle)])
+    upright = np.concatenate([head, [(-0.042, floor + 0.008), (0.042, floor + 0.008)]])
+    foot = np.array([(0.1, floor + 0.014), (-0.1, floor + 0.014), (-0.1, floor), (0.1, floor)])
+    return crisp(
+        extruded(upright, -0.004, 0.008, 0.002),
+        extruded(upright, 0.054, 0.066, 0.002),
+        extruded(foot, -0.06, 0.13, 0.003),
+    )
+
+
+@lru_cache
+def ball() -> trimesh.Trimesh:
+    """A ball of radius 1 m, to be scaled down."""
+    return trimesh.creation.icosphere(subdivisions=3)
+
+
+@lru_cache
+def cross() -> trimesh.Trimesh:
+    """An x of size 1 m in the plane y = 0: a refused place, to be scaled down."""
+    arm = np.array([(0.5, 0.09), (-0.5, 0.09), (-0.5, -0.09), (0.5, -0.09)])
+    turn = np.sqrt(0.5) * np.array([[1.0, 1.0], [-1.0, 1.0]])
+    return crisp(*(extruded(arm @ r, -0.06, 0.06, 0.02) for r in (turn, turn.T)))
+
+
+def sheet(low: tuple[float, float], high: tuple[float, float], y: float) -> trimesh.Trimesh:
+    """A rectangle in (x, z) at depth y, facing the camera, [m]."""
+    (x0, z0), (x1, z1) = low, high
+    corners = np.array([(x0, y, z0), (x1, y, z0), (x1, y, z1), (x0, y, z1)])
+    return trimesh.Trimesh(corners, [(0, 1, 2), (0, 2, 3)], process=False)
+
+
+def ring(
+    inner: float, outer: float, low: tuple[float, float], high: tuple[float, float], y: float
+) -> trimesh.Trimesh:
+    """The part of a flat ring about the origin that lies in a box in (x, z), at depth y, [m]."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 361)
+    circle = np.column_stack([np.cos(angle), np.zeros_like(angle), np.sin(angle)])
+    vertices = np.concatenate([inner * circle, outer * circle]) + [0.0, y, 0.0]
+    n, i = len(angle), np.arange(len(angle) - 1)
+    faces = np.concatenate(
+        [np.column_stack([i, i + 1, i + n]), np.column_stack([i + 1, i + n + 1, i + n])]
+    )
+    middle = vertices[faces].mean(axis=1)[:, [0, 2]]
+    inside = ((middle >= low) & (middle <= high)).all(axis=1)
+    return trimesh.Trimesh(vertices, faces[inside], process=False)
+
+
+def joined(*parts: trimesh.Trimesh) -> trimesh.Trimesh:
+    """The parts as one mesh."""
+    whole = trimesh.util.concatenate(list(parts))
+    assert isinstance(whole, trimesh.Trimesh)
+    return whole
