@@ -1,0 +1,324 @@
+"""Protects a viser server from an untrusted browser; alone in using viser's private parts.
+
+What a browser sends passes the handshake (`origin`), the websocket (`_Connection`: size and rate;
+`wire_form`) and the gate (`_Gate`: which widget; `widget_values`). What a callback raises is logged
+(`error_log`). Written against viser 1.1.1; a test pins the private names.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import dataclasses
+import errno
+import logging
+import socket
+import threading
+import time
+import weakref
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import viser
+import websockets.asyncio.server
+from viser import _gui_api, _gui_handles, _scene_api, _viser
+from viser import _messages as wire
+from viser.infra import ClientId, WebsockClientConnection, WebsockMessageHandler
+from websockets.asyncio.server import ServerConnection
+from websockets.frames import CloseCode, Frame, Opcode
+from websockets.http11 import Request, Response
+
+from app.error_log import log_error
+from app.origin import Door, is_loopback
+from app.widget_values import Refused, accepted_value
+from app.wire_form import fault
+
+_log = logging.getLogger(__name__)
+
+_FROM_BROWSER: dict[str, type[Any]] = {
+    form.__name__: form
+    for form in (
+        wire.ViewerCameraMessage,
+        wire.ScenePointerMessage,
+        wire.SceneNodeClickMessage,
+        wire.SceneNodeDragMessage,
+        wire.TransformControlsDragStartMessage,
+        wire.TransformControlsUpdateMessage,
+        wire.TransformControlsDragEndMessage,
+        wire.GuiUpdateMessage,
+        wire.GuiButtonHoldMessage,
+        wire.GuiFormDirtyMessage,
+        wire.GuiFormSubmitMessage,
+        wire.CommandTriggerMessage,
+        wire.GetRenderResponseMessage,
+        wire.LocalStorageGetItemResponseMessage,
+        wire.FileTransferStartUpload,
+        wire.FileTransferPart,
+    )
+}
+_SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
+
+
+class PortInUse(OSError):
+    """The port is taken; the message says which, and the way out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What one browser may send.
+
+    Attributes:
+        max_message_bytes: of one websocket message, [B]; a larger one closes that connection.
+        messages_per_second: sustained; more closes that connection.
+        message_burst: messages at once; each 4 kB of a long one counts as one more.
+        max_text_length: of a text widget, [characters]; the rest is cut off.
+        max_magnitude: of any number in a drag, pointer, gizmo or camera message.
+        max_upload_bytes: of a file, one file at a time, [B]; 0 refuses all.
+    """
+
+    max_message_bytes: int = 1_000_000
+    messages_per_second: float = 500.0
+    message_burst: float = 1000.0
+    max_text_length: int = 2000
+    max_magnitude: float = 1e9
+    max_upload_bytes: int = 0
+
+
+def make_server(
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    *,
+    label: str | None = None,
+    limits: Limits = Limits(),
+    allowed_origins: tuple[str, ...] = (),
+    verbose: bool = False,
+) -> viser.ViserServer:
+    """A hardened server that listens on exactly this address; port 0 takes a free one.
+
+    Args:
+        allowed_origins: pages of other sites that may connect, "https://lab.example:8443". The
+            server's own page always may, and so may a client that is no browser.
+
+    Raises:
+        PortInUse: where viser alone would move on to the next port without a word.
+        OSError: the address cannot be bound.
+    """
+    listener = _listen(host, port)
+    door = Door(allowed_origins, local_only=is_loopback(host))
+    with _guarded_serve(listener, door, limits):
+        bound_port = listener.getsockname()[1]
+        server = viser.ViserServer(host=host, port=bound_port, label=label, verbose=verbose)
+    harden(server, limits=limits)
+    door.open = True
+    return server
+
+
+def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
+    """Guard what viser has decoded, of all clients to come; once, before the first one.
+
+    `make_server` does this and adds the gates before decoding, which need the construction.
+    """
+    websock = server._websock_server
+    for message in _SHARE_TUNNEL:
+        websock.unregister_handler(message)
+    _log_errors_of_callbacks(server)
+
+    def guard(connection: WebsockClientConnection) -> None:
+        handler: Any = connection._incoming_handlers[wire.GuiUpdateMessage][0]
+        _Gate(server, connection, handler.__self__, limits)
+
+    _Gate(server, websock, server.gui, limits)
+    websock.on_client_connect(guard)
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        return socket.create_server((host, port), family=family)
+    except OSError as error:
+        if error.errno != errno.EADDRINUSE:
+            raise
+        way_out = "stop the program that has it, or choose another port (0 takes any free one)"
+        raise PortInUse(error.errno, f"port {port} on {host} is in use: {way_out}") from None
+
+
+_patching = threading.Lock()
+
+
+@contextmanager
+def _guarded_serve(listener: socket.socket, door: Door, limits: Limits) -> Iterator[None]:
+    """Lead the one call of websockets' `serve`, which viser makes on construction, to our gates."""
+    library: Any = websockets.asyncio.server
+    genuine = library.serve
+
+    def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
+        def knock(connection: ServerConnection, request: Request) -> Response | None:
+            refusal = door.refusal(request)
+            return connection.respond(*refusal) if refusal else process_request(connection, request)
+
+        options["max_size"] = limits.max_message_bytes
+        options["create_connection"] = partial(_Connection, limits=limits)
+        return genuine(handler, sock=listener, process_request=knock, **options)
+
+    with _patching:
+        library.serve = serve
+        try:
+            yield
+        finally:
+            library.serve = genuine
+
+
+class _Connection(ServerConnection):
+    """A websocket that yields only well-formed messages, and is closed when they are too many."""
+
+    def __init__(self, *args: Any, limits: Limits, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._limits = limits
+        self._allowance = limits.message_burst
+        self._counted_at = time.monotonic()
+        self._closing: asyncio.Task[None] | None = None
+
+    def process_event(self, event: Any) -> None:
+        """Count frames as they arrive, pings and fragments too; drop what exceeds the rate."""
+        if isinstance(event, Frame) and event.opcode is not Opcode.CLOSE:
+            if self._closing is None and not self._affords(event):
+                _warn_once(self, "a flood of messages")
+                reason = f"more than {self._limits.messages_per_second:g} messages per second"
+                self._closing = self.loop.create_task(
+                    self.close(CloseCode.POLICY_VIOLATION, reason)
+                )
+            if self._closing is not None:
+                return
+        super().process_event(event)
+
+    def _affords(self, frame: Frame) -> bool:
+        now = time.monotonic()
+        earned = (now - self._counted_at) * self._limits.messages_per_second
+        self._allowance = min(self._allowance + earned, self._limits.message_burst)
+        self._counted_at = now
+        self._allowance -= 1 + len(frame.data) / 4096
+        return self._allowance >= 0
+
+    async def recv(self, decode: bool | None = None) -> Any:
+        while True:
+            raw = await super().recv(decode)
+            wrong = fault(raw, _FROM_BROWSER, self._limits.max_magnitude)
+            if wrong is None:
+                return raw
+            _warn_once(self, wrong)
+
+
+class _Gate:
+    """Stands before viser's handlers of one scope: the whole server's, or one client's own."""
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        scope: WebsockMessageHandler,
+        gui: viser.GuiApi,
+        limits: Limits,
+    ) -> None:
+        self._connections = server._websock_server._live_connections
+        self._gui = gui
+        self._limits = limits
+        self._deliver = scope._handle_incoming_message
+        scope._handle_incoming_message = self._receive
+
+    async def _receive(self, client_id: ClientId, message: Any) -> None:
+        # Every message comes to both scopes; the one that does not know its widget says nothing.
+        widget = self._gui._gui_input_handle_from_uuid.get(getattr(message, "uuid", ""))
+        match message:
+            case wire.GuiUpdateMessage():
+                if widget is not None:
+                    await self._update(client_id, widget, message)
+                return
+            case wire.GuiButtonHoldMessage():
+                passes = widget is not None and not widget.disabled
+            case wire.GuiFormDirtyMessage():
+                form = self._gui._container_handle_from_uuid.get(message.uuid)
+                passes = isinstance(form, _gui_handles.GuiFormHandle)
+            case wire.FileTransferStartUpload():
+                passes = self._takes_file(client_id, message)
+            case wire.FileTransferPart():
+                passes = self._takes_part(message)
+            case _:
+                passes = True
+        if passes:
+            await self._deliver(client_id, message)
+
+    async def _update(self, client_id: ClientId, widget: Any, message: Any) -> None:
+        asked = message.updates.get("value")
+        accepted = None
+        try:
+            if message.updates.keys() != {"value"}:
+                raise Refused("expected no other property")
+            accepted = accepted_value(widget, asked, self._limits.max_text_length)
+            update = dataclasses.replace(message, updates={"value": accepted})
+            await self._deliver(client_id, update)
+        except Refused as refused:
+            what = f"an update of a {type(widget).__name__} ({refused})"
+            _warn_once(self._connections.get(client_id), what)
+        finally:
+            as_asked = accepted == (tuple(asked) if isinstance(asked, list) else asked)
+            if not as_asked and not widget._impl.removed:
+                truth = wire.GuiUpdateMessage(message.uuid, {"value": widget.value})
+                self._gui._websock_interface.queue_message(truth)
+
+    def _takes_file(self, client_id: ClientId, message: Any) -> bool:
+        widget: Any = self._gui._gui_input_handle_from_uuid.get(message.source_component_uuid)
+        under_way = self._gui._current_file_upload_states.values()
+        return (
+            isinstance(widget, viser.GuiUploadButtonHandle)
+            and not widget.disabled
+            and not any(state["client_id"] == client_id for state in under_way)
+            and 0 <= message.part_count <= message.size_bytes <= self._limits.max_upload_bytes
+        )
+
+    def _takes_part(self, message: Any) -> bool:
+        state = self._gui._current_file_upload_states.get(message.transfer_uuid)
+        if state is None:
+            return False
+        return state["transferred_bytes"] + len(message.content) <= state["total_bytes"]
+
+
+_warned: weakref.WeakSet[Any] = weakref.WeakSet()
+
+
+def _warn_once(connection: ServerConnection | None, what: str) -> None:
+    if connection is not None and connection not in _warned:
+        _warned.add(connection)
+        client = connection.remote_address
+        _log.warning(
+            "client %s: dropped %s; what else of it is dropped is not logged", client, what
+        )
+
+
+def _log_outcome(done: Any) -> None:
+    if not done.cancelled() and done.exception() is not None:
+        log_error(done.exception())
+
+
+def _log_errors_of_callbacks(server: viser.ViserServer) -> None:
+    """viser prints each traceback; the replaced functions are the process's, hence all servers'."""
+    for module in (_gui_api, _gui_handles, _scene_api, _viser):
+        for name, log in _PRINTERS.items():
+            if hasattr(module, name):
+                setattr(module, name, log)
+
+    def log_unhandled(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        error = context.get("exception")
+        if error is None:
+            loop.default_exception_handler(context)
+        else:
+            log_error(error)
+
+    server._event_loop.set_exception_handler(log_unhandled)
+
+
+_PRINTERS = {
+    "print_threadpool_errors": _log_outcome,
+    "print_task_error": _log_outcome,
+    "print_awaited_callback_error": log_error,
+}

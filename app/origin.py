@@ -1,0 +1,60 @@
+"""Who may open a websocket, and which paths may be read: the HTTP request before anything else."""
+
+from __future__ import annotations
+
+from http import HTTPStatus
+from ipaddress import ip_address
+from urllib.parse import unquote, urlsplit
+
+from websockets.http11 import Request
+
+
+class Door:
+    """Decides on requests. Closed to websockets until `open` is set, lest one slip in early."""
+
+    def __init__(self, allowed_origins: tuple[str, ...], *, local_only: bool) -> None:
+        """
+        Args:
+            allowed_origins: pages of other sites that may connect, "https://lab.example:8443".
+            local_only: the server listens to this machine alone. A page may then name itself only
+                by a local name: else any site could point its own name at 127.0.0.1 and get in.
+        """
+        self.open = False
+        self._allowed = frozenset(origin.lower().rstrip("/") for origin in allowed_origins)
+        self._local_only = local_only
+
+    def refusal(self, request: Request) -> tuple[HTTPStatus, str] | None:
+        """Status and text to answer with, or None to let the request through."""
+        path = unquote(request.path.partition("?")[0]).replace("\\", "/")
+        if ".." in path.split("/") or ":" in path or "\0" in path:  # C:/ is absolute on Windows
+            return HTTPStatus.NOT_FOUND, "Not found.\n"
+        if not request.headers.get_all("Upgrade"):
+            return None
+        if not self.open:
+            return HTTPStatus.SERVICE_UNAVAILABLE, "Starting.\n"
+        if not self._trusts(request):
+            return HTTPStatus.FORBIDDEN, "This page's origin may not connect to this server.\n"
+        return None
+
+    def _trusts(self, request: Request) -> bool:
+        origins = request.headers.get_all("Origin")
+        if not origins:  # every browser sends it: this is a program, which could write anything
+            return True
+        origin = origins[0].lower()
+        if len(origins) > 1 or origin in self._allowed:
+            return len(origins) == 1
+        try:
+            site = urlsplit(origin)
+        except ValueError:
+            return False
+        itself = [site.netloc] == [host.lower() for host in request.headers.get_all("Host")]
+        named_well = not self._local_only or is_loopback(site.hostname or "")
+        return bool(site.netloc) and itself and named_well
+
+
+def is_loopback(host: str) -> bool:
+    """Whether `host`, a name or an address, is this machine seen from itself."""
+    try:
+        return host == "localhost" or ip_address(host).is_loopback
+    except ValueError:
+        return False

@@ -1,0 +1,76 @@
+"""Which values a widget takes from a browser: the right type, finite, inside its own limits."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import viser
+
+Number = float | int
+Bound = Number | None
+
+
+class Refused(ValueError):
+    """A value that the widget cannot hold; the message says what was expected."""
+
+
+def accepted_value(handle: Any, value: object, max_text_length: int) -> Any:
+    """The value that the widget shall hold when a browser asks for `value`.
+
+    Numbers outside the widget's limits are clamped and long texts cut, because a user may well
+    type them; what no widget sends is refused.
+
+    Args:
+        handle: the widget, any of viser's GUI input handles.
+        value: as decoded from the wire (sequences are lists).
+        max_text_length: [characters].
+
+    Raises:
+        Refused: wrong type or shape, not finite, not an option, or a widget that is disabled or
+            takes no values.
+    """
+    if getattr(handle, "disabled", False):
+        raise Refused("expected nothing, it is disabled")
+    match handle:
+        case viser.GuiButtonHandle() | viser.GuiCheckboxHandle():
+            if isinstance(value, bool):
+                return value
+            raise Refused("expected true or false")
+        case viser.GuiDropdownHandle() | viser.GuiButtonGroupHandle():
+            if value in handle.options:
+                return value
+            raise Refused("expected one of the options")
+        case viser.GuiTextHandle():
+            if isinstance(value, str):
+                return value[:max_text_length]
+            raise Refused("expected a text")
+        case viser.GuiSliderHandle() | viser.GuiNumberHandle():
+            return _number(value, handle.value, handle.min, handle.max)
+        case viser.GuiMultiSliderHandle():
+            low, high = ((bound,) * len(handle.value) for bound in (handle.min, handle.max))
+            return tuple(sorted(_numbers(value, handle.value, low, high)))
+        case viser.GuiVector2Handle() | viser.GuiVector3Handle():
+            unbounded = (None,) * len(handle.value)
+            return _numbers(value, handle.value, handle.min or unbounded, handle.max or unbounded)
+        case viser.GuiRgbHandle() | viser.GuiRgbaHandle():
+            low, high = ((bound,) * len(handle.value) for bound in (0, 255))
+            return _numbers(value, handle.value, low, high)
+        case _:
+            raise Refused("expected nothing, it takes no value")
+
+
+def _numbers(
+    value: object, like: tuple[Number, ...], low: tuple[Bound, ...], high: tuple[Bound, ...]
+) -> tuple[Number, ...]:
+    if not isinstance(value, list) or len(value) != len(like):
+        raise Refused(f"expected {len(like)} numbers")
+    return tuple(_number(*each) for each in zip(value, like, low, high, strict=True))
+
+
+def _number(value: object, like: Number, low: Bound, high: Bound) -> Number:
+    """`value` clamped, in the type of `like`: a slider of integers stays one."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise Refused("expected a finite number")
+    clamped = max(value, -math.inf if low is None else low)
+    return type(like)(min(clamped, math.inf if high is None else high))
