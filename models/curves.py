@@ -8,6 +8,7 @@ rebuilds anything. theta runs over [-pi, pi]; an open curve goes on along its en
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -72,25 +73,61 @@ class Curve:
             return float(speed.mean() * PERIOD)
         return float(np.trapezoid(speed, theta))
 
-    def nearest(self, y: Array, samples: int = 256) -> tuple[Array, Array]:
+    def nearest(self, z: Array, samples: int = 256) -> tuple[Array, Array]:
         """Closest points by global search, refined; the reference for every other projection.
 
         Args:
-            y: points, shape (n, 2), [m].
+            z: points, shape (n, 2), [m].
 
         Returns:
             theta, shape (n,), [rad], and the distances, shape (n,), [m].
 
         Source: eq. (7).
         """
-        y = np.atleast_2d(y)
-        grid = self.sample(samples)
-        points = self.at(grid)
-        squared = ((y[:, None, :] - points[None]) ** 2).sum(-1)
-        theta = grid[squared.argmin(axis=1)]
-        step = grid[1] - grid[0]
-        theta = _golden(self, y, theta - step, theta + step)
-        return theta, np.linalg.norm(y - self.at(theta), axis=-1)
+        return nearest(self.at, self.sample(samples), z)
+
+    def conic(self) -> tuple[Array, Array, float] | None:
+        """(centre, weights, constant) of s(z) if this is an axis-parallel ellipse, else None.
+
+        s(z) = gx (z1 - cx)^2 + gy (z2 - cy)^2 - r2, scaled so that a circle has weights 1.
+
+        Source: eq. (15).
+        """
+        table = self.series[0]
+        others = np.delete(table, [0, 1, 1 + HARMONICS], axis=0)
+        a, b = abs(table[1, 0]), abs(table[1 + HARMONICS, 1])
+        skew = abs(table[1, 1]) + abs(table[1 + HARMONICS, 0])
+        if not self.closed or a * b == 0 or skew + np.abs(others).max() > 1e-9:
+            return None
+        return table[0], np.array([b / a, a / b]), float(a * b)
+
+
+def nearest(
+    curve: Callable[[Array], Array], grid: Array, points: Array
+) -> tuple[Array, Array]:
+    """Closest points of any curve in R^p: global search over `grid`, then golden sections.
+
+    Args:
+        curve: theta (...,) -> points (..., p).
+        grid: evenly spaced theta.
+        points: shape (n, p).
+
+    Returns:
+        theta and distance, each shape (n,).
+    """
+    points = np.atleast_2d(points)
+    samples = curve(grid)
+    squared = ((points[:, None, :] - samples[None]) ** 2).sum(-1)
+    middle, step = grid[squared.argmin(axis=1)], grid[1] - grid[0]
+    low, high = middle - step, middle + step
+    ratio = (np.sqrt(5) - 1) / 2
+    for _ in range(36):
+        span = ratio * (high - low)
+        left, right = high - span, low + span
+        nearer_left = ((points - curve(left)) ** 2).sum(-1) < ((points - curve(right)) ** 2).sum(-1)
+        low, high = np.where(nearer_left, low, left), np.where(nearer_left, right, high)
+    theta = (low + high) / 2
+    return theta, np.linalg.norm(points - curve(theta), axis=-1)
 
 
 def _basis(theta: Array, closed: bool) -> Array:
@@ -101,23 +138,6 @@ def _basis(theta: Array, closed: bool) -> Array:
         return np.concatenate([ones, np.cos(angle), np.sin(angle)], axis=-1)
     angle = np.arccos(np.clip(theta / np.pi, -1, 1))[..., None] * k
     return np.concatenate([ones, np.cos(angle), np.zeros_like(angle)], axis=-1)
-
-
-def _golden(curve: Curve, y: Array, low: Array, high: Array) -> Array:
-    """Golden-section search for the smallest distance, then two Newton steps."""
-    ratio = (np.sqrt(5) - 1) / 2
-    for _ in range(24):
-        span = ratio * (high - low)
-        left, right = high - span, low + span
-        closer_left = ((y - curve.at(left)) ** 2).sum(-1) < ((y - curve.at(right)) ** 2).sum(-1)
-        low, high = np.where(closer_left, low, left), np.where(closer_left, right, high)
-    theta = (low + high) / 2
-    for _ in range(2):
-        gap, first, second = curve.at(theta) - y, curve.at(theta, 1), curve.at(theta, 2)
-        slope = (first**2).sum(-1) + (gap * second).sum(-1)
-        step = (gap * first).sum(-1) / np.where(slope > 0, slope, np.inf)
-        theta = theta - np.clip(step, low - high, high - low)
-    return theta
 
 
 def fourier(constant: Array, cosine: Array, sine: Array) -> Curve:

@@ -31,7 +31,7 @@ class Link:
 
 
 @dataclass(frozen=True, slots=True)
-class FiveBarParameters:
+class FiveBarLinks:
     """Links and joint friction of a five-bar; `spoiled` takes the balance away."""
 
     link1: Link
@@ -41,7 +41,7 @@ class FiveBarParameters:
     viscous1: float  # [N m s]
     viscous2: float  # [N m s]
 
-    def spoiled(self, removed: float, payload: float) -> FiveBarParameters:
+    def spoiled(self, removed: float, payload: float) -> FiveBarLinks:
         """The same linkage with part of its counterweights gone and a mass at the end-point.
 
         Args:
@@ -94,15 +94,15 @@ class FiveBarParameters:
         }
 
 
-def load_parameters() -> FiveBarParameters:
+def load_links() -> FiveBarLinks:
     """The illustrative linkage of assets/five_bar.toml: balanced and decoupled."""
     data = tomllib.loads(asset_path("five_bar.toml").read_text())
     links = {name: Link(**data[name]) for name in ("link1", "link2", "link3", "link4")}
-    return FiveBarParameters(**links, **data["friction"])
+    return FiveBarLinks(**links, **data["friction"])
 
 
 def five_bar() -> MechanicalSystem:
-    """The five-bar as symbols, parameters named as in `FiveBarParameters.lumped`.
+    """The five-bar as symbols, parameters named as in `FiveBarLinks.lumped`.
 
     Source: eqs. (12)-(13), and Spong and Vidyasagar 6.4.1 for the coupling and gravity terms.
     """
@@ -138,6 +138,13 @@ def _solve_symmetric(mass: ca.SX, rhs: ca.SX) -> ca.SX:
     a, b, d = mass[0, 0], mass[0, 1], mass[1, 1]
     inverse = 1 / (a * d - b**2)
     return inverse * ca.vertcat(d * rhs[0, :] - b * rhs[1, :], a * rhs[1, :] - b * rhs[0, :])
+
+
+def end_point(q: Array, l1: float, l4: float) -> Array:
+    """y = h(q), shape (..., 2) -> (..., 2), [m]. Source: eq. (13)."""
+    q1, q2 = q[..., 0], q[..., 1]
+    x, z = l1 * np.cos(q1) - l4 * np.cos(q2), l1 * np.sin(q1) - l4 * np.sin(q2)
+    return np.stack([x - l4, z - l1], axis=-1)
 
 
 def inverse_kinematics(y: Array, l1: float, l4: float) -> Array:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class MechanicalSystem:
     """Symbols of one robot. Columns throughout; n coordinates, m inputs, p outputs.
 

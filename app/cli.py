@@ -1,0 +1,193 @@
+"""The command line: `onpath` serves the lab, its subcommands run without a browser."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import logging
+import os
+import re
+import sys
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import tyro
+
+COMMANDS = ("serve", "experiment", "bench")
+
+
+@dataclass(frozen=True)
+class Serve:
+    """Serve the lab in the browser."""
+
+    host: str = "127.0.0.1"
+    """Address to listen on; 0.0.0.0 lets other machines in."""
+    port: int = 8080
+    """Port to listen on."""
+    open: bool = False
+    """Open the lab in the default browser."""
+    log_level: Literal["debug", "info", "warning", "error"] = "info"
+    """How much to log."""
+
+    def run(self) -> None:
+        """Serve until Ctrl-C."""
+        from app.server import serve
+
+        level = getattr(logging, self.log_level.upper())
+        logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
+        serve(self.host, self.port, open_browser=self.open)
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Run one of the paper's experiments and report."""
+
+    name: Annotated[str, tyro.conf.Positional]
+    """position, obstruction or flexible."""
+    controller: Literal["path_following", "trajectory_tracking", "both"] = "both"
+    """Which controller to run."""
+    set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """name=value, for any parameter; repeat for more."""
+    csv: Path | None = None
+    """Write every millisecond to this CSV file."""
+    plot: Path | None = None
+    """Draw the paper's figures to this .png, .svg or .pdf file."""
+    json: bool = False
+    """Print a summary as JSON."""
+
+    def run(self) -> None:
+        """Simulate, then write and print what was asked for."""
+        from app.figures import draw_experiment
+        from models.controllers import NAMES
+        from models.experiments import experiments, run, summary
+        from models.parameters import unknown_name
+        from models.trajectory import write_csv
+
+        known = experiments()
+        if self.name not in known:
+            raise unknown_name(self.name, list(known), what="experiment")
+        if self.plot and self.plot.suffix not in (".png", ".svg", ".pdf"):
+            raise ValueError(f"--plot {self.plot}: expected a name ending in .png, .svg or .pdf")
+        chosen = known[self.name].with_values(_assignments(self.set))
+        names = NAMES if self.controller == "both" else (self.controller,)
+        runs = [run(chosen, name) for name in names]
+        result = summary(chosen, runs)
+        if self.csv:
+            with _whole_file(self.csv) as path, path.open("w", newline="") as file:
+                write_csv(file, chosen.robot(), runs)
+        if self.plot:
+            with _whole_file(self.plot) as path:
+                draw_experiment(chosen, runs, path)
+        print(json.dumps(result, indent=2) if self.json else _table(result))
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Measure the speed of the closed loops and of the lab."""
+
+    quick: bool = False
+    """Fewer repetitions, no clients."""
+
+    def run(self) -> None:
+        """Print the table."""
+        from app.bench import bench
+
+        bench(quick=self.quick)
+
+
+def main() -> None:
+    """Entry point of `onpath`."""
+    sys.exit(run_command(sys.argv[1:]))
+
+
+def run_command(arguments: list[str]) -> int:
+    """Run one command line; returns the exit code: 0, or 2 with one line on standard error."""
+    if not arguments or arguments[0] not in (*COMMANDS, "-h", "--help"):
+        arguments = ["serve", *arguments]
+    try:
+        _parse(arguments).run()
+    except (ValueError, OSError) as error:
+        print(f"onpath: {_one_line(str(error))}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:
+        return 0
+    return 0
+
+
+def _parse(arguments: list[str]) -> Serve | Experiment | Bench:
+    complaint = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(complaint):
+            return tyro.cli(
+                Annotated[Serve, tyro.conf.subcommand("serve")]
+                | Annotated[Experiment, tyro.conf.subcommand("experiment")]
+                | Annotated[Bench, tyro.conf.subcommand("bench")],
+                prog="onpath",
+                description=__doc__,
+                args=arguments,
+            )
+    except SystemExit as stop:
+        if stop.code in (0, None):
+            raise
+        raise ValueError(_unboxed(complaint.getvalue())) from None
+
+
+def _unboxed(text: str) -> str:
+    """A framed message without its frame, on one line."""
+    plain = re.sub(r"\x1b\[[0-9;]*m|[\u2500-\u257f]", " ", text)
+    return _one_line(plain.replace("Parsing error", "").replace("Unrecognized options", ""))
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _assignments(pairs: tuple[str, ...]) -> dict[str, str]:
+    values: dict[str, str] = {}
+    for pair in pairs:
+        name, equals, value = pair.partition("=")
+        if not equals or not name or not value:
+            raise ValueError(f"--set {pair}: expected name=value")
+        values[name.strip()] = value.strip()
+    return values
+
+
+@contextlib.contextmanager
+def _whole_file(path: Path):
+    """A scratch file that takes the name `path` only once it is complete."""
+    if not path.parent.is_dir():
+        raise ValueError(f"{path}: no folder {path.parent}")
+    handle, scratch = tempfile.mkstemp(dir=path.parent, suffix=path.suffix)
+    os.close(handle)
+    try:
+        yield Path(scratch)
+        os.chmod(scratch, 0o644)
+        os.replace(scratch, path)
+    finally:
+        Path(scratch).unlink(missing_ok=True)
+
+
+def _table(result: dict) -> str:
+    """The summary for a reader."""
+    rows: list[tuple[str, Callable[[float], str]]] = [
+        ("max_distance_m", lambda v: f"{v * 1e3:.2f} mm"),
+        ("max_distance_while_held_m", lambda v: f"{v * 1e3:.2f} mm"),
+        ("rms_distance_m", lambda v: f"{v * 1e3:.3f} mm"),
+        ("final_speed_rad_s", lambda v: f"{v:.3f} rad/s"),
+        ("max_torque_Nm", lambda v: f"{v:.3f} N m"),
+        ("diverged_at_s", lambda v: f"{v:.3f} s"),
+    ]
+    lines = [result["experiment"]]
+    for controller, values in result["controllers"].items():
+        lines.append(f"  {controller.replace('_', ' ')}")
+        for key, show in rows:
+            if values[key] is not None:
+                title = key.rsplit("_", 1)[0] if key.endswith(("_m", "_Nm", "_s")) else key
+                lines.append(f"    {title.replace('_', ' '):26s} {show(values[key])}")
+        if values.get("reason"):
+            lines.append(f"    {values['reason']}")
+    return "\n".join(lines)

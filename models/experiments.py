@@ -1,0 +1,228 @@
+"""The paper's experiments, headless: a task, a schedule, both controllers, a summary.
+
+They always run in the interpreted loop, so that the same input gives the same bytes on any
+machine of a kind, with or without a compiler.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from models.controllers import NAMES
+from models.curves import Curve, circle
+from models.kernel import Kernel
+from models.loops import InterpretedLoop
+from models.parameters import FiveBarParameters, Parameters, changed, specs, unknown_name
+from models.robots import Robot, rigid_five_bar
+from models.simulation import (
+    FREE,
+    Push,
+    brake_at,
+    first_state,
+    kernel_of,
+    kind_of,
+    settings_vector,
+    time_step,
+)
+from models.system import Array
+from models.trajectory import Trajectory, record
+
+CHUNK = 200  # ticks between looks for a divergence
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """What an experiment has besides the robot's parameters.
+
+    Attributes:
+        r: radius of the path, [m].
+        duration: [s].
+        hold_from, hold_to: when the end-point is held back, [s]; equal: never.
+    """
+
+    r: float = 0.05
+    duration: float = 4.0
+    hold_from: float = 0.0
+    hold_to: float = 0.0
+
+    def __post_init__(self) -> None:
+        _within("r", self.r, 0.005, 0.12, "m")
+        _within("duration", self.duration, 0.01, 600.0, "s")
+        _within("hold_from", self.hold_from, 0.0, 600.0, "s")
+        _within("hold_to", self.hold_to, 0.0, 600.0, "s")
+        if self.hold_to < self.hold_from:
+            raise ValueError(
+                f"hold_to ({self.hold_to:g} s) lies before hold_from ({self.hold_from:g} s)"
+            )
+
+
+def _within(name: str, value: float, low: float, high: float, unit: str) -> None:
+    if not low <= value <= high:  # NaN fails too
+        raise ValueError(f"{name}: {value} is not between {low:g} and {high:g} {unit}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Experiment:
+    """A named experiment, ready to run.
+
+    Attributes:
+        start: end-point at rest at the start, in planar coordinates, from (r,) -> (2,).
+    """
+
+    name: str
+    title: str
+    robot: Callable[[], Robot]
+    parameters: Parameters
+    schedule: Schedule
+    start: Callable[[float], Array]
+
+    def with_values(self, assignments: dict[str, str]) -> Experiment:
+        """The same with values set by name.
+
+        Raises:
+            ValueError: an unknown name or a bad value; the message says which.
+        """
+        parameters, schedule = self.parameters, self.schedule
+        own = {f.name for f in dataclasses.fields(schedule)}
+        for name, text in assignments.items():
+            if name in own:
+                schedule = dataclasses.replace(schedule, **{name: _float(name, text)})
+            elif name in specs(parameters):
+                parameters = changed(parameters, name, text)
+            else:
+                raise unknown_name(name, [*specs(parameters), *sorted(own)])
+        return dataclasses.replace(self, parameters=parameters, schedule=schedule)
+
+
+def _float(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{name}: {text!r} is not a number") from None
+
+
+def experiments() -> dict[str, Experiment]:
+    """All experiments by name, with their defaults."""
+    position = Experiment(
+        name="position",
+        title="Experiment 1: to a place on the circle",
+        robot=rigid_five_bar,
+        parameters=FiveBarParameters(task="position"),
+        schedule=Schedule(duration=4.0),
+        start=lambda r: 0.6 * r * np.array([np.cos(-np.pi / 3), np.sin(-np.pi / 3)]),
+    )
+    obstruction = Experiment(
+        name="obstruction",
+        title="Experiment 2: the end-point is held back for a while",
+        robot=rigid_five_bar,
+        parameters=FiveBarParameters(),
+        schedule=Schedule(duration=8.0, hold_from=3.0, hold_to=5.0),
+        start=lambda r: np.array([r, 0.0]),
+    )
+    return {e.name: e for e in (position, obstruction)}
+
+
+def run(experiment: Experiment, controller: str) -> Trajectory:
+    """Simulate one controller.
+
+    Raises:
+        ValueError: the controller is unknown, or the path is out of the robot's reach.
+    """
+    if controller not in NAMES:
+        raise ValueError(f"controller {controller!r}: expected one of {', '.join(NAMES)}")
+    robot, curve = experiment.robot(), circle(experiment.schedule.r)
+    kernel = kernel_of(robot, kind_of(controller, experiment.parameters, curve))
+    start = robot.frame.lift(experiment.start(experiment.schedule.r))
+    state = first_state(robot, kernel, curve, robot.rest(start))
+    segments: list[tuple[Array, Curve, bool]] = []
+    fault: tuple[int, str] | None = None
+    done = 0
+    for rows, held in _segments(experiment, kernel, curve, state):
+        fields = kernel.log.unpack(rows)
+        fault = robot.fault(fields["q"], fields["v"])
+        if fault is not None:
+            rows = rows[: fault[0]]
+        segments.append((rows, curve, held))
+        done += len(rows)
+        if fault is not None:
+            break
+    return _finished(robot, kernel, controller, segments, experiment, fault)
+
+
+def _segments(
+    experiment: Experiment, kernel: Kernel, curve: Curve, state: Array
+) -> Iterator[tuple[Array, bool]]:
+    """(log rows, held) of consecutive stretches of the run."""
+    robot, parameters, schedule = experiment.robot(), experiment.parameters, experiment.schedule
+    loop, table, dt = InterpretedLoop(kernel), curve.table(), time_step(parameters)
+    ticks = [round(t / dt) for t in (0, schedule.hold_from, schedule.hold_to, schedule.duration)]
+    push = FREE
+    for stretch, (begin, end) in enumerate(zip(ticks, ticks[1:], strict=False)):
+        end = min(end, ticks[-1])
+        held = stretch == 1
+        if held and end > begin:
+            q = kernel.state.unpack(state)["q"]
+            theta = float(kernel.state.unpack(state)["theta"][0])
+            push = Push(hold=brake_at(robot, curve, robot.endpoint(q), theta))
+        settings = settings_vector(
+            robot, kernel, parameters, curve, push if held else FREE
+        )
+        for first in range(begin, end, CHUNK):
+            state, rows = loop.run(state, settings, table, min(CHUNK, end - first))
+            yield rows, held
+
+
+def _finished(
+    robot: Robot,
+    kernel: Kernel,
+    controller: str,
+    segments: list[tuple[Array, Curve, bool]],
+    experiment: Experiment,
+    fault: tuple[int, str] | None,
+) -> Trajectory:
+    dt = time_step(experiment.parameters)
+    whole = record(robot, kernel.log, controller, segments, dt)
+    every = round(1e-3 / dt)
+    thinned = dataclasses.replace(
+        whole,
+        t=whole.t[::every],
+        fields={name: values[::every] for name, values in whole.fields.items()},
+        distance=whole.distance[::every],
+        speed=whole.speed[::every],
+        held=whole.held[::every],
+    )
+    if fault is None:
+        return thinned
+    return dataclasses.replace(thinned, diverged_at=len(whole.t) * dt, reason=fault[1])
+
+
+def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
+    """What `--json` prints; numbers to nine digits."""
+    return {
+        "experiment": experiment.name,
+        "controllers": {run.controller: _summary(run) for run in runs},
+    }
+
+
+def _summary(run: Trajectory) -> dict[str, Any]:
+    def largest(values: Array) -> float | None:
+        return float(f"{np.abs(values).max():.9g}") if values.size else None
+
+    empty = run.t.size == 0
+    result: dict[str, Any] = {
+        "max_distance_m": largest(run.distance),
+        "max_distance_while_held_m": largest(run.distance[run.held]),
+        "rms_distance_m": None if empty else float(f"{np.sqrt(np.mean(run.distance**2)):.9g}"),
+        "final_speed_rad_s": None if empty else float(f"{run.fields['theta_rate'][-1, 0]:.9g}"),
+        "max_torque_Nm": largest(run.fields["u"]),
+        "diverged": run.diverged_at is not None,
+        "diverged_at_s": run.diverged_at,
+    }
+    if run.reason:
+        result["reason"] = run.reason
+    return result

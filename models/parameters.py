@@ -1,0 +1,199 @@
+"""Every number and choice a user can set, declared once with unit, range and help.
+
+Widgets, the command line and files are built from these records: a new parameter needs one line.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class Spec:
+    """How a parameter is shown and what it may be.
+
+    Attributes:
+        group: "basic", "gains", "task", "realism" or "robot".
+        label: name on a widget.
+        unit: of the value, "" for none.
+        low, high, step: range of a number.
+        options: of a choice; empty for a number.
+        help: one line.
+        on: where 0 means "off", the value that a switch turns it on with.
+    """
+
+    group: str
+    label: str
+    unit: str
+    low: float
+    high: float
+    step: float
+    options: tuple[Any, ...]
+    help: str
+    on: float | None = None
+
+
+def number(
+    default: float,
+    unit: str,
+    bounds: tuple[float, float, float],
+    text: str,
+    *,
+    group: str,
+    label: str,
+    on: float | None = None,
+) -> Any:
+    """A numeric field; bounds are (low, high, step)."""
+    spec = Spec(group, label, unit, *bounds, (), text, on)
+    return field(default=default, metadata={"spec": spec})
+
+
+def choice(default: Any, options: tuple[Any, ...], text: str, *, group: str, label: str) -> Any:
+    """A field that takes one of `options`."""
+    spec = Spec(group, label, "", 0.0, 0.0, 0.0, options, text)
+    return field(default=default, metadata={"spec": spec})
+
+
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    """What both controllers share: gains, task, realism. Defaults of the rigid robot."""
+
+    K1: float = number(
+        400.0, "1/s²", (0, 2500, 5), "spring that pulls back onto the path", group="gains",
+        label="K1 across: stiffness",
+    )
+    K2: float = number(
+        40.0, "1/s", (0, 200, 1), "damps motion across the path", group="gains",
+        label="K2 across: damping",
+    )
+    K3: float = number(
+        0.0, "1/s³", (0, 8000, 50), "removes a lasting offset (integral)", group="gains",
+        label="K3 across: integral",
+    )
+    K4: float = number(
+        25.0, "1/s²", (0, 400, 1), "spring towards the target position", group="gains",
+        label="K4 along: stiffness",
+    )
+    K5: float = number(
+        10.0, "1/s", (0, 100, 0.5), "how hard the speed along the path is held", group="gains",
+        label="K5 along: speed",
+    )
+    task: str = choice(
+        "speed", ("speed", "position"), "go along the path at a speed, or to a place on it",
+        group="task", label="Task",
+    )
+    speed: float = number(
+        2 * math.pi, "rad/s", (-20, 20, 0.1), "wanted speed along the path; negative: backwards",
+        group="task", label="Speed",
+    )
+    target: float = number(
+        math.pi / 2, "rad", (-math.pi, math.pi, 0.01), "where to stop, with task = position",
+        group="task", label="Target",
+    )
+    across: str = choice(
+        "distance", ("distance", "level_set"),
+        "what to measure across the path: the distance, or the paper's s(y) (circle, ellipse)",
+        group="gains", label="Across is",
+    )
+    torque_limit: float = number(
+        0.0, "N m", (0, 5, 0.05), "motors give no more than this; 0: no limit", group="realism",
+        label="Torque limit", on=0.5,
+    )
+    encoder_counts: float = number(
+        0.0, "per turn", (0, 20000, 100), "steps of the joint encoders; 0: exact sensing",
+        group="realism", label="Encoder", on=2000.0,
+    )
+    encoder_filter: float = number(
+        0.005, "s", (0.0005, 0.05, 0.0005), "time constant of the velocity filter behind them",
+        group="realism", label="Velocity filter",
+    )
+    coulomb: float = number(
+        0.0, "N m", (0, 0.3, 0.005), "dry friction in the joints; 0: none", group="realism",
+        label="Dry friction", on=0.05,
+    )
+    control_rate: int = choice(
+        1000, (50, 100, 200, 250, 500, 1000, 2000), "how often the controller acts, Hz",
+        group="realism", label="Control rate",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class FiveBarParameters(Parameters):
+    """The rigid five-bar's own: a wrong model, a spoiled balance."""
+
+    error_M11: float = number(
+        0.0, "%", (-50, 50, 1), "the controller's M11 is off by this", group="realism",
+        label="Model: M11 off by", on=30.0,
+    )
+    error_M22: float = number(
+        0.0, "%", (-50, 50, 1), "the controller's M22 is off by this", group="realism",
+        label="Model: M22 off by", on=30.0,
+    )
+    error_b1: float = number(
+        0.0, "%", (-50, 50, 1), "the controller's b1 is off by this", group="realism",
+        label="Model: b1 off by", on=50.0,
+    )
+    error_b2: float = number(
+        0.0, "%", (-50, 50, 1), "the controller's b2 is off by this", group="realism",
+        label="Model: b2 off by", on=50.0,
+    )
+    counterweights_removed: float = number(
+        0.0, "%", (0, 100, 5), "counterweights taken off; the controller does not know",
+        group="realism", label="Counterweights off", on=50.0,
+    )
+    payload: float = number(
+        0.0, "kg", (0, 0.3, 0.01), "mass at the end-point; the controller does not know",
+        group="realism", label="Payload", on=0.1,
+    )
+
+
+def specs(kind: type[Parameters] | Parameters) -> dict[str, Spec]:
+    """Field name -> Spec, in the order of declaration."""
+    return {f.name: f.metadata["spec"] for f in dataclasses.fields(kind)}
+
+
+def unknown_name(name: str, known: list[str], what: str = "parameter") -> ValueError:
+    """The error for a name that is not one of `known`, with the nearest ones."""
+    near = get_close_matches(name, known, n=3, cutoff=0.4) or get_close_matches(
+        name.lower(), known, n=3, cutoff=0.3
+    )
+    hint = f"did you mean {', '.join(near)}?" if near else f"there are {', '.join(known)}"
+    return ValueError(f"unknown {what} {name!r}: {hint}")
+
+
+def checked(spec: Spec, name: str, value: Any) -> Any:
+    """`value` as the field takes it.
+
+    Raises:
+        ValueError: not a finite number in range, or not one of the options.
+    """
+    if spec.options:
+        for option in spec.options:
+            if str(option) == str(value):
+                return option
+        options = ", ".join(str(option) for option in spec.options)
+        raise ValueError(f"{name}: {value!r} is not one of {options}")
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: {value!r} is not a number") from None
+    if not math.isfinite(result) or not spec.low <= result <= spec.high:
+        unit = f" {spec.unit}" if spec.unit else ""
+        raise ValueError(f"{name}: {value} is not between {spec.low:g} and {spec.high:g}{unit}")
+    return result
+
+
+def changed(parameters: Parameters, name: str, value: Any) -> Parameters:
+    """The same with one field set.
+
+    Raises:
+        ValueError: unknown name or bad value.
+    """
+    known = specs(parameters)
+    if name not in known:
+        raise unknown_name(name, list(known))
+    return dataclasses.replace(parameters, **{name: checked(known[name], name, value)})

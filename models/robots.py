@@ -1,0 +1,193 @@
+"""The robots as the lab and the experiments use them: one interface around each model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Protocol
+
+import numpy as np
+
+from models import five_bar
+from models.frames import Frame, Plane
+from models.parameters import FiveBarParameters, Parameters
+from models.system import Array, MechanicalSystem
+
+FASTEST_JOINT = 100.0  # [rad/s], beyond it a run counts as diverged
+COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed
+
+
+class Robot(Protocol):
+    """A model with all that surrounds it. Planar coordinates z are those of the path's plane."""
+
+    @property
+    def name(self) -> str:
+        """As on the command line."""
+        ...
+
+    @property
+    def label(self) -> str:
+        """As shown."""
+        ...
+
+    @property
+    def system(self) -> MechanicalSystem:
+        """The equations."""
+        ...
+
+    @property
+    def frame(self) -> Frame:
+        """Where the path's plane lies."""
+        ...
+
+    @property
+    def substeps(self) -> int:
+        """Runge-Kutta steps per tick."""
+        ...
+
+    @property
+    def coordinate_names(self) -> tuple[str, ...]:
+        """Names of q with units, for file headers."""
+        ...
+
+    def plant(self, parameters: Parameters) -> Array:
+        """The system's parameters as they are, shape (k,)."""
+        ...
+
+    def model(self, parameters: Parameters) -> Array:
+        """The system's parameters as the controller believes them, shape (k,)."""
+        ...
+
+    def rest(self, y: Array) -> Array:
+        """A configuration at rest with the end-point at y, (p,) -> (n,).
+
+        Raises:
+            ValueError: out of reach.
+        """
+        ...
+
+    def endpoint(self, q: Array) -> Array:
+        """The actual end-point, (..., n) -> (..., p), [m]."""
+        ...
+
+    def margin(self, z: Array) -> Array:
+        """How far points of the path's plane are from singular, (n, 2) -> (n,); 0: out of reach."""
+        ...
+
+    def fault(self, q: Array, v: Array) -> tuple[int, str] | None:
+        """First row at which a run is no longer to be believed, and why. q, v: (rows, n)."""
+        ...
+
+    def place(self, y: Array) -> Array:
+        """Points of the output space in the robot's frame for drawing, (..., p) -> (..., 3)."""
+        ...
+
+    def unplace(self, point: Array) -> Array:
+        """The inverse of `place`, (..., 3) -> (..., p)."""
+        ...
+
+    def skeleton(self, q: Array) -> tuple[Array, Array]:
+        """Bars (n, 2, 3) and joints (m, 3) in the robot's frame, [m]."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RigidFiveBar:
+    """The planar five-bar linkage of section III."""
+
+    links: five_bar.FiveBarLinks = field(default_factory=five_bar.load_links)
+    system: MechanicalSystem = field(default_factory=five_bar.five_bar, repr=False)
+    frame: Frame = Plane()
+    name: str = "five_bar"
+    label: str = "Five-bar linkage"
+    substeps: int = 1
+    coordinate_names: tuple[str, ...] = ("q1_rad", "q2_rad")
+
+    @property
+    def _lengths(self) -> tuple[float, float]:
+        return self.links.link1.length, self.links.link4.length
+
+    def plant(self, parameters: Parameters) -> Array:
+        """See `Robot.plant`."""
+        own = _own(parameters)
+        removed = own.counterweights_removed / 100
+        return self.system.parameter_vector(self.links.spoiled(removed, own.payload).lumped())
+
+    def model(self, parameters: Parameters) -> Array:
+        """See `Robot.model`: the balanced robot of (12), each entry wrong as asked."""
+        own = _own(parameters)
+        values = self.links.lumped()
+        for name in ("M11", "M22", "b1", "b2"):
+            values[name] *= 1 + getattr(own, f"error_{name}") / 100
+        return self.system.parameter_vector(values)
+
+    def rest(self, y: Array) -> Array:
+        """See `Robot.rest`."""
+        return five_bar.inverse_kinematics(y, *self._lengths)
+
+    def endpoint(self, q: Array) -> Array:
+        """See `Robot.endpoint`."""
+        return five_bar.end_point(q, *self._lengths)
+
+    def margin(self, z: Array) -> Array:
+        """See `Robot.margin`: |sin(q1 - q2)|, eq. (14)."""
+        l1, l4 = self._lengths
+        squared = (z[..., 0] + l4) ** 2 + (z[..., 1] + l1) ** 2
+        cosine = (l1**2 + l4**2 - squared) / (2 * l1 * l4)
+        return np.sqrt(np.maximum(1 - cosine**2, 0.0))
+
+    def fault(self, q: Array, v: Array) -> tuple[int, str] | None:
+        """See `Robot.fault`."""
+        return first_fault(
+            q,
+            v,
+            (
+                five_bar.singularity_margin(q) < COLLAPSED,
+                "the linkage has collapsed (all links in one line): the controller cannot see"
+                " its way out of a singular configuration",
+            ),
+        )
+
+    def place(self, y: Array) -> Array:
+        """See `Robot.place`."""
+        l1, l4 = self._lengths
+        return np.stack([y[..., 0] + l4, np.zeros(y.shape[:-1]), y[..., 1] + l1], axis=-1)
+
+    def unplace(self, point: Array) -> Array:
+        """See `Robot.unplace`."""
+        l1, l4 = self._lengths
+        return np.stack([point[..., 0] - l4, point[..., 2] - l1], axis=-1)
+
+    def skeleton(self, q: Array) -> tuple[Array, Array]:
+        """See `Robot.skeleton`."""
+        l1, l4 = self._lengths
+        return five_bar.skeleton(q, l1, self.links.link2.length, l4)
+
+
+@lru_cache(maxsize=1)
+def rigid_five_bar() -> RigidFiveBar:
+    """The one instance: its kernels are built once."""
+    return RigidFiveBar()
+
+
+def first_fault(q: Array, v: Array, *checks: tuple[Array, str]) -> tuple[int, str] | None:
+    """The earliest of: numbers that are not finite, joints too fast, and the given checks.
+
+    Args:
+        checks: (bad rows as booleans, reason).
+    """
+    finite = np.isfinite(q).all(-1) & np.isfinite(v).all(-1)
+    fast = np.abs(np.where(np.isfinite(v), v, 0)).max(-1) > FASTEST_JOINT
+    every = [
+        (~finite, "the numbers have left the range of a computer"),
+        (fast, f"a joint turns faster than {FASTEST_JOINT:.0f} rad/s: the motion has diverged"),
+        *checks,
+    ]
+    found = [(int(bad.argmax()), why) for bad, why in every if bad.any()]
+    return min(found, default=None)
+
+
+def _own(parameters: Parameters) -> FiveBarParameters:
+    if not isinstance(parameters, FiveBarParameters):
+        raise TypeError(f"the five-bar takes FiveBarParameters, got {type(parameters).__name__}")
+    return parameters

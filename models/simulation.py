@@ -1,0 +1,122 @@
+"""From what a user sets to what the compiled loop takes: kinds, settings vectors, first states."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from models.curves import Curve
+from models.kernel import GAINS, Kernel, Kind, build_kernel
+from models.parameters import Parameters
+from models.robots import Robot
+from models.system import Array
+
+NO_LIMIT = 1000.0  # [N m], a bound far beyond any motor, so that torques stay finite
+TICK = 1e-3  # [s]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Push:
+    """Who acts on the end-point from outside, in output coordinates.
+
+    Attributes:
+        hand: where the hand is, shape (p,), or None.
+        hold: anchor and unit tangent of the brake, each shape (p,), or None.
+    """
+
+    hand: Array | None = None
+    hold: tuple[Array, Array] | None = None
+
+
+FREE = Push()
+
+
+def kind_of(controller: str, parameters: Parameters, curve: Curve) -> Kind:
+    """Which loop serves this choice."""
+    return Kind(
+        controller=controller,
+        closed=curve.closed,
+        level_set=parameters.across == "level_set" and curve.conic() is not None,
+        encoder=parameters.encoder_counts > 0,
+    )
+
+
+@lru_cache(maxsize=64)
+def kernel_of(robot: Robot, kind: Kind) -> Kernel:
+    """The kernel of a robot and kind, built once."""
+    return build_kernel(robot.system, robot.frame, kind, robot.substeps)
+
+
+def time_step(parameters: Parameters) -> float:
+    """Length of a tick, [s]: 1 ms, or less if the controller is faster."""
+    return min(TICK, 1 / parameters.control_rate)
+
+
+def settings_vector(
+    robot: Robot, kernel: Kernel, parameters: Parameters, curve: Curve, push: Push
+) -> Array:
+    """Everything but state and curve, as the loop takes it."""
+    p, dt = robot.system.p, time_step(parameters)
+    centre, weights, constant = curve.conic() or (np.zeros(2), np.ones(2), 1.0)
+    anchor, tangent = push.hold or (np.zeros(p), np.zeros(p))
+    counts = parameters.encoder_counts
+    return kernel.settings.pack(
+        {name: getattr(parameters, name) for name in GAINS}
+        | {
+            "position": float(parameters.task == "position"),
+            "target": parameters.target,
+            "speed": parameters.speed,
+            "level_centre": centre,
+            "level_weights": weights,
+            "level_constant": constant,
+            "torque_limit": parameters.torque_limit or NO_LIMIT,
+            "coulomb": parameters.coulomb,
+            "encoder_step": 2 * np.pi / counts if counts else 1.0,
+            "encoder_filter": parameters.encoder_filter,
+            "hold_ticks": round(1 / (parameters.control_rate * dt)),
+            "dt": dt,
+            "hand_active": float(push.hand is not None),
+            "hand_target": np.zeros(p) if push.hand is None else push.hand,
+            "hold_active": float(push.hold is not None),
+            "hold_anchor": anchor,
+            "hold_tangent": tangent,
+            "plant": robot.plant(parameters),
+            "model": robot.model(parameters),
+        }
+    )
+
+
+def first_state(
+    robot: Robot, kernel: Kernel, curve: Curve, q: Array, v: Array | None = None
+) -> Array:
+    """State at the start of a run: closest point found globally, reference point there too.
+
+    Args:
+        q, v: configuration and velocity (None: at rest), shape (n,).
+    """
+    velocity = np.zeros_like(q) if v is None else v
+    y = robot.endpoint(q)
+    theta = curve.nearest(robot.frame.planar(y)[None])[0][0]
+    m = robot.system.m
+    return kernel.state.pack(
+        {
+            "q": q,
+            "v": velocity,
+            "theta": theta,
+            "theta_rate": 0.0,
+            "theta_ref": theta,
+            "integral": np.zeros(robot.system.p),
+            "encoder": q[:m],
+            "encoder_rate": velocity[:m],
+            "u": np.zeros(m),
+            "phase": 0.0,
+        }
+    )
+
+
+def brake_at(robot: Robot, curve: Curve, y: Array, theta: float) -> tuple[Array, Array]:
+    """Anchor and unit tangent of a hold that begins at the end-point y, near theta."""
+    first = robot.frame.lift(curve.at(np.array(theta), 1)) - robot.frame.lift(np.zeros(2))
+    return np.array(y), first / np.linalg.norm(first)

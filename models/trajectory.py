@@ -1,0 +1,133 @@
+"""The record of a run: named columns over time, to CSV and back."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TextIO
+
+import numpy as np
+
+from models.curves import Curve, nearest
+from models.layout import Layout
+from models.robots import Robot
+from models.system import Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trajectory:
+    """One robot under one controller, one row per millisecond.
+
+    Attributes:
+        controller: which one drove it.
+        t: shape (n,), [s].
+        fields: the log of models/kernel.py by name, each shape (n, size).
+        distance: of the actual end-point to the path, shape (n,), [m].
+        speed: along the path, shape (n,), [m/s].
+        held: whether the hold acted, shape (n,).
+        diverged_at: [s], or None.
+        reason: why it counts as diverged, or "".
+    """
+
+    controller: str
+    t: Array
+    fields: dict[str, Array]
+    distance: Array
+    speed: Array
+    held: Array
+    diverged_at: float | None = None
+    reason: str = ""
+
+
+def measure(robot: Robot, curve: Curve, y: Array) -> Array:
+    """Euclidean distance of end-points (n, p) to the path, apart from any controller, (n,), [m]."""
+    return nearest(lambda theta: robot.frame.lift(curve.at(theta)), curve.sample(), y)[1]
+
+
+def record(
+    robot: Robot,
+    log: Layout,
+    controller: str,
+    segments: list[tuple[Array, Curve, bool]],
+    dt: float,
+) -> Trajectory:
+    """A trajectory from log rows.
+
+    Args:
+        segments: consecutive (rows, curve, held).
+        dt: time between rows, [s].
+    """
+    rows = np.concatenate([rows for rows, _, _ in segments])
+    distance = [measure(robot, curve, log.unpack(part)["y"]) for part, curve, _ in segments]
+    speed = [_speed(curve, log.unpack(part)) for part, curve, _ in segments]
+    held = [np.full(len(part), hold) for part, _, hold in segments]
+    return Trajectory(
+        controller=controller,
+        t=dt * np.arange(len(rows)),
+        fields=log.unpack(rows),
+        distance=np.concatenate(distance),
+        speed=np.concatenate(speed),
+        held=np.concatenate(held),
+    )
+
+
+def _speed(curve: Curve, fields: dict[str, Array]) -> Array:
+    per_radian = np.linalg.norm(curve.at(fields["theta"][:, 0], 1), axis=-1)
+    return per_radian * fields["theta_rate"][:, 0]
+
+
+def header(robot: Robot) -> list[str]:
+    """Column names of the CSV, with units."""
+    p, m = robot.system.p, robot.system.m
+    return [
+        "t_s",
+        "controller",
+        *robot.coordinate_names,
+        *(f"y{i + 1}_m" for i in range(p)),
+        "theta_rad",
+        "speed_m_s",
+        "distance_m",
+        *(f"tau{i + 1}_Nm" for i in range(m)),
+        *(f"force{i + 1}_N" for i in range(p)),
+    ]
+
+
+def write_csv(file: TextIO, robot: Robot, trajectories: Iterable[Trajectory]) -> None:
+    """One row per millisecond and controller."""
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(header(robot))
+    for run in trajectories:
+        f = run.fields
+        columns = np.column_stack(
+            [f["q"], f["y"], f["theta"], run.speed, run.distance, f["u"], f["force"]]
+        )
+        for time, values in zip(run.t, columns, strict=True):
+            numbers = [f"{value:.9g}" for value in values]
+            writer.writerow([f"{time:.6g}", run.controller, *numbers])
+
+
+def read_csv(file: TextIO) -> dict[str, dict[str, Array]]:
+    """Columns by controller, then by name.
+
+    Raises:
+        ValueError: not a trajectory file; the message names the line.
+    """
+    reader = csv.reader(file)
+    names = next(reader, [])
+    if names[:2] != ["t_s", "controller"]:
+        raise ValueError("line 1: expected a header that begins with t_s, controller")
+    rows: dict[str, list[list[float]]] = {}
+    for line, row in enumerate(reader, start=2):
+        try:
+            values = [float(cell) for i, cell in enumerate(row) if i != 1]
+        except ValueError:
+            raise ValueError(f"line {line}: expected numbers, got {row}") from None
+        if len(row) != len(names):
+            raise ValueError(f"line {line}: expected {len(names)} cells, got {len(row)}")
+        rows.setdefault(row[1], []).append(values)
+    kept = [name for name in names if name != "controller"]
+    return {
+        controller: dict(zip(kept, np.array(values).T, strict=True))
+        for controller, values in rows.items()
+    }
