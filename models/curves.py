@@ -21,6 +21,7 @@ TERMS = 2 * HARMONICS + 1
 ORDERS = 4  # the curve and three derivatives
 TABLE_SHAPE = (2 * ORDERS, TERMS)
 PERIOD = 2 * np.pi
+_ORDER = np.arange(1.0, HARMONICS + 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,6 +48,17 @@ class Curve:
         if order == 0:
             return value + beyond * self.at(inner, 1)
         return value if order == 1 else np.where(beyond == 0, value, 0.0)
+
+    def all_orders(self, theta: Array) -> list[Array]:
+        """sigma and its three derivatives at theta on the curve proper, each (n, 2)."""
+        inner = theta if self.closed else np.clip(theta, -np.pi, np.pi)
+        basis = _basis(inner, self.closed)
+        values = [basis @ self.series[order] for order in range(ORDERS)]
+        if not self.closed:
+            beyond = (theta - inner)[:, None]
+            values[0] = values[0] + beyond * values[1]
+            values[2:] = [np.where(beyond == 0, value, 0.0) for value in values[2:]]
+        return values
 
     def table(self) -> Array:
         """The coefficients as the compiled loop takes them: TABLE_SHAPE, by columns, flat.
@@ -131,13 +143,11 @@ def nearest(
 
 
 def _basis(theta: Array, closed: bool) -> Array:
-    k = np.arange(1, HARMONICS + 1)
-    ones = np.ones((*theta.shape, 1))
-    if closed:
-        angle = theta[..., None] * k
-        return np.concatenate([ones, np.cos(angle), np.sin(angle)], axis=-1)
-    angle = np.arccos(np.clip(theta / np.pi, -1, 1))[..., None] * k
-    return np.concatenate([ones, np.cos(angle), np.zeros_like(angle)], axis=-1)
+    values = np.ones((*theta.shape, TERMS))
+    angle = (theta if closed else np.arccos(np.clip(theta / np.pi, -1, 1)))[..., None] * _ORDER
+    values[..., 1 : HARMONICS + 1] = np.cos(angle)
+    values[..., HARMONICS + 1 :] = np.sin(angle) if closed else 0.0
+    return values
 
 
 def fourier(constant: Array, cosine: Array, sine: Array) -> Curve:

@@ -4,12 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 
 from models.system import Array
+
+
+@lru_cache(maxsize=256)
+def _slices(fields: tuple[tuple[str, int], ...]) -> dict[str, slice]:
+    result: dict[str, slice] = {}
+    start = 0
+    for name, size in fields:
+        result[name] = slice(start, start + size)
+        start += size
+    return result
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,12 +37,7 @@ class Layout:
     @property
     def slices(self) -> dict[str, slice]:
         """Where each field lies."""
-        result: dict[str, slice] = {}
-        start = 0
-        for name, size in self.fields:
-            result[name] = slice(start, start + size)
-            start += size
-        return result
+        return _slices(self.fields)
 
     def symbols(self, name: str) -> tuple[ca.SX, dict[str, ca.SX]]:
         """A symbolic vector and its fields, each (size, 1)."""

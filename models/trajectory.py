@@ -9,7 +9,8 @@ from typing import TextIO
 
 import numpy as np
 
-from models.curves import Curve, nearest
+from models.curves import Curve
+from models.distance import path_distance
 from models.layout import Layout
 from models.robots import Robot
 from models.system import Array
@@ -40,11 +41,6 @@ class Trajectory:
     reason: str = ""
 
 
-def measure(robot: Robot, curve: Curve, y: Array) -> Array:
-    """Euclidean distance of end-points (n, p) to the path, apart from any controller, (n,), [m]."""
-    return nearest(lambda theta: robot.frame.lift(curve.at(theta)), curve.sample(), y)[1]
-
-
 def record(
     robot: Robot,
     log: Layout,
@@ -59,7 +55,7 @@ def record(
         dt: time between rows, [s].
     """
     rows = np.concatenate([rows for rows, _, _ in segments])
-    distance = [measure(robot, curve, log.unpack(part)["y"]) for part, curve, _ in segments]
+    distance = [path_distance(robot.frame, curve, log.unpack(part)["y"]) for part, curve, _ in segments]
     speed = [_speed(curve, log.unpack(part)) for part, curve, _ in segments]
     held = [np.full(len(part), hold) for part, _, hold in segments]
     return Trajectory(

@@ -1,0 +1,214 @@
+"""What each command does to a session."""
+
+from __future__ import annotations
+
+import math
+from functools import singledispatch
+
+import numpy as np
+
+from app import commands as c
+from app.session import RATES, Session
+from models.controllers import NAMES
+from models.parameters import changed
+from models.path_design import PathDesign, drawn
+
+
+@singledispatch
+def apply(command: object, session: Session) -> None:
+    """Apply a command to a session.
+
+    Raises:
+        ValueError: it makes no sense now; the message tells the user why.
+    """
+    raise ValueError(f"unknown command {type(command).__name__}")
+
+
+@apply.register
+def _(command: c.SetParameter, session: Session) -> None:
+    session.parameters = changed(session.parameters, command.name, command.value)
+
+
+@apply.register
+def _(_: c.ResetParameters, session: Session) -> None:
+    session.parameters = type(session.parameters)()
+
+
+@apply.register
+def _(_: c.Step, session: Session) -> None:
+    _leave_past(session)
+    session.step_once()
+
+
+@apply.register
+def _(_: c.Reset, session: Session) -> None:
+    session.reset()
+
+
+@apply.register
+def _(command: c.View, session: Session) -> None:
+    session.view(_finite(command.ago))
+
+
+@apply.register
+def _(_: c.GoOn, session: Session) -> None:
+    session.go_on()
+
+
+@apply.register
+def _(command: c.SetCopy, session: Session) -> None:
+    session.copy = bool(command.on)
+
+
+@apply.register
+def _(command: c.SelectPoint, session: Session) -> None:
+    session.editor.select(command.index)
+
+
+@apply.register
+def _(_: c.EndMove, session: Session) -> None:
+    _finish(session)
+
+
+@apply.register
+def _(command: c.SetRunning, session: Session) -> None:
+    running = not session.running if command.running is None else command.running
+    if running and session.viewing is not None:
+        session.go_on()
+    session.running = running
+
+
+@apply.register
+def _(command: c.SetRate, session: Session) -> None:
+    rate = _finite(command.rate)
+    if not RATES[0] <= rate <= RATES[-1]:
+        raise ValueError(f"speed {rate:g}: between {RATES[0]:g} and {RATES[-1]:g}")
+    session.rate = rate
+
+
+@apply.register
+def _(command: c.Hold, session: Session) -> None:
+    _leave_past(session)
+    names = list(NAMES) if command.controller is None else session.targets(command.controller)
+    on = not session.held.intersection(names) if command.on is None else command.on
+    session.hold(names, on)
+
+
+@apply.register
+def _(command: c.Grab, session: Session) -> None:
+    _known(command.controller)
+    _leave_past(session)
+    target = np.asarray(command.target, dtype=float)
+    if target.shape != (3,):
+        raise ValueError("the hand's target is not a point")
+    session.grab(command.controller, session.robot.unplace(target))
+
+
+@apply.register
+def _(command: c.Release, session: Session) -> None:
+    if session.grabbed == command.controller:
+        session.release()
+
+
+@apply.register
+def _(command: c.ChoosePath, session: Session) -> None:
+    if command.name not in session.presets:
+        raise ValueError(f"no path {command.name!r}: there are {', '.join(session.presets)}")
+    _commit(session, session.presets[command.name])
+
+
+@apply.register
+def _(command: c.MovePoint, session: Session) -> None:
+    editor = session.editor
+    z = session.robot.frame.planar(session.robot.unplace(np.asarray(command.target, dtype=float)))
+    if editor.proposed is None or editor.selected != command.index:
+        editor.select(command.index)
+    editor.propose((editor.proposed or editor.design).moved(command.index, z))
+    if command.finished:
+        _finish(session)
+
+
+@apply.register
+def _(command: c.NudgePoint, session: Session) -> None:
+    index = _selected(session)
+    design = session.editor.design
+    step = np.array([_finite(command.right), _finite(command.up)])
+    _commit(session, design.moved(index, design.points[index] + step))
+
+
+@apply.register
+def _(command: c.PlacePoint, session: Session) -> None:
+    index = _selected(session)
+    design = session.editor.design
+    old = design.points[index]
+    new = [o if n is None else _finite(n) for o, n in zip(old, (command.first, command.second))]
+    if not np.allclose(old, new, atol=1e-6):
+        _commit(session, design.moved(index, np.array(new)))
+
+
+@apply.register
+def _(_: c.AddPoint, session: Session) -> None:
+    editor = session.editor
+    index = 0 if editor.selected is None else editor.selected
+    _commit(session, editor.design.added(index))
+    editor.select(min(index + 1, len(editor.design.points) - 1))
+
+
+@apply.register
+def _(_: c.RemovePoint, session: Session) -> None:
+    _commit(session, session.editor.design.removed(_selected(session)))
+
+
+@apply.register
+def _(command: c.DrawPath, session: Session) -> None:
+    stroke = np.asarray(command.stroke, dtype=float)
+    if stroke.ndim != 2 or stroke.shape[1] != 3 or len(stroke) > 5000:
+        raise ValueError("a stroke needs points")
+    _commit(session, drawn(session.robot.frame.planar(session.robot.unplace(stroke))))
+
+
+@apply.register
+def _(_: c.Undo, session: Session) -> None:
+    session.say("" if session.editor.undo() else "nothing to undo")
+
+
+@apply.register
+def _(_: c.Redo, session: Session) -> None:
+    session.say("" if session.editor.redo() else "nothing to redo")
+
+
+def _commit(session: Session, design: PathDesign) -> None:
+    session.editor.propose(design)
+    _finish(session)
+
+
+def _finish(session: Session) -> None:
+    """End an edit of the path and say why if it is refused."""
+    _leave_past(session)
+    if session.editor.finish():
+        session.say("")
+    elif session.editor.faults:
+        reasons = "; ".join(fault.reason for fault in session.editor.faults)
+        session.say(f"This path is refused: {reasons}. The previous one is kept.", "warning")
+
+
+def _leave_past(session: Session) -> None:
+    """Acting on the lab ends looking at its past."""
+    session.viewing = None
+
+
+def _selected(session: Session) -> int:
+    if session.editor.selected is None:
+        raise ValueError("select a control point first: click one, or press N for the next")
+    return session.editor.selected
+
+
+def _finite(value: float) -> float:
+    if not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise ValueError(f"{value!r} is not a number")
+    return float(value)
+
+
+def _known(controller: str) -> None:
+    if controller not in NAMES:
+        raise ValueError(f"no robot {controller!r}: there are {', '.join(NAMES)}")

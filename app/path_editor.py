@@ -1,0 +1,132 @@
+"""Editing the path of a session: selection, validity, undo, and the blend from old to new."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from models.curve_faults import Fault, curve_faults
+from models.curves import Curve, blend
+from models.path_design import PathDesign
+from models.robots import Robot
+
+BLEND = 0.3  # [s]
+DEPTH = 100
+
+
+class PathEditor:
+    """The path as edited, and as followed while an edit blends in.
+
+    Attributes:
+        design: the last valid one.
+        proposed: what is being dragged, valid or not; None when nothing is.
+        faults: what is wrong with the last refused edit.
+        selected: index of the selected control point.
+        version: changes with everything that is drawn.
+        curve: what the robots follow now.
+        table: its coefficients for the loop.
+    """
+
+    def __init__(self, robot: Robot, design: PathDesign) -> None:
+        self._robot = robot
+        self._past: list[PathDesign] = []
+        self._future: list[PathDesign] = []
+        self._from: Curve | None = None
+        self._progress = 1.0
+        self.design = design
+        self.proposed: PathDesign | None = None
+        self.faults: list[Fault] = []
+        self.selected: int | None = None
+        self.version = 0
+        self._target = design.curve
+        self._follow(design.curve)
+
+    def select(self, index: int | None) -> None:
+        """Select a control point; one that does not exist selects none."""
+        valid = index is not None and 0 <= index < len(self.design.points)
+        self.selected = index if valid else None
+        self.version += 1
+
+    def propose(self, design: PathDesign) -> bool:
+        """Show an unfinished edit, and follow it if it is valid. Returns whether it is."""
+        self.proposed = design
+        self.faults = curve_faults(self._robot, design.curve)
+        self.version += 1
+        if not self.faults:
+            self._blend_to(design.curve)
+        return not self.faults
+
+    def finish(self) -> bool:
+        """End an edit: keep it if valid, else go back to the last valid path."""
+        design, self.proposed = self.proposed, None
+        self.version += 1
+        if design is None:
+            return True
+        if self.faults:
+            self._blend_to(self.design.curve)
+            return False
+        self._past = [*self._past[-DEPTH:], self.design]
+        self._future.clear()
+        self._keep(design)
+        return True
+
+    def commit(self, design: PathDesign) -> bool:
+        """A whole edit at once."""
+        self.propose(design)
+        return self.finish()
+
+    def undo(self) -> bool:
+        """Back by one edit; False if there is none."""
+        return self._swap(self._past, self._future)
+
+    def redo(self) -> bool:
+        """Forward by one undo; False if there is none."""
+        return self._swap(self._future, self._past)
+
+    def clear_faults(self) -> None:
+        """Take the marks of the last refusal away."""
+        if self.faults:
+            self.faults = []
+            self.version += 1
+
+    def advance(self, seconds: float) -> bool:
+        """Let an edit blend in; True if the followed curve jumped to another kind."""
+        if self._from is None:
+            return False
+        if self._from.closed != self._target.closed:
+            self._from = None
+            self._follow(self._target)
+            return True
+        self._progress = min(1.0, self._progress + seconds / BLEND)
+        if self._progress >= 1.0:
+            self._from = None
+            self._follow(self._target)
+        else:
+            self._follow(blend(self._from, self._target, self._progress))
+        return False
+
+    def points(self) -> np.ndarray:
+        """Control points as shown, shape (k, 2), [m]."""
+        return (self.proposed or self.design).points
+
+    def _swap(self, source: list[PathDesign], sink: list[PathDesign]) -> bool:
+        self.proposed, self.faults = None, []
+        if not source:
+            return False
+        sink.append(self.design)
+        self._keep(source.pop())
+        self._blend_to(self.design.curve)
+        return True
+
+    def _keep(self, design: PathDesign) -> None:
+        self.design = design
+        if self.selected is not None and self.selected >= len(design.points):
+            self.selected = None
+        self.version += 1
+
+    def _blend_to(self, target: Curve) -> None:
+        self._from, self._target, self._progress = self.curve, target, 0.0
+
+    def _follow(self, curve: Curve) -> None:
+        self.curve = curve
+        self.table = curve.table()
+        self.version += 1

@@ -1,0 +1,142 @@
+"""One robot under one controller, as it runs in a session."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.history import Drive
+from app.loop_store import LoopStore
+from models.curves import Curve
+from models.distance import near_distance
+from models.kernel import Kind
+from models.parameters import Parameters
+from models.robots import Robot
+from models.simulation import Push, first_state, kernel_of, kind_of, settings_vector
+
+EVERY = 4  # rows between looks at the distance, where the loop does not log it
+
+
+@dataclass(frozen=True, slots=True)
+class Diverged:
+    """Why a robot stands still, and since when, [s]."""
+
+    reason: str
+    time: float
+
+
+class PlantRun:
+    """State and inputs of one closed loop; only the simulation thread touches it."""
+
+    def __init__(
+        self, robot: Robot, controller: str, parameters: Parameters, curve: Curve, start: np.ndarray
+    ) -> None:
+        self.robot = robot
+        self.controller = controller
+        self.diverged: Diverged | None = None
+        self.distance = self.max_distance = 0.0
+        self._inputs: tuple[Parameters, Curve, Push] | None = None
+        self._configure(parameters, curve, Push())
+        self.reset(curve, start)
+
+    def reset(self, curve: Curve, start: np.ndarray) -> None:
+        """At rest with the end-point at `start`, (p,), closest and reference point on `curve`."""
+        kernel = kernel_of(self.robot, self.kind)
+        self.state = first_state(self.robot, kernel, curve, self.robot.rest(start))
+        self.row = np.zeros(kernel.log.size)
+        self._fill_row(curve)
+        self.diverged = None
+        self.max_distance = self.distance
+
+    def restore(self, drive: Drive, curve: Curve) -> None:
+        """The state of a checkpoint; the closest point is searched anew."""
+        self.state = drive.state.copy()
+        self.diverged = None
+        reference = self.fields()["theta_ref"].copy()
+        self.project(curve)
+        self.fields()["theta_ref"][:] = reference
+
+    def project(self, curve: Curve) -> None:
+        """Search the closest point globally and put the reference there: after a jump of the path."""
+        fields = self.fields()
+        z = self.robot.frame.planar(self.robot.endpoint(fields["q"]))
+        fields["theta"][:] = curve.nearest(z[None])[0]
+        fields["theta_rate"][:] = 0.0
+        fields["theta_ref"][:] = fields["theta"]
+        fields["integral"][:] = 0.0
+        self._fill_row(curve)
+
+    def fields(self) -> dict[str, np.ndarray]:
+        """The state by name, as views."""
+        return kernel_of(self.robot, self.kind).state.unpack(self.state)
+
+    def shown(self) -> dict[str, np.ndarray]:
+        """The last log row by name."""
+        return kernel_of(self.robot, self.kind).log.unpack(self.row)
+
+    def drive(self) -> Drive:
+        """The inputs and state as history keeps them."""
+        return Drive(self.kind, self.state, self.settings, self.diverged is not None)
+
+    def advance(
+        self,
+        store: LoopStore,
+        parameters: Parameters,
+        curve: Curve,
+        table: np.ndarray,
+        push: Push,
+        ticks: int,
+        time: float,
+        dt: float,
+    ) -> None:
+        """Simulate some ticks; on a fault stay at the last good state and say why."""
+        self._configure(parameters, curve, push)
+        if self.diverged is not None:
+            return
+        state, rows = store.get(self.robot, self.kind).run(self.state, self.settings, table, ticks)
+        log = kernel_of(self.robot, self.kind).log
+        fields = log.unpack(rows)
+        fault = self.robot.fault(fields["q"], fields["v"])
+        if fault is None and not np.isfinite(state).all():
+            fault = (len(rows), "the numbers have left the range of a computer")
+        if fault is not None:
+            self.diverged = Diverged(fault[1], time + fault[0] * dt)
+            if fault[0] > 0:
+                self.row = rows[fault[0] - 1]
+            return
+        self.state, self.row = state, rows[-1]
+        distances = self._distances(curve, fields)
+        self.distance = float(distances[-1])
+        self.max_distance = max(self.max_distance, float(distances.max()))
+
+    def _distances(self, curve: Curve, fields: dict[str, np.ndarray]) -> np.ndarray:
+        """Of the actual end-point to the path, of the last row at least, [m]."""
+        system = self.robot.system
+        seen = system.controlled_output is system.output and not self.kind.encoder
+        if seen and not self.kind.level_set and system.p == 2:
+            return np.abs(fields["xi"][:, 0])
+        some = slice((len(fields["y"]) - 1) % EVERY, None, EVERY)
+        theta = fields["theta"][some, 0]
+        return near_distance(self.robot.frame, curve, fields["y"][some], theta)
+
+    def _configure(self, parameters: Parameters, curve: Curve, push: Push) -> None:
+        """New settings vector only when an input changed."""
+        inputs = (parameters, curve, push)
+        if self._inputs is not None and all(
+            a is b for a, b in zip(self._inputs, inputs, strict=True)
+        ):
+            return
+        self._inputs = inputs
+        self.kind: Kind = kind_of(self.controller, parameters, curve)
+        kernel = kernel_of(self.robot, self.kind)
+        self.settings = settings_vector(self.robot, kernel, parameters, curve, push)
+
+    def _fill_row(self, curve: Curve) -> None:
+        """The log row of a robot that has not moved yet."""
+        row, state = self.shown(), self.fields()
+        for name in ("q", "v", "theta", "theta_rate", "theta_ref", "u"):
+            row[name][:] = state[name]
+        row["y"][:] = self.robot.endpoint(state["q"])
+        row["force"][:] = 0.0
+        self.distance = float(near_distance(self.robot.frame, curve, row["y"][None], row["theta"])[0])

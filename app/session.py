@@ -1,0 +1,273 @@
+"""One user's lab: two robots, one path, one clock. No viser in it; one thread at a time.
+
+Commands come in through `post` from any thread and are applied by the simulation thread at the
+beginning of its next frame.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+
+import numpy as np
+
+from app import commands
+from app.history import History, Stretch
+from app.loop_store import LoopStore
+from app.path_editor import PathEditor
+from app.plant_run import PlantRun
+from app.snapshot import PathView
+from models.controllers import NAMES
+from models.curves import Curve
+from models.layout import Layout
+from models.parameters import FiveBarParameters, Parameters
+from models.path_design import PathDesign, presets
+from models.robots import Robot, rigid_five_bar
+from models.simulation import FREE, TICK, Push, brake_at, time_step
+from models.system import Array
+
+log = logging.getLogger(__name__)
+
+RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)
+MOST_COMMANDS = 500  # waiting at once; a flood beyond is dropped
+MOST_TICKS = 200  # in one frame
+REACH = 0.4  # [m], a hand's target stays within this of the middle
+
+
+class Session:
+    """The state of one lab.
+
+    Attributes:
+        runs: the two closed loops, by controller.
+        editor: the path.
+        history: the last minute.
+        time: simulated, [s].
+        viewing: the past instant being looked at, [s], or None.
+        held, hands: who is held back; where hands pull, by controller, in output coordinates.
+    """
+
+    def __init__(self, store: LoopStore, robot: Robot | None = None) -> None:
+        self._store = store
+        self._inbox: deque[commands.Command] = deque(maxlen=MOST_COMMANDS)
+        self.robot: Robot = robot or rigid_five_bar()
+        self.parameters: Parameters = FiveBarParameters()
+        self.presets: dict[str, PathDesign] = presets()
+        self.editor = PathEditor(self.robot, self.presets["circle"])
+        self.history = History()
+        self.running = True
+        self.rate = 1.0
+        self.copy = True
+        self.path_view: PathView | None = None  # the last one drawn, while it is still right
+        self.message, self.message_level = "", "info"
+        self._restart()
+
+    # Commands
+
+    def post(self, command: commands.Command) -> None:
+        """Ask for something; from any thread."""
+        self._inbox.append(command)
+
+    def drain(self) -> None:
+        """Apply what has been asked for. A command that makes no sense is answered in words."""
+        from app.apply import apply
+
+        while self._inbox:
+            command = self._inbox.popleft()
+            try:
+                apply(command, self)
+            except ValueError as error:
+                self.say(str(error), "warning")
+
+    def say(self, message: str, level: str = "info") -> None:
+        """Show a sentence to the user."""
+        self.message, self.message_level = message, level
+
+    # Time
+
+    def advance(self, seconds: float) -> None:
+        """Simulate `seconds` of simulated time, if running."""
+        if not self.running:
+            self._owed = 0.0
+            return
+        dt = time_step(self.parameters)
+        self._owed += seconds
+        ticks = min(int(self._owed / dt + 1e-9), MOST_TICKS)
+        self._owed = min(self._owed - ticks * dt, MOST_TICKS * dt)
+        if ticks:
+            self.simulate(ticks)
+
+    def simulate(self, ticks: int) -> None:
+        """Both robots by some ticks, with the same path, settings and push."""
+        dt = time_step(self.parameters)
+        if self.editor.advance(ticks * dt):
+            for run in self.runs.values():
+                run.project(self.editor.curve)
+        curve = self.editor.curve
+        before = {name: run.drive() for name, run in self.runs.items()}
+        sample = self.sample()
+        for name, run in self.runs.items():
+            was = run.diverged
+            run.advance(
+                self._store,
+                self.parameters,
+                curve,
+                self.editor.table,
+                self.push(name),
+                ticks,
+                self.time,
+                dt,
+            )
+            if run.diverged is not None and was is None:
+                self._tell_divergence(name)
+        drives = {
+            name: type(drive)(run.kind, drive.state, run.settings, run.diverged is not None)
+            for (name, drive), run in zip(before.items(), self.runs.values(), strict=True)
+        }
+        self.history.append(Stretch(self.time, ticks, dt, curve, drives, sample))
+        self.time += ticks * dt
+
+    def step_once(self) -> None:
+        """One step of a paused lab: the controller's next action, at least a millisecond."""
+        self.running = False
+        dt = time_step(self.parameters)
+        self.simulate(max(1, round(max(TICK, 1 / self.parameters.control_rate) / dt)))
+
+    def reset(self) -> None:
+        """Both robots to the start, at rest. The past is forgotten; path and parameters stay."""
+        self._restart()
+        self.say("")
+
+    def _restart(self) -> None:
+        self.time = 0.0
+        self._owed = 0.0
+        self.viewing: float | None = None
+        self.held: set[str] = set()
+        self.hands: dict[str, Array] = {}
+        self.grabbed: str | None = None
+        self._grab_offset: dict[str, Array] = {}
+        self._pushes: dict[str, Push] = dict.fromkeys(NAMES, FREE)
+        self.history.clear()
+        start = self.start_point(self.editor.curve)
+        curve = self.editor.curve
+        self.runs = {
+            name: PlantRun(self.robot, name, self.parameters, curve, start) for name in NAMES
+        }
+
+    def start_point(self, curve: Curve) -> Array:
+        """Where a run begins: on the path, (p,), [m]."""
+        return self.robot.frame.lift(curve.at(np.array(0.0)))
+
+    def _tell_divergence(self, name: str) -> None:
+        run = self.runs[name]
+        assert run.diverged is not None
+        title = name.replace("_", " ").capitalize()
+        self.say(
+            f"{title} stopped at {run.diverged.time:.2f} s: {run.diverged.reason}."
+            " Reset brings it back.",
+            "error",
+        )
+
+    # Forces
+
+    def push(self, name: str) -> Push:
+        """What acts on a robot from outside; the same object while nothing changes."""
+        return self._pushes[name]
+
+    def targets(self, controller: str) -> list[str]:
+        """Which robots a gesture at `controller` acts on."""
+        return list(NAMES) if self.copy else [controller]
+
+    def hold(self, names: list[str], on: bool) -> None:
+        """Begin or end holding robots back, each where it is now."""
+        for name in names:
+            if on == (name in self.held):
+                continue
+            (self.held.add if on else self.held.discard)(name)
+            brake = None
+            if on:
+                row = self.runs[name].shown()
+                brake = brake_at(self.robot, self.editor.curve, row["y"], float(row["theta"][0]))
+            self._pushes[name] = Push(self.hands.get(name), brake)
+
+    def grab(self, controller: str, target: Array) -> None:
+        """Pull an end-point towards a target; with `copy`, the other by the same displacement."""
+        if not np.all(np.isfinite(target)):
+            raise ValueError("the hand's target is not a point")
+        if self.grabbed != controller:
+            self.release()
+            own = self.runs[controller].shown()["y"].copy()
+            self.grabbed = controller
+            self._grab_offset = {
+                name: self.runs[name].shown()["y"] - own for name in self.targets(controller)
+            }
+        home = self.robot.frame.lift(np.zeros(2))
+        for name, offset in self._grab_offset.items():
+            self.hands[name] = np.clip(target + offset, home - REACH, home + REACH)
+            self._pushes[name] = Push(self.hands[name], self._pushes[name].hold)
+
+    def release(self) -> None:
+        """Let all end-points go."""
+        for name in self.hands:
+            self._pushes[name] = Push(None, self._pushes[name].hold)
+        self.hands.clear()
+        self.grabbed = None
+
+    # The past
+
+    def view(self, ago: float) -> None:
+        """Pause and look at an instant of the past; 0 is now."""
+        if ago <= 0 or not len(self.history):
+            self.viewing = None
+            return
+        self.running = False
+        self.release()
+        self.viewing = self.time - min(ago, self.history.span())
+
+    def go_on(self) -> None:
+        """Go on from the instant being looked at; what came after is forgotten."""
+        if self.viewing is not None:
+            stretch = self.history.at(self.viewing)
+            if stretch is not None:
+                self.history.forget_after(stretch)
+                self.time = stretch.time
+                for name, run in self.runs.items():
+                    run.restore(stretch.drives[name], self.editor.curve)
+                    self._pushes[name] = FREE
+                self.held.clear()
+            self.viewing = None
+        self.running = True
+        self.say("")
+
+    # What is kept of an instant
+
+    @property
+    def sample_layout(self) -> Layout:
+        """Fields of a sample."""
+        p, m = self.robot.system.p, self.robot.system.m
+        return Layout(
+            (
+                ("distance", 1),
+                ("speed", 1),
+                ("theta", 1),
+                ("theta_rate", 1),
+                ("theta_ref", 1),
+                ("xi", p - 1),
+                ("xi_rate", p - 1),
+                ("u", m),
+                ("force", p),
+                ("y", p),
+            )
+        )
+
+    def sample(self) -> np.ndarray:
+        """Now, shape (robots, sample_layout.size), float32."""
+        curve, values = self.editor.curve, []
+        for run in self.runs.values():
+            row = run.shown()
+            per_radian = float(np.linalg.norm(curve.at(row["theta"][0], 1)))
+            derived = {"distance": run.distance, "speed": per_radian * row["theta_rate"]}
+            fields = self.sample_layout.fields
+            values.append(
+                np.concatenate([np.ravel(derived.get(n, row.get(n, 0.0))) for n, _ in fields])
+            )
+        return np.array(values, dtype=np.float32)

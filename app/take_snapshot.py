@@ -1,0 +1,88 @@
+"""From a session to what is shown of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.session import Session
+from app.snapshot import FollowerName, PathView, RobotView, Snapshot
+from models.system import Array
+
+TRACE = 1.6  # [s]
+TRACE_POINTS = 120
+CURVE_POINTS = 160
+
+
+def take_snapshot(session: Session, achieved_speed: float, traces: bool = True) -> Snapshot:
+    """The session now, or at the past instant it looks at."""
+    time = session.time if session.viewing is None else session.viewing
+    samples = _samples(session, time) if traces else None
+    return Snapshot(
+        time=time,
+        running=session.running,
+        achieved_speed=achieved_speed,
+        robots={
+            name: _robot_view(session, index, name, samples)
+            for index, name in enumerate(session.runs)
+        },
+        path=_path_view(session),
+        held=bool(session.held),
+        grabbed=session.grabbed,
+        message=session.message,
+        message_level=session.message_level,
+    )
+
+
+def _samples(session: Session, time: float) -> Array:
+    """End-points of both robots lately, shape (n, robots, p)."""
+    _, samples = session.history.samples(time - TRACE, time, TRACE_POINTS)
+    if not samples.size:
+        return np.zeros((0, len(session.runs), session.robot.system.p))
+    return session.sample_layout.unpack(samples)["y"]
+
+
+def _robot_view(session: Session, index: int, name: str, samples: Array | None) -> RobotView:
+    robot, run, curve = session.robot, session.runs[name], session.editor.curve
+    past = None if session.viewing is None else session.history.at(session.viewing)
+    if past is None:
+        row = run.shown()
+        q, distance = row["q"], run.distance
+        speed = float(np.linalg.norm(curve.at(row["theta"][0], 1)) * row["theta_rate"][0])
+    else:
+        row = session.sample_layout.unpack(past.sample[index].astype(float))
+        q = past.drives[name].state[: robot.system.n]
+        distance, speed = float(row["distance"][0]), float(row["speed"][0])
+    tip = robot.place(row["y"])
+    target = row["theta" if name == FollowerName else "theta_ref"][0]
+    bars, joints = robot.skeleton(q)
+    trace = np.zeros((0, 3)) if samples is None else robot.place(samples[:, index])
+    return RobotView(
+        bars=bars,
+        joints=joints,
+        tip=tip,
+        marker=robot.place(robot.frame.lift(curve.at(np.array(target)))),
+        force=robot.place(row["force"]) - robot.place(np.zeros_like(row["force"])),
+        trace=np.concatenate([trace, tip[None]]),
+        distance=distance,
+        max_distance=run.max_distance,
+        speed=speed,
+        torque=row["u"],
+    )
+
+
+def _path_view(session: Session) -> PathView:
+    editor, robot = session.editor, session.robot
+    if session.path_view is not None and session.path_view.version == editor.version:
+        return session.path_view
+
+    def placed(z: Array) -> Array:
+        return robot.place(robot.frame.lift(z))
+
+    wrong = [fault.points for fault in editor.faults]
+    session.path_view = PathView(
+        version=editor.version,
+        points=placed(editor.curve.at(np.linspace(-np.pi, np.pi, CURVE_POINTS))),
+        control_points=placed(editor.points()),
+        selected=editor.selected,
+        refused=placed(np.concatenate(wrong) if wrong else np.zeros((0, 2))),
+    )
