@@ -25,7 +25,7 @@ class Freehand:
 
     Args:
         scene: the client's scene.
-        bases: origins of the robots' frames, [m].
+        bases: origins of the robots' frames in the world, shape (k, 3), [m].
         plane: the plane of the path in a robot's frame.
         on_stroke: called with the points in the robot's frame, shape (n, 3), [m].
     """
@@ -33,12 +33,12 @@ class Freehand:
     def __init__(
         self,
         scene: viser.SceneApi,
-        bases: dict[str, np.ndarray],
+        bases: np.ndarray,
         plane: Plane,
         on_stroke: Callable[[np.ndarray], None],
     ) -> None:
         self._scene = scene
-        self._bases = np.stack(list(bases.values()))
+        self._bases = bases
         self._plane = plane
         self._on_stroke = on_stroke
         self._points: list[np.ndarray] = []

@@ -25,10 +25,10 @@ MIDDLE = 0.075
 """x about which a robot with its path is drawn, in its own frame [m]."""
 
 VIEW_LOW = np.array([-0.16, -0.03, -meshes.FLOOR_DEPTH - 0.02])
-VIEW_HIGH = np.array([0.31, 0.03, 0.415])
+VIEW_HIGH = np.array([0.31, 0.03, 0.425])
 """What the camera shows of a robot, in its own frame [m]."""
 
-FIELD_OF_VIEW = np.radians(22.0)
+FIELD_OF_VIEW = np.radians(15.0)
 ELEVATION = np.radians(9.0)
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -122,7 +122,7 @@ def build_stage(
         add_copies(scene, f"/stage/{part}", mesh, corners, colour)
     for name, base in bases.items():
         title, subtitle = titles[name]
-        for text, z, size in ((title, 0.385, 0.03), (subtitle, 0.342, 0.02)):
+        for text, z, size in ((title, 0.392, 0.036), (subtitle, 0.345, 0.026)):
             scene.add_label(
                 f"/stage/{name}/label_{text}",
                 text,

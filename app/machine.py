@@ -1,0 +1,177 @@
+"""The nodes of both machines that move: links, bearings, pens, markers, grips, forces, traces."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from app import meshes, palette
+from app.poses import Poses, trace_segments
+from app.snapshot import RobotView, TrackerName
+from app.stage import MIDDLE, add_copies
+
+if TYPE_CHECKING:
+    import viser
+
+FORCE_SCALE = 0.005
+"""Length of the force arrow [m/N]."""
+FORCE_SHOWN = 0.05
+"""Smallest force that is drawn [N]."""
+TRACE_SEGMENTS = 120
+TRACE_DEPTH = np.zeros((TRACE_SEGMENTS, 2, 3))
+TRACE_DEPTH[:, :, 1] = np.linspace(0.012, 0.002, TRACE_SEGMENTS)[:, None]
+"""Behind the path, and older laps behind newer ones [m]."""
+GRIP_RADIUS = 0.02
+"""Of the disc about the end-point that the mouse can take hold of [m]."""
+
+# Scales of the bearing's mesh, which also serves as pen and as the discs of a marker.
+BEARING = (1.0, 1.0, 1.0)
+PEN = (0.42, 0.5, 0.42)
+EXTRA = (0.4, 0.1, 0.4)
+RING = ((0.85, 0.06, 0.85), (0.55, 0.06, 0.55))
+DOT = ((0.62, 0.06, 0.62), (0.42, 0.06, 0.42))
+
+
+def fading(colour: palette.Colour, count: int = TRACE_SEGMENTS) -> np.ndarray:
+    """Linear colours from nearly white to `colour` along a trace, shape (count, 2, 3), uint8."""
+    shares = 0.92 * (1.0 - np.linspace(0.0, 1.0, count + 1))
+    line = np.stack([colour.toward(palette.WHITE, share).linear for share in shares])
+    return np.stack([line[:-1], line[1:]], axis=1)
+
+
+def link_scales(lengths: np.ndarray) -> np.ndarray:
+    """Per-axis scales of the link's mesh, shape (n, 3)."""
+    return np.column_stack([lengths, np.ones_like(lengths), np.ones_like(lengths)])
+
+
+def link_colours(name: str, robot: RobotView) -> list[np.ndarray]:
+    """Linear colours of a robot's bars: links 1 and 3, which lie behind, are darker."""
+    front = palette.CONTROLLERS[name]
+    back = front.toward(palette.INK, 0.25)
+    return [c.linear for c in (back, front, back, *[front] * (len(robot.bars) - 3))]
+
+
+def part_looks(name: str, robot: RobotView) -> tuple[list[tuple[float, ...]], list[np.ndarray]]:
+    """Scales and linear colours of a robot's bearings, pen, marker and extra points.
+
+    The tracker's moving reference is a ring, the follower's closest point a dot with a white rim:
+    either is two discs, one before the other.
+    """
+    joints, extras = len(robot.joints), len(robot.extra_points)
+    dark = palette.CONTROLLERS[name].toward(palette.INK, 0.45)
+    discs, inks = (RING, (dark, palette.WHITE)) if name == TrackerName else (
+        DOT, (palette.WHITE, dark)
+    )  # fmt: skip
+    colours = [*[palette.STEEL] * joints, palette.INK, *inks, *[palette.STEEL] * extras]
+    return [*[BEARING] * joints, PEN, *discs, *[EXTRA] * extras], [c.linear for c in colours]
+
+
+class Machine:
+    """Nodes for all robots together, as few as can be.
+
+    Args:
+        scene: the client's scene.
+        bases: origins of the robots' frames in the world, [m], by controller name.
+        robots: as they are at first, in the same order.
+        poses: of them.
+    """
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        bases: dict[str, np.ndarray],
+        robots: list[RobotView],
+        poses: Poses,
+    ) -> None:
+        self._bases = bases
+        self._lengths = poses.lengths
+        named = list(zip(bases, robots, strict=True))
+        self._links = add_copies(
+            scene,
+            "/links",
+            meshes.link(),
+            poses.bars,
+            np.stack([c for name, robot in named for c in link_colours(name, robot)]),
+            scales=link_scales(poses.lengths),
+        )
+        looks = [part_looks(name, robot) for name, robot in named]
+        self._parts = add_copies(
+            scene,
+            "/parts",
+            meshes.bearing(),
+            poses.parts,
+            np.stack([colour for _, colours in looks for colour in colours]),
+            scales=np.array([scale for scales, _ in looks for scale in scales]),
+        )
+        self.grips = add_copies(
+            scene,
+            "/grips",
+            meshes.coin(),
+            poses.tips,
+            np.stack([palette.CONTROLLERS[name].linear for name in bases]),
+            scales=np.tile((GRIP_RADIUS, 0.01, GRIP_RADIUS), (len(bases), 1)),
+            opacity=0.22,
+        )
+        self._traces = scene.add_line_segments(
+            "/traces",
+            np.zeros((TRACE_SEGMENTS * len(bases), 2, 3)),
+            np.concatenate([fading(palette.CONTROLLERS[name]) for name in bases]),
+            thickness=0.006,
+        )
+        self._add_force(scene)
+        self.update(poses)
+
+    def update(self, poses: Poses) -> None:
+        """Four assignments, five with a force; viser sends none for an array that is the same."""
+        self._links.batched_positions = poses.bars
+        self._links.batched_wxyzs = poses.quaternions
+        if np.abs(poses.lengths - self._lengths).max() > 1e-4:
+            self._lengths = poses.lengths
+            self._links.batched_scales = link_scales(poses.lengths)
+        self._parts.batched_positions = poses.parts
+        self.grips.batched_positions = poses.tips
+        acts = bool(np.abs(poses.forces).max() > FORCE_SHOWN)
+        if acts:
+            tails = poses.tips - [0.0, 0.01, 0.0]
+            arrows = np.stack([tails, tails + FORCE_SCALE * poses.forces], axis=1)
+            self._arrows.points = arrows.astype(np.float32)
+        self._arrows.visible = acts
+
+    def update_traces(self, robots: list[RobotView]) -> None:
+        """Redraws the traces and says how large each force is."""
+        lines = [
+            trace_segments(robot.trace, TRACE_SEGMENTS) + TRACE_DEPTH + base
+            for robot, base in zip(robots, self._bases.values(), strict=True)
+        ]
+        points = np.concatenate(lines)
+        if np.isfinite(points).all():
+            self._traces.points = points.astype(np.float32)
+        for robot, label in zip(robots, self._force_labels, strict=True):
+            force = float(np.linalg.norm(robot.force))
+            if force > FORCE_SHOWN:
+                label.text = f"force {force:.0f} N" if force >= 1.0 else f"force {force:.1f} N"
+            label.visible = force > FORCE_SHOWN
+
+    def _add_force(self, scene: viser.SceneApi) -> None:
+        self._arrows = scene.add_arrows(
+            "/force",
+            np.zeros((len(self._bases), 2, 3)),
+            palette.FORCE.linear,
+            shaft_radius=0.0032,
+            head_radius=0.0085,
+            head_length=0.018,
+            visible=False,
+        )
+        self._force_labels = [
+            scene.add_label(
+                f"/force_labels/{name}",
+                "force",
+                position=base + [MIDDLE + 0.13, 0.0, -0.11],
+                font_size_mode="scene",
+                font_scene_height=0.026,
+                anchor="center-center",
+                visible=False,
+            )
+            for name, base in self._bases.items()
+        ]

@@ -1,0 +1,141 @@
+"""Where every moving part of both machines goes: a snapshot as arrays of poses. Pure geometry."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, hypot
+
+import numpy as np
+
+from app import meshes
+from app.snapshot import RobotView
+
+PEN_DEPTH = 0.0103
+"""y of the pen's centre [m], such that it touches the plane y = 0."""
+MARKER_DEPTHS = (-0.008, -0.0095)
+"""y of a marker's two discs [m]: before the path and its control points."""
+
+
+def waist_angle(bars: np.ndarray) -> float:
+    """Angle of the linkage's plane, which is vertical, about the vertical, [rad].
+
+    Args:
+        bars: link 1, link 2 and others, shape (n, 2, 3), [m].
+    """
+    (ax, ay, az), (bx, by, bz) = (bars[:2, 1] - bars[:2, 0]).tolist()
+    x, y = by * az - bz * ay, bz * ax - bx * az  # normal of the plane
+    if hypot(x, y) < 1e-9:
+        return 0.0
+    return atan2(-x, y) if y >= 0.0 else atan2(x, -y)
+
+
+def bar_quaternions(along: np.ndarray, waist: np.ndarray) -> np.ndarray:
+    """Turns the x axis along each bar and keeps the y axis as near as can be to the plane's normal.
+
+    Args:
+        along: vectors, shape (n, 3).
+        waist: angle of the linkage's plane at each bar, shape (n,), [rad].
+
+    Returns:
+        Unit quaternions, scalar first, shape (n, 4).
+    """
+    c, s = np.cos(waist), np.sin(waist)
+    outward = along[:, 0] * c + along[:, 1] * s
+    across = along[:, 1] * c - along[:, 0] * s
+    pitch = np.arctan2(along[:, 2], outward) / 2
+    bend = np.arctan2(across, np.hypot(outward, along[:, 2])) / 2
+    cw, sw, cp, sp = np.cos(waist / 2), np.sin(waist / 2), np.cos(pitch), np.sin(pitch)
+    cb, sb = np.cos(bend), np.sin(bend)
+    w, x, y, z = cw * cp, sw * sp, -cw * sp, sw * cp  # about z by the waist, about -y by the pitch
+    return np.column_stack([w * cb - z * sb, x * cb + y * sb, y * cb - x * sb, z * cb + w * sb])
+
+
+@dataclass(frozen=True, slots=True)
+class Poses:
+    """Everything that moves, for all robots, in the world.
+
+    Attributes:
+        bars: where the link meshes begin, shape (n, 3), [m].
+        quaternions: how they are turned, scalar first, shape (n, 4).
+        lengths: of the bars, shape (n,), [m].
+        parts: for each robot its bearings, pen, two marker discs and extra points, (m, 3), [m].
+        tips: end-points, shape (k, 3), [m].
+        forces: on the end-points, shape (k, 3), [N].
+    """
+
+    bars: np.ndarray
+    quaternions: np.ndarray
+    lengths: np.ndarray
+    parts: np.ndarray
+    tips: np.ndarray
+    forces: np.ndarray
+
+    def is_finite(self) -> bool:
+        """Whether all of it can be drawn."""
+        sums = (self.bars, self.quaternions, self.parts, self.tips, self.forces)
+        return bool(np.isfinite(sum(float(array.sum()) for array in sums)))
+
+
+class Layout:
+    """Turns snapshots of robots with a constant number of parts into poses.
+
+    Links 1 and 3 lie in the back layer, link 2 and the pieces of link 4 in the front one, so that
+    none runs through another; bearings span both.
+
+    Args:
+        bases: origins of the robots' frames in the world, shape (k, 3), [m].
+        robots: k robots as they are at first.
+    """
+
+    def __init__(self, bases: np.ndarray, robots: list[RobotView]) -> None:
+        self._bases = bases
+        n_bars = [len(robot.bars) for robot in robots]
+        n_parts = [len(robot.joints) + 3 + len(robot.extra_points) for robot in robots]
+        self._bar_robot = np.repeat(np.arange(len(robots)), n_bars)
+        self._part_robot = np.repeat(np.arange(len(robots)), n_parts)
+        front, back, boss = meshes.FRONT_LAYER, meshes.BACK_LAYER, meshes.BOSS
+        self._bar_depth = np.concatenate([[back, front, back] + [front] * (n - 3) for n in n_bars])
+        self._part_depth = np.concatenate(
+            [
+                [boss] * len(robot.joints) + [PEN_DEPTH, *MARKER_DEPTHS]
+                + [MARKER_DEPTHS[0]] * len(robot.extra_points)
+                for robot in robots
+            ]
+        )  # fmt: skip
+
+    def poses(self, robots: list[RobotView]) -> Poses:
+        """The poses at one instant."""
+        waists = np.array([waist_angle(robot.bars) for robot in robots])
+        normals = np.stack([-np.sin(waists), np.cos(waists), np.zeros_like(waists)], axis=1)
+        bars = np.concatenate([robot.bars for robot in robots])
+        along = bars[:, 1] - bars[:, 0]
+        parts: list[np.ndarray] = []
+        for robot in robots:
+            marker = robot.marker[None]
+            parts += [robot.joints, robot.tip[None], marker, marker, robot.extra_points]
+        return Poses(
+            bars=bars[:, 0] + self._offsets(self._bar_robot, self._bar_depth, normals),
+            quaternions=bar_quaternions(along, waists[self._bar_robot]),
+            lengths=np.sqrt((along * along).sum(axis=1)),
+            parts=np.concatenate(parts)
+            + self._offsets(self._part_robot, self._part_depth, normals),
+            tips=np.stack([robot.tip for robot in robots]) + self._bases,
+            forces=np.stack([robot.force for robot in robots]),
+        )
+
+    def _offsets(self, robot: np.ndarray, depth: np.ndarray, normals: np.ndarray) -> np.ndarray:
+        return self._bases[robot] + depth[:, None] * normals[robot]
+
+
+def trace_segments(trace: np.ndarray, count: int) -> np.ndarray:
+    """A trace as exactly `count` segments, shape (count, 2, 3); the missing ones have no length.
+
+    A constant count lets their colours stay as they are. A trace is thinned evenly, never at its
+    newest end.
+    """
+    if len(trace) == 0:
+        return np.zeros((count, 2, 3))
+    step = max(1, -(-(len(trace) - 1) // count))
+    kept = trace[::-1][::step][: count + 1][::-1]
+    line = np.concatenate([np.repeat(kept[:1], count + 1 - len(kept), axis=0), kept])
+    return np.stack([line[:-1], line[1:]], axis=1)

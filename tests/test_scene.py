@@ -1,0 +1,261 @@
+"""The scene, built on a real viser server without a browser; drags are played to its callbacks."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import viser
+from scipy.spatial.transform import Rotation
+
+from app import meshes, palette
+from app.machine import TRACE_SEGMENTS
+from app.poses import bar_quaternions, trace_segments, waist_angle
+from app.scene import Hooks, Scene
+from app.snapshot import FollowerName, PathView, RobotView, Snapshot, TrackerName
+from app.stage import BASES, FIELD_OF_VIEW, VIEW_HIGH, VIEW_LOW, Insets, view_of
+
+NAMES = (TrackerName, FollowerName)
+
+
+def direction(angle: float) -> np.ndarray:
+    """Unit vector in the robot's plane."""
+    return np.array([np.cos(angle), 0.0, np.sin(angle)])
+
+
+def robot(q1: float, q2: float, force: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> RobotView:
+    """A rigid five-bar with links of 0.2 and 0.1 m."""
+    base, a, b = np.zeros(3), 0.2 * direction(q1), 0.1 * direction(q2)
+    tip = a - 0.2 * direction(q2)
+    bars = np.array([(base, a), (base, b), (b, a + b), (a + b, tip)])
+    trace = np.linspace(base, tip, 50)
+    joints = np.array([base, a, b, a + b])
+    return RobotView(bars, joints, tip, tip, np.array(force), trace, 0.0, 0.0, 0.0, np.zeros(2))
+
+
+def path(version: int = 0, n_points: int = 6) -> PathView:
+    """A circle with control points on it."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 101)[:, None]
+    circle = np.array([0.2, 0.0, 0.2]) + 0.05 * np.hstack([np.cos(turn), 0 * turn, np.sin(turn)])
+    return PathView(version, circle, circle[:n_points], None, np.zeros((0, 3)))
+
+
+def snapshot(q1: float = 1.5, q2: float = 3.0, **changes: Any) -> Snapshot:
+    """Both robots in the same pose."""
+    both = {name: robot(q1, q2) for name in NAMES}
+    whole = Snapshot(0.0, True, 1.0, both, path(), False, None, "", "info")
+    return replace(whole, **changes)
+
+
+@pytest.fixture(scope="module")
+def server():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    server = viser.ViserServer(host="127.0.0.1", port=port, verbose=False)
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def lab(server, monkeypatch):
+    """A built scene, the messages it sent since, and what its hooks heard."""
+    server.scene.reset()
+    heard: list[tuple[Any, ...]] = []
+    hooks = Hooks(
+        on_grab=lambda *a: heard.append(("grab", *a)),
+        on_release=lambda *a: heard.append(("release", *a)),
+        on_point_dragged=lambda *a: heard.append(("dragged", *a)),
+        on_point_drag_end=lambda *a: heard.append(("dropped", *a)),
+        on_point_selected=lambda *a: heard.append(("selected", *a)),
+    )
+    client: Any = SimpleNamespace(scene=server.scene, atomic=server.atomic)
+    scene = Scene(client, hooks=hooks)
+    scene.build(snapshot())
+    sent: list[Any] = []
+    queue = server.scene._queue_scene_message
+    monkeypatch.setattr(server.scene, "_queue_scene_message", lambda m: (sent.append(m), queue(m)))
+    return SimpleNamespace(scene=scene, api=server.scene, sent=sent, heard=heard)
+
+
+def play(lab: Any, node: str, phase: str, instance: int, start: np.ndarray, end: np.ndarray):
+    """Calls a node's drag callbacks as viser would, the pointer's ray being that of a real one."""
+    camera = np.array([0.1, -3.0, 0.5])
+    pointer = camera + 0.97 * (end - camera)
+    event = SimpleNamespace(
+        instance_index=instance,
+        phase=phase,
+        start_position=tuple(start),
+        end_position=tuple(pointer),
+        client=SimpleNamespace(camera=SimpleNamespace(position=camera)),
+    )
+    for entry in lab.api.get_handle_by_name(node)._impl.drag_cb:
+        asyncio.run(entry.callback(event))
+
+
+def test_a_moving_frame_costs_at_most_four_messages(lab):
+    lab.scene.update(snapshot(1.4, 2.9))
+    assert 0 < len(lab.sent) <= 4
+
+
+def test_a_still_frame_costs_nothing(lab):
+    lab.scene.update(snapshot())
+    lab.scene.update_path(snapshot())
+    assert lab.sent == []
+
+
+def test_a_force_shows_and_then_hides_its_arrow(lab):
+    arrows = lab.api.get_handle_by_name("/force")
+    pulled = {name: robot(1.5, 3.0, force=(10.0, 0.0, 0.0)) for name in NAMES}
+    lab.scene.update(snapshot(robots=pulled))
+    assert arrows.visible
+    lengths = np.linalg.norm(arrows.points[:, 1] - arrows.points[:, 0], axis=1)
+    lab.scene.update(snapshot(robots={n: robot(1.5, 3.0, force=(20.0, 0, 0)) for n in NAMES}))
+    twice = np.linalg.norm(arrows.points[:, 1] - arrows.points[:, 0], axis=1)
+    np.testing.assert_allclose(twice, 2.0 * lengths, rtol=1e-5)
+    lab.scene.update(snapshot())
+    assert not arrows.visible
+
+
+def test_poses_that_are_not_finite_are_not_sent(lab):
+    broken = {name: robot(np.nan, 3.0) for name in NAMES}
+    lab.scene.update(snapshot(robots=broken))
+    lab.scene.update_traces(snapshot(robots=broken))
+    assert lab.sent == []
+
+
+def test_path_is_redrawn_only_when_its_version_changes(lab):
+    moved = replace(path(), points=path().points + 0.01)
+    lab.scene.update_path(snapshot(path=moved))
+    assert lab.sent == []
+    lab.scene.update_path(snapshot(path=replace(moved, version=1)))
+    assert 0 < len(lab.sent) <= 3
+
+
+@pytest.mark.parametrize("count", [0, 3, 9])
+def test_number_of_control_points_may_change(lab, count):
+    lab.scene.update_path(snapshot(path=path(1, count)))
+    points = lab.api.get_handle_by_name("/path/points")
+    assert (points is None) == (count == 0)
+    if count:
+        assert len(points.batched_positions) == len(points.batched_wxyzs) == 2 * count
+
+
+def test_refused_places_come_and_go(lab):
+    marks = replace(path(), refused=np.zeros((2, 3)))
+    for version, refused in ((1, marks), (2, path())):
+        lab.scene.update_path(snapshot(path=replace(refused, version=version)))
+        shown = lab.api.get_handle_by_name("/path/refused") is not None
+        assert shown == (version == 1)
+
+
+@pytest.mark.parametrize("instance", [0, 1])
+def test_pulling_an_end_point_tells_the_robot_and_the_place(lab, instance):
+    name, target = NAMES[instance], np.array([0.21, 0.0, 0.13])
+    for phase in ("start", "update", "end"):
+        play(lab, "/grips", phase, instance, BASES[name], BASES[name] + target)
+    assert [event[:2] for event in lab.heard] == [("grab", name)] * 2 + [("release", name)]
+    np.testing.assert_allclose(lab.heard[1][2], target, atol=1e-9)
+
+
+@pytest.mark.parametrize("robot_index", [0, 1])
+def test_a_dragged_point_moves_by_what_the_mouse_moved(lab, robot_index):
+    base, index = BASES[NAMES[robot_index]], 4
+    point = path().control_points[index]
+    pressed = base + point + [0.003, 0.0, -0.002]
+    shift = np.array([0.02, 0.0, 0.01])
+    instance = robot_index * len(path().control_points) + index
+    play(lab, "/path/points", "start", instance, pressed, pressed)
+    play(lab, "/path/points", "update", instance, pressed, pressed + shift)
+    play(lab, "/path/points", "end", instance, pressed, pressed + shift)
+    assert [event[0] for event in lab.heard] == [
+        "selected", "dragged", "dragged", "dragged", "dropped"
+    ]  # fmt: skip
+    assert all(event[1] == index for event in lab.heard)
+    np.testing.assert_allclose(lab.heard[1][2], point, atol=1e-9)
+    np.testing.assert_allclose(lab.heard[2][2], point + shift, atol=1e-9)
+
+
+def test_a_freehand_stroke_is_told_once_in_the_robots_frame(lab):
+    strokes: list[np.ndarray] = []
+    lab.scene.begin_freehand(strokes.append)
+    base = BASES[FollowerName]
+    corners = np.array([(0.1, 0.0, 0.1), (0.2, 0.0, 0.1), (0.2, 0.0, 0.2), (0.1, 0.0, 0.2)])
+    phases = ("start", "update", "update", "end")
+    for phase, corner in zip(phases, corners, strict=True):
+        play(lab, "/freehand/sheet", phase, 1, base + corners[0], base + corner)
+    assert len(strokes) == 1
+    np.testing.assert_allclose(strokes[0], corners, atol=1e-9)
+    assert lab.api.get_handle_by_name("/freehand/sheet") is None
+    assert lab.api.get_handle_by_name("/freehand/ink") is None
+
+
+def test_the_singular_zone_can_be_shown_and_hidden(lab):
+    for visible in (True, True, False):
+        lab.scene.show_singular_zone(0.0, 0.4, 0.02, visible)
+        assert (lab.api.get_handle_by_name("/zone") is not None) == visible
+
+
+@pytest.mark.parametrize("waist", [-0.6, 0.0, 0.9])
+def test_bars_point_along_their_links_whatever_the_waist(waist):
+    turn = Rotation.from_euler("z", waist)
+    bars = turn.apply(robot(1.3, 2.8).bars.reshape(-1, 3)).reshape(-1, 2, 3)
+    along = bars[:, 1] - bars[:, 0]
+    along[3] += turn.apply([0.0, 0.02, 0.0])  # a bent beam leaves the plane
+    assert waist_angle(bars) == pytest.approx(waist)
+    turned = Rotation.from_quat(bar_quaternions(along, np.full(4, waist)), scalar_first=True)
+    unit = along / np.linalg.norm(along, axis=1)[:, None]
+    np.testing.assert_allclose(turned.apply([1.0, 0.0, 0.0]), unit, atol=1e-12)
+    normal = turn.apply([0.0, 1.0, 0.0])
+    np.testing.assert_allclose(turned[:3].apply([0.0, 1.0, 0.0]), [normal] * 3, atol=1e-12)
+
+
+@pytest.mark.parametrize("length", [0, 1, 2, TRACE_SEGMENTS + 1, 1000])
+def test_traces_are_connected_and_end_at_the_newest_point(length):
+    trace = np.cumsum(np.ones((length, 3)), axis=0)
+    segments = trace_segments(trace, TRACE_SEGMENTS)
+    assert segments.shape == (TRACE_SEGMENTS, 2, 3)
+    np.testing.assert_array_equal(segments[1:, 0], segments[:-1, 1])
+    if length:
+        np.testing.assert_array_equal(segments[-1, 1], trace[-1])
+
+
+@pytest.mark.parametrize("size", [(1400, 800), (390, 844), (2560, 600)])
+@pytest.mark.parametrize("insets", [Insets(), Insets(left=60, right=90, bottom=200)])
+def test_camera_shows_both_robots_clear_of_the_panels(size, insets):
+    pose = view_of(BASES, size, insets)
+    forward = (pose.look_at - pose.position) / np.linalg.norm(pose.look_at - pose.position)
+    right = np.array([1.0, 0.0, 0.0])
+    up = np.cross(right, forward)
+    scale = size[1] / 2 / np.tan(FIELD_OF_VIEW / 2)
+    corners = [base + corner for base in BASES.values() for corner in (VIEW_LOW, VIEW_HIGH)]
+    seen = np.array(corners) - pose.position
+    x = size[0] / 2 + scale * (seen @ right) / (seen @ forward)
+    y = size[1] / 2 - scale * (seen @ up) / (seen @ forward)
+    slack = 2.0
+    assert x.min() > insets.left - slack and x.max() < size[0] - insets.right + slack
+    assert y.min() > insets.top - slack and y.max() < size[1] - insets.bottom + slack
+    widest = max(np.ptp(x) / (size[0] - insets.left - insets.right), np.ptp(y) / size[1])
+    assert widest > 0.6
+
+
+@pytest.mark.parametrize("part", ["link", "bearing", "coin", "motors", "base", "cross", "ball"])
+def test_parts_are_solids_that_look_outward(part):
+    mesh = getattr(meshes, part)().copy()
+    mesh.merge_vertices()
+    assert mesh.is_watertight and mesh.volume > 0.0
+
+
+def test_layers_keep_links_apart():
+    assert meshes.BACK_LAYER - meshes.FRONT_LAYER > meshes.LINK_THICKNESS
+
+
+def test_controllers_differ_in_lightness_or_blue_for_every_eye():
+    tracker, follower = (np.array(palette.CONTROLLERS[name].rgb) for name in NAMES)
+    assert abs(int(tracker[2]) - int(follower[2])) > 120
+    assert palette.TRACKER.hex == "#d55e00"
