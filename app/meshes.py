@@ -144,9 +144,9 @@ def base() -> trimesh.Trimesh:
 
 
 @lru_cache
-def ball() -> trimesh.Trimesh:
-    """A ball of radius 1 m, to be scaled down."""
-    return trimesh.creation.icosphere(subdivisions=3)
+def ball(radius: float) -> trimesh.Trimesh:
+    """A ball of a radius [m]."""
+    return trimesh.creation.icosphere(subdivisions=3, radius=radius)
 
 
 @lru_cache

@@ -75,10 +75,10 @@ class PathNodes:
             self._points.batched_positions = positions
             self._points.batched_colors = colours
         elif len(positions):
-            scales = np.full(len(positions), POINT_RADIUS)
-            self._points = add_copies(
-                self._scene, "/path/points", meshes.ball(), positions, colours, scales=scales
-            )
+            # Not a scaled unit ball: viser keeps an unscaled, invisible copy of a clickable mesh at
+            # its origin, which would take presses meant for the camera.
+            ball = meshes.ball(POINT_RADIUS)
+            self._points = add_copies(self._scene, "/path/points", ball, positions, colours)
             self._connect(self._points)
 
     def _draw_marks(self, refused: np.ndarray) -> None:
