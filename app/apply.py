@@ -106,8 +106,32 @@ def _(command: c.Grab, session: Session) -> None:
 
 @apply.register
 def _(command: c.Release, session: Session) -> None:
-    if session.grabbed == command.controller:
+    if command.controller in (None, session.grabbed):
         session.release()
+
+
+@apply.register
+def _(command: c.Tug, session: Session) -> None:
+    _leave_past(session)
+    name = session.grabbed or NAMES[-1]
+    target = session.hands.get(name, session.runs[name].shown()["y"])
+    plane = session.robot.frame
+    z = plane.planar(target) + np.array([_finite(command.right), _finite(command.up)])
+    session.grab(name, target + plane.lift(z) - plane.lift(plane.planar(target)))
+
+
+@apply.register
+def _(command: c.LookBack, session: Session) -> None:
+    now = session.time if session.viewing is None else session.viewing
+    session.view(session.time - now + _finite(command.by))
+
+
+@apply.register
+def _(_: c.SelectNext, session: Session) -> None:
+    editor = session.editor
+    editor.select((-1 if editor.selected is None else editor.selected) + 1)
+    if editor.selected is None:
+        editor.select(0)
 
 
 @apply.register
@@ -129,8 +153,13 @@ def _(command: c.MovePoint, session: Session) -> None:
 
 
 @apply.register
-def _(command: c.NudgePoint, session: Session) -> None:
-    index = _selected(session)
+def _(command: c.Arrow, session: Session) -> None:
+    index = session.editor.selected
+    if index is None:
+        if command.right > 0:
+            _leave_past(session)
+            session.step_once()
+        return
     design = session.editor.design
     step = np.array([_finite(command.right), _finite(command.up)])
     _commit(session, design.moved(index, design.points[index] + step))

@@ -53,6 +53,13 @@ class View:
 
 
 @dataclass(frozen=True, slots=True)
+class LookBack:
+    """Look further back, or forward, [s]."""
+
+    by: float
+
+
+@dataclass(frozen=True, slots=True)
 class GoOn:
     """Go on from the instant being looked at; what came after it is forgotten."""
 
@@ -75,9 +82,17 @@ class Grab:
 
 @dataclass(frozen=True, slots=True)
 class Release:
-    """Let the end-point go."""
+    """Let the end-points go; with a name, only if that robot's is the one being pulled."""
 
-    controller: str
+    controller: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Tug:
+    """Move the hand by a little in the path's plane, [m]; it takes hold first if need be."""
+
+    right: float
+    up: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,8 +135,13 @@ class EndMove:
 
 
 @dataclass(frozen=True, slots=True)
-class NudgePoint:
-    """Move the selected control point by a little in the path's plane, [m]."""
+class SelectNext:
+    """Select the control point after the selected one, or the first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arrow:
+    """Move the selected control point by a little, [m]; to the right with none: one step."""
 
     right: float
     up: float
@@ -170,16 +190,19 @@ Command = (
     | Reset
     | SetRate
     | View
+    | LookBack
     | GoOn
     | Hold
     | Grab
     | Release
+    | Tug
     | SetCopy
     | ChoosePath
     | SelectPoint
     | MovePoint
     | EndMove
-    | NudgePoint
+    | SelectNext
+    | Arrow
     | PlacePoint
     | AddPoint
     | RemovePoint

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import matplotlib
@@ -11,7 +12,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from app.palette import HEX, TITLES
+from app.palette import CONTROLLERS
+from app.stage import TITLES
 from models.curves import circle
 from models.experiments import Experiment
 from models.trajectory import Trajectory
@@ -19,8 +21,7 @@ from models.trajectory import Trajectory
 
 def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) -> None:
     """End-point in output space, and distance, xi, eta, speed and torque over time."""
-    p = experiment.robot().system.p
-    panels = _panels(p)
+    panels = _panels()
     figure, axes = plt.subplot_mosaic(
         [["space", name] for name, _, _ in panels],
         figsize=(13, 2.1 * len(panels)),
@@ -43,7 +44,28 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
     plt.close(figure)
 
 
-def _panels(p: int):
+def draw_history(runs: dict[str, Trajectory]) -> bytes:
+    """The lab's plots over the last minute, as PNG."""
+    panels = _panels()
+    figure, axes = plt.subplots(
+        len(panels), 1, figsize=(11, 2.2 * len(panels)), sharex=True, layout="constrained"
+    )
+    for axis, (_, label, column) in zip(axes, panels, strict=True):
+        for run in runs.values():
+            _draw_column(axis, run, *column(run))
+        axis.set_ylabel(label)
+        axis.grid(alpha=0.25)
+    for name, run in runs.items():
+        axes[0].plot([], [], color=CONTROLLERS[run.controller].hex, label=TITLES[name][0])
+    axes[0].legend(loc="upper right")
+    axes[-1].set_xlabel("t  [s]")
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=110)
+    plt.close(figure)
+    return file.getvalue()
+
+
+def _panels():
     """(axes name, label, run -> (values, lines' styles)) from top to bottom."""
     return [
         ("distance", "distance to\nthe path  [mm]", lambda r: (1e3 * r.distance[:, None],)),
@@ -65,7 +87,7 @@ def _wrapped(theta: np.ndarray) -> np.ndarray:
 def _draw_column(axes: Axes, run: Trajectory, values: np.ndarray) -> None:
     styles = ("-", "--", ":")
     for column, style in zip(values.T, styles, strict=False):
-        axes.plot(run.t, column, style, color=HEX[run.controller], linewidth=1.5)
+        axes.plot(run.t, column, style, color=CONTROLLERS[run.controller].hex, linewidth=1.5)
 
 
 def _shade_held(axes: Axes, runs: list[Trajectory]) -> None:
@@ -81,9 +103,9 @@ def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> N
     axes.plot(*path.T, color="0.75", linewidth=6, solid_capstyle="round", label="path")
     for run in runs:
         z = 1e3 * frame.planar(run.fields["y"])
-        axes.plot(*z.T, color=HEX[run.controller], linewidth=1.6, label=TITLES[run.controller])
-        axes.plot(*z[0], "o", color=HEX[run.controller], markersize=6)
-        axes.plot(*z[-1], "s", color=HEX[run.controller], markersize=7)
+        axes.plot(*z.T, color=CONTROLLERS[run.controller].hex, linewidth=1.6, label=TITLES[run.controller][0])
+        axes.plot(*z[0], "o", color=CONTROLLERS[run.controller].hex, markersize=6)
+        axes.plot(*z[-1], "s", color=CONTROLLERS[run.controller].hex, markersize=7)
     axes.plot([], [], "o", color="0.3", label="start")
     axes.plot([], [], "s", color="0.3", label="end")
     if any(run.held.any() for run in runs):

@@ -16,6 +16,7 @@ from app.history import History, Stretch
 from app.loop_store import LoopStore
 from app.path_editor import PathEditor
 from app.plant_run import PlantRun
+from app.samples import sample_layout
 from app.snapshot import PathView
 from models.controllers import NAMES
 from models.curves import Curve
@@ -242,22 +243,8 @@ class Session:
 
     @property
     def sample_layout(self) -> Layout:
-        """Fields of a sample."""
-        p, m = self.robot.system.p, self.robot.system.m
-        return Layout(
-            (
-                ("distance", 1),
-                ("speed", 1),
-                ("theta", 1),
-                ("theta_rate", 1),
-                ("theta_ref", 1),
-                ("xi", p - 1),
-                ("xi_rate", p - 1),
-                ("u", m),
-                ("force", p),
-                ("y", p),
-            )
-        )
+        """See `app.samples`."""
+        return sample_layout(self.robot)
 
     def sample(self) -> np.ndarray:
         """Now, shape (robots, sample_layout.size), float32."""

@@ -6,6 +6,8 @@ import numpy as np
 
 from app.session import Session
 from app.snapshot import FollowerName, PathView, RobotView, Snapshot
+from models.curves import Curve
+from models.robots import Robot
 from models.system import Array
 
 TRACE = 1.6  # [s]
@@ -44,18 +46,36 @@ def _samples(session: Session, time: float) -> Array:
 def _robot_view(session: Session, index: int, name: str, samples: Array | None) -> RobotView:
     robot, run, curve = session.robot, session.runs[name], session.editor.curve
     past = None if session.viewing is None else session.history.at(session.viewing)
-    if past is None:
-        row = run.shown()
-        q, distance = row["q"], run.distance
-        speed = float(np.linalg.norm(curve.at(row["theta"][0], 1)) * row["theta_rate"][0])
-    else:
+    trace = np.zeros((0, 3)) if samples is None else robot.place(samples[:, index])
+    if past is not None:
         row = session.sample_layout.unpack(past.sample[index].astype(float))
         q = past.drives[name].state[: robot.system.n]
-        distance, speed = float(row["distance"][0]), float(row["speed"][0])
+        return robot_view(robot, name, curve, q, row, run.max_distance, trace)
+    row = run.shown() | {"distance": np.array([run.distance])}
+    per_radian = np.linalg.norm(curve.at(row["theta"][0], 1))
+    row["speed"] = per_radian * row["theta_rate"]
+    return robot_view(robot, name, curve, row["q"], row, run.max_distance, trace)
+
+
+def robot_view(
+    robot: Robot,
+    name: str,
+    curve: Curve,
+    q: Array,
+    row: dict[str, Array],
+    max_distance: float,
+    trace: Array,
+) -> RobotView:
+    """One robot at one instant.
+
+    Args:
+        q: configuration, shape (n,).
+        row: fields of a sample, see `Session.sample_layout`.
+        trace: end-points lately, in the robot's frame, shape (k, 3), [m].
+    """
     tip = robot.place(row["y"])
     target = row["theta" if name == FollowerName else "theta_ref"][0]
     bars, joints = robot.skeleton(q)
-    trace = np.zeros((0, 3)) if samples is None else robot.place(samples[:, index])
     return RobotView(
         bars=bars,
         joints=joints,
@@ -63,9 +83,9 @@ def _robot_view(session: Session, index: int, name: str, samples: Array | None) 
         marker=robot.place(robot.frame.lift(curve.at(np.array(target)))),
         force=robot.place(row["force"]) - robot.place(np.zeros_like(row["force"])),
         trace=np.concatenate([trace, tip[None]]),
-        distance=distance,
-        max_distance=run.max_distance,
-        speed=speed,
+        distance=float(row["distance"][0]),
+        max_distance=max_distance,
+        speed=float(row["speed"][0]),
         torque=row["u"],
     )
 
@@ -86,3 +106,4 @@ def _path_view(session: Session) -> PathView:
         selected=editor.selected,
         refused=placed(np.concatenate(wrong) if wrong else np.zeros((0, 2))),
     )
+    return session.path_view

@@ -4,45 +4,45 @@ from __future__ import annotations
 
 import numpy as np
 
-from models.curves import Curve, nearest
+from models.curves import Curve
 from models.frames import Frame
 from models.system import Array
 
+CHUNK = 4096
 
-def path_distance(frame: Frame, curve: Curve, y: Array) -> Array:
+
+def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> Array:
     """Euclidean distance by global search, shape (n, p) -> (n,), [m]."""
-    parts = [
-        nearest(lambda theta: frame.lift(curve.at(theta)), curve.sample(), part)[1]
-        for part in np.array_split(y, len(y) // 4096 + 1)
-    ]
-    return np.concatenate(parts)
+    grid = curve.sample(samples)
+    points = frame.lift(curve.at(grid))
+    distances = np.empty(len(y))
+    for begin in range(0, len(y), CHUNK):
+        some = y[begin : begin + CHUNK]
+        squared = ((some[:, None, :] - points[None]) ** 2).sum(-1)
+        theta = grid[squared.argmin(axis=1)]
+        for _ in range(2):
+            theta = _refined(frame, curve, some, theta)[0]
+        distances[begin : begin + CHUNK] = _refined(frame, curve, some, theta)[1]
+    return distances
 
 
-def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array, steps: int = 2) -> Array:
-    """Euclidean distance by Newton from a guess near the closest point; for live display.
+def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:
+    """The same from guesses near the closest points, shape (n,), [rad]; for live display."""
+    return _refined(frame, curve, y, theta)[1]
 
-    The curve is evaluated once, at the guess, and is its cubic Taylor polynomial from there on.
 
-    Args:
-        y: end-points, shape (n, p), [m].
-        theta: guesses, shape (n,), [rad].
-    """
+def _refined(frame: Frame, curve: Curve, y: Array, theta: Array) -> tuple[Array, Array]:
+    """Better theta and the distance there, by Newton on the curve's cubic Taylor polynomial."""
     origin = frame.lift(np.zeros(2))
-    sigma, first, second, third = curve.all_orders(theta)
-    point, first, second, third = (
-        frame.lift(sigma),
-        frame.lift(first) - origin,
-        frame.lift(second) - origin,
-        frame.lift(third) - origin,
-    )
-    step = np.zeros(len(theta))
-    for _ in range(steps):
-        x = step[:, None]
-        gap = point + x * (first + x / 2 * (second + x / 3 * third)) - y
-        slope1 = first + x * (second + x / 2 * third)
-        squared = (slope1**2).sum(-1)
-        slope = np.maximum(squared + (gap * (second + x * third)).sum(-1), 0.2 * squared)
-        step = step - (gap * slope1).sum(-1) / slope
-    x = step[:, None]
-    gap = point + x * (first + x / 2 * (second + x / 3 * third)) - y
-    return np.sqrt((gap**2).sum(-1))
+    sigma, *derivatives = curve.all_orders(theta)
+    point = frame.lift(sigma)
+    first, second, third = (frame.lift(derivative) - origin for derivative in derivatives)
+    step = np.zeros((len(theta), 1))
+    for _ in range(2):
+        gap = point + step * (first + step / 2 * (second + step / 3 * third)) - y
+        tangent = first + step * (second + step / 2 * third)
+        squared = (tangent**2).sum(-1)
+        slope = np.maximum(squared + (gap * (second + step * third)).sum(-1), 0.2 * squared)
+        step = step - ((gap * tangent).sum(-1) / slope)[:, None]
+    gap = point + step * (first + step / 2 * (second + step / 3 * third)) - y
+    return theta + step[:, 0], np.sqrt((gap**2).sum(-1))

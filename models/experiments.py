@@ -187,18 +187,10 @@ def _finished(
 ) -> Trajectory:
     dt = time_step(experiment.parameters)
     whole = record(robot, kernel.log, controller, segments, dt)
-    every = round(1e-3 / dt)
-    thinned = dataclasses.replace(
-        whole,
-        t=whole.t[::every],
-        fields={name: values[::every] for name, values in whole.fields.items()},
-        distance=whole.distance[::every],
-        speed=whole.speed[::every],
-        held=whole.held[::every],
-    )
     if fault is None:
-        return thinned
-    return dataclasses.replace(thinned, diverged_at=len(whole.t) * dt, reason=fault[1])
+        return whole.thinned()
+    end = len(whole.t) * dt
+    return dataclasses.replace(whole.thinned(), diverged_at=end, reason=fault[1])
 
 
 def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TextIO
 
 import numpy as np
@@ -40,6 +40,40 @@ class Trajectory:
     diverged_at: float | None = None
     reason: str = ""
 
+    def thinned(self) -> Trajectory:
+        """One row per millisecond, whatever the tick was."""
+        if len(self.t) < 2:
+            return self
+        every = max(1, round(1e-3 / (self.t[1] - self.t[0])))
+        return replace(
+            self,
+            t=self.t[::every],
+            fields={name: values[::every] for name, values in self.fields.items()},
+            distance=self.distance[::every],
+            speed=self.speed[::every],
+            held=self.held[::every],
+        )
+
+
+def join(controller: str, parts: list[Trajectory]) -> Trajectory:
+    """Consecutive parts as one.
+
+    Raises:
+        ValueError: there are none.
+    """
+    if not parts:
+        raise ValueError(f"{controller}: there is nothing to show")
+    return Trajectory(
+        controller=controller,
+        t=np.concatenate([part.t for part in parts]),
+        fields={
+            name: np.concatenate([part.fields[name] for part in parts]) for name in parts[0].fields
+        },
+        distance=np.concatenate([part.distance for part in parts]),
+        speed=np.concatenate([part.speed for part in parts]),
+        held=np.concatenate([part.held for part in parts]),
+    )
+
 
 def record(
     robot: Robot,
@@ -47,12 +81,14 @@ def record(
     controller: str,
     segments: list[tuple[Array, Curve, bool]],
     dt: float,
+    times: Array | None = None,
 ) -> Trajectory:
-    """A trajectory from log rows.
+    """A trajectory from log rows, one per tick.
 
     Args:
         segments: consecutive (rows, curve, held).
         dt: time between rows, [s].
+        times: of the rows, [s]; None: from 0 on.
     """
     rows = np.concatenate([rows for rows, _, _ in segments])
     distance = [path_distance(robot.frame, curve, log.unpack(part)["y"]) for part, curve, _ in segments]
@@ -60,7 +96,7 @@ def record(
     held = [np.full(len(part), hold) for part, _, hold in segments]
     return Trajectory(
         controller=controller,
-        t=dt * np.arange(len(rows)),
+        t=dt * np.arange(len(rows)) if times is None else times,
         fields=log.unpack(rows),
         distance=np.concatenate(distance),
         speed=np.concatenate(speed),

@@ -1,0 +1,131 @@
+"""What a user can take home: the last minute as CSV, the plots as a picture, the scene as a film."""
+
+from __future__ import annotations
+
+import io
+import logging
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from itertools import groupby
+
+import numpy as np
+import viser
+
+from app.error_log import log_error
+from app.figures import draw_history
+from app.history import Stretch
+from app.recording import record_scene
+from app.session import Session
+from models.loops import InterpretedLoop
+from models.robots import Robot
+from models.simulation import kernel_of
+from models.system import Array
+from models.trajectory import Trajectory, join, record, write_csv
+
+log = logging.getLogger(__name__)
+FILM = 10.0  # [s]
+
+
+class Exporter:
+    """Makes files in a thread of its own, from copies that the simulation thread hands it."""
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        self._client = client
+        self._wanted: list[Callable[[Session], None]] = []
+        self._pool = ThreadPoolExecutor(1, "export")
+
+    def csv(self) -> None:
+        """Ask for the CSV of the last minute."""
+        self._ask("onpath.csv", lambda robot, history: csv_bytes(robot, history))
+
+    def picture(self) -> None:
+        """Ask for a picture of the plots."""
+        self._ask("onpath.png", lambda robot, history: draw_history(replay(robot, history)))
+
+    def recording(self) -> None:
+        """Ask for a standalone page with the scene of the last seconds."""
+        self._ask("onpath.html", lambda robot, history: record_scene(robot, _last(history, FILM)))
+
+    def serve(self, session: Session) -> None:
+        """Start what was asked for; from the simulation thread."""
+        while self._wanted:
+            self._wanted.pop(0)(session)
+
+    def close(self) -> None:
+        """Finish nothing more."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+    def _ask(self, name: str, make: Callable[[Robot, list[Stretch]], bytes]) -> None:
+        def start(session: Session) -> None:
+            robot, history = session.robot, session.history.all()
+            if not history:
+                session.say("There is nothing to export yet: let it run first.", "warning")
+                return
+            self._pool.submit(self._deliver, name, lambda: make(robot, history))
+
+        self._wanted.append(start)
+
+    def _deliver(self, name: str, make: Callable[[], bytes]) -> None:
+        note = self._client.add_notification(
+            "Export", f"Making {name} …", loading=True, with_close_button=False
+        )
+        try:
+            self._client.send_file_download(name, make())
+            note.body, note.loading, note.auto_close_seconds = f"{name} is ready.", False, 3.0
+        except Exception as error:  # the user is told, the lab goes on
+            log_error(error)
+            note.body, note.loading = f"{name} could not be made.", False
+        note.with_close_button = True
+
+
+def csv_bytes(robot: Robot, history: list[Stretch]) -> bytes:
+    """Every millisecond of the history as CSV."""
+    file = io.StringIO()
+    write_csv(file, robot, replay(robot, history).values())
+    return file.getvalue().encode()
+
+
+def replay(robot: Robot, history: list[Stretch]) -> dict[str, Trajectory]:
+    """The history computed again, tick by tick, from its checkpoints and inputs."""
+    return {name: _replayed(robot, name, history) for name in history[0].drives}
+
+
+def _replayed(robot: Robot, name: str, history: list[Stretch]) -> Trajectory:
+    loops: dict[object, InterpretedLoop] = {}
+    parts: list[Trajectory] = []
+    runs = groupby(history, key=lambda s: (id(s.curve), s.dt, s.drives[name].kind))
+    for (_, dt, kind), group in runs:
+        stretches = [s for s in group if not s.drives[name].frozen]
+        if not stretches:
+            continue
+        kernel = kernel_of(robot, kind)
+        loop = loops.setdefault(kind, InterpretedLoop(kernel))
+        segments = [(rows, s.curve, held) for s, rows, held in _rows(loop, name, stretches)]
+        times = np.concatenate([s.time + dt * np.arange(s.ticks) for s in stretches])
+        parts.append(record(robot, kernel.log, name, merged(segments), dt, times).thinned())
+    return join(name, parts)
+
+
+def _rows(
+    loop: InterpretedLoop, name: str, stretches: list[Stretch]
+) -> Iterable[tuple[Stretch, Array, bool]]:
+    for stretch in stretches:
+        drive = stretch.drives[name]
+        table = stretch.curve.table()
+        rows = loop.run(drive.state, drive.settings, table, stretch.ticks)[1]
+        held = loop.kernel.settings.unpack(drive.settings)["hold_active"][0] > 0
+        yield stretch, rows, bool(held)
+
+
+def merged(segments: list) -> list:
+    """Consecutive segments of one curve and hold as one, so that distances are found at once."""
+    result: list = []
+    for (_, held), group in groupby(segments, key=lambda s: (id(s[1]), s[2])):
+        members = list(group)
+        result.append((np.concatenate([rows for rows, _, _ in members]), members[0][1], held))
+    return result
+
+
+def _last(history: list[Stretch], seconds: float) -> list[Stretch]:
+    end = history[-1].time
+    return [s for s in history if s.time >= end - seconds]

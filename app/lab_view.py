@@ -1,0 +1,127 @@
+"""One browser tab: scene, panels and plots around one session."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import viser
+
+from app import commands as c
+from app.exports import Exporter
+from app.loop_store import LoopStore
+from app.panels.gains_panel import GainsPanel
+from app.panels.keys import add_keys, help_text
+from app.panels.past_panel import PastPanel
+from app.panels.path_panel import PathChoice, PathPanel
+from app.panels.readout import Readout
+from app.panels.run_panel import RunPanel
+from app.panels.widgets import on_press, on_user_update
+from app.plots import DISTANCE, LivePlot, MorePlots
+from app.scene import Hooks, Scene
+from app.session import Session
+from app.stage import Insets
+from app.take_snapshot import take_snapshot
+
+DISPLAY = 2  # frames of simulation per frame of display: 30 Hz
+SLOW = 6  # frames per update of plots and readouts: 10 Hz
+TRACES = 12  # 5 Hz
+CONTROL_WIDTH = 330  # [px]
+NARROW = 700  # [px]
+
+
+class LabView:
+    """What one client sees. Built on the event loop's pool, then used by the simulation thread."""
+
+    def __init__(self, client: viser.ClientHandle, session: Session, store: LoopStore) -> None:
+        self._client = client
+        self._store = store
+        self._offset = client.client_id  # spreads the clients' slow updates over the frames
+        self._exporter = Exporter(client)
+        post = session.post
+        self._scene = Scene(client, hooks=_hooks(post))
+        self._scene.build(take_snapshot(session, 1.0))
+        client.gui.configure_theme(
+            show_logo=False, show_share_button=False, brand_color=(0, 114, 178)
+        )
+        client.gui.set_panel_label("OnPath")
+        self._build_panels(session, post)
+        add_keys(client.gui, post)
+        self._frame_camera()
+
+    def close(self) -> None:
+        """The tab is gone."""
+        self._exporter.close()
+
+    def show(self, session: Session, achieved: float, frame: int) -> None:
+        """See `app.loop.View`."""
+        count = frame + self._offset
+        if count % DISPLAY:
+            return
+        slow, traces = count % SLOW == 0, count % TRACES == 0
+        snapshot = take_snapshot(session, achieved, traces=traces)
+        self._scene.update(snapshot)
+        self._scene.update_path(snapshot)
+        if traces:
+            self._scene.update_traces(snapshot)
+        if slow:
+            self._show_progress()
+            for part in self._parts:
+                part.follow(session)
+            self._readout.follow(snapshot)
+            self._exporter.serve(session)
+
+    def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
+        gui = self._client.gui
+        gui.main_panel.dock_right()
+        gui.main_panel.set_width(CONTROL_WIDTH)
+        self._progress = gui.add_progress_bar(0.0, visible=False, animated=True)
+        self._readout = Readout(gui)
+        self._parts = [
+            LivePlot(gui, session, DISTANCE, height=190),
+            RunPanel(gui, session, post),
+            PathChoice(gui, session, post),
+            GainsPanel(gui, session, post),
+        ]
+        with gui.add_folder("Path editor", expand_by_default=False):
+            self._parts.append(PathPanel(gui, post, self._draw(post), self._show_zone))
+        self._parts.append(MorePlots(gui, session))
+        self._parts.append(PastPanel(gui, session, post, self._exporter))
+        copy = gui.add_checkbox(
+            "Copy to both", session.copy, hint="Hand and hold act on both robots alike"
+        )
+        on_user_update(copy, lambda on: post(c.SetCopy(on)))
+        helping = gui.add_button("Help and keys", icon=viser.Icon.HELP)
+        on_press(helping, self._help)
+
+    def _draw(self, post: Callable[[c.Command], None]) -> Callable[[], None]:
+        return lambda: self._scene.begin_freehand(lambda stroke: post(c.DrawPath(stroke)))
+
+    def _show_zone(self, visible: bool) -> None:
+        self._scene.show_singular_zone(0.0, 0.4, 0.02, visible)
+
+    def _help(self) -> None:
+        with self._client.gui.add_modal("How to use the lab", size="lg") as modal:
+            self._client.gui.add_markdown(help_text())
+            close = self._client.gui.add_button("Close")
+            on_press(close, modal.close)
+
+    def _show_progress(self) -> None:
+        done, wanted = self._store.progress()
+        busy = done < wanted
+        if busy:
+            self._progress.value = 100.0 * (done + 0.5) / wanted
+        if self._progress.visible != busy:
+            self._progress.visible = busy
+
+    def _frame_camera(self) -> None:
+        self._scene.frame_camera(Insets())
+
+
+def _hooks(post: Callable[[c.Command], None]) -> Hooks:
+    return Hooks(
+        on_grab=lambda name, target: post(c.Grab(name, target)),
+        on_release=lambda name: post(c.Release(name)),
+        on_point_dragged=lambda index, at: post(c.MovePoint(index, at, finished=False)),
+        on_point_drag_end=lambda _: post(c.EndMove()),
+        on_point_selected=lambda index: post(c.SelectPoint(index)),
+    )

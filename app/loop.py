@@ -1,0 +1,125 @@
+"""THE simulation thread: it owns all sessions and advances them at 60 Hz against a deadline.
+
+A frame that takes longer than its budget slows simulated time, visibly, and never piles up.
+"""
+
+from __future__ import annotations
+
+import logging
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Protocol
+
+from app.error_log import log_error
+from app.session import Session
+
+log = logging.getLogger(__name__)
+
+FRAME = 1 / 60  # [s]
+LATEST = 0.1  # [s]; further behind, the schedule starts anew
+SWITCH_INTERVAL = 5e-4  # [s], so that the network thread does not keep this one waiting
+
+
+class View(Protocol):
+    """Whatever shows a session; called by the simulation thread only."""
+
+    def show(self, session: Session, achieved: float, frame: int) -> None:
+        """Show it; `frame` counts up, so that slow parts can be shown less often."""
+        ...
+
+
+class Lab:
+    """A session, how fast it really runs, and who looks at it.
+
+    Attributes:
+        session: the state.
+        view: who looks, or None.
+        achieved: simulated seconds per second, smoothed.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.view: View | None = None
+        self.achieved = 1.0
+
+    def frame(self, seconds: float, count: int) -> None:
+        """One frame: apply commands, simulate, show."""
+        session = self.session
+        session.drain()
+        if self.view is None:
+            return  # nobody looks: simulated time waits
+        before = session.time
+        session.advance(session.rate * FRAME)
+        if session.running:
+            self.achieved += 0.05 * ((session.time - before) / seconds - self.achieved)
+        self.view.show(session, self.achieved, count)
+
+
+class SimulationThread:
+    """Runs labs until stopped.
+
+    Args:
+        clock, sleep: passed in for tests.
+
+    Attributes:
+        lateness: of the latest frames, [s].
+    """
+
+    def __init__(
+        self,
+        clock: Callable[[], float] = time.perf_counter,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self._clock, self._sleep = clock, sleep
+        self._labs: list[Lab] = []
+        self._lock = threading.Lock()
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self.run, name="simulation", daemon=True)
+        self.lateness: deque[float] = deque(maxlen=3600)
+
+    def start(self) -> None:
+        """Begin."""
+        sys.setswitchinterval(SWITCH_INTERVAL)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End after the current frame."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join(timeout=2.0)
+
+    def add(self, lab: Lab) -> None:
+        """Run one lab more; from any thread."""
+        with self._lock:
+            self._labs = [*self._labs, lab]
+
+    def remove(self, lab: Lab) -> None:
+        """Run it no more; from any thread."""
+        with self._lock:
+            self._labs = [other for other in self._labs if other is not lab]
+
+    @property
+    def labs(self) -> list[Lab]:
+        """Those that run now."""
+        return self._labs
+
+    def run(self) -> None:
+        """Frame after frame, each at its deadline."""
+        count, deadline, last = 0, self._clock(), self._clock() - FRAME
+        while not self._stop.is_set():
+            now = self._clock()
+            if now < deadline:
+                self._sleep(deadline - now)
+                now = self._clock()
+            late = now - deadline
+            self.lateness.append(late)
+            deadline = now + FRAME if late > LATEST else deadline + FRAME
+            for lab in self._labs:
+                try:
+                    lab.frame(now - last, count)
+                except Exception as error:  # one lab must not stop the others
+                    log_error(error)
+            last, count = now, count + 1

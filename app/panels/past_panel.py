@@ -1,0 +1,45 @@
+"""The last minute: look back, go on from there, take it home as files."""
+
+from __future__ import annotations
+
+import viser
+
+from app import commands as c
+from app.exports import Exporter
+from app.panels.widgets import Post, on_press, on_user_update
+from app.session import Session
+
+REACH = 60.0
+
+
+class PastPanel:
+    """Rewind and export."""
+
+    def __init__(
+        self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter
+    ) -> None:
+        with gui.add_folder("Look back", expand_by_default=False):
+            self._ago = gui.add_slider(
+                "Seconds ago", min=0.0, max=REACH, step=0.1, initial_value=0.0,
+                hint="Pauses and shows the lab as it was",
+            )
+            self._go_on = gui.add_button(
+                "Go on from here", icon=viser.Icon.PLAYER_TRACK_NEXT, disabled=True
+            )
+        with gui.add_folder("Export", expand_by_default=False):
+            table = gui.add_button("CSV, last 60 s", icon=viser.Icon.TABLE)
+            picture = gui.add_button("Picture of the plots", icon=viser.Icon.PHOTO)
+            film = gui.add_button("Recording (HTML), last 10 s", icon=viser.Icon.MOVIE)
+        on_user_update(self._ago, lambda ago: post(c.View(ago)))
+        on_press(self._go_on, lambda: post(c.GoOn()))
+        on_press(table, exporter.csv)
+        on_press(picture, exporter.picture)
+        on_press(film, exporter.recording)
+
+    def follow(self, session: Session) -> None:
+        """Back at the present, the slider is too."""
+        past = session.viewing is not None
+        if self._go_on.disabled == past:
+            self._go_on.disabled = not past
+        if not past and self._ago.value != 0.0:
+            self._ago.value = 0.0

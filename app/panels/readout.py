@@ -1,0 +1,61 @@
+"""How far each robot is from the path, now and at most, and what the lab has to say."""
+
+from __future__ import annotations
+
+import html
+
+import viser
+
+from app.palette import CONTROLLERS, WARNING
+from app.snapshot import RobotView, Snapshot
+from app.stage import TITLES
+
+LEVELS = {"info": "#33506b", "warning": "#8a5a00", "error": WARNING.hex}
+
+
+class Readout:
+    """Two lines of numbers, a clock, and the message."""
+
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self._table = gui.add_html("")
+        self._shown = ""
+
+    def follow(self, snapshot: Snapshot) -> None:
+        """Show the snapshot's numbers."""
+        rows = "".join(_row(name, view) for name, view in snapshot.robots.items())
+        content = (
+            '<div style="padding:0.5em 0.9em 0 0.9em;font-size:0.85em">'
+            '<table style="width:100%;border-collapse:collapse">'
+            '<tr style="color:#667"><td>distance to the path</td><td align="right">now</td>'
+            f'<td align="right">most</td></tr>{rows}</table>'
+            f'<div style="color:#667;margin-top:0.3em">{_clock(snapshot)}</div>'
+            f"{_message(snapshot)}</div>"
+        )
+        if content != self._shown:
+            self._shown = content
+            self._table.content = content
+
+
+def _row(name: str, view: RobotView) -> str:
+    colour = CONTROLLERS[name].hex
+    return (
+        f'<tr style="color:{colour};font-weight:600"><td>{TITLES[name][0]}</td>'
+        f'<td align="right">{view.distance * 1e3:.1f} mm</td>'
+        f'<td align="right">{view.max_distance * 1e3:.1f} mm</td></tr>'
+    )
+
+
+def _clock(snapshot: Snapshot) -> str:
+    if not snapshot.running:
+        return f"t = {snapshot.time:.2f} s, paused"
+    return f"t = {snapshot.time:.1f} s, running at {snapshot.achieved_speed:.2g}×"
+
+
+def _message(snapshot: Snapshot) -> str:
+    if not snapshot.message:
+        return ""
+    colour = LEVELS.get(snapshot.message_level, LEVELS["info"])
+    return (
+        f'<div role="status" style="margin-top:0.5em;padding:0.5em;border-left:4px solid {colour};'
+        f'color:{colour};background:#f6f7f9">{html.escape(snapshot.message)}</div>'
+    )

@@ -1,0 +1,95 @@
+"""Which session belongs to which browser: a reload comes back to the same lab.
+
+The browser keeps a short list of session codes. A tab that comes back takes the one of them that
+was left last; a session that nobody looks at is paused, and dropped after a while.
+"""
+
+from __future__ import annotations
+
+import re
+import secrets
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from app.loop import Lab, SimulationThread
+from app.session import Session
+
+CODE = re.compile(r"[a-z0-9]{12}")
+MOST_CODES = 8
+KEPT = 15 * 60.0  # [s] that an abandoned session is kept
+MOST_ABANDONED = 60
+
+
+@dataclass(slots=True)
+class Entry:
+    """A lab and who looks at it.
+
+    Attributes:
+        client: id of the client, or None.
+        left: when the last client left, [s].
+    """
+
+    code: str
+    lab: Lab
+    client: int | None = None
+    left: float = 0.0
+
+
+@dataclass(slots=True)
+class Sessions:
+    """All sessions by code."""
+
+    simulation: SimulationThread
+    make: Callable[[], Session]
+    clock: Callable[[], float] = time.monotonic
+    _entries: dict[str, Entry] = field(default_factory=dict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def join(self, client: int, known: str | None) -> Entry:
+        """The session for a new client.
+
+        Args:
+            known: the list of codes that its browser keeps, as `remembered` made it.
+        """
+        codes = CODE.findall(known[:200]) if known else []
+        with self._lock:
+            self._drop_old()
+            free = [self._entries[code] for code in codes if code in self._entries]
+            free = [entry for entry in free if entry.client is None]
+            if free:
+                entry = max(free, key=lambda e: e.left)
+            else:
+                entry = Entry(secrets.token_hex(6), Lab(self.make()))
+                self._entries[entry.code] = entry
+                self.simulation.add(entry.lab)
+            entry.client = client
+            return entry
+
+    def leave(self, client: int) -> Entry | None:
+        """A client is gone; its session waits, paused, for it to come back."""
+        with self._lock:
+            for entry in self._entries.values():
+                if entry.client == client:
+                    entry.client, entry.left = None, self.clock()
+                    entry.lab.view = None
+                    self._drop_old()
+                    return entry
+        return None
+
+    def remembered(self, code: str, known: str | None) -> str:
+        """The list of codes for the browser to keep, the newest first."""
+        codes = [code, *(CODE.findall(known[:200]) if known else [])]
+        return ",".join(list(dict.fromkeys(codes))[:MOST_CODES])
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def _drop_old(self) -> None:
+        waiting = [e for e in self._entries.values() if e.client is None]
+        waiting.sort(key=lambda e: e.left, reverse=True)
+        for rank, entry in enumerate(waiting):
+            if rank >= MOST_ABANDONED or self.clock() - entry.left > KEPT:
+                self.simulation.remove(entry.lab)
+                del self._entries[entry.code]
