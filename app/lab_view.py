@@ -46,7 +46,7 @@ class LabView:
         client.gui.set_panel_label("OnPath")
         self._build_panels(session, post)
         add_keys(client.gui, post)
-        self._frame_camera()
+        self._framed = (0, 0)
 
     def close(self) -> None:
         """The tab is gone."""
@@ -64,6 +64,7 @@ class LabView:
         if traces:
             self._scene.update_traces(snapshot)
         if slow:
+            self._frame_camera()
             self._show_progress()
             for part in self._parts:
                 part.follow(session)
@@ -114,7 +115,13 @@ class LabView:
             self._progress.visible = busy
 
     def _frame_camera(self) -> None:
-        self._scene.frame_camera(Insets())
+        """Both robots fill the view again whenever its size has changed."""
+        camera = self._client.camera
+        size = (camera.image_width, camera.image_height)
+        if size != self._framed and min(size) > 0:
+            self._framed = size
+            narrow = size[0] < NARROW  # there the panel is a sheet over the lower part
+            self._scene.frame_camera(Insets(bottom=0.6 * size[1]) if narrow else Insets())
 
 
 def _hooks(post: Callable[[c.Command], None]) -> Hooks:

@@ -19,6 +19,7 @@ from app.session import Session
 log = logging.getLogger(__name__)
 
 FRAME = 1 / 60  # [s]
+FADING = 1 / 60  # of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; further behind, the schedule starts anew
 SWITCH_INTERVAL = 5e-4  # [s], so that the network thread does not keep this one waiting
 
@@ -37,13 +38,17 @@ class Lab:
     Attributes:
         session: the state.
         view: who looks, or None.
-        achieved: simulated seconds per second, smoothed.
     """
 
     def __init__(self, session: Session) -> None:
         self.session = session
         self.view: View | None = None
-        self.achieved = 1.0
+        self._simulated = self._passed = 1e-6  # lately, each fading over about a second
+
+    @property
+    def achieved(self) -> float:
+        """Simulated seconds per second, lately."""
+        return self._simulated / self._passed
 
     def frame(self, seconds: float, count: int) -> None:
         """One frame: apply commands, simulate, show."""
@@ -54,7 +59,8 @@ class Lab:
         before = session.time
         session.advance(session.rate * FRAME)
         if session.running:
-            self.achieved += 0.05 * ((session.time - before) / seconds - self.achieved)
+            self._simulated += session.time - before - self._simulated * FADING
+            self._passed += seconds - self._passed * FADING
         self.view.show(session, self.achieved, count)
 
 

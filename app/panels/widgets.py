@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -46,15 +47,15 @@ class ParameterWidgets:
     ) -> None:
         self._handles: dict[str, Any] = {}
         self._post = post
-        known = specs(parameters)
+        self._specs = specs(parameters)
         for name in names:
-            self._add(gui, name, known[name], getattr(parameters, name))
+            self._add(gui, name, self._specs[name], getattr(parameters, name))
 
     def follow(self, parameters: Parameters) -> None:
         """Show the session's values where they differ."""
         for name, handle in self._handles.items():
             value = getattr(parameters, name)
-            shown = str(value) if isinstance(handle, viser.GuiDropdownHandle) else value
+            shown = _shown(self._specs[name], value)
             if handle.value != shown:
                 handle.value = shown
 
@@ -63,7 +64,7 @@ class ParameterWidgets:
         if spec.options:
             options = [str(option) for option in spec.options]
             handle: Any = gui.add_dropdown(
-                spec.label, options, initial_value=str(value), hint=spec.help
+                spec.label, options, initial_value=_shown(spec, value), hint=spec.help
             )
         else:
             handle = gui.add_slider(
@@ -71,11 +72,19 @@ class ParameterWidgets:
                 min=spec.low,
                 max=spec.high,
                 step=spec.step,
-                initial_value=value,
+                initial_value=_shown(spec, value),
                 hint=spec.help,
             )
         self._handles[name] = handle
         on_user_update(handle, lambda new: self._post(SetParameter(name, new)))
+
+
+def _shown(spec: Spec, value: Any) -> Any:
+    """A value as its widget holds it: options as text, numbers to the slider's step or finer."""
+    if spec.options:
+        return str(value)
+    digits = max(0, 2 - math.floor(math.log10(spec.step) + 1e-9)) - 1
+    return round(float(value), digits)
 
 
 class SwitchedParameter(ParameterWidgets):

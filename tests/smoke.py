@@ -1,0 +1,50 @@
+"""Smoke test of an installed OnPath: python smoke.py PATH_TO_ONPATH; needs no test packages."""
+
+from __future__ import annotations
+
+import json
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+
+
+def main() -> None:
+    """An experiment, then the lab's page, then a clean stop."""
+    onpath = sys.argv[1]
+    command = [onpath, "experiment", "obstruction", "--json"]
+    output = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    controllers = json.loads(output)["controllers"]
+    assert controllers["path_following"]["max_distance_m"] <= 0.003, output
+    assert controllers["trajectory_tracking"]["max_distance_m"] >= 0.04, output
+
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    server = subprocess.Popen([onpath, "--port", str(port)])
+    try:
+        page = _page(f"http://127.0.0.1:{port}/", patience=20.0)
+        assert b"<html" in page.lower(), page[:200]
+    finally:
+        server.send_signal(signal.SIGINT)
+        code = server.wait(timeout=10)
+    assert code == 0, f"the server stopped with {code}"
+    sys.stdout.write("smoke test passed\n")
+
+
+def _page(url: str, patience: float) -> bytes:
+    end = time.monotonic() + patience
+    while True:
+        try:
+            with urllib.request.urlopen(url, timeout=2) as reply:
+                return reply.read()
+        except OSError:
+            if time.monotonic() > end:
+                raise
+            time.sleep(0.2)
+
+
+if __name__ == "__main__":
+    main()
