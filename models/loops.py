@@ -22,7 +22,11 @@ from models.kernel import Kernel
 from models.system import Array
 
 BLOCK = 16  # ticks per call of the interpreted loop, about one frame
-FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fPIC", "-shared")
+FLAGS = (
+    *("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math"),
+    "-ffp-contract=off",  # rounds as the interpreter does: both loops agree to the last bit
+    *("-fPIC", "-shared"),
+)
 
 _DRIVER = """
 int onpath_run(const double* settings, const double* curve, double* state, double* log,
@@ -48,9 +52,7 @@ class Loop(Protocol):
         """What runs."""
         ...
 
-    def run(
-        self, state: Array, settings: Array, table: Array, ticks: int
-    ) -> tuple[Array, Array]:
+    def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """Advance by `ticks`.
 
         Args:
@@ -70,9 +72,7 @@ class InterpretedLoop:
         self.kernel = kernel
         self._blocks = {size: _Block(kernel, size) for size in (BLOCK, 1)}
 
-    def run(
-        self, state: Array, settings: Array, table: Array, ticks: int
-    ) -> tuple[Array, Array]:
+    def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """See `Loop.run`."""
         rows = np.empty((ticks, self.kernel.log.size))
         done = 0
@@ -88,7 +88,9 @@ class _Block:
     """A fixed number of ticks as one function with buffers of its own."""
 
     def __init__(self, kernel: Kernel, ticks: int) -> None:
-        state, settings, table = (ca.MX.sym(n, *kernel.step.size_in(i)) for i, n in enumerate("spc"))
+        state, settings, table = (
+            ca.MX.sym(n, *kernel.step.size_in(i)) for i, n in enumerate("spc")
+        )
         after, rows = state, []
         for _ in range(ticks):
             after, row = kernel.step(after, settings, table)
@@ -120,9 +122,7 @@ class CompiledLoop:
         self._run = ctypes.CDLL(str(library)).onpath_run
         self._run.argtypes = [ctypes.c_void_p] * 4 + [ctypes.c_longlong]
 
-    def run(
-        self, state: Array, settings: Array, table: Array, ticks: int
-    ) -> tuple[Array, Array]:
+    def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """See `Loop.run`."""
         after = np.array(state, dtype=float)
         rows = np.empty((ticks, self.kernel.log.size))

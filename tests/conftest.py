@@ -1,0 +1,113 @@
+"""What the tests of the models share: one robot, its closed loops, and curves at random."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from models.curves import HARMONICS, Curve, fourier
+from models.five_bar import FiveBarLinks, five_bar, inverse_kinematics, load_links
+from models.frames import Plane
+from models.kernel import Kernel, Kind, build_kernel
+from models.loops import InterpretedLoop, Loop, compile_loop, find_compiler
+from models.system import Array, MechanicalSystem
+
+FOLLOWING, TRACKING = Kind("path_following"), Kind("trajectory_tracking")
+DEFAULTS: dict[str, Any] = {
+    **{"K1": 400, "K2": 40, "K3": 0, "K4": 25, "K5": 10},
+    **{"position": 0, "target": 0, "speed": 2 * np.pi},
+    **{"level_centre": (0, 0), "level_weights": (1, 1), "level_constant": 0.05**2},
+    **{"torque_limit": 1e3, "coulomb": 0, "hold_ticks": 1, "dt": 1e-3},
+    **{"encoder_step": 1e-3, "encoder_filter": 5e-3},
+    **{"hand_active": 0, "hand_target": (0, 0)},
+    **{"hold_active": 0, "hold_anchor": (0, 0), "hold_tangent": (0, 1)},
+}
+
+
+@dataclass
+class Rig:
+    """The rigid five-bar with every kind of closed loop around it, built once."""
+
+    links: FiveBarLinks
+    system: MechanicalSystem
+    folder: Path
+    kernels: dict[Kind, Kernel] = field(default_factory=dict[Kind, Kernel])
+    loops: dict[Kind, Loop] = field(default_factory=dict[Kind, Loop])
+
+    @property
+    def balanced(self) -> Array:
+        return self.system.parameter_vector(self.links.lumped())
+
+    @property
+    def spoiled(self) -> Array:
+        return self.system.parameter_vector(self.links.spoiled(0.6, 0.1).lumped())
+
+    def kernel(self, kind: Kind) -> Kernel:
+        if kind not in self.kernels:
+            self.kernels[kind] = build_kernel(self.system, Plane(), kind)
+        return self.kernels[kind]
+
+    def loop(self, kind: Kind) -> Loop:
+        """Compiled where there is a compiler: the laws must hold in what the lab runs."""
+        if kind not in self.loops:
+            kernel, compiler = self.kernel(kind), find_compiler()
+            self.loops[kind] = (
+                compile_loop(kernel, self.folder, compiler) if compiler else InterpretedLoop(kernel)
+            )
+        return self.loops[kind]
+
+    def settings(self, kind: Kind, **changes: Any) -> Array:
+        values = {"plant": self.balanced, "model": self.balanced, **DEFAULTS, **changes}
+        return self.kernel(kind).settings.pack(values)
+
+    def state(self, kind: Kind, y: Array, y_rate: Array | None = None, **changes: Any) -> Array:
+        """The end-point at y moving with y_rate, the memory of the controller empty."""
+        q = inverse_kinematics(np.asarray(y, dtype=float), 0.2, 0.2)
+        v = np.zeros(2) if y_rate is None else np.linalg.solve(jacobian(q), y_rate)
+        values: dict[str, Any] = {"q": q, "v": v, "theta": 0, "theta_rate": 0, "theta_ref": 0}
+        values |= {"integral": (0, 0), "u": (0, 0), "phase": 0}
+        values |= {"encoder": q, "encoder_rate": v}
+        return self.kernel(kind).state.pack({**values, **changes})
+
+    def on_path(self, kind: Kind, curve: Curve, theta: float, rate: float, **changes: Any) -> Array:
+        """On the curve at theta, moving along it."""
+        at = np.array(theta)
+        start = {"theta": theta, "theta_rate": rate, "theta_ref": theta, **changes}
+        return self.state(kind, curve.at(at), rate * curve.at(at, 1), **start)
+
+    def run(
+        self, kind: Kind, curve: Curve, state: Array, ticks: int, **changes: Any
+    ) -> dict[str, Array]:
+        """The log, by name."""
+        rows = self.loop(kind).run(state, self.settings(kind, **changes), curve.table(), ticks)[1]
+        return self.kernel(kind).log.unpack(rows)
+
+
+def jacobian(q: Array) -> Array:
+    """dh/dq of the default linkage, by hand."""
+    return 0.2 * np.array([[-np.sin(q[0]), np.sin(q[1])], [np.cos(q[0]), -np.cos(q[1])]])
+
+
+@pytest.fixture(scope="session")
+def rig(tmp_path_factory: pytest.TempPathFactory) -> Rig:
+    return Rig(load_links(), five_bar(), tmp_path_factory.mktemp("loops"))
+
+
+@pytest.fixture(scope="session")
+def random_curve() -> Callable[[int], Curve]:
+    """A closed curve about y = 0, of some 5 cm, that a robot can follow, by its seed."""
+
+    def build(seed: int) -> Curve:
+        rng = np.random.default_rng(seed)
+        falling = 2e-3 / np.arange(1, HARMONICS + 1)[:, None] ** 2
+        a, b = falling * rng.normal(size=(2, HARMONICS, 2))
+        a[0, 0] += rng.uniform(0.03, 0.06)
+        b[0, 1] += rng.uniform(0.03, 0.06)
+        return fourier(5e-3 * rng.normal(size=2), a, b)
+
+    return build
