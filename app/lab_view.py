@@ -101,7 +101,7 @@ class LabView:
         self._scene.show_singular_zone(0.0, 0.4, 0.02, visible)
 
     def _help(self) -> None:
-        with self._client.gui.add_modal("How to use the lab", size="lg") as modal:
+        with self._client.gui.add_modal("How to use the lab") as modal:
             self._client.gui.add_markdown(help_text())
             close = self._client.gui.add_button("Close")
             on_press(close, modal.close)
