@@ -68,7 +68,7 @@ class LivePlot:
                 label = SHORT[robot] if len(names) == 1 else f"{SHORT[robot]} {name}"
                 line = uplot.Series(label=label, stroke=CONTROLLERS[robot].hex, width=2)
                 if dash is not None:
-                    line["dash"] = list(dash)
+                    line["dash"] = dash
                 series.append(line)
         self._lines = min(len(names), len(LINES))
         self._handle = gui.add_uplot(
@@ -76,6 +76,7 @@ class LivePlot:
             tuple(series),
             title=plot.label,
             scales={"x": uplot.Scale(time=False)},
+            legend=uplot.Legend(live=False),
             height=height,
         )
 
