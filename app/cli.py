@@ -107,15 +107,23 @@ def main() -> None:
 def run_command(arguments: list[str]) -> int:
     """Run one command line; returns the exit code: 0, or 2 with one line on standard error."""
     if not arguments or arguments[0] not in (*COMMANDS, "-h", "--help"):
+        if arguments and not arguments[0].startswith("-"):
+            print(f"onpath: {unknown_command(arguments[0])}", file=sys.stderr)
+            return 2
         arguments = ["serve", *arguments]
     try:
         _parse(arguments).run()
+    except BrokenPipeError:
+        return 0
     except (ValueError, OSError) as error:
         print(f"onpath: {_one_line(str(error))}", file=sys.stderr)
         return 2
-    except BrokenPipeError:
-        return 0
     return 0
+
+
+def unknown_command(name: str) -> str:
+    """What to say to a command that does not exist."""
+    return f"unknown command {name!r}: there are {', '.join(COMMANDS)}"
 
 
 def _parse(arguments: list[str]) -> Serve | Experiment | Bench:
@@ -139,7 +147,7 @@ def _parse(arguments: list[str]) -> Serve | Experiment | Bench:
 def _unboxed(text: str) -> str:
     """A framed message without its frame, on one line."""
     plain = re.sub(r"\x1b\[[0-9;]*m|[\u2500-\u257f]", " ", text)
-    return _one_line(plain.replace("Parsing error", "").replace("Unrecognized options", ""))
+    return _one_line(plain).removesuffix("For full helptext, run onpath --help").strip()
 
 
 def _one_line(text: str) -> str:
@@ -173,21 +181,20 @@ def _whole_file(path: Path):
 
 def _table(result: dict) -> str:
     """The summary for a reader."""
-    rows: list[tuple[str, Callable[[float], str]]] = [
-        ("max_distance_m", lambda v: f"{v * 1e3:.2f} mm"),
-        ("max_distance_while_held_m", lambda v: f"{v * 1e3:.2f} mm"),
-        ("rms_distance_m", lambda v: f"{v * 1e3:.3f} mm"),
-        ("final_speed_rad_s", lambda v: f"{v:.3f} rad/s"),
-        ("max_torque_Nm", lambda v: f"{v:.3f} N m"),
-        ("diverged_at_s", lambda v: f"{v:.3f} s"),
+    rows: list[tuple[str, str, Callable[[float], str]]] = [
+        ("max_distance_m", "max distance", lambda v: f"{v * 1e3:.2f} mm"),
+        ("max_distance_while_held_m", "max distance while held", lambda v: f"{v * 1e3:.2f} mm"),
+        ("rms_distance_m", "rms distance", lambda v: f"{v * 1e3:.3f} mm"),
+        ("final_speed_rad_s", "final speed", lambda v: f"{v + 0.0:.3f} rad/s"),
+        ("max_torque_Nm", "max torque", lambda v: f"{v:.3f} N m"),
+        ("diverged_at_s", "diverged at", lambda v: f"{v:.3f} s"),
     ]
     lines = [result["experiment"]]
     for controller, values in result["controllers"].items():
         lines.append(f"  {controller.replace('_', ' ')}")
-        for key, show in rows:
+        for key, title, show in rows:
             if values[key] is not None:
-                title = key.rsplit("_", 1)[0] if key.endswith(("_m", "_Nm", "_s")) else key
-                lines.append(f"    {title.replace('_', ' '):26s} {show(values[key])}")
+                lines.append(f"    {title:26s} {show(values[key])}")
         if values.get("reason"):
             lines.append(f"    {values['reason']}")
     return "\n".join(lines)
