@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 from functools import singledispatch
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from app import commands as c
-from app.session import RATES, Session
+from models.catalogue import ROBOTS
 from models.controllers import NAMES
 from models.parameters import changed
 from models.path_design import PathDesign, drawn
+
+if TYPE_CHECKING:
+    from app.session import Session
 
 
 @singledispatch
@@ -24,53 +28,60 @@ def apply(command: object, session: Session) -> None:
     raise ValueError(f"unknown command {type(command).__name__}")
 
 
-@apply.register
+@apply.register(c.SetParameter)
 def _(command: c.SetParameter, session: Session) -> None:
-    session.parameters = changed(session.parameters, command.name, command.value)
+    session.set_parameters(changed(session.parameters, command.name, command.value))
 
 
-@apply.register
+@apply.register(c.ResetParameters)
 def _(_: c.ResetParameters, session: Session) -> None:
-    session.parameters = type(session.parameters)()
+    session.set_parameters(type(session.parameters)())
 
 
-@apply.register
+@apply.register(c.ChooseRobot)
+def _(command: c.ChooseRobot, session: Session) -> None:
+    if command.name not in ROBOTS:
+        raise ValueError(f"no robot {command.name!r}: there are {', '.join(ROBOTS)}")
+    session.choose_robot(ROBOTS[command.name])
+
+
+@apply.register(c.Step)
 def _(_: c.Step, session: Session) -> None:
     _leave_past(session)
     session.step_once()
 
 
-@apply.register
+@apply.register(c.Reset)
 def _(_: c.Reset, session: Session) -> None:
     session.reset()
 
 
-@apply.register
+@apply.register(c.View)
 def _(command: c.View, session: Session) -> None:
     session.view(_finite(command.ago))
 
 
-@apply.register
+@apply.register(c.GoOn)
 def _(_: c.GoOn, session: Session) -> None:
     session.go_on()
 
 
-@apply.register
+@apply.register(c.SetCopy)
 def _(command: c.SetCopy, session: Session) -> None:
     session.copy = bool(command.on)
 
 
-@apply.register
+@apply.register(c.SelectPoint)
 def _(command: c.SelectPoint, session: Session) -> None:
     session.editor.select(command.index)
 
 
-@apply.register
+@apply.register(c.EndMove)
 def _(_: c.EndMove, session: Session) -> None:
     _finish(session)
 
 
-@apply.register
+@apply.register(c.SetRunning)
 def _(command: c.SetRunning, session: Session) -> None:
     running = not session.running if command.running is None else command.running
     if running and session.viewing is not None:
@@ -78,15 +89,15 @@ def _(command: c.SetRunning, session: Session) -> None:
     session.running = running
 
 
-@apply.register
+@apply.register(c.SetRate)
 def _(command: c.SetRate, session: Session) -> None:
     rate = _finite(command.rate)
-    if not RATES[0] <= rate <= RATES[-1]:
-        raise ValueError(f"speed {rate:g}: between {RATES[0]:g} and {RATES[-1]:g}")
+    if not c.RATES[0] <= rate <= c.RATES[-1]:
+        raise ValueError(f"speed {rate:g}: between {c.RATES[0]:g} and {c.RATES[-1]:g}")
     session.rate = rate
 
 
-@apply.register
+@apply.register(c.Hold)
 def _(command: c.Hold, session: Session) -> None:
     _leave_past(session)
     names = list(NAMES) if command.controller is None else session.targets(command.controller)
@@ -94,7 +105,7 @@ def _(command: c.Hold, session: Session) -> None:
     session.hold(names, on)
 
 
-@apply.register
+@apply.register(c.Grab)
 def _(command: c.Grab, session: Session) -> None:
     _known(command.controller)
     _leave_past(session)
@@ -104,13 +115,13 @@ def _(command: c.Grab, session: Session) -> None:
     session.grab(command.controller, session.robot.unplace(target))
 
 
-@apply.register
+@apply.register(c.Release)
 def _(command: c.Release, session: Session) -> None:
     if command.controller in (None, session.grabbed):
         session.release()
 
 
-@apply.register
+@apply.register(c.Tug)
 def _(command: c.Tug, session: Session) -> None:
     _leave_past(session)
     name = session.grabbed or NAMES[-1]
@@ -120,13 +131,13 @@ def _(command: c.Tug, session: Session) -> None:
     session.grab(name, target + plane.lift(z) - plane.lift(plane.planar(target)))
 
 
-@apply.register
+@apply.register(c.LookBack)
 def _(command: c.LookBack, session: Session) -> None:
     now = session.time if session.viewing is None else session.viewing
     session.view(session.time - now + _finite(command.by))
 
 
-@apply.register
+@apply.register(c.SelectNext)
 def _(_: c.SelectNext, session: Session) -> None:
     editor = session.editor
     editor.select((-1 if editor.selected is None else editor.selected) + 1)
@@ -134,14 +145,14 @@ def _(_: c.SelectNext, session: Session) -> None:
         editor.select(0)
 
 
-@apply.register
+@apply.register(c.ChoosePath)
 def _(command: c.ChoosePath, session: Session) -> None:
     if command.name not in session.presets:
         raise ValueError(f"no path {command.name!r}: there are {', '.join(session.presets)}")
     _commit(session, session.presets[command.name])
 
 
-@apply.register
+@apply.register(c.MovePoint)
 def _(command: c.MovePoint, session: Session) -> None:
     editor = session.editor
     z = session.robot.frame.planar(session.robot.unplace(np.asarray(command.target, dtype=float)))
@@ -152,7 +163,7 @@ def _(command: c.MovePoint, session: Session) -> None:
         _finish(session)
 
 
-@apply.register
+@apply.register(c.Arrow)
 def _(command: c.Arrow, session: Session) -> None:
     index = session.editor.selected
     if index is None:
@@ -165,7 +176,7 @@ def _(command: c.Arrow, session: Session) -> None:
     _commit(session, design.moved(index, design.points[index] + step))
 
 
-@apply.register
+@apply.register(c.PlacePoint)
 def _(command: c.PlacePoint, session: Session) -> None:
     index = _selected(session)
     design = session.editor.design
@@ -175,7 +186,7 @@ def _(command: c.PlacePoint, session: Session) -> None:
         _commit(session, design.moved(index, np.array(new)))
 
 
-@apply.register
+@apply.register(c.AddPoint)
 def _(_: c.AddPoint, session: Session) -> None:
     editor = session.editor
     index = 0 if editor.selected is None else editor.selected
@@ -183,12 +194,12 @@ def _(_: c.AddPoint, session: Session) -> None:
     editor.select(min(index + 1, len(editor.design.points) - 1))
 
 
-@apply.register
+@apply.register(c.RemovePoint)
 def _(_: c.RemovePoint, session: Session) -> None:
     _commit(session, session.editor.design.removed(_selected(session)))
 
 
-@apply.register
+@apply.register(c.DrawPath)
 def _(command: c.DrawPath, session: Session) -> None:
     stroke = np.asarray(command.stroke, dtype=float)
     if stroke.ndim != 2 or stroke.shape[1] != 3 or len(stroke) > 5000:
@@ -196,12 +207,12 @@ def _(command: c.DrawPath, session: Session) -> None:
     _commit(session, drawn(session.robot.frame.planar(session.robot.unplace(stroke))))
 
 
-@apply.register
+@apply.register(c.Undo)
 def _(_: c.Undo, session: Session) -> None:
     session.say("" if session.editor.undo() else "nothing to undo")
 
 
-@apply.register
+@apply.register(c.Redo)
 def _(_: c.Redo, session: Session) -> None:
     session.say("" if session.editor.redo() else "nothing to redo")
 

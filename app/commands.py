@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)  # simulated seconds per second
+
 
 @dataclass(frozen=True, slots=True)
 class SetParameter:
@@ -19,6 +21,13 @@ class SetParameter:
 @dataclass(frozen=True, slots=True)
 class ResetParameters:
     """All parameters to their defaults."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChooseRobot:
+    """Another robot; path and parameters are those that it had before, or its defaults."""
+
+    name: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,6 +194,7 @@ class Redo:
 Command = (
     SetParameter
     | ResetParameters
+    | ChooseRobot
     | SetRunning
     | Step
     | Reset

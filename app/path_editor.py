@@ -17,6 +17,7 @@ class PathEditor:
     """The path as edited, and as followed while an edit blends in.
 
     Attributes:
+        robot: who must be able to follow it.
         design: the last valid one.
         proposed: what is being dragged, valid or not; None when nothing is.
         faults: what is wrong with the last refused edit.
@@ -27,7 +28,7 @@ class PathEditor:
     """
 
     def __init__(self, robot: Robot, design: PathDesign) -> None:
-        self._robot = robot
+        self.robot = robot
         self._past: list[PathDesign] = []
         self._future: list[PathDesign] = []
         self._from: Curve | None = None
@@ -49,7 +50,7 @@ class PathEditor:
     def propose(self, design: PathDesign) -> bool:
         """Show an unfinished edit, and follow it if it is valid. Returns whether it is."""
         self.proposed = design
-        self.faults = curve_faults(self._robot, design.curve)
+        self.faults = curve_faults(self.robot, design.curve)
         self.version += 1
         if not self.faults:
             self._blend_to(design.curve)

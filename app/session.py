@@ -12,24 +12,25 @@ from collections import deque
 import numpy as np
 
 from app import commands
+from app.apply import apply
 from app.history import History, Stretch
 from app.loop_store import LoopStore
 from app.path_editor import PathEditor
 from app.plant_run import PlantRun
 from app.samples import sample_layout
 from app.snapshot import PathView
+from models.catalogue import FIVE_BAR, Entry
 from models.controllers import NAMES
 from models.curves import Curve
 from models.layout import Layout
-from models.parameters import FiveBarParameters, Parameters
+from models.parameters import Parameters
 from models.path_design import PathDesign, presets
-from models.robots import Robot, rigid_five_bar
+from models.robots import Robot
 from models.simulation import FREE, TICK, Push, brake_at, time_step
 from models.system import Array
 
 log = logging.getLogger(__name__)
 
-RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)
 MOST_COMMANDS = 500  # waiting at once; a flood beyond is dropped
 MOST_TICKS = 200  # in one frame
 REACH = 0.4  # [m], a hand's target stays within this of the middle
@@ -47,19 +48,44 @@ class Session:
         held, hands: who is held back; where hands pull, by controller, in output coordinates.
     """
 
-    def __init__(self, store: LoopStore, robot: Robot | None = None) -> None:
+    def __init__(self, store: LoopStore, entry: Entry = FIVE_BAR) -> None:
         self._store = store
         self._inbox: deque[commands.Command] = deque(maxlen=MOST_COMMANDS)
-        self.robot: Robot = robot or rigid_five_bar()
-        self.parameters: Parameters = FiveBarParameters()
-        self.presets: dict[str, PathDesign] = presets()
-        self.editor = PathEditor(self.robot, self.presets["circle"])
+        self._benches: dict[str, tuple[Parameters, PathEditor]] = {}
         self.history = History()
+        self.presets: dict[str, PathDesign] = presets()
         self.running = True
         self.rate = 1.0
         self.copy = True
         self.path_view: PathView | None = None  # the last one drawn, while it is still right
         self.message, self.message_level = "", "info"
+        self._set_up(entry)
+
+    # The robot
+
+    def choose_robot(self, entry: Entry) -> None:
+        """Another robot, with the parameters and the path that it had before."""
+        if entry is not self.entry:
+            self._benches[self.entry.name] = (self.parameters, self.editor)
+            self._set_up(entry)
+            self.say("")
+
+    def set_parameters(self, parameters: Parameters) -> None:
+        """New numbers; a structural one makes another robot, which starts anew."""
+        self.parameters = parameters
+        robot = self.entry.make(parameters)
+        if robot is not self.robot:
+            self.robot = robot
+            self.editor.robot = robot
+            self._restart()
+
+    def _set_up(self, entry: Entry) -> None:
+        self.entry = entry
+        parameters, editor = self._benches.get(entry.name, (entry.parameters(), None))
+        self.parameters: Parameters = parameters
+        self.robot: Robot = entry.make(parameters)
+        self.editor = editor or PathEditor(self.robot, self.presets["circle"])
+        self.path_view = None
         self._restart()
 
     # Commands
@@ -70,8 +96,6 @@ class Session:
 
     def drain(self) -> None:
         """Apply what has been asked for. A command that makes no sense is answered in words."""
-        from app.apply import apply
-
         while self._inbox:
             command = self._inbox.popleft()
             try:

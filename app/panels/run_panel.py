@@ -8,10 +8,10 @@ import viser
 
 from app import commands as c
 from app.panels.widgets import Post, on_press, on_user_update
-from app.session import RATES, Session
+from app.session import Session
 
 PRESS_ENDS = 0.35  # [s] without a hold message: the button was let go
-RATE_LABELS = {f"{rate:g}×": rate for rate in RATES}
+RATE_LABELS = {f"{rate:g}×": rate for rate in c.RATES}
 
 
 class RunPanel:

@@ -1,0 +1,42 @@
+"""The robots there are: names, parameters, and which instance serves which parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from models.parameters import FiveBarParameters, Parameters
+from models.robots import Robot, rigid_five_bar
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One robot to choose.
+
+    Attributes:
+        name: as on the command line and in files.
+        label: as shown.
+        text: a sentence about it.
+        picture: name of an asset.
+        parameters: the type of its parameters; their defaults are the robot's.
+        make: the instance for some parameters; structural ones select it, others do not matter.
+    """
+
+    name: str
+    label: str
+    text: str
+    picture: str
+    parameters: type[Parameters]
+    make: Callable[[Parameters], Robot]
+
+
+FIVE_BAR = Entry(
+    name="five_bar",
+    label="Five-bar linkage",
+    text="Two motors, rigid links, a pen in a vertical plane.",
+    picture="five_bar.png",
+    parameters=FiveBarParameters,
+    make=lambda _: rigid_five_bar(),
+)
+
+ROBOTS: dict[str, Entry] = {entry.name: entry for entry in (FIVE_BAR,)}
