@@ -135,7 +135,7 @@ def write_csv(file: TextIO, robot: Robot, trajectories: Iterable[Trajectory]) ->
             [f["q"], f["y"], f["theta"], run.speed, run.distance, f["u"], f["force"]]
         )
         for time, values in zip(run.t, columns, strict=True):
-            numbers = [f"{value:.9g}" for value in values]
+            numbers = [f"{value:.9g}" for value in values + 0.0]  # no -0
             writer.writerow([f"{time:.6g}", run.controller, *numbers])
 
 
