@@ -64,23 +64,23 @@ class Parameters:
 
     K1: float = number(
         400.0, "1/s²", (0, 2500, 5), "spring that pulls back onto the path", group="gains",
-        label="K1 across: stiffness",
+        label="K1 across",
     )
     K2: float = number(
         40.0, "1/s", (0, 200, 1), "damps motion across the path", group="gains",
-        label="K2 across: damping",
+        label="K2 across",
     )
     K3: float = number(
         0.0, "1/s³", (0, 8000, 50), "removes a lasting offset (integral)", group="gains",
-        label="K3 across: integral",
+        label="K3 across",
     )
     K4: float = number(
         25.0, "1/s²", (0, 400, 1), "spring towards the target position", group="gains",
-        label="K4 along: stiffness",
+        label="K4 along",
     )
     K5: float = number(
         10.0, "1/s", (0, 100, 0.5), "how hard the speed along the path is held", group="gains",
-        label="K5 along: speed",
+        label="K5 along",
     )
     task: str = choice(
         "speed", ("speed", "position"), "go along the path at a speed, or to a place on it",
@@ -127,19 +127,19 @@ class FiveBarParameters(Parameters):
 
     error_M11: float = number(
         0.0, "%", (-50, 50, 1), "the controller's M11 is off by this", group="realism",
-        label="Model: M11 off by", on=30.0,
+        label="M11 wrong", on=30.0,
     )
     error_M22: float = number(
         0.0, "%", (-50, 50, 1), "the controller's M22 is off by this", group="realism",
-        label="Model: M22 off by", on=30.0,
+        label="M22 wrong", on=30.0,
     )
     error_b1: float = number(
         0.0, "%", (-50, 50, 1), "the controller's b1 is off by this", group="realism",
-        label="Model: b1 off by", on=50.0,
+        label="b1 wrong", on=50.0,
     )
     error_b2: float = number(
         0.0, "%", (-50, 50, 1), "the controller's b2 is off by this", group="realism",
-        label="Model: b2 off by", on=50.0,
+        label="b2 wrong", on=50.0,
     )
     counterweights_removed: float = number(
         0.0, "%", (0, 100, 5), "counterweights taken off; the controller does not know",
