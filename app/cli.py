@@ -39,6 +39,7 @@ class Serve:
 
         level = getattr(logging, self.log_level.upper())
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
+        logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
         serve(self.host, self.port, open_browser=self.open)
 
 

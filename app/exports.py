@@ -46,6 +46,10 @@ class Exporter:
         """Ask for a standalone page with the scene of the last seconds."""
         self._ask("onpath.html", lambda robot, history: record_scene(robot, _last(history, FILM)))
 
+    def submit(self, work: Callable[[], None]) -> None:
+        """Do something else in this thread."""
+        self._pool.submit(work)
+
     def serve(self, session: Session) -> None:
         """Start what was asked for; from the simulation thread."""
         while self._wanted:

@@ -23,30 +23,27 @@ from app.stage import Insets
 from app.take_snapshot import take_snapshot
 
 DISPLAY = 2  # frames of simulation per frame of display: 30 Hz
-SLOW = 6  # frames per update of plots and readouts: 10 Hz
-TRACES = 12  # 5 Hz
+SLOW = 6  # frames per update of traces, plots and readouts: 10 Hz
 CONTROL_WIDTH = 330  # [px]
 NARROW = 700  # [px]
 
 
 class LabView:
-    """What one client sees. Built on the event loop's pool, then used by the simulation thread."""
+    """What one client sees. Built in a thread of its own, then used by the simulation thread."""
 
     def __init__(self, client: viser.ClientHandle, session: Session, store: LoopStore) -> None:
         self._client = client
         self._store = store
         self._offset = client.client_id  # spreads the clients' slow updates over the frames
         self._exporter = Exporter(client)
-        post = session.post
-        self._scene = Scene(client, hooks=_hooks(post))
-        self._scene.build(take_snapshot(session, 1.0))
+        self._framed = (0, 0)
         client.gui.configure_theme(
             show_logo=False, show_share_button=False, brand_color=(0, 114, 178)
         )
         client.gui.set_panel_label("OnPath")
-        self._build_panels(session, post)
-        add_keys(client.gui, post)
-        self._framed = (0, 0)
+        client.gui.main_panel.dock_right()
+        client.gui.main_panel.set_width(CONTROL_WIDTH)
+        self._build(session)
 
     def close(self) -> None:
         """The tab is gone."""
@@ -55,15 +52,18 @@ class LabView:
     def show(self, session: Session, achieved: float, frame: int) -> None:
         """See `app.loop.View`."""
         count = frame + self._offset
-        if count % DISPLAY:
+        if count % DISPLAY or self._robot is None:
             return
-        slow, traces = count % SLOW == 0, count % TRACES == 0
-        snapshot = take_snapshot(session, achieved, traces=traces)
+        if session.robot is not self._robot:
+            self._robot = None  # nothing is shown until the new one stands
+            self._exporter.submit(lambda: self._rebuild(session))
+            return
+        slow = count % SLOW == 0
+        snapshot = take_snapshot(session, achieved, traces=slow)
         self._scene.update(snapshot)
         self._scene.update_path(snapshot)
-        if traces:
-            self._scene.update_traces(snapshot)
         if slow:
+            self._scene.update_traces(snapshot)
             self._frame_camera()
             self._show_progress()
             for part in self._parts:
@@ -71,10 +71,22 @@ class LabView:
             self._readout.follow(snapshot)
             self._exporter.serve(session)
 
+    def _rebuild(self, session: Session) -> None:
+        self._client.scene.reset()
+        self._client.gui.reset()
+        self._framed = (0, 0)
+        self._build(session)
+
+    def _build(self, session: Session) -> None:
+        robot, post = session.robot, session.post
+        self._scene = Scene(self._client, hooks=_hooks(post))
+        self._scene.build(take_snapshot(session, 1.0))
+        self._build_panels(session, post)
+        add_keys(self._client.gui, post)
+        self._robot = robot
+
     def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
         gui = self._client.gui
-        gui.main_panel.dock_right()
-        gui.main_panel.set_width(CONTROL_WIDTH)
         self._progress = gui.add_progress_bar(0.0, visible=False, animated=True)
         self._readout = Readout(gui)
         self._parts = [
