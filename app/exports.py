@@ -48,7 +48,14 @@ class Exporter:
 
     def submit(self, work: Callable[[], None]) -> None:
         """Do something else in this thread."""
-        self._pool.submit(work)
+
+        def guarded() -> None:
+            try:
+                work()
+            except Exception as error:
+                log_error(error)
+
+        self._pool.submit(guarded)
 
     def serve(self, session: Session) -> None:
         """Start what was asked for; from the simulation thread."""
