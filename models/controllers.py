@@ -115,9 +115,14 @@ def linearization(
     turning = ca.jtimes(jacobian @ system.v, system.q, system.v)
     wanted = ca.SX.sym("wanted", system.p)
     if system.n == system.m == system.p:
-        u = system.mass @ (ca.inv_minor(jacobian) @ (wanted - turning)) + system.bias
+        u = system.mass @ _solve(jacobian, wanted - turning) + system.bias
     else:
         gain = ca.densify(jacobian @ system.input_gain)
-        u = ca.inv_minor(gain) @ (wanted - jacobian @ system.drift - turning)
+        u = _solve(gain, wanted - jacobian @ system.drift - turning)
     inputs = [system.q, system.v, system.parameters, wanted]
     return ca.Function("linearization", inputs, [u])(q, v, model, acceleration)
+
+
+def _solve(matrix: ca.SX, rhs: ca.SX) -> ca.SX:
+    """A^-1 r of a small dense matrix by its adjugate: one division."""
+    return (1 / ca.det(matrix)) * (ca.adj(matrix) @ rhs)

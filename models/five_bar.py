@@ -49,9 +49,7 @@ class FiveBarLinks:
             payload: mass at the end-point, [kg].
         """
         total = self.link4.mass + payload
-        centre = (
-            self.link4.mass * self.link4.centre_of_mass + payload * self.link4.length
-        ) / total
+        centre = (self.link4.mass * self.link4.centre_of_mass + payload * self.link4.length) / total
         inertia = (
             self.link4.inertia
             + self.link4.mass * (self.link4.centre_of_mass - centre) ** 2
@@ -134,10 +132,11 @@ def five_bar() -> MechanicalSystem:
 
 
 def _solve_symmetric(mass: ca.SX, rhs: ca.SX) -> ca.SX:
-    """M^-1 R of a symmetric 2 x 2 matrix by its adjugate."""
-    a, b, d = mass[0, 0], mass[0, 1], mass[1, 1]
-    inverse = 1 / (a * d - b**2)
-    return inverse * ca.vertcat(d * rhs[0, :] - b * rhs[1, :], a * rhs[1, :] - b * rhs[0, :])
+    """M^-1 R of a symmetric 2 x 2 matrix by elimination; 1 / M11 is shared between calls."""
+    inverse, b = 1 / mass[0, 0], mass[0, 1]
+    part = inverse * b
+    second = (rhs[1, :] - part * rhs[0, :]) / (mass[1, 1] - part * b)
+    return ca.vertcat(inverse * (rhs[0, :] - b * second), second)
 
 
 def end_point(q: Array, l1: float, l4: float) -> Array:

@@ -27,7 +27,7 @@ def hand(y: ca.SX, y_rate: ca.SX, target: ca.SX, active: ca.SX) -> ca.SX:
     """Spring-damper from the end-point to where the hand is, saturated, (p, 1), [N]."""
     force = HAND.stiffness * (target - y) - HAND.damping * y_rate
     size = ca.sqrt(ca.dot(force, force) + TINY)
-    return active * force * ca.fmin(1, HAND.largest / size)
+    return (active * ca.fmin(1, HAND.largest / size)) * force
 
 
 def hold(y: ca.SX, y_rate: ca.SX, anchor: ca.SX, tangent: ca.SX, active: ca.SX) -> ca.SX:
@@ -36,7 +36,7 @@ def hold(y: ca.SX, y_rate: ca.SX, anchor: ca.SX, tangent: ca.SX, active: ca.SX) 
     Source: the obstruction of experiment 2.
     """
     along = HOLD.stiffness * ca.dot(tangent, y - anchor) + HOLD.damping * ca.dot(tangent, y_rate)
-    return -active * tangent * ca.fmin(ca.fmax(along, -HOLD.largest), HOLD.largest)
+    return (active * ca.fmin(ca.fmax(-along, -HOLD.largest), HOLD.largest)) * tangent
 
 
 def dry_friction(v: ca.SX, coulomb: ca.SX) -> ca.SX:

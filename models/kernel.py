@@ -116,9 +116,7 @@ def log_layout(system: MechanicalSystem) -> Layout:
     )
 
 
-def build_kernel(
-    system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int = 1
-) -> Kernel:
+def build_kernel(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int = 1) -> Kernel:
     """Assemble the tick.
 
     The curve enters by one dense product, table times basis, outside the scalar graphs: an
@@ -176,8 +174,6 @@ def _tick(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int) -> 
     tip, force, effort = _push(system, state, settings, u)
     next_q, next_v = _integrate(system, state, settings, effort, substeps)
 
-    integrates = acts * (1 - saturated) * (1 - settings["hold_active"])
-    interval = settings["dt"] * settings["hold_ticks"]
     phase = state["phase"] + 1
     after = {
         "q": next_q,
@@ -185,26 +181,23 @@ def _tick(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int) -> 
         "theta": output.theta,
         "theta_rate": output.theta_rate,
         "theta_ref": state["theta_ref"] + settings["dt"] * reference_rate,
-        "integral": state["integral"] + integrates * interval * error,
+        "integral": state["integral"] + _interval(settings, acts, saturated) * error,
         "encoder": _held(kind, acts, reading, state["encoder"]),
         "encoder_rate": _held(kind, acts, v[: system.m], state["encoder_rate"]),
         "u": u,
         "phase": phase * (phase < settings["hold_ticks"] - 0.5),
     }
-    row = {
-        "q": state["q"],
-        "v": state["v"],
-        "y": tip,
-        "theta": output.theta,
-        "theta_rate": output.theta_rate,
-        "theta_ref": state["theta_ref"],
-        "xi": output.xi,
-        "xi_rate": output.xi_rate,
-        "u": u,
-        "force": force,
-    }
+    seen = {"y": tip, "u": u, "force": force, "xi": output.xi, "xi_rate": output.xi_rate}
+    seen |= {"theta": output.theta, "theta_rate": output.theta_rate}
+    row = state | seen
     outputs = ca.cse([state_layout(system).join(after), log_layout(system).join(row)])
     return ca.Function("scalars", [state_symbol, settings_symbol, values], outputs)
+
+
+def _interval(settings: Fields, acts: ca.SX, saturated: ca.SX) -> ca.SX:
+    """Time that integral action counts in this tick: none while its error cannot be acted on."""
+    counts = acts * (1 - saturated) * (1 - settings["hold_active"])
+    return counts * settings["dt"] * settings["hold_ticks"]
 
 
 def _measure(
@@ -265,9 +258,7 @@ def _command(
         command = controllers.path_following(output, kind.closed, gains, task, across)
         return command, ca.vertcat(output.xi, 0), rate
     reference = LocalCurve.from_values(theta_ref, kind.closed, values[:, 1])
-    error, error_rate, feedforward = controllers.tracking_error(
-        reference, frame, *measured, rate
-    )
+    error, error_rate, feedforward = controllers.tracking_error(reference, frame, *measured, rate)
     command = controllers.trajectory_tracking(error, error_rate, feedforward, gains, integral)
     return command, error, rate
 
@@ -320,13 +311,13 @@ def _integrate(
     q, v, h = state["q"], state["v"], settings["dt"] / substeps
     half, sixth, plant = h / 2, h / 6, settings["plant"]
     for _ in range(substeps):
+        drift = half * v
+        middle = q + drift
+        ahead = middle + drift
         a1 = slope(q, v, tau, plant)
-        v2 = v + half * a1
-        a2 = slope(q + half * v, v2, tau, plant)
-        v3 = v + half * a2
-        a3 = slope(q + half * v2, v3, tau, plant)
-        v4 = v + h * a3
-        a4 = slope(q + h * v3, v4, tau, plant)
-        q = q + sixth * (v + 2 * (v2 + v3) + v4)
-        v = v + sixth * (a1 + 2 * (a2 + a3) + a4)
+        a2 = slope(middle, v + half * a1, tau, plant)
+        a3 = slope(middle + half**2 * a1, v + half * a2, tau, plant)
+        a4 = slope(ahead + half * h * a2, v + h * a3, tau, plant)
+        early, late = a1 + (a2 + a3), (a2 + a3) + a4
+        q, v = ahead + h * sixth * early, v + sixth * (early + late)
     return q, v

@@ -27,8 +27,8 @@ def basis(theta: ca.SX, closed: bool) -> ca.SX:
     Fourier and Chebyshev bases obey one three-term recurrence: P_k+1 = 2 x P_k - P_k-1.
     """
     if closed:
-        return ca.vertcat(1, _recurrence(ca.cos(theta), ca.cos(theta), 1),
-                          _recurrence(ca.cos(theta), ca.sin(theta), 0))
+        cosine, sine = ca.cos(theta), ca.sin(theta)
+        return ca.vertcat(1, _recurrence(cosine, cosine, 1), _recurrence(cosine, sine, 0))
     x = _clamped(theta) / np.pi
     return ca.vertcat(1, _recurrence(x, x, 1), ca.DM.zeros(HARMONICS, 1))
 
@@ -74,27 +74,23 @@ class LocalCurve:
         curved = beyond == 0
         return LocalCurve(theta, sigma + beyond * first, first, curved * second, curved * third)
 
-    def moved(self, theta: ca.SX) -> LocalCurve:
-        """The same polynomial expanded about another theta."""
-        step = theta - self.theta
-        half = step / 2
-        second = self.second + step * self.third
+    def moved(self, step: ca.SX) -> LocalCurve:
+        """The same polynomial expanded about theta + step."""
+        half, bend = step / 2, step * self.third
+        second = self.second + bend
         first = self.first + half * (self.second + second)
-        sigma = self.sigma + step * (
-            self.first + half * (self.second + step / 3 * self.third)
-        )
-        return LocalCurve(theta, sigma, first, second, self.third)
+        sigma = self.sigma + step * (self.first + half * (self.second + bend / 3))
+        return LocalCurve(self.theta + step, sigma, first, second, self.third)
 
     def project(self, z: ca.SX) -> LocalCurve:
         """Expanded about the closest point to z, (2, 1), [m]."""
         local = self
         for _ in range(NEWTON_STEPS):
-            gap = local.sigma - z
+            gap = z - local.sigma
             tangent2 = ca.dot(local.first, local.first)
-            slope = ca.fmax(tangent2 + ca.dot(gap, local.second), LEAST_SLOPE * tangent2)
+            slope = ca.fmax(tangent2 - ca.dot(gap, local.second), LEAST_SLOPE * tangent2)
             step = ca.dot(gap, local.first) / slope
-            step = ca.fmin(ca.fmax(step, -LARGEST_STEP), LARGEST_STEP)
-            local = self.moved(local.theta - step)
+            local = local.moved(ca.fmin(ca.fmax(step, -LARGEST_STEP), LARGEST_STEP))
         return local
 
 

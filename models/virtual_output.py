@@ -83,28 +83,30 @@ def virtual_output(
     """
     z, zeta = frame.split(y)
     z_rate, zeta_rate = frame.split(y_rate, rate=True)
-    length = ca.sqrt(ca.dot(closest.first, closest.first))
+    length2 = ca.dot(closest.first, closest.first)
+    length = ca.sqrt(length2)
     tangent = closest.first / length
     normal = ca.vertcat(-tangent[1], tangent[0])
     distance = ca.dot(normal, z - closest.sigma)
     along, across = ca.dot(tangent, z_rate), ca.dot(normal, z_rate)
     bend, stretch = ca.dot(normal, closest.second), ca.dot(tangent, closest.second)
-    slope = ca.fmax(length**2 - distance * bend, LEAST_SLOPE * length**2)
-    rate = length * along / slope
+    slope = ca.fmax(length2 - distance * bend, LEAST_SLOPE * length2)
+    lever = slope / length
+    rate = along / lever
     pull = stretch * along + bend * across
     twist = 3 * length * stretch - distance * ca.dot(normal, closest.third)
     theta_offset = rate * (2 * pull - twist * rate) / slope
     if level_set is None:
         xi, xi_rate = distance, across
         offset = -bend * rate * along / length
-        inverse = ca.horzcat(tangent * slope / length, normal)
+        inverse = ca.horzcat(lever * tangent, normal)
     else:
         centred = z - level_set.centre
         gradient = 2 * level_set.weights * centred
         xi = ca.dot(level_set.weights, centred**2) - level_set.constant
         xi_rate = ca.dot(gradient, z_rate)
         offset = 2 * ca.dot(level_set.weights, z_rate**2)
-        inverse = ca.inv_minor(ca.vertcat((tangent * length / slope).T, gradient.T))
+        inverse = ca.inv_minor(ca.vertcat((tangent / lever).T, gradient.T))
     return VirtualOutput(
         theta=closest.theta,
         theta_rate=rate,
