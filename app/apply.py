@@ -100,6 +100,8 @@ def _(command: c.SetRate, session: Session) -> None:
 @apply.register(c.Hold)
 def _(command: c.Hold, session: Session) -> None:
     _leave_past(session)
+    if command.controller is not None:
+        _known(command.controller)
     names = list(NAMES) if command.controller is None else session.targets(command.controller)
     on = not session.held.intersection(names) if command.on is None else command.on
     session.hold(names, on)
@@ -109,10 +111,7 @@ def _(command: c.Hold, session: Session) -> None:
 def _(command: c.Grab, session: Session) -> None:
     _known(command.controller)
     _leave_past(session)
-    target = np.asarray(command.target, dtype=float)
-    if target.shape != (3,):
-        raise ValueError("the hand's target is not a point")
-    session.grab(command.controller, session.robot.unplace(target))
+    session.grab(command.controller, session.robot.unplace(_point(command.target)))
 
 
 @apply.register(c.Release)
@@ -155,7 +154,7 @@ def _(command: c.ChoosePath, session: Session) -> None:
 @apply.register(c.MovePoint)
 def _(command: c.MovePoint, session: Session) -> None:
     editor = session.editor
-    z = session.robot.frame.planar(session.robot.unplace(np.asarray(command.target, dtype=float)))
+    z = session.robot.frame.planar(session.robot.unplace(_point(command.target)))
     if editor.proposed is None or editor.selected != command.index:
         editor.select(command.index)
     editor.propose((editor.proposed or editor.design).moved(command.index, z))
@@ -204,7 +203,8 @@ def _(command: c.DrawPath, session: Session) -> None:
     stroke = np.asarray(command.stroke, dtype=float)
     if stroke.ndim != 2 or stroke.shape[1] != 3 or len(stroke) > 5000:
         raise ValueError("a stroke needs points")
-    _commit(session, drawn(session.robot.frame.planar(session.robot.unplace(stroke))))
+    points = session.robot.frame.planar(session.robot.unplace(stroke))
+    _commit(session, drawn(points, session.editor.design.curve))
 
 
 @apply.register(c.Undo)
@@ -244,9 +244,20 @@ def _selected(session: Session) -> int:
 
 
 def _finite(value: float) -> float:
-    if not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise ValueError(f"{value!r} is not a number")
-    return float(value)
+    try:
+        result = float(value)
+    except (TypeError, ValueError, OverflowError):
+        result = math.nan
+    if not math.isfinite(result):
+        raise ValueError("that is not a number")
+    return result
+
+
+def _point(value: np.ndarray) -> np.ndarray:
+    point = np.asarray(value, dtype=float)
+    if point.shape != (3,) or not np.all(np.isfinite(point)):
+        raise ValueError("that is not a point")
+    return point
 
 
 def _known(controller: str) -> None:

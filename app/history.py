@@ -29,12 +29,14 @@ class Drive:
         state: at the beginning.
         settings: of the loop during the stretch.
         frozen: whether it has diverged and stands still.
+        max_distance: from the path since reset, [m].
     """
 
     kind: Kind
     state: np.ndarray
     settings: np.ndarray
     frozen: bool
+    max_distance: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)

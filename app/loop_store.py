@@ -55,9 +55,10 @@ class LoopStore:
         ready = self._compiled.get(key)
         if ready is not None:
             return ready
-        if self._pool is not None and key not in self._wanted:
+        pool = self._pool  # the other thread may give it up meanwhile
+        if pool is not None and key not in self._wanted:
             self._wanted.add(key)
-            self._pool.submit(self._compile, key)
+            pool.submit(self._compile, key)
         if key not in self._interpreted:
             self._interpreted[key] = InterpretedLoop(kernel_of(robot, kind))
         return self._interpreted[key]
@@ -73,12 +74,14 @@ class LoopStore:
 
     def _compile(self, key: Key) -> None:
         assert self._compiler is not None
+        if self._pool is None:
+            return  # it failed before, and would again
         try:
             loop = compile_loop(kernel_of(*key), self._folder, self._compiler)
-        except (RuntimeError, OSError) as error:
+        except Exception as error:  # whatever it is, the lab goes on without
             log.warning("cannot compile a loop, the interpreted one goes on: %s", error)
-            self._wanted.discard(key)
             self._pool = None
+            self._wanted = set(self._compiled)
             return
         with self._lock:
             self._compiled[key] = loop

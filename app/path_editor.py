@@ -110,8 +110,10 @@ class PathEditor:
         return (self.proposed or self.design).points
 
     def _swap(self, source: list[PathDesign], sink: list[PathDesign]) -> bool:
-        self.proposed, self.faults = None, []
+        dragged, self.proposed, self.faults = self.proposed, None, []
         if not source:
+            if dragged is not None:
+                self._blend_to(self.design.curve)
             return False
         sink.append(self.design)
         self._keep(source.pop())

@@ -49,16 +49,21 @@ class PlantRun:
         self.diverged = None
         self.max_distance = self.distance
 
-    def restore(self, drive: Drive, curve: Curve) -> None:
-        """The state of a checkpoint; the closest point is searched anew."""
+    def restore(self, drive: Drive, curve: Curve, then: Curve) -> None:
+        """The state of a checkpoint; the closest point is searched anew if the path was another."""
         self.state = drive.state.copy()
-        self.diverged = None
-        reference = self.fields()["theta_ref"].copy()
-        self.project(curve)
-        self.fields()["theta_ref"][:] = reference
+        self.max_distance = drive.max_distance
+        if not drive.frozen:
+            self.diverged = None
+        if curve is not then:
+            reference = self.fields()["theta_ref"].copy()
+            self.project(curve)
+            self.fields()["theta_ref"][:] = reference
+        self._fill_row(curve)
 
     def project(self, curve: Curve) -> None:
         """Search the closest point globally and put the reference there: after a jump of the path."""
+        self.state = self.state.copy()  # history may hold it
         fields = self.fields()
         z = self.robot.frame.planar(self.robot.endpoint(fields["q"]))
         fields["theta"][:] = curve.nearest(z[None])[0]
@@ -77,7 +82,8 @@ class PlantRun:
 
     def drive(self) -> Drive:
         """The inputs and state as history keeps them."""
-        return Drive(self.kind, self.state, self.settings, self.diverged is not None)
+        frozen = self.diverged is not None
+        return Drive(self.kind, self.state, self.settings, frozen, self.max_distance)
 
     def advance(
         self,
@@ -102,8 +108,9 @@ class PlantRun:
             fault = (len(rows), "the numbers have left the range of a computer")
         if fault is not None:
             self.diverged = Diverged(fault[1], time + fault[0] * dt)
-            if fault[0] > 0:
-                self.row = rows[fault[0] - 1]
+            good = np.flatnonzero(np.isfinite(rows[: fault[0]]).all(axis=1))
+            if good.size:
+                self.row = rows[good[-1]].copy()
             return
         self.state, self.row = state, rows[-1]
         distances = self._distances(curve, fields)

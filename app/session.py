@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections import deque
+from dataclasses import replace
 
 import numpy as np
 
@@ -145,8 +146,13 @@ class Session:
             if run.diverged is not None and was is None:
                 self._tell_divergence(name)
         drives = {
-            name: type(drive)(run.kind, drive.state, run.settings, run.diverged is not None)
-            for (name, drive), run in zip(before.items(), self.runs.values(), strict=True)
+            name: replace(
+                before[name],
+                kind=run.kind,
+                settings=run.settings,
+                frozen=run.diverged is not None,
+            )
+            for name, run in self.runs.items()
         }
         self.history.append(Stretch(self.time, ticks, dt, curve, drives, sample))
         self.time += ticks * dt
@@ -256,12 +262,15 @@ class Session:
                 self.history.forget_after(stretch)
                 self.time = stretch.time
                 for name, run in self.runs.items():
-                    run.restore(stretch.drives[name], self.editor.curve)
+                    run.restore(stretch.drives[name], self.editor.curve, stretch.curve)
                     self._pushes[name] = FREE
                 self.held.clear()
             self.viewing = None
         self.running = True
         self.say("")
+        for name, run in self.runs.items():
+            if run.diverged is not None:
+                self._tell_divergence(name)
 
     # What is kept of an instant
 

@@ -50,7 +50,8 @@ def _robot_view(session: Session, index: int, name: str, samples: Array | None) 
     if past is not None:
         row = session.sample_layout.unpack(past.sample[index].astype(float))
         q = past.drives[name].state[: robot.system.n]
-        return robot_view(robot, name, curve, q, row, run.max_distance, trace)
+        most = past.drives[name].max_distance
+        return robot_view(robot, name, curve, q, row, most, trace)
     row = run.shown() | {"distance": np.array([run.distance])}
     per_radian = np.linalg.norm(curve.at(row["theta"][0], 1))
     row["speed"] = per_radian * row["theta_rate"]

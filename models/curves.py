@@ -199,3 +199,32 @@ def segment(start: tuple[float, float], end: tuple[float, float]) -> Curve:
 def blend(old: Curve, new: Curve, fraction: float) -> Curve:
     """Between two curves of the same kind: `old` at 0, `new` at 1."""
     return Curve(new.closed, (1 - fraction) * old.series + fraction * new.series)
+
+
+def aligned(curve: Curve, to: Curve) -> Curve:
+    """The same curve, begun and run through as `to` is, a curve of the same kind.
+
+    Between curves that run against each other, or begin on opposite sides, a blend would shrink
+    to a point or a line on its way.
+    """
+    if not curve.closed:
+        theta = to.sample(64)
+        ahead, back = (((curve.at(s * theta) - to.at(theta)) ** 2).sum() for s in (1, -1))
+        signs = np.ones(HARMONICS + 1) if ahead <= back else (-1.0) ** np.arange(HARMONICS + 1)
+        return chebyshev_curve(signs[:, None] * curve.series[0, : HARMONICS + 1])
+    (a, b), (to_a, to_b) = _harmonics(curve), _harmonics(to)
+    shift = curve.sample(360)[:, None] * _ORDER
+    best = -np.inf, 0.0, 1
+    for sense in (1, -1):
+        alike = (a * to_a + sense * b * to_b).sum(-1)
+        turned = (sense * b * to_a - a * to_b).sum(-1)
+        overlap = np.cos(shift) @ alike + np.sin(shift) @ turned
+        best = max(best, (overlap.max(), shift[overlap.argmax(), 0], sense))
+    cosine, sine = np.cos(best[1] * _ORDER)[:, None], np.sin(best[1] * _ORDER)[:, None]
+    b = best[2] * b
+    return fourier(curve.series[0, 0], cosine * a + sine * b, cosine * b - sine * a)
+
+
+def _harmonics(curve: Curve) -> tuple[Array, Array]:
+    """a_k and b_k of a closed curve, each (HARMONICS, 2)."""
+    return curve.series[0, 1 : HARMONICS + 1], curve.series[0, HARMONICS + 1 :]

@@ -179,7 +179,7 @@ def checked(spec: Spec, name: str, value: Any) -> Any:
         raise ValueError(f"{name}: {value!r} is not one of {options}")
     try:
         result = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name}: {value!r} is not a number") from None
     if not math.isfinite(result) or not spec.low <= result <= spec.high:
         unit = f" {spec.unit}" if spec.unit else ""

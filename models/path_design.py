@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.curve_fit import closed_through, control_points, from_stroke, open_through
-from models.curves import Curve, circle, ellipse, fourier, segment
+from models.curves import Curve, aligned, circle, ellipse, fourier, segment
 from models.system import Array
 
 MOST_POINTS = 24
@@ -78,19 +78,23 @@ class PathDesign:
             raise ValueError(f"control point {index}: there are {len(self.points)}")
 
 
-def drawn(stroke: Array) -> PathDesign:
+def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
     """From a freehand stroke, closed if its ends are near each other.
+
+    It begins and turns as the presets do, an open one as the open path `before` it, whichever way
+    the hand went: so the robots keep their direction, and one path blends into another smoothly.
 
     Raises:
         ValueError: the stroke is too short or not finite.
     """
     stroke = np.asarray(stroke, dtype=float)
-    if stroke.ndim != 2 or not np.all(np.isfinite(stroke)):
+    if stroke.ndim != 2 or not len(stroke) or not np.all(np.isfinite(stroke)):
         raise ValueError("a stroke needs finite points")
     stroke = np.clip(stroke, -REACH, REACH)
     length = float(np.linalg.norm(np.diff(stroke, axis=0), axis=1).sum())
     closed = float(np.linalg.norm(stroke[0] - stroke[-1])) < 0.25 * length
-    curve = from_stroke(stroke, closed)
+    rightwards = before if before and not before.closed else segment((-0.1, 0.0), (0.1, 0.0))
+    curve = aligned(from_stroke(stroke, closed), circle(0.1) if closed else rightwards)
     return PathDesign("drawn", curve, control_points(curve, 10 if closed else 6))
 
 
