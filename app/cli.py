@@ -73,6 +73,8 @@ class Experiment:
             raise unknown_name(self.name, list(known), what="experiment")
         if self.plot and self.plot.suffix not in (".png", ".svg", ".pdf"):
             raise ValueError(f"--plot {self.plot}: expected a name ending in .png, .svg or .pdf")
+        for file in filter(None, (self.csv, self.plot)):
+            _check_writable(file)
         chosen = known[self.name].with_values(_assignments(self.set))
         names = NAMES if self.controller == "both" else (self.controller,)
         runs = [run(chosen, name) for name in names]
@@ -83,7 +85,8 @@ class Experiment:
         if self.plot:
             with _whole_file(self.plot) as path:
                 draw_experiment(chosen, runs, path)
-        print(json.dumps(result, indent=2) if self.json else _table(result))
+        reasons = {r.controller: r.reason for r in runs}
+        print(json.dumps(result, indent=2) if self.json else _table(result, reasons))
 
 
 @dataclass(frozen=True)
@@ -146,9 +149,12 @@ def _parse(arguments: list[str]) -> Serve | Experiment | Bench:
 
 
 def _unboxed(text: str) -> str:
-    """A framed message without its frame, on one line."""
-    plain = re.sub(r"\x1b\[[0-9;]*m|[\u2500-\u257f]", " ", text)
-    return _one_line(plain).removesuffix("For full helptext, run onpath --help").strip()
+    """A framed message without its frame, title and pointers to the help, on one line."""
+    _, *sections = re.split(r"[\u2500-]{5,}", re.sub(r"\x1b\[[0-9;]*m", "", text))
+    lines = [_one_line(re.sub(r"[\u2500-\u257f]", " ", section)) for section in sections]
+    pointers = ("For full helptext", "Argument helptext")
+    kept = [line for line in lines if line and not line.startswith(pointers)]
+    return " ".join(kept) or _one_line(text)
 
 
 def _one_line(text: str) -> str:
@@ -165,11 +171,23 @@ def _assignments(pairs: tuple[str, ...]) -> dict[str, str]:
     return values
 
 
+def _check_writable(path: Path) -> None:
+    """Complain before the work is done, not after it.
+
+    Raises:
+        ValueError: nothing can be written there.
+    """
+    if path.is_dir():
+        raise ValueError(f"{path}: that is a folder")
+    if not path.parent.is_dir():
+        raise ValueError(f"{path}: no folder {path.parent}")
+    if not os.access(path.parent, os.W_OK):
+        raise ValueError(f"{path}: nothing can be written to {path.parent}")
+
+
 @contextlib.contextmanager
 def _whole_file(path: Path):
     """A scratch file that takes the name `path` only once it is complete."""
-    if not path.parent.is_dir():
-        raise ValueError(f"{path}: no folder {path.parent}")
     handle, scratch = tempfile.mkstemp(dir=path.parent, suffix=path.suffix)
     os.close(handle)
     try:
@@ -180,7 +198,7 @@ def _whole_file(path: Path):
         Path(scratch).unlink(missing_ok=True)
 
 
-def _table(result: dict) -> str:
+def _table(result: dict, reasons: dict[str, str]) -> str:
     """The summary for a reader."""
     rows: list[tuple[str, str, Callable[[float], str]]] = [
         ("max_distance_m", "max distance", lambda v: f"{v * 1e3:.2f} mm"),
@@ -196,6 +214,6 @@ def _table(result: dict) -> str:
         for key, title, show in rows:
             if values[key] is not None:
                 lines.append(f"    {title:26s} {show(values[key])}")
-        if values.get("reason"):
-            lines.append(f"    {values['reason']}")
+        if reasons[controller]:
+            lines.append(f"    {reasons[controller]}")
     return "\n".join(lines)

@@ -97,11 +97,21 @@ def csv_bytes(robot: Robot, history: list[Stretch]) -> bytes:
 
 
 def replay(robot: Robot, history: list[Stretch]) -> dict[str, Trajectory]:
-    """The history computed again, tick by tick, from its checkpoints and inputs."""
-    return {name: _replayed(robot, name, history) for name in history[0].drives}
+    """The history computed again, tick by tick, from its checkpoints and inputs.
+
+    While a robot stands still after a divergence there is nothing of it.
+
+    Raises:
+        ValueError: all of them stood still all the time.
+    """
+    found = {name: _replayed(robot, name, history) for name in history[0].drives}
+    runs = {name: join(name, parts) for name, parts in found.items() if parts}
+    if not runs:
+        raise ValueError("both robots stood still: there is nothing to show")
+    return runs
 
 
-def _replayed(robot: Robot, name: str, history: list[Stretch]) -> Trajectory:
+def _replayed(robot: Robot, name: str, history: list[Stretch]) -> list[Trajectory]:
     loops: dict[object, InterpretedLoop] = {}
     parts: list[Trajectory] = []
     runs = groupby(history, key=lambda s: (id(s.curve), s.dt, s.drives[name].kind))
@@ -114,7 +124,7 @@ def _replayed(robot: Robot, name: str, history: list[Stretch]) -> Trajectory:
         segments = [(rows, s.curve, held) for s, rows, held in _rows(loop, name, stretches)]
         times = np.concatenate([s.time + dt * np.arange(s.ticks) for s in stretches])
         parts.append(record(robot, kernel.log, name, merged(segments), dt, times).thinned())
-    return join(name, parts)
+    return parts
 
 
 def _rows(

@@ -40,7 +40,8 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
         axes[name].tick_params(labelbottom=False)
         axes[name].sharex(axes[panels[-1][0]])
     axes[panels[-1][0]].set_xlabel("t  [s]")
-    plt.savefig(path, metadata=_reproducible(path), dpi=110)
+    with plt.rc_context({"svg.hashsalt": "onpath"}):  # else its names are drawn by lot
+        figure.savefig(path, metadata=_reproducible(path), dpi=110)
     plt.close(figure)
 
 

@@ -87,15 +87,16 @@ class Experiment:
         Raises:
             ValueError: an unknown name or a bad value; the message says which.
         """
-        parameters, schedule = self.parameters, self.schedule
-        own = {f.name for f in dataclasses.fields(schedule)}
+        parameters, times = self.parameters, dict[str, float]()
+        own = {f.name for f in dataclasses.fields(Schedule)}
         for name, text in assignments.items():
             if name in own:
-                schedule = dataclasses.replace(schedule, **{name: _float(name, text)})
+                times[name] = _float(name, text)
             elif name in specs(parameters):
                 parameters = changed(parameters, name, text)
             else:
                 raise unknown_name(name, [*specs(parameters), *sorted(own)])
+        schedule = dataclasses.replace(self.schedule, **times)  # at once: they bound each other
         return dataclasses.replace(self, parameters=parameters, schedule=schedule)
 
 
@@ -206,15 +207,12 @@ def _summary(run: Trajectory) -> dict[str, Any]:
         return float(f"{np.abs(values).max():.9g}") if values.size else None
 
     empty = run.t.size == 0
-    result: dict[str, Any] = {
+    return {
         "max_distance_m": largest(run.distance),
         "max_distance_while_held_m": largest(run.distance[run.held]),
         "rms_distance_m": None if empty else float(f"{np.sqrt(np.mean(run.distance**2)):.9g}"),
         "final_speed_rad_s": None if empty else float(f"{run.fields['theta_rate'][-1, 0]:.9g}"),
         "max_torque_Nm": largest(run.fields["u"]),
         "diverged": run.diverged_at is not None,
-        "diverged_at_s": run.diverged_at,
+        "diverged_at_s": None if run.diverged_at is None else float(f"{run.diverged_at:.9g}"),
     }
-    if run.reason:
-        result["reason"] = run.reason
-    return result

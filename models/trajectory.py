@@ -44,14 +44,16 @@ class Trajectory:
         """One row per millisecond, whatever the tick was."""
         if len(self.t) < 2:
             return self
-        every = max(1, round(1e-3 / (self.t[1] - self.t[0])))
+        dt = self.t[1] - self.t[0]
+        every = max(1, round(1e-3 / dt))
+        kept = slice(-round(self.t[0] / dt) % every, None, every)  # whole milliseconds
         return replace(
             self,
-            t=self.t[::every],
-            fields={name: values[::every] for name, values in self.fields.items()},
-            distance=self.distance[::every],
-            speed=self.speed[::every],
-            held=self.held[::every],
+            t=self.t[kept],
+            fields={name: values[kept] for name, values in self.fields.items()},
+            distance=self.distance[kept],
+            speed=self.speed[kept],
+            held=self.held[kept],
         )
 
 
