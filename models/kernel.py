@@ -1,8 +1,9 @@
 """The closed loop as one function: one control tick of one robot under one controller.
 
-A tick is: measure, project, control, saturate, push, integrate, log. State, settings and curve are
-inputs, so that nothing a user turns ever rebuilds the function. Time passes in steps of dt (1 ms;
-0.5 ms at 2 kHz); the controller acts at every `hold_ticks`-th tick and its torque is held between.
+A tick is: measure, look half a tick ahead, project, control, saturate, push, integrate, log.
+State, settings and curve are inputs, so that nothing a user turns ever rebuilds the function. Time
+passes in steps of dt (1 ms; 0.5 ms at 2 kHz); the controller acts at every `hold_ticks`-th tick
+and its torque is held between.
 """
 
 from __future__ import annotations
@@ -136,8 +137,8 @@ def build_kernel(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: i
     settings = ca.MX.sym("settings", layouts[1].size)
     table = ca.MX.sym("curve", *TABLE_SHAPE)
     values = table @ _bases(system, kind)(state, settings)
-    outputs = _tick(system, frame, kind, substeps)(state, settings, values)
-    return Kernel(ca.Function("tick", [state, settings, table], outputs), *layouts)
+    after, row = _tick(system, frame, kind, substeps)(state, settings, values)
+    return Kernel(ca.Function("tick", [state, settings, table], [after, row]), *layouts)
 
 
 def _tracks(kind: Kind) -> bool:
@@ -154,7 +155,8 @@ def _bases(system: MechanicalSystem, kind: Kind) -> ca.Function:
     settings_symbol, settings = settings_layout(system).symbols("settings")
     columns = basis(_predicted(state, settings), kind.closed)
     if _tracks(kind):
-        columns = ca.horzcat(columns, basis(state["theta_ref"], kind.closed))
+        reference, _ = _reference(kind, state, settings)
+        columns = ca.horzcat(columns, basis(reference, kind.closed))
     return ca.Function("bases", [state_symbol, settings_symbol], [ca.densify(columns)])
 
 
@@ -164,12 +166,11 @@ def _tick(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int) -> 
     settings_symbol, settings = settings_layout(system).symbols("settings")
     values = ca.SX.sym("values", TABLE_SHAPE[0], 2 if _tracks(kind) else 1)
 
-    q, v, reading = _measure(system, kind, state, settings)
+    measured_q, measured_v, reading = _measure(system, kind, state, settings)
+    q, v = _ahead(system, state, settings, measured_q, measured_v)
     y, y_rate = system.with_rate(system.controlled_output)(q, v, settings["model"])
     output = _coordinates(frame, kind, state, settings, values[:, 0], y, y_rate)
-    command, error, reference_rate = _command(
-        frame, kind, state, settings, values, (y, y_rate), output
-    )
+    command, error = _command(frame, kind, state, settings, values, (y, y_rate), output)
     u, acts, saturated = _torque(system, state, settings, q, v, command)
     tip, force, effort = _push(system, state, settings, u)
     next_q, next_v = _integrate(system, state, settings, effort, substeps)
@@ -180,16 +181,14 @@ def _tick(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int) -> 
         "v": next_v,
         "theta": output.theta,
         "theta_rate": output.theta_rate,
-        "theta_ref": state["theta_ref"] + settings["dt"] * reference_rate,
+        "theta_ref": state["theta_ref"] + settings["dt"] * _reference(kind, state, settings)[1],
         "integral": state["integral"] + _interval(settings, acts, saturated) * error,
         "encoder": _held(kind, acts, reading, state["encoder"]),
-        "encoder_rate": _held(kind, acts, v[: system.m], state["encoder_rate"]),
+        "encoder_rate": _held(kind, acts, measured_v[: system.m], state["encoder_rate"]),
         "u": u,
         "phase": phase * (phase < settings["hold_ticks"] - 0.5),
     }
-    seen = {"y": tip, "u": u, "force": force, "xi": output.xi, "xi_rate": output.xi_rate}
-    seen |= {"theta": output.theta, "theta_rate": output.theta_rate}
-    row = state | seen
+    row = state | {"y": tip, "u": u, "force": force} | _now(output, settings)
     outputs = ca.cse([state_layout(system).join(after), log_layout(system).join(row)])
     return ca.Function("scalars", [state_symbol, settings_symbol, values], outputs)
 
@@ -219,6 +218,33 @@ def _measure(
     return ca.vertcat(reading, q[m:]), ca.vertcat(rate, v[m:]), reading
 
 
+def _ahead(
+    system: MechanicalSystem, state: Fields, settings: Fields, q: ca.SX, v: ca.SX
+) -> tuple[ca.SX, ca.SX]:
+    """q and v half a tick later, by the controller's model under the torque held so far.
+
+    A torque held over a tick acts, on average, half a tick late; meeting the robot there keeps
+    the path invariant to O(dt^2) and not only O(dt).
+    """
+    inputs = [system.q, system.v, system.tau, system.parameters]
+    slope = ca.Function("slope", inputs, [system.acceleration])
+    effort = ca.vertcat(state["u"], ca.SX(system.n - system.m, 1))
+    half = settings["dt"] / 2
+    gained = half * slope(q, v, effort, settings["model"])
+    return q + half * (v + gained / 2), v + gained
+
+
+def _now(output: VirtualOutput, settings: Fields) -> Fields:
+    """What the log says of theta and xi: half a tick back from where the controller looked."""
+    half = settings["dt"] / 2
+    return {
+        "theta": output.theta - half * output.theta_rate,
+        "theta_rate": output.theta_rate,
+        "xi": output.xi - half * output.xi_rate,
+        "xi_rate": output.xi_rate,
+    }
+
+
 def _held(kind: Kind, acts: ca.SX, new: ca.SX, old: ca.SX) -> ca.SX:
     """What the encoders remember: exact sensing needs no sampling."""
     return ca.if_else(acts, new, old) if kind.encoder else new
@@ -239,6 +265,14 @@ def _coordinates(
     return virtual_output(start.project(frame.split(y)[0]), frame, level, y, y_rate)
 
 
+def _reference(kind: Kind, state: Fields, settings: Fields) -> tuple[ca.SX, ca.SX]:
+    """The tracker's reference point half a tick ahead, and its speed."""
+    task = Task(settings["position"], settings["target"], settings["speed"])
+    theta_ref, dt = state["theta_ref"], settings["dt"]
+    rate = controllers.reference_rate(theta_ref, kind.closed, task, dt)
+    return theta_ref + dt / 2 * rate, rate
+
+
 def _command(
     frame: Frame,
     kind: Kind,
@@ -247,20 +281,20 @@ def _command(
     values: ca.SX,
     measured: tuple[ca.SX, ca.SX],
     output: VirtualOutput,
-) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """Commanded y'', the error to integrate (p, 1), and the reference point's speed."""
+) -> tuple[ca.SX, ca.SX]:
+    """Commanded y'' and the error to integrate, both (p, 1)."""
     gains = Gains(*[settings[name] for name in GAINS])
     task = Task(settings["position"], settings["target"], settings["speed"])
-    integral, theta_ref = state["integral"], state["theta_ref"]
-    rate = controllers.reference_rate(theta_ref, kind.closed, task, settings["dt"])
+    integral = state["integral"]
     if not _tracks(kind):
         across = integral[: frame.p - 1]
         command = controllers.path_following(output, kind.closed, gains, task, across)
-        return command, ca.vertcat(output.xi, 0), rate
+        return command, ca.vertcat(output.xi, 0)
+    theta_ref, rate = _reference(kind, state, settings)
     reference = LocalCurve.from_values(theta_ref, kind.closed, values[:, 1])
     error, error_rate, feedforward = controllers.tracking_error(reference, frame, *measured, rate)
     command = controllers.trajectory_tracking(error, error_rate, feedforward, gains, integral)
-    return command, error, rate
+    return command, error
 
 
 def _torque(

@@ -91,7 +91,7 @@ class _Block:
         state, settings, table = (
             ca.MX.sym(n, *kernel.step.size_in(i)) for i, n in enumerate("spc")
         )
-        after, rows = state, []
+        after, rows = state, list[ca.MX]()
         for _ in range(ticks):
             after, row = kernel.step(after, settings, table)
             rows.append(row)
@@ -101,9 +101,9 @@ class _Block:
         buffer: Any
         buffer, self._evaluate = block.buffer()
         for i, argument in enumerate(self._arguments):
-            buffer.set_arg(i, memoryview(argument))
+            buffer.set_arg(i, argument.data)
         for i, result in enumerate(self._results):
-            buffer.set_res(i, memoryview(result))
+            buffer.set_res(i, result.data)
         self._buffer = buffer  # keeps the memory alive
 
     def run(self, state: Array, settings: Array, table: Array, rows: Array) -> Array:
@@ -167,7 +167,9 @@ def compile_loop(kernel: Kernel, folder: Path, compiler: str) -> CompiledLoop:
 
 def generate_source(kernel: Kernel) -> str:
     """C of the kernel's tick and the loop around it."""
-    tick = ca.Function("onpath_tick", kernel.step.mx_in(), kernel.step(*kernel.step.mx_in()))
+    inputs = kernel.step.mx_in()
+    after, row = kernel.step(*inputs)
+    tick = ca.Function("onpath_tick", inputs, [after, row])
     generator = ca.CodeGenerator("loop", {"with_header": False})
     generator.add(tick)
     sizes = {

@@ -148,17 +148,21 @@ static Vec command(const Settings *s, const State *x, Local at, double theta, Ve
 }
 
 static void tick(const Settings *s, const double *table, State *x, Row *row) {
-  Angles a = angles(x->q);
-  Vec z = tip(&s->model, a), z_rate = tip_rate(&s->model, a, x->v);
+  double half = s->dt / 2;
+  Vec gain = scaled(half, acceleration(&s->model, x->q, x->v, x->u));
+  Vec q = along(x->q, half, along(x->v, 0.5, gain)), v = add(x->v, gain);
+  Angles a = angles(q);
+  Vec z = tip(&s->model, a), z_rate = tip_rate(&s->model, a, v);
   double theta = x->theta + s->dt * x->theta_rate;
   Local at = project(curve_at(table, theta), z, &theta);
-  Vec wanted = torques(&s->model, a, x->v, command(s, x, at, theta, z, z_rate, row));
+  Vec wanted = torques(&s->model, a, v, command(s, x, at, theta, z, z_rate, row));
 
   double limit = s->torque_limit;
   int acts = x->phase < 0.5;
   int saturated = fmax(fabs(wanted.x), fabs(wanted.y)) > limit;
   Vec u = acts ? (Vec){clamp(wanted.x, -limit, limit), clamp(wanted.y, -limit, limit)} : x->u;
 
+  a = angles(x->q);
   Vec y = tip(&s->plant, a), force = pushes(s, y, tip_rate(&s->plant, a, x->v));
   Vec tau = {s->plant.l1 * (a.c1 * force.y - a.s1 * force.x)
                  + u.x - s->coulomb * x->v.x / sqrt(x->v.x * x->v.x + 0.0025),
@@ -173,6 +177,7 @@ static void tick(const Settings *s, const double *table, State *x, Row *row) {
   double top = fabs(s->speed), gap = wrap(s->target - x->theta_ref) / s->dt;
   x->theta_ref += s->dt * (s->position != 0 ? clamp(gap, -top, top) : s->speed);
   x->theta = theta, x->theta_rate = row->theta_rate;
+  row->theta -= half * row->theta_rate, row->xi -= half * row->xi_rate;
   x->encoder = row->q, x->encoder_rate = row->v, x->u = u;
   x->phase = x->phase + 1 < s->hold_ticks - 0.5 ? x->phase + 1 : 0;
 }
