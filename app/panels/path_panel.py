@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 import viser
 
 from app import commands as c
 from app.panels.widgets import Post, on_press, on_user_update
 from app.session import Session
+from models.rank_test import rank_map
 
 EDITED = "(own)"
 
@@ -62,6 +64,8 @@ class PathPanel:
         on_user_update(self._first, lambda mm: post(c.PlacePoint(first=mm / 1e3)))
         on_user_update(self._second, lambda mm: post(c.PlacePoint(second=mm / 1e3)))
         gui.add_markdown("Arrow keys move the selected point by 1 mm; N selects the next.")
+        self._design: object = None
+        self._rank = gui.add_markdown("")
         zone = gui.add_checkbox(
             "Show singular zone", False, hint="Where the arm is stretched or folded, eq. (14)"
         )
@@ -73,6 +77,11 @@ class PathPanel:
         if editor.version == self._version:
             return
         self._version = editor.version
+        if editor.design is not self._design:
+            self._design = editor.design
+            z = editor.design.curve.at(editor.design.curve.sample(32))
+            number = float(np.min(rank_map(session.robot, session.parameters, z)))
+            self._rank.content = f"Rank test (11) along the path: at least **{number:.2f}** of 1."
         selected = editor.selected
         self._set(self._which, 0 if selected is None else selected + 1)
         if selected is not None and selected < len(editor.points()):
