@@ -47,13 +47,30 @@ class Kernel:
     """One tick of one closed loop, and what its flat vectors hold.
 
     Attributes:
-        step: (state, settings, curve table) -> (state, log row).
+        basis: (state, settings) -> basis functions of the curve where the tick needs them.
+        turn: (state, settings, table @ basis) -> (state, log row, basis of the next tick).
     """
 
-    step: ca.Function
+    basis: ca.Function
+    turn: ca.Function
     state: Layout
     settings: Layout
     log: Layout
+
+    def block(self, ticks: int) -> ca.Function:
+        """(state, settings, curve table) -> (state, log rows as columns).
+
+        The curve enters by one dense product a tick, outside the scalar graphs: an interpreter
+        runs that at compiled speed.
+        """
+        state = ca.MX.sym("state", self.state.size)
+        settings = ca.MX.sym("settings", self.settings.size)
+        table = ca.MX.sym("curve", *TABLE_SHAPE)
+        after, basis, rows = state, self.basis(state, settings), list[ca.MX]()
+        for _ in range(ticks):
+            after, row, basis = self.turn(after, settings, table @ basis)
+            rows.append(row)
+        return ca.Function("block", [state, settings, table], [after, ca.horzcat(*rows)])
 
 
 def state_layout(system: MechanicalSystem) -> Layout:
@@ -120,9 +137,6 @@ def log_layout(system: MechanicalSystem) -> Layout:
 def build_kernel(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int = 1) -> Kernel:
     """Assemble the tick.
 
-    The curve enters by one dense product, table times basis, outside the scalar graphs: an
-    interpreter runs that at compiled speed.
-
     Args:
         substeps: Runge-Kutta steps per tick; the fastest mode times dt / substeps must stay
             below 2.8.
@@ -133,12 +147,8 @@ def build_kernel(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: i
     if kind.controller not in controllers.NAMES:
         raise ValueError(f"controller {kind.controller!r}: expected one of {controllers.NAMES}")
     layouts = state_layout(system), settings_layout(system), log_layout(system)
-    state = ca.MX.sym("state", layouts[0].size)
-    settings = ca.MX.sym("settings", layouts[1].size)
-    table = ca.MX.sym("curve", *TABLE_SHAPE)
-    values = table @ _bases(system, kind)(state, settings)
-    after, row = _tick(system, frame, kind, substeps)(state, settings, values)
-    return Kernel(ca.Function("tick", [state, settings, table], [after, row]), *layouts)
+    bases = _bases(system, kind)
+    return Kernel(bases, _turn(system, frame, kind, substeps, bases), *layouts)
 
 
 def _tracks(kind: Kind) -> bool:
@@ -160,8 +170,10 @@ def _bases(system: MechanicalSystem, kind: Kind) -> ca.Function:
     return ca.Function("bases", [state_symbol, settings_symbol], [ca.densify(columns)])
 
 
-def _tick(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int) -> ca.Function:
-    """(state, settings, curve values) -> (state, log row), all scalar operations of a tick."""
+def _turn(
+    system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int, bases: ca.Function
+) -> ca.Function:
+    """All scalar operations of a tick; see `Kernel.turn`."""
     state_symbol, state = state_layout(system).symbols("state")
     settings_symbol, settings = settings_layout(system).symbols("settings")
     values = ca.SX.sym("values", TABLE_SHAPE[0], 2 if _tracks(kind) else 1)
@@ -189,8 +201,9 @@ def _tick(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int) -> 
         "phase": phase * (phase < settings["hold_ticks"] - 0.5),
     }
     row = state | {"y": tip, "u": u, "force": force} | _now(output, settings)
-    outputs = ca.cse([state_layout(system).join(after), log_layout(system).join(row)])
-    return ca.Function("scalars", [state_symbol, settings_symbol, values], outputs)
+    outputs = [state_layout(system).join(after), log_layout(system).join(row)]
+    outputs.append(bases(outputs[0], settings_symbol))
+    return ca.Function("turn", [state_symbol, settings_symbol, values], ca.cse(outputs))
 
 
 def _interval(settings: Fields, acts: ca.SX, saturated: ca.SX) -> ca.SX:

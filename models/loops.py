@@ -88,14 +88,7 @@ class _Block:
     """A fixed number of ticks as one function with buffers of its own."""
 
     def __init__(self, kernel: Kernel, ticks: int) -> None:
-        state, settings, table = (
-            ca.MX.sym(n, *kernel.step.size_in(i)) for i, n in enumerate("spc")
-        )
-        after, rows = state, list[ca.MX]()
-        for _ in range(ticks):
-            after, row = kernel.step(after, settings, table)
-            rows.append(row)
-        block = ca.Function("block", [state, settings, table], [after, ca.horzcat(*rows)])
+        block = kernel.block(ticks)
         self._arguments = [np.zeros(block.nnz_in(i)) for i in range(3)]
         self._results = [np.zeros(block.nnz_out(i)) for i in range(2)]
         buffer: Any
@@ -167,8 +160,9 @@ def compile_loop(kernel: Kernel, folder: Path, compiler: str) -> CompiledLoop:
 
 def generate_source(kernel: Kernel) -> str:
     """C of the kernel's tick and the loop around it."""
-    inputs = kernel.step.mx_in()
-    after, row = kernel.step(*inputs)
+    block = kernel.block(1)
+    inputs = block.mx_in()
+    after, row = block(*inputs)
     tick = ca.Function("onpath_tick", inputs, [after, row])
     generator = ca.CodeGenerator("loop", {"with_header": False})
     generator.add(tick)
