@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.parameters import Parameters
+from models.simulation import time_step
 from models.system import Array
 
 
@@ -45,25 +46,30 @@ class Channel:
 def channels(parameters: Parameters) -> tuple[Channel, Channel]:
     """The transversal and the tangential channel. Source: eqs. (17)-(19)."""
     interval = 1 / parameters.control_rate
-    feedback = [parameters.K1, parameters.K2]
-    if parameters.K3:
-        feedback.append(parameters.K3)
-    across = _channel("across", _sampled(interval, np.array(feedback)), interval)
+    ahead = time_step(parameters) / 2
+    k1, k2, k3 = parameters.K1, parameters.K2, parameters.K3
+    across = _sampled(interval, ahead, (k1, k2, k3), "xvia" if k3 else "xva")
     if parameters.task == "position":
-        along = _sampled(interval, np.array([parameters.K4, parameters.K5]))
+        along = _sampled(interval, ahead, (parameters.K4, parameters.K5, 0.0), "xva")
     else:
-        along = np.array([1 - parameters.K5 * interval])
-    return across, _channel("along", along, interval)
+        along = _sampled(interval, ahead, (0.0, parameters.K5, 0.0), "va")
+    return _channel("across", across, interval), _channel("along", along, interval)
 
 
 def _channel(name: str, roots: Array, interval: float) -> Channel:
-    poles = np.log(roots.astype(complex) + 1e-300) / interval
-    return Channel(name, poles, bool(np.all(np.abs(roots) < 1 - 1e-9)))
+    stable = bool(np.all(np.abs(roots) < 1 - 1e-9))
+    telling = roots[np.argsort(np.abs(roots))][1:]  # the first forgets the held acceleration
+    return Channel(name, np.log(telling.astype(complex) + 1e-300) / interval, stable)
 
 
-def _sampled(interval: float, gains: Array) -> Array:
-    """Eigenvalues of a held double integrator under -K1 x - K2 x' (- K3 integral of x)."""
-    t = interval
-    a = np.array([[1, t, 0], [0, 1, 0], [t, 0, 1.0]])[: len(gains), : len(gains)]
-    b = np.array([t**2 / 2, t, 0.0])[: len(gains)]
-    return np.linalg.eigvals(a - np.outer(b, gains))
+def _sampled(t: float, h: float, gains: tuple[float, float, float], kept: str) -> Array:
+    """Eigenvalues of a double integrator, its acceleration held over t, under -gains.
+
+    The controller looks h ahead, as models/kernel.py does. The state is position x, velocity v,
+    integral i and the acceleration a held so far, of which only those in `kept` matter.
+    """
+    seen = np.array([[1, h, 0, h**2 / 2], [0, 1, 0, h], [0, 0, 1, 0]])
+    after = np.array([[1, t, 0, 0], [0, 1, 0, 0], t * seen[0] + seen[2], np.zeros(4)])
+    after -= np.outer([t**2 / 2, t, 0, 1], np.array(gains) @ seen)
+    some = ["xvia".index(name) for name in kept]
+    return np.linalg.eigvals(after[np.ix_(some, some)])

@@ -77,7 +77,7 @@ UNSTABLE = [
     {"control_rate": 50, "K1": 400.0, "K2": 110.0},
     {"control_rate": 50, "K1": 2500.0, "K2": 10.0},
     {"control_rate": 1000, "K1": 100.0, "K2": 10.0, "K3": 1500.0},
-    {"control_rate": 1000, "K1": 2500.0, "K2": 0.0},
+    {"control_rate": 100, "K1": 2500.0, "K2": 0.0},
 ]
 STABLE = [
     {"control_rate": 50, "K1": 400.0, "K2": 70.0},
