@@ -9,10 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.parameters import Parameters
 from models.simulation import time_step
-from models.system import Array
+
+Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,7 +28,7 @@ class Channel:
     """
 
     name: str
-    poles: Array
+    poles: Complex
     stable: bool
 
     def words(self) -> str:
@@ -56,13 +58,13 @@ def channels(parameters: Parameters) -> tuple[Channel, Channel]:
     return _channel("across", across, interval), _channel("along", along, interval)
 
 
-def _channel(name: str, roots: Array, interval: float) -> Channel:
+def _channel(name: str, roots: Complex, interval: float) -> Channel:
     stable = bool(np.all(np.abs(roots) < 1 - 1e-9))
     telling = roots[np.argsort(np.abs(roots))][1:]  # the first forgets the held acceleration
-    return Channel(name, np.log(telling.astype(complex) + 1e-300) / interval, stable)
+    return Channel(name, np.log(telling + 1e-300) / interval, stable)
 
 
-def _sampled(t: float, h: float, gains: tuple[float, float, float], kept: str) -> Array:
+def _sampled(t: float, h: float, gains: tuple[float, float, float], kept: str) -> Complex:
     """Eigenvalues of a double integrator, its acceleration held over t, under -gains.
 
     The controller looks h ahead, as models/kernel.py does. The state is position x, velocity v,
@@ -72,4 +74,4 @@ def _sampled(t: float, h: float, gains: tuple[float, float, float], kept: str) -
     after = np.array([[1, t, 0, 0], [0, 1, 0, 0], t * seen[0] + seen[2], np.zeros(4)])
     after -= np.outer([t**2 / 2, t, 0, 1], np.array(gains) @ seen)
     some = ["xvia".index(name) for name in kept]
-    return np.linalg.eigvals(after[np.ix_(some, some)])
+    return np.linalg.eigvals(after[np.ix_(some, some)]).astype(np.complex128)

@@ -43,7 +43,9 @@ def test_ends_of_a_range_belong_to_it(name: str) -> None:
             changed(FiveBarParameters(), name, math.nextafter(value, beyond))
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, "nan", "1e999", "", "x", None, [1, 2], 10**400])
+@pytest.mark.parametrize(
+    "value", [math.nan, math.inf, "nan", "1e999", "", "x", None, [1, 2], 10**400]
+)
 @pytest.mark.parametrize("name", SPECS)
 def test_what_is_no_value_is_refused_by_name(name: str, value: object) -> None:
     with pytest.raises(ValueError, match=name):
@@ -65,7 +67,8 @@ def test_one_value_changes_and_the_old_record_stays() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "meant"), [("k1", "K1"), ("K6", "K5"), ("sped", "speed"), ("torquelimit", "torque_limit")]
+    ("wrong", "meant"),
+    [("k1", "K1"), ("K6", "K5"), ("sped", "speed"), ("torquelimit", "torque_limit")],
 )
 def test_unknown_name_is_answered_with_the_nearest(wrong: str, meant: str) -> None:
     with pytest.raises(ValueError, match=f"{wrong}.*did you mean.*{meant}"):

@@ -38,7 +38,10 @@ def slowest(poles: np.ndarray) -> complex:
 @pytest.mark.parametrize("rate", [200, 1000, 2000])
 @pytest.mark.parametrize("gains", [(400, 40, 0), (100, 60, 0), (100, 25, 150), (900, 30, 0)])
 def test_error_across_moves_as_the_poles_say(gains: tuple[float, ...], rate: int) -> None:
-    values = dict(zip(("K1", "K2", "K3"), gains, strict=True)) | {"control_rate": rate, "speed": 0.0}
+    values = dict(zip(("K1", "K2", "K3"), gains, strict=True)) | {
+        "control_rate": rate,
+        "speed": 0.0,
+    }
     poles = channels(dataclasses.replace(FiveBarParameters(), **values))[0].poles
     offset = 1e-5
     dt, log = simulated(0.4, offset, **values)
@@ -98,7 +101,9 @@ def test_predicted_instability_is_what_happens(
     assert across.stable is stable
     offset = 1e-6
     dt, log = simulated(3.0, offset, name, speed=0.0, **values)
-    error = np.linalg.norm(log["y"] - [RADIUS, 0.0], axis=1) if name == NAMES[0] else log["xi"][:, 0]
+    error = (
+        np.linalg.norm(log["y"] - [RADIUS, 0.0], axis=1) if name == NAMES[0] else log["xi"][:, 0]
+    )
     late = np.abs(error)[len(error) // 2 :].max()
     assert np.isnan(late) or late > 2 * offset if not stable else late < offset / 2
     assert ("unstable" in across.words()) is not stable
