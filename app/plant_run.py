@@ -135,7 +135,7 @@ class PlantRun:
         ):
             return
         self._inputs = inputs
-        self.kind: Kind = kind_of(self.controller, parameters, curve)
+        self.kind: Kind = kind_of(self.controller, parameters, curve, push)
         kernel = kernel_of(self.robot, self.kind)
         self.settings = settings_vector(self.robot, kernel, parameters, curve, push)
 

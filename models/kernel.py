@@ -34,12 +34,15 @@ class Kind:
         closed: whether its path is a closed curve.
         level_set: lambda is the paper's s(y) instead of the distance.
         encoder: the controller sees encoder steps and filtered velocities, not the truth.
+        free: nothing pushes, no limit or dry friction bears on the torque, and the controller
+            acts in every tick; what these need is left out, for speed alone.
     """
 
     controller: str
     closed: bool = True
     level_set: bool = False
     encoder: bool = False
+    free: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,22 +186,21 @@ def _turn(
     y, y_rate = system.with_rate(system.controlled_output)(q, v, settings["model"])
     output = _coordinates(frame, kind, state, settings, values[:, 0], y, y_rate)
     command, error = _command(frame, kind, state, settings, values, (y, y_rate), output)
-    u, acts, saturated = _torque(system, state, settings, q, v, command)
-    tip, force, effort = _push(system, state, settings, u)
+    u, acts, saturated = _torque(system, kind, state, settings, q, v, command)
+    tip, force, effort = _push(system, kind, state, settings, u)
     next_q, next_v = _integrate(system, state, settings, effort, substeps)
 
-    phase = state["phase"] + 1
     after = {
         "q": next_q,
         "v": next_v,
         "theta": output.theta,
         "theta_rate": output.theta_rate,
         "theta_ref": state["theta_ref"] + settings["dt"] * _reference(kind, state, settings)[1],
-        "integral": state["integral"] + _interval(settings, acts, saturated) * error,
+        "integral": state["integral"] + _interval(kind, settings, acts, saturated) * error,
         "encoder": _held(kind, acts, reading, state["encoder"]),
         "encoder_rate": _held(kind, acts, measured_v[: system.m], state["encoder_rate"]),
         "u": u,
-        "phase": phase * (phase < settings["hold_ticks"] - 0.5),
+        "phase": ca.SX(0) if kind.free else _next_phase(state, settings),
     }
     row = state | {"y": tip, "u": u, "force": force} | _now(output, settings)
     outputs = [state_layout(system).join(after), log_layout(system).join(row)]
@@ -206,8 +208,15 @@ def _turn(
     return ca.Function("turn", [state_symbol, settings_symbol, values], ca.cse(outputs))
 
 
-def _interval(settings: Fields, acts: ca.SX, saturated: ca.SX) -> ca.SX:
+def _next_phase(state: Fields, settings: Fields) -> ca.SX:
+    phase = state["phase"] + 1
+    return phase * (phase < settings["hold_ticks"] - 0.5)
+
+
+def _interval(kind: Kind, settings: Fields, acts: ca.SX, saturated: ca.SX) -> ca.SX:
     """Time that integral action counts in this tick: none while its error cannot be acted on."""
+    if kind.free:
+        return settings["dt"]
     counts = acts * (1 - saturated) * (1 - settings["hold_active"])
     return counts * settings["dt"] * settings["hold_ticks"]
 
@@ -312,6 +321,7 @@ def _command(
 
 def _torque(
     system: MechanicalSystem,
+    kind: Kind,
     state: Fields,
     settings: Fields,
     q: ca.SX,
@@ -321,16 +331,21 @@ def _torque(
     """Torque of this tick, whether the controller acts in it, whether it saturates."""
     wanted = controllers.linearization(system, q, v, settings["model"], command)
     limit = settings["torque_limit"]
-    acts = state["phase"] < 0.5
     fresh = ca.fmin(ca.fmax(wanted, -limit), limit)
+    if kind.free:
+        return fresh, ca.SX(1), ca.SX(0)
+    acts = state["phase"] < 0.5
     return ca.if_else(acts, fresh, state["u"]), acts, ca.mmax(ca.fabs(wanted)) > limit
 
 
 def _push(
-    system: MechanicalSystem, state: Fields, settings: Fields, u: ca.SX
+    system: MechanicalSystem, kind: Kind, state: Fields, settings: Fields, u: ca.SX
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
     """The actual end-point, the force on it, and all generalized forces, held over the tick."""
     y, y_rate = system.with_rate(system.output)(state["q"], state["v"], settings["plant"])
+    unactuated = ca.SX(system.n - system.m, 1)
+    if kind.free:
+        return y, ca.SX.zeros(system.p, 1), ca.vertcat(u, unactuated)
     pull = forces.hand(y, y_rate, settings["hand_target"], settings["hand_active"])
     brake = forces.hold(
         y, y_rate, settings["hold_anchor"], settings["hold_tangent"], settings["hold_active"]
@@ -343,7 +358,7 @@ def _push(
     )
     pushed = transposed(state["q"], settings["plant"], pull + brake)
     motors = u + forces.dry_friction(state["v"][: system.m], settings["coulomb"])
-    return y, pull + brake, pushed + ca.vertcat(motors, ca.SX(system.n - system.m, 1))
+    return y, pull + brake, pushed + ca.vertcat(motors, unactuated)
 
 
 def _integrate(

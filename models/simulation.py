@@ -33,13 +33,23 @@ class Push:
 FREE = Push()
 
 
-def kind_of(controller: str, parameters: Parameters, curve: Curve) -> Kind:
-    """Which loop serves this choice."""
+def kind_of(
+    controller: str, parameters: Parameters, curve: Curve, push: Push | None = None
+) -> Kind:
+    """Which loop serves this choice.
+
+    Args:
+        push: what acts from outside, where a leaner loop may serve while nothing does.
+    """
+    plain = parameters.torque_limit == 0 == parameters.coulomb
+    every_tick = parameters.control_rate * TICK >= 1
+    untouched = push is not None and push.hand is None and push.hold is None
     return Kind(
         controller=controller,
         closed=curve.closed,
         level_set=parameters.across == "level_set" and curve.conic() is not None,
         encoder=parameters.encoder_counts > 0,
+        free=plain and every_tick and untouched,
     )
 
 

@@ -7,6 +7,7 @@ import stat
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,10 +20,11 @@ from models.kernel import Kind
 from models.loops import BLOCK, InterpretedLoop, compile_loop, find_compiler, generate_source
 
 KINDS = [
-    Kind(controller, closed, level_set, encoder)
+    Kind(controller, closed, level_set, encoder, free)
     for controller in NAMES
     for closed, level_set in ((True, False), (True, True), (False, False))
     for encoder in (False, True)
+    for free in (False, True)
 ]
 needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no C compiler")
 
@@ -42,6 +44,25 @@ def test_tiers_agree(rig: Rig, random_curve: Callable[[int], Curve], kind: Kind)
     for compiled, own in zip(*results, strict=True):
         assert np.abs(compiled - own).max() < 1e-12
     assert np.ptp(results[0][1], axis=0).max() > 0.1
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind.free], ids=repr)
+def test_the_lean_loop_computes_the_same_while_nothing_acts(
+    rig: Rig, random_curve: Callable[[int], Curve], kind: Kind
+) -> None:
+    bent = chebyshev_curve(np.array([[0.0, 0.0], [0.05, 0.0], [0.0, 0.02], [0.0, 0.01]]))
+    curve = (circle(0.05) if kind.level_set else random_curve(4)) if kind.closed else bent
+    start = rig.on_path(kind, curve, -1.0, 2.0)
+    settings = rig.settings(kind, plant=rig.spoiled, speed=2.0, K3=20)
+    lean, whole = (
+        InterpretedLoop(rig.kernel(k)).run(start, settings, curve.table(), 1000)
+        for k in (kind, replace(kind, free=False))
+    )
+    for one, other in zip(lean, whole, strict=True):
+        assert np.abs(one - other).max() < 1e-11
+    pushed = rig.settings(kind, hand_active=1, hand_target=(0.03, 0.03))
+    moved = InterpretedLoop(rig.kernel(replace(kind, free=False)))
+    assert np.abs(moved.run(start, pushed, curve.table(), 1000)[0] - whole[0]).max() > 1e-3
 
 
 @pytest.mark.parametrize("ticks", [0, 1, BLOCK - 1, BLOCK, 2 * BLOCK + 3])
