@@ -54,14 +54,15 @@ class Lab:
         """One frame: apply commands, simulate, show."""
         session = self.session
         session.drain()
-        if self.view is None:
+        view = self.view  # may go at any time
+        if view is None:
             return  # nobody looks: simulated time waits
         before = session.time
         session.advance(session.rate * FRAME)
         if session.running:
             self._simulated += session.time - before - self._simulated * FADING
             self._passed += seconds - self._passed * FADING
-        self.view.show(session, self.achieved, count)
+        view.show(session, self.achieved, count)
 
 
 class SimulationThread:
