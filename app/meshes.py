@@ -146,7 +146,7 @@ def base() -> trimesh.Trimesh:
 @lru_cache
 def ball(radius: float) -> trimesh.Trimesh:
     """A ball of a radius [m]."""
-    return trimesh.creation.icosphere(subdivisions=3, radius=radius)
+    return trimesh.creation.icosphere(subdivisions=2, radius=radius)
 
 
 @lru_cache
