@@ -65,9 +65,10 @@ class PathEditor:
         if self.faults:
             self._blend_to(self.design.curve)
             return False
-        self._past = [*self._past[-DEPTH:], self.design]
-        self._future.clear()
-        self._keep(design)
+        if design is not self.design:
+            self._past = [*self._past[-DEPTH:], self.design]
+            self._future.clear()
+            self._keep(design)
         return True
 
     def commit(self, design: PathDesign) -> bool:
