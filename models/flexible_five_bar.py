@@ -15,25 +15,12 @@ import casadi as ca
 import numpy as np
 
 from assets import asset_path
-from models.beam import Beam
+from models.beam import BeamModes, beam_modes
 from models.system import Array, MechanicalSystem, mechanical_system
 
 PLANTS = ("lagrangian", "as_printed")
-NAMES: tuple[str, ...] = (
-    "M11",
-    "M22",
-    "J0",
-    "J1",
-    "l1",
-    "l",
-    "rho",
-    "omega1",
-    "zeta",
-    "alpha",
-    "b1",
-    "b2",
-    "b3",
-)
+_NAMES = "M11 M22 J0 J1 l1 l rho omega1 zeta alpha b1 b2 b3"
+NAMES: tuple[str, ...] = tuple(_NAMES.split())
 HOME = np.array([np.pi / 2, np.pi, 0.0])
 RIGID = 3  # coordinates that are joints
 
@@ -96,7 +83,7 @@ class _Symbols:
     Q: ca.SX
     P1: ca.SX
     Q2: ca.SX
-    beam: Beam
+    beam: BeamModes
 
     @property
     def f(self) -> ca.SX:
@@ -111,22 +98,18 @@ class _Symbols:
     @property
     def coupling(self) -> ca.SX:
         """Psi_j = integral of r phi_j, (N, 1)."""
-        return self.P * self.beam.integral - self.Q * self.beam.moment
+        return self.P * self.beam.area - self.Q * self.beam.moment
 
     @property
     def stiffness(self) -> ca.SX:
         """omega_j^2, (N, 1)."""
-        return (self.p["omega1"] * self._overtones) ** 2
+        return (self.p["omega1"] * self.beam.overtones) ** 2
 
     @property
     def elastic(self) -> ca.SX:
         """omega_j^2 f_j + 2 zeta omega_j f_j', the beam's own force over rho, (N, 1)."""
-        damping = (2 * self.p["zeta"] * self.p["omega1"]) * self._overtones
+        damping = (2 * self.p["zeta"] * self.p["omega1"]) * self.beam.overtones
         return self.stiffness * self.f + damping * self.f_rate
-
-    @property
-    def _overtones(self) -> Array:
-        return (self.beam.beta / self.beam.beta[0]) ** 2
 
     @property
     def waist(self) -> ca.SX:
@@ -134,7 +117,7 @@ class _Symbols:
 
         J = J0 + J1 cos^2 q1 + rho times the integral of r^2, which is P^2 - P Q + Q^2 / 3.
         """
-        a, b = self.beam.integral, self.beam.moment
+        a, b = self.beam.area, self.beam.moment
         beam = self.P * ((1 - a @ a) * self.P - (1 - 2 * a @ b) * self.Q)
         beam += (1 / 3 - b @ b) * self.Q**2
         return self.p["J0"] + self.p["J1"] * ca.cos(self.q[0]) ** 2 + self.p["rho"] * beam
@@ -171,7 +154,7 @@ def _symbols(modes: int, parameters: ca.SX) -> _Symbols:
         Q=second * ca.cos(q[1]),
         P1=-first * ca.sin(q[0]),
         Q2=-second * ca.sin(q[1]),
-        beam=Beam(1.0, modes),
+        beam=beam_modes(modes, 1.0),
     )
 
 
@@ -227,7 +210,7 @@ def _lagrangian(s: _Symbols) -> _Dynamics:
     With A = a.f and B = b.f the beam's coupling term is rho q3' (Psi.f' - P1 q1' A + Q2 q2' B).
     """
     rho, (v1, v2, v3) = s.p["rho"], ca.vertsplit(s.v[:RIGID])
-    a, b = s.beam.integral, s.beam.moment
+    a, b = s.beam.area, s.beam.moment
     A, B, A_rate, B_rate = (ca.dot(k, x) for x in (s.f, s.f_rate) for k in (a, b))
     rho1, rho2 = rho * s.P1, rho * s.Q2
     turn1 = rho1 * (2 * s.P - s.Q) - 2 * s.p["J1"] * ca.cos(s.q[0]) * ca.sin(s.q[0])
@@ -304,9 +287,19 @@ def end_point(q: Array, l1: float, beam: float, alpha: float = 1.0) -> Array:
 
     Source: eq. (22).
     """
-    tip = Beam(beam, q.shape[-1] - RIGID).tip if q.shape[-1] > RIGID else np.zeros(0)
-    w = alpha * (q[..., RIGID:] @ tip)
+    w = alpha * deflection(q, beam)
     radius = l1 * np.cos(q[..., 0]) - beam * np.cos(q[..., 1])
     height = l1 * np.sin(q[..., 0]) - beam * np.sin(q[..., 1]) - l1
     c3, s3 = np.cos(q[..., 2]), np.sin(q[..., 2])
     return np.stack([radius * c3 - w * s3, radius * s3 + w * c3, height], axis=-1)
+
+
+def deflection(q: Array, beam: float) -> Array:
+    """w at the tip, shape (..., n) -> (...), [m].
+
+    Args:
+        beam: its length, [m].
+    """
+    f = q[..., RIGID:]
+    signs: Array = (-1.0) ** np.arange(f.shape[-1])
+    return 2 / np.sqrt(beam) * (f @ signs)
