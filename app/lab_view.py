@@ -25,7 +25,7 @@ from app.take_snapshot import take_snapshot
 DISPLAY = 2  # frames of simulation per frame of display: 30 Hz
 SLOW = 6  # frames per update of traces, plots and readouts: 10 Hz
 CONTROL_WIDTH = 330  # [px]
-NARROW = 700  # [px]
+NARROW = 576  # [px], of the window: below it viser puts the panel over the lower part
 
 
 class LabView:
