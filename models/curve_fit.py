@@ -66,12 +66,17 @@ def from_stroke(points: Array, closed: bool, passes: int = 40) -> Curve:
     s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     even = np.linspace(0, s[-1], 96, endpoint=not closed)
     line = np.column_stack([np.interp(even, s, points[:, i]) for i in range(2)])
+    smooth = _smoothed(line, closed, passes)
+    smooth = smooth + _smoothed(line - smooth, closed, passes)  # undoes most of the shrinking
+    return closed_through(smooth) if closed else open_through(smooth)
+
+
+def _smoothed(line: Array, closed: bool, passes: int) -> Array:
     for _ in range(passes):
-        if closed:
-            line = (np.roll(line, 1, 0) + 2 * line + np.roll(line, -1, 0)) / 4
-        else:
-            line[1:-1] = (line[:-2] + 2 * line[1:-1] + line[2:]) / 4
-    return closed_through(line) if closed else open_through(line)
+        padded = np.vstack([line[-1:], line, line[:1]] if closed else [line[:1], line, line[-1:]])
+        between = (padded[:-2] + 2 * line + padded[2:]) / 4
+        line = between if closed else np.vstack([line[:1], between[1:-1], line[-1:]])
+    return line
 
 
 def control_points(curve: Curve, count: int) -> Array:

@@ -1,0 +1,178 @@
+"""One thread, all labs, 60 frames a second; late frames cost simulated time and nothing else."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+
+import pytest
+from lab import FRAME, new_session
+
+from app import commands as c
+from app.loop import LATEST, Lab, SimulationThread
+from app.session import Session
+
+
+class Clock:
+    """Time that passes only when somebody sleeps or works."""
+
+    def __init__(self, thread_stop: float) -> None:
+        self.now, self.end = 100.0, 100.0 + thread_stop
+        self.thread: SimulationThread | None = None
+
+    def __call__(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        assert seconds > 0
+        self.now += seconds
+
+    def work(self, seconds: float) -> None:
+        self.now += seconds
+        if self.now >= self.end and self.thread is not None:
+            self.thread.stop()
+
+
+class View:
+    """Looks for a while at every frame."""
+
+    def __init__(self, work: Callable[[int], None]) -> None:
+        self.work = work
+        self.shown: list[tuple[float, float, int]] = []
+
+    def show(self, session: Session, achieved: float, frame: int) -> None:
+        self.shown.append((session.time, achieved, frame))
+        self.work(frame)
+
+
+def simulated(
+    seconds: float, cost: Callable[[int], float], *others: Lab
+) -> tuple[SimulationThread, Lab, View, Clock]:
+    """Some seconds of a thread whose frames cost as much as `cost` says."""
+    clock = Clock(seconds)
+    thread = SimulationThread(clock, clock.sleep)
+    clock.thread = thread
+    lab = Lab(new_session())
+    lab.view = view = View(lambda frame: clock.work(cost(frame)))
+    for other in others:
+        thread.add(other)
+    thread.add(lab)
+    thread.run()
+    return thread, lab, view, clock
+
+
+def test_sixty_frames_a_second_each_on_time() -> None:
+    thread, lab, view, clock = simulated(3.0, lambda _: 0.004)
+    assert len(view.shown) == pytest.approx(180, abs=2)
+    assert lab.session.time == pytest.approx(3.0, abs=0.04)
+    assert max(thread.lateness) < 1e-9
+    assert lab.achieved == pytest.approx(1.0, abs=0.02)
+    assert [frame for _, _, frame in view.shown] == list(range(len(view.shown)))
+
+
+def test_slow_frames_slow_simulated_time_visibly() -> None:
+    thread, lab, view, clock = simulated(4.0, lambda _: 2.5 * FRAME)
+    assert lab.session.time == pytest.approx(4.0 / 2.5, rel=0.05)
+    assert lab.achieved == pytest.approx(1 / 2.5, rel=0.05)
+    assert max(thread.lateness) <= LATEST + 2.5 * FRAME  # it never piles up
+
+
+def test_after_a_stall_it_goes_on_at_its_pace() -> None:
+    cost = 5.0
+
+    def stall(frame: int) -> float:
+        return cost if frame == 30 else 0.001
+
+    _, lab, view, _ = simulated(10.0, stall)
+    assert lab.session.time == pytest.approx(10.0 - cost, abs=0.1)  # the stall is not made up for
+    steps = [b[0] - a[0] for a, b in zip(view.shown, view.shown[1:], strict=False)]
+    assert max(steps) < FRAME + 2e-3
+    assert lab.achieved == pytest.approx(1.0, abs=0.15)  # and is forgotten again
+
+
+def test_short_hiccups_are_made_up_for() -> None:
+    _, lab, _, _ = simulated(4.0, lambda frame: 0.05 if frame % 40 == 7 else 0.001)
+    assert lab.session.time == pytest.approx(4.0, abs=0.06)
+
+
+def test_simulated_time_follows_the_wanted_speed() -> None:
+    clock = Clock(2.0)
+    thread = SimulationThread(clock, clock.sleep)
+    clock.thread = thread
+    labs = [Lab(new_session()) for _ in range(3)]
+    for lab, rate in zip(labs, (0.25, 1.0, 4.0), strict=True):
+        lab.session.post(c.SetRate(rate))
+        lab.view = View(lambda _: clock.work(0.001))
+        thread.add(lab)
+    thread.run()
+    for lab, rate in zip(labs, (0.25, 1.0, 4.0), strict=True):
+        assert lab.session.time == pytest.approx(2.0 * rate, rel=0.02)
+        assert lab.achieved == pytest.approx(rate, rel=0.03)
+
+
+def test_a_lab_that_raises_does_not_stop_the_others(caplog: pytest.LogCaptureFixture) -> None:
+    class Broken(Session):
+        def advance(self, seconds: float) -> None:
+            raise RuntimeError("this lab is broken")
+
+    blind = Lab(new_session())
+    blind.view = View(lambda _: 1 / 0)  # type: ignore[arg-type, return-value]
+    broken = Lab(Broken(new_session()._store))
+    broken.view = View(lambda _: None)
+    with caplog.at_level(logging.ERROR):
+        _, lab, _, _ = simulated(1.0, lambda _: 0.001, broken, blind)
+    assert lab.session.time == pytest.approx(1.0, abs=0.04)
+    assert blind.session.time == pytest.approx(1.0, abs=0.04)  # it simulates; only its view fails
+    text = [record.getMessage() for record in caplog.records]
+    assert sum("this lab is broken" in line for line in text) <= 3  # not at every frame
+    assert any("this lab is broken" in line for line in text)
+
+
+def test_time_waits_while_nobody_looks_and_commands_do_not() -> None:
+    unseen = Lab(new_session())
+    unseen.session.post(c.SetParameter("K1", 123))
+    simulated(1.0, lambda _: 0.001, unseen)
+    assert unseen.session.time == 0.0
+    assert unseen.session.parameters.K1 == 123
+
+
+def test_paused_lab_does_not_spoil_its_measured_speed() -> None:
+    clock = Clock(3.0)
+    thread = SimulationThread(clock, clock.sleep)
+    clock.thread = thread
+    lab = Lab(new_session())
+
+    def show(frame: int) -> None:
+        if frame in (60, 120):
+            lab.session.post(c.SetRunning(frame == 120))
+        clock.work(0.001)
+
+    lab.view = View(show)
+    thread.add(lab)
+    thread.run()
+    assert lab.session.time == pytest.approx(2.0, abs=0.05)
+    assert lab.achieved == pytest.approx(1.0, abs=0.03)
+
+
+def test_labs_come_and_go_from_other_threads_while_it_runs() -> None:
+    thread = SimulationThread()
+    thread.start()
+    try:
+        seen = threading.Event()
+        labs = [Lab(new_session()) for _ in range(4)]
+        for lab in labs:
+            lab.view = View(lambda _: seen.set())
+        workers = [threading.Thread(target=thread.add, args=(lab,)) for lab in labs]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        assert seen.wait(5.0) and set(thread.labs) == set(labs)
+        for lab in labs[1:]:
+            thread.remove(lab)
+        assert thread.labs == labs[:1]
+        thread.remove(labs[1])  # twice does no harm
+    finally:
+        thread.stop()
+    assert not thread._thread.is_alive()
