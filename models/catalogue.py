@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from models.flexible_robot import FlexibleParameters, robot_for
 from models.parameters import FiveBarParameters, Parameters
 from models.robots import Robot, rigid_five_bar
 
@@ -39,4 +40,13 @@ FIVE_BAR = Entry(
     make=lambda _: rigid_five_bar(),
 )
 
-ROBOTS: dict[str, Entry] = {entry.name: entry for entry in (FIVE_BAR,)}
+FLEXIBLE = Entry(
+    name="flexible",
+    label="Five-bar with a flexible link",
+    text="Three motors, a last link that bends: the tip is not where the motors put it.",
+    picture="flexible_five_bar.png",
+    parameters=FlexibleParameters,
+    make=robot_for,
+)
+
+ROBOTS: dict[str, Entry] = {entry.name: entry for entry in (FIVE_BAR, FLEXIBLE)}

@@ -9,16 +9,19 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from models.catalogue import FIVE_BAR, FLEXIBLE
 from models.controllers import NAMES
 from models.curves import Curve, circle
+from models.flexible_robot import FlexibleParameters, flexible_five_bar_robot
 from models.kernel import Kernel
 from models.loops import InterpretedLoop
 from models.parameters import FiveBarParameters, Parameters, changed, specs, unknown_name
-from models.robots import Robot, rigid_five_bar
+from models.robots import Robot
 from models.simulation import (
     FREE,
     Push,
@@ -43,18 +46,21 @@ class Schedule:
         r: radius of the path, [m].
         duration: [s].
         hold_from, hold_to: when the end-point is held back, [s]; equal: never.
+        reverse_at: when the wanted speed changes its sign, [s]; 0: never.
     """
 
     r: float = 0.05
     duration: float = 4.0
     hold_from: float = 0.0
     hold_to: float = 0.0
+    reverse_at: float = 0.0
 
     def __post_init__(self) -> None:
         _within("r", self.r, 0.005, 0.12, "m")
         _within("duration", self.duration, 0.01, 600.0, "s")
         _within("hold_from", self.hold_from, 0.0, 600.0, "s")
         _within("hold_to", self.hold_to, 0.0, 600.0, "s")
+        _within("reverse_at", self.reverse_at, 0.0, 600.0, "s")
         if self.hold_to < self.hold_from:
             raise ValueError(
                 f"hold_to ({self.hold_to:g} s) lies before hold_from ({self.hold_from:g} s)"
@@ -71,15 +77,20 @@ class Experiment:
     """A named experiment, ready to run.
 
     Attributes:
-        start: end-point at rest at the start, in planar coordinates, from (r,) -> (2,).
+        make: the robot for the parameters.
+        start: end-point at rest at the start, from r, (p,), [m].
     """
 
     name: str
     title: str
-    robot: Callable[[], Robot]
+    make: Callable[[Parameters], Robot]
     parameters: Parameters
     schedule: Schedule
     start: Callable[[float], Array]
+
+    def robot(self) -> Robot:
+        """The instance that serves the parameters."""
+        return self.make(self.parameters)
 
     def with_values(self, assignments: dict[str, str]) -> Experiment:
         """The same with values set by name.
@@ -112,7 +123,7 @@ def experiments() -> dict[str, Experiment]:
     position = Experiment(
         name="position",
         title="Experiment 1: to a place on the circle",
-        robot=rigid_five_bar,
+        make=FIVE_BAR.make,
         parameters=FiveBarParameters(task="position"),
         schedule=Schedule(duration=4.0),
         start=lambda r: 0.6 * r * np.array([np.cos(-np.pi / 3), np.sin(-np.pi / 3)]),
@@ -120,12 +131,25 @@ def experiments() -> dict[str, Experiment]:
     obstruction = Experiment(
         name="obstruction",
         title="Experiment 2: the end-point is held back for a while",
-        robot=rigid_five_bar,
+        make=FIVE_BAR.make,
         parameters=FiveBarParameters(),
         schedule=Schedule(duration=8.0, hold_from=3.0, hold_to=5.0),
         start=lambda r: np.array([r, 0.0]),
     )
-    return {e.name: e for e in (position, obstruction)}
+    flexible = Experiment(
+        name="flexible",
+        title="Flexible link: there and back along the ellipse",
+        make=FLEXIBLE.make,
+        parameters=FlexibleParameters(),
+        schedule=Schedule(duration=6.0, reverse_at=3.0),
+        start=lambda _: _off_the_ellipse(),
+    )
+    return {e.name: e for e in (position, obstruction, flexible)}
+
+
+def _off_the_ellipse() -> Array:
+    robot = flexible_five_bar_robot()
+    return robot.endpoint(robot.start)
 
 
 def run(experiment: Experiment, controller: str) -> Trajectory:
@@ -138,8 +162,8 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
         raise ValueError(f"controller {controller!r}: expected one of {', '.join(NAMES)}")
     robot, curve = experiment.robot(), circle(experiment.schedule.r)
     kernel = kernel_of(robot, kind_of(controller, experiment.parameters, curve))
-    start = robot.frame.lift(experiment.start(experiment.schedule.r))
-    state = first_state(robot, kernel, curve, robot.rest(start))
+    start = robot.rest(experiment.start(experiment.schedule.r))
+    state = first_state(robot, kernel, curve, start)
     segments: list[tuple[Array, Curve, bool]] = []
     fault: tuple[int, str] | None = None
     done = 0
@@ -161,18 +185,18 @@ def _segments(
     """(log rows, held) of consecutive stretches of the run."""
     robot, parameters, schedule = experiment.robot(), experiment.parameters, experiment.schedule
     loop, table, dt = InterpretedLoop(kernel), curve.table(), time_step(parameters)
-    ticks = [round(t / dt) for t in (0, schedule.hold_from, schedule.hold_to, schedule.duration)]
-    push = FREE
-    for stretch, (begin, end) in enumerate(zip(ticks, ticks[1:], strict=False)):
-        end = min(end, ticks[-1])
-        held = stretch == 1
-        if held and end > begin:
-            q = kernel.state.unpack(state)["q"]
-            theta = float(kernel.state.unpack(state)["theta"][0])
-            push = Push(hold=brake_at(robot, curve, robot.endpoint(q), theta))
-        settings = settings_vector(
-            robot, kernel, parameters, curve, push if held else FREE
-        )
+    hold = range(round(schedule.hold_from / dt), round(schedule.hold_to / dt))
+    last, turn = round(schedule.duration / dt), round(schedule.reverse_at / dt)
+    push, back = FREE, dataclasses.replace(parameters, speed=-parameters.speed)
+    times = sorted({0, last, *(t for t in (hold.start, hold.stop, turn) if 0 < t < last)})
+    for begin, end in pairwise(times):
+        held = begin in hold
+        if held and push is FREE:
+            fields = kernel.state.unpack(state)
+            end_point = robot.endpoint(fields["q"])
+            push = Push(hold=brake_at(robot, curve, end_point, float(fields["theta"][0])))
+        wanted = back if 0 < turn <= begin else parameters
+        settings = settings_vector(robot, kernel, wanted, curve, push if held else FREE)
         for first in range(begin, end, CHUNK):
             state, rows = loop.run(state, settings, table, min(CHUNK, end - first))
             yield rows, held

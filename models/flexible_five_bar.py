@@ -98,17 +98,17 @@ class _Symbols:
     @property
     def coupling(self) -> ca.SX:
         """Psi_j = integral of r phi_j, (N, 1)."""
-        return self.P * self.beam.area - self.Q * self.beam.moment
+        return self.P * ca.DM(self.beam.area) - self.Q * ca.DM(self.beam.moment)
 
     @property
     def stiffness(self) -> ca.SX:
         """omega_j^2, (N, 1)."""
-        return (self.p["omega1"] * self.beam.overtones) ** 2
+        return (self.p["omega1"] * ca.DM(self.beam.overtones)) ** 2
 
     @property
     def elastic(self) -> ca.SX:
         """omega_j^2 f_j + 2 zeta omega_j f_j', the beam's own force over rho, (N, 1)."""
-        damping = (2 * self.p["zeta"] * self.p["omega1"]) * self.beam.overtones
+        damping = (2 * self.p["zeta"] * self.p["omega1"]) * ca.DM(self.beam.overtones)
         return self.stiffness * self.f + damping * self.f_rate
 
     @property
@@ -210,7 +210,7 @@ def _lagrangian(s: _Symbols) -> _Dynamics:
     With A = a.f and B = b.f the beam's coupling term is rho q3' (Psi.f' - P1 q1' A + Q2 q2' B).
     """
     rho, (v1, v2, v3) = s.p["rho"], ca.vertsplit(s.v[:RIGID])
-    a, b = s.beam.area, s.beam.moment
+    a, b = ca.DM(s.beam.area), ca.DM(s.beam.moment)
     A, B, A_rate, B_rate = (ca.dot(k, x) for x in (s.f, s.f_rate) for k in (a, b))
     rho1, rho2 = rho * s.P1, rho * s.Q2
     turn1 = rho1 * (2 * s.P - s.Q) - 2 * s.p["J1"] * ca.cos(s.q[0]) * ca.sin(s.q[0])
@@ -279,27 +279,17 @@ def _over(divisor: ca.SX, value: ca.SX) -> ca.SX:
     return (2 / divisor) * (0.5 * value)
 
 
-def end_point(q: Array, l1: float, beam: float, alpha: float = 1.0) -> Array:
+def end_point(q: Array, l1: float, beam: BeamModes, alpha: float = 1.0) -> Array:
     """y for q = (q1, q2, q3, f...), shape (..., n) -> (..., 3), [m].
 
     Args:
+        l1: length of link 1, [m].
         alpha: share of the deflection: 1 the actual tip, 0 that of a rigid link.
 
     Source: eq. (22).
     """
-    w = alpha * deflection(q, beam)
-    radius = l1 * np.cos(q[..., 0]) - beam * np.cos(q[..., 1])
-    height = l1 * np.sin(q[..., 0]) - beam * np.sin(q[..., 1]) - l1
+    w = alpha * (q[..., RIGID:] @ beam.tip)
+    radius = l1 * np.cos(q[..., 0]) - beam.length * np.cos(q[..., 1])
+    height = l1 * np.sin(q[..., 0]) - beam.length * np.sin(q[..., 1]) - l1
     c3, s3 = np.cos(q[..., 2]), np.sin(q[..., 2])
     return np.stack([radius * c3 - w * s3, radius * s3 + w * c3, height], axis=-1)
-
-
-def deflection(q: Array, beam: float) -> Array:
-    """w at the tip, shape (..., n) -> (...), [m].
-
-    Args:
-        beam: its length, [m].
-    """
-    f = q[..., RIGID:]
-    signs: Array = (-1.0) ** np.arange(f.shape[-1])
-    return 2 / np.sqrt(beam) * (f @ signs)

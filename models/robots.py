@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models import five_bar
 from models.frames import Frame, Plane
@@ -138,15 +139,7 @@ class RigidFiveBar:
 
     def fault(self, q: Array, v: Array) -> tuple[int, str] | None:
         """See `Robot.fault`."""
-        return first_fault(
-            q,
-            v,
-            (
-                five_bar.singularity_margin(q) < COLLAPSED,
-                "the linkage has collapsed (all links in one line): the controller cannot see"
-                " its way out of a singular configuration",
-            ),
-        )
+        return first_fault(q, v, collapse(q))
 
     def place(self, y: Array) -> Array:
         """See `Robot.place`."""
@@ -170,7 +163,18 @@ def rigid_five_bar() -> RigidFiveBar:
     return RigidFiveBar()
 
 
-def first_fault(q: Array, v: Array, *checks: tuple[Array, str]) -> tuple[int, str] | None:
+def collapse(q: Array) -> tuple[NDArray[np.bool_], str]:
+    """Where a five-bar has collapsed, for `first_fault`. q: (rows, at least 2). Eq. (14)."""
+    return (
+        five_bar.singularity_margin(q) < COLLAPSED,
+        "the linkage has collapsed (all links in one line): the controller cannot see"
+        " its way out of a singular configuration",
+    )
+
+
+def first_fault(
+    q: Array, v: Array, *checks: tuple[NDArray[np.bool_], str]
+) -> tuple[int, str] | None:
     """The earliest of: numbers that are not finite, joints too fast, and the given checks.
 
     Args:
