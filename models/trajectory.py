@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TextIO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.curves import Curve
 from models.distance import path_distance
@@ -36,7 +37,7 @@ class Trajectory:
     fields: dict[str, Array]
     distance: Array
     speed: Array
-    held: Array
+    held: NDArray[np.bool_]
     diverged_at: float | None = None
     reason: str = ""
 
@@ -93,12 +94,14 @@ def record(
         times: of the rows, [s]; None: from 0 on.
     """
     rows = np.concatenate([rows for rows, _, _ in segments])
-    distance = [path_distance(robot.frame, curve, log.unpack(part)["y"]) for part, curve, _ in segments]
+    distance = [
+        path_distance(robot.frame, curve, log.unpack(part)["y"]) for part, curve, _ in segments
+    ]
     speed = [_speed(curve, log.unpack(part)) for part, curve, _ in segments]
     held = [np.full(len(part), hold) for part, _, hold in segments]
     return Trajectory(
         controller=controller,
-        t=dt * np.arange(len(rows)) if times is None else times,
+        t=np.arange(len(rows), dtype=float) * dt if times is None else times,
         fields=log.unpack(rows),
         distance=np.concatenate(distance),
         speed=np.concatenate(speed),
@@ -148,7 +151,7 @@ def read_csv(file: TextIO) -> dict[str, dict[str, Array]]:
         ValueError: not a trajectory file; the message names the line.
     """
     reader = csv.reader(file)
-    names = next(reader, [])
+    names = next(reader, list[str]())
     if names[:2] != ["t_s", "controller"]:
         raise ValueError("line 1: expected a header that begins with t_s, controller")
     rows: dict[str, list[list[float]]] = {}

@@ -228,7 +228,7 @@ def test_bounds_of_the_hold_are_set_together_in_any_order() -> None:
                 float(times["hold_from"]),
                 float(times["hold_to"]),
             )
-    with pytest.raises(ValueError, match="hold_to.*before hold_from"):
+    with pytest.raises(ValueError, match=r"hold_to.*before hold_from"):
         experiments()["obstruction"].with_values({"hold_to": "2"})
 
 

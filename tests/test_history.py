@@ -107,7 +107,10 @@ def busy(seconds: float = 1.0) -> Session:
     do(session, c.Hold(True))
     run(session, seconds / 3)
     do(session, c.Hold(False), c.SetParameter("K3", 200))
-    do(session, c.Grab(TRACKER, session.robot.place(y(session, TRACKER)) + [0.02, 0.0, 0.0]))
+    do(
+        session,
+        c.Grab(TRACKER, session.robot.place(y(session, TRACKER)) + np.array([0.02, 0.0, 0.0])),
+    )
     run(session, seconds / 3)
     do(session, c.Release(), c.ChoosePath("ellipse"))
     run(session, seconds / 3 + 0.35)
@@ -125,7 +128,8 @@ def test_past_is_shown_as_it_was() -> None:
         now = take_snapshot(session, 1.0)
         at = session.history.at(session.viewing or 0.0)
         assert at is not None
-        then = min(seen, key=lambda pair: abs(pair[0] - at.time))[1]
+        begin = at.time
+        then = min(seen, key=lambda pair: abs(pair[0] - begin))[1]
         for name in NAMES:
             was, shown = then.robots[name], now.robots[name]
             assert shown.joints == pytest.approx(was.joints, abs=1e-3)

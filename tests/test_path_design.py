@@ -259,7 +259,7 @@ BAD_STROKES = [
 
 @pytest.mark.parametrize("stroke", BAD_STROKES, ids=str)
 def test_stroke_that_is_none_is_refused_in_words(stroke: np.ndarray) -> None:
-    with pytest.raises(ValueError, match="path|stroke"):
+    with pytest.raises(ValueError, match=r"path|stroke"):
         drawn(stroke)
 
 

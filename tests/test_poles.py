@@ -12,7 +12,7 @@ from models.controllers import NAMES
 from models.curves import circle
 from models.loops import InterpretedLoop
 from models.parameters import FiveBarParameters
-from models.poles import channels
+from models.poles import Complex, channels
 from models.robots import rigid_five_bar
 from models.simulation import FREE, first_state, kernel_of, kind_of, settings_vector, time_step
 
@@ -31,7 +31,7 @@ def simulated(seconds: float, offset: float, name: str = "path_following", **val
     return dt, kernel.log.unpack(rows)
 
 
-def slowest(poles: np.ndarray) -> complex:
+def slowest(poles: Complex) -> complex:
     return complex(poles[poles.real.argmax()])
 
 
@@ -44,7 +44,7 @@ def test_error_across_moves_as_the_poles_say(gains: tuple[float, ...], rate: int
     }
     poles = channels(dataclasses.replace(FiveBarParameters(), **values))[0].poles
     offset = 1e-5
-    dt, log = simulated(0.4, offset, **values)
+    dt, log = simulated(0.4, offset, "path_following", **values)
     xi, times = log["xi"][:, 0] * np.sign(log["xi"][0, 0]), dt * np.arange(len(log["xi"]))
     # the solution of the linear channel through xi(0) = offset, at rest, integral empty
     acceleration = -gains[0] * offset
@@ -100,7 +100,7 @@ def test_predicted_instability_is_what_happens(
     across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]
     assert across.stable is stable
     offset = 1e-6
-    dt, log = simulated(3.0, offset, name, speed=0.0, **values)
+    _, log = simulated(3.0, offset, name, speed=0.0, **values)
     error = (
         np.linalg.norm(log["y"] - [RADIUS, 0.0], axis=1) if name == NAMES[0] else log["xi"][:, 0]
     )

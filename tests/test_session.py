@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from lab import FOLLOWER, FRAME, TRACKER, do, new_session, run, states, y
 
@@ -129,7 +129,7 @@ def test_every_command_is_tried() -> None:
     assert set(COMMANDS) == set(c.Command.__args__)
 
 
-@settings(max_examples=80, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=80, deadline=None)
 @given(
     st.lists(
         st.tuples(st.one_of(*COMMANDS.values()), st.sampled_from([0, 0, 1, 5, 20])),
@@ -264,7 +264,7 @@ def test_grab_pulls_both_by_the_same_or_one_alone(controller: str, copy: bool) -
     before = {name: session.runs[name].shown()["y"].copy() for name in NAMES}
     assert np.linalg.norm(before[FOLLOWER] - before[TRACKER]) > 0.01  # they are not in one place
     for shift in ([0.02, 0.0, 0.01], [0.03, 0.0, -0.02]):
-        target = session.robot.place(before[controller]) + shift
+        target = session.robot.place(before[controller]) + np.array(shift)
         do(session, c.Grab(controller, target))
         assert set(session.hands) == (set(NAMES) if copy else {controller})
         for name, hand in session.hands.items():
@@ -283,10 +283,13 @@ def test_grab_pulls_both_by_the_same_or_one_alone(controller: str, copy: bool) -
 
 def test_same_state_same_hand_same_force() -> None:
     session = new_session()
-    do(session, c.Grab(TRACKER, session.robot.place(y(session, TRACKER)) + [0.03, 0.0, 0.02]))
+    do(
+        session,
+        c.Grab(TRACKER, session.robot.place(y(session, TRACKER)) + np.array([0.03, 0.0, 0.02])),
+    )
     session.simulate(1)
-    forces = [r.shown()["force"] for r in session.runs.values()]
-    assert np.array_equal(*forces) and np.linalg.norm(forces[0]) > 1
+    one, other = (r.shown()["force"] for r in session.runs.values())
+    assert np.array_equal(one, other) and np.linalg.norm(one) > 1
 
 
 def test_hand_far_away_pulls_no_harder_than_it_can() -> None:
@@ -356,7 +359,7 @@ def test_drag_of_a_point_is_one_edit_and_follows_meanwhile() -> None:
     first = session.editor.design
     place = session.robot.place(first.points[2])
     for k in range(1, 6):
-        do(session, c.MovePoint(2, place + [0.0, 0.0, -0.002 * k], finished=False))
+        do(session, c.MovePoint(2, place + np.array([0.0, 0.0, -0.002 * k]), finished=False))
         run(session, 0.1)
     assert session.editor.design is first and session.editor.selected == 2
     assert not np.allclose(session.editor.table, first.curve.table(), atol=1e-4)
@@ -371,7 +374,7 @@ def test_drag_of_a_point_is_one_edit_and_follows_meanwhile() -> None:
 def test_undo_in_the_middle_of_a_drag_takes_the_drag_back() -> None:
     session = new_session(0.3)
     first = session.editor.design
-    moved = session.robot.place(first.points[2]) + [0.0, 0.0, -0.01]
+    moved = session.robot.place(first.points[2]) + np.array([0.0, 0.0, -0.01])
     do(session, c.MovePoint(2, moved, finished=False))
     run(session, 0.4)
     do(session, c.Undo())
@@ -390,7 +393,7 @@ def test_keyboard_moves_the_selected_point_as_a_drag_would() -> None:
         c.PlacePoint(start[0] + 0.003),
         c.PlacePoint(None, start[1] - 0.004),
     )
-    target = by_mouse.robot.place(start + [0.003, -0.004])
+    target = by_mouse.robot.place(start + np.array([0.003, -0.004]))
     do(by_mouse, c.MovePoint(3, target))
     for session in (by_key, by_number):
         assert session.editor.selected == 3

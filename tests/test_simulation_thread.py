@@ -63,7 +63,7 @@ def simulated(
 
 
 def test_sixty_frames_a_second_each_on_time() -> None:
-    thread, lab, view, clock = simulated(3.0, lambda _: 0.004)
+    thread, lab, view, _ = simulated(3.0, lambda _: 0.004)
     assert len(view.shown) == pytest.approx(180, abs=2)
     assert lab.session.time == pytest.approx(3.0, abs=0.04)
     assert max(thread.lateness) < 1e-9
@@ -72,7 +72,7 @@ def test_sixty_frames_a_second_each_on_time() -> None:
 
 
 def test_slow_frames_slow_simulated_time_visibly() -> None:
-    thread, lab, view, clock = simulated(4.0, lambda _: 2.5 * FRAME)
+    thread, lab, _, _ = simulated(4.0, lambda _: 2.5 * FRAME)
     assert lab.session.time == pytest.approx(4.0 / 2.5, rel=0.05)
     assert lab.achieved == pytest.approx(1 / 2.5, rel=0.05)
     assert max(thread.lateness) <= LATEST + 2.5 * FRAME  # it never piles up
