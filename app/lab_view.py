@@ -25,7 +25,7 @@ from app.take_snapshot import take_snapshot
 DISPLAY = 2  # frames of simulation per frame of display: 30 Hz
 SLOW = 6  # frames per update of traces, plots and readouts: 10 Hz
 CONTROL_WIDTH = 330  # [px]
-NARROW = 576  # [px], of the window: below it viser puts the panel over the lower part
+NARROW = 0.75  # width to height: a telephone, where the panel lies over the lower part
 
 
 class LabView:
@@ -36,7 +36,7 @@ class LabView:
         self._store = store
         self._offset = client.client_id  # spreads the clients' slow updates over the frames
         self._exporter = Exporter(client)
-        self._framed = (0, 0)
+        self._framed = 0.0
         client.gui.configure_theme(
             show_logo=False, show_share_button=False, brand_color=(0, 114, 178)
         )
@@ -74,7 +74,7 @@ class LabView:
     def _rebuild(self, session: Session) -> None:
         self._client.scene.reset()
         self._client.gui.reset()
-        self._framed = (0, 0)
+        self._framed = 0.0
         self._build(session)
 
     def _build(self, session: Session) -> None:
@@ -127,13 +127,17 @@ class LabView:
             self._progress.visible = busy
 
     def _frame_camera(self) -> None:
-        """Both robots fill the view again whenever its size has changed."""
+        """Both robots fill the view again whenever its shape has changed.
+
+        Not its size, in device pixels: a slow browser changes that all by itself.
+        """
         camera = self._client.camera
-        size = (camera.image_width, camera.image_height)
-        if size != self._framed and min(size) > 0:
-            self._framed = size
-            narrow = size[0] < NARROW  # there the panel is a sheet over the lower part
-            self._scene.frame_camera(Insets(bottom=0.6 * size[1]) if narrow else Insets())
+        width, height = camera.image_width, camera.image_height
+        shape = width / max(height, 1)
+        if width > 0 and abs(shape - self._framed) > 0.02 * shape:
+            self._framed = shape
+            below = 0.6 * height if shape < NARROW else 0.0
+            self._scene.frame_camera(Insets(bottom=below))
 
 
 def _hooks(post: Callable[[c.Command], None]) -> Hooks:
