@@ -81,7 +81,7 @@ class Exporter:
             "Export", f"Making {name} …", loading=True, with_close_button=False
         )
         try:
-            self._client.send_file_download(name, make())
+            self._client.send_file_download(name, make(), save_immediately=True)
             note.body, note.loading, note.auto_close_seconds = f"{name} is ready.", False, 3.0
         except Exception as error:  # the user is told, the lab goes on
             log_error(error)

@@ -48,7 +48,7 @@ def _frames(history: list[Stretch]) -> list[Stretch]:
     """Stretches at about the film's rate."""
     times = np.array([s.time for s in history])
     wanted = np.arange(times[0], times[-1] + 1e-9, 1 / RATE)
-    return [history[i] for i in np.searchsorted(times, wanted)]
+    return [history[i] for i in np.searchsorted(times, wanted).clip(max=len(times) - 1)]
 
 
 def _snapshot(robot: Robot, stretch: Stretch, number: int, before: list[Stretch]) -> Snapshot:
