@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from finite_elements import clamped_free
+from finite_elements import beam_of_elements
 
 from models.beam import MOST_MODES, beam_modes, rigidity
 from models.system import Array
@@ -68,7 +68,7 @@ def test_finite_elements_have_the_same_frequencies_and_shapes() -> None:
     modes = beam_modes(MOST_MODES, LENGTH)
     expected = modes.frequencies(stiffness, density)
     assert expected[0] == pytest.approx(2 * np.pi * 4.0, rel=1e-14)
-    elements = clamped_free(40, LENGTH, stiffness, density)
+    elements = beam_of_elements(40, LENGTH, stiffness, density)
     frequencies, shapes = elements.vibration(MOST_MODES)
     assert frequencies == pytest.approx(expected, rel=1e-4)
     own = modes.shapes(elements.nodes)
