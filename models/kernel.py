@@ -202,7 +202,9 @@ def _turn(
         "u": u,
         "phase": ca.SX(0) if kind.free else _next_phase(state, settings),
     }
-    row = state | {"y": tip, "u": u, "force": force} | _now(output, settings)
+    now_rate = system.with_rate(system.controlled_output)(q, measured_v, settings["model"])[1]
+    now = _coordinates(frame, kind, state, settings, values[:, 0], y, now_rate)
+    row = state | {"y": tip, "u": u, "force": force} | _now(output, now.theta_rate, settings)
     outputs = [state_layout(system).join(after), log_layout(system).join(row)]
     outputs.append(bases(outputs[0], settings_symbol))
     return ca.Function("turn", [state_symbol, settings_symbol, values], ca.cse(outputs))
@@ -256,12 +258,16 @@ def _ahead(
     return q + half * (v + gained / 2), v + gained
 
 
-def _now(output: VirtualOutput, settings: Fields) -> Fields:
-    """What the log says of theta and xi: half a tick back from where the controller looked."""
+def _now(output: VirtualOutput, theta_rate: ca.SX, settings: Fields) -> Fields:
+    """What the log says of theta and xi: half a tick back from where the controller looked.
+
+    The speed along the path is the measured one: under a push that the controller cannot foresee,
+    the one it looks ahead to would be wrong for as long as the push lasts.
+    """
     half = settings["dt"] / 2
     return {
-        "theta": output.theta - half * output.theta_rate,
-        "theta_rate": output.theta_rate,
+        "theta": output.theta - half * theta_rate,
+        "theta_rate": theta_rate,
         "xi": output.xi - half * output.xi_rate,
         "xi_rate": output.xi_rate,
     }

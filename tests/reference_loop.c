@@ -157,6 +157,11 @@ static void tick(const Settings *s, const double *table, State *x, Row *row) {
   Local at = project(curve_at(table, theta), z, &theta);
   Vec wanted = torques(&s->model, a, v, command(s, x, at, theta, z, z_rate, row));
 
+  double length = sqrt(dot(at.first, at.first));
+  double bend = (at.first.x * at.second.y - at.first.y * at.second.x) / (length * length * length);
+  double now = dot(at.first, tip_rate(&s->model, a, x->v))
+             / (length * length * (1 - row->xi * bend));
+
   double limit = s->torque_limit;
   int acts = x->phase < 0.5;
   int saturated = fmax(fabs(wanted.x), fabs(wanted.y)) > limit;
@@ -177,7 +182,7 @@ static void tick(const Settings *s, const double *table, State *x, Row *row) {
   double top = fabs(s->speed), gap = wrap(s->target - x->theta_ref) / s->dt;
   x->theta_ref += s->dt * (s->position != 0 ? clamp(gap, -top, top) : s->speed);
   x->theta = theta, x->theta_rate = row->theta_rate;
-  row->theta -= half * row->theta_rate, row->xi -= half * row->xi_rate;
+  row->theta_rate = now, row->theta -= half * now, row->xi -= half * row->xi_rate;
   x->encoder = row->q, x->encoder_rate = row->v, x->u = u;
   x->phase = x->phase + 1 < s->hold_ticks - 0.5 ? x->phase + 1 : 0;
 }

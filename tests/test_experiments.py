@@ -65,6 +65,8 @@ def test_held_back_the_follower_stays_on_the_circle_and_the_tracker_does_not(
     # held, the follower rests and the tracker pulls
     end = obstruction["path_following"].held.nonzero()[0][-1]
     assert np.abs(obstruction["path_following"].fields["v"][end]).max() < 1e-6
+    assert abs(obstruction["path_following"].fields["theta_rate"][end, 0]) < 1e-6
+    assert abs(obstruction["path_following"].speed[end]) < 1e-6
     torque = {n: np.abs(t.fields["u"][t.held]).max() for n, t in obstruction.items()}
     assert torque["trajectory_tracking"] > 2 * torque["path_following"]
 

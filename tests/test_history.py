@@ -13,15 +13,22 @@ from app.history import LONGEST, SECONDS, Drive, History, Stretch
 from app.session import Session
 from app.take_snapshot import take_snapshot
 from models.controllers import NAMES
-from models.curves import circle
+from models.curves import Curve, circle
 from models.kernel import Kind
 
 CURVE, SETTINGS = circle(0.05), np.zeros(3)
 
 
-def stretch(time: float, ticks: int = 17, settings: np.ndarray = SETTINGS, frozen: bool = False):
+def stretch(
+    time: float,
+    ticks: int = 17,
+    settings: np.ndarray = SETTINGS,
+    frozen: bool = False,
+    curve: Curve = CURVE,
+    dt: float = 1e-3,
+) -> Stretch:
     drive = Drive(Kind(FOLLOWER), np.array([time]), settings, frozen, 0.0)
-    return Stretch(time, ticks, 1e-3, CURVE, {FOLLOWER: drive}, np.array([[time]]))
+    return Stretch(time, ticks, dt, curve, {FOLLOWER: drive}, np.array([[time]]))
 
 
 def contiguous(history: History) -> bool:
@@ -53,6 +60,8 @@ def test_only_stretches_with_the_same_inputs_are_joined() -> None:
         (stretch(0.005, 13), False),  # too long together
         (stretch(0.005, 5, np.zeros(3)), False),
         (stretch(0.005, 5, frozen=True), False),
+        (stretch(0.005, 5, curve=circle(0.05)), False),
+        (stretch(0.005, 5, dt=5e-4), False),
     ):
         history = History()
         history.append(stretch(0.0, 5))
