@@ -17,7 +17,7 @@ from typing import Annotated, Literal
 
 import tyro
 
-COMMANDS = ("serve", "experiment", "bench")
+COMMANDS = ("serve", "experiment", "zero-dynamics", "bench")
 
 
 @dataclass(frozen=True)
@@ -71,10 +71,9 @@ class Experiment:
         known = experiments()
         if self.name not in known:
             raise unknown_name(self.name, list(known), what="experiment")
-        if self.plot and self.plot.suffix not in (".png", ".svg", ".pdf"):
-            raise ValueError(f"--plot {self.plot}: expected a name ending in .png, .svg or .pdf")
-        for file in filter(None, (self.csv, self.plot)):
-            _check_writable(file)
+        _check_plot(self.plot)
+        if self.csv:
+            _check_writable(self.csv)
         chosen = known[self.name].with_values(_assignments(self.set))
         names = NAMES if self.controller == "both" else (self.controller,)
         runs = [run(chosen, name) for name in names]
@@ -87,6 +86,32 @@ class Experiment:
                 draw_experiment(chosen, runs, path)
         reasons = {r.controller: r.reason for r in runs}
         print(json.dumps(result, indent=2) if self.json else _table(result, reasons))
+
+
+@dataclass(frozen=True)
+class ZeroDynamics:
+    """Exponents of the flexible link's internal dynamics against alpha and number of modes."""
+
+    at: tuple[float, float] = (0.0, 0.0)
+    """y2 and y3 of the tip at rest, in metres."""
+    set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """name=value, for rho, plant, frequency, zeta; repeat for more."""
+    plot: Path | None = None
+    """Draw exponents and critical alpha to this .png, .svg or .pdf file."""
+    json: bool = False
+    """Print the table as JSON."""
+
+    def run(self) -> None:
+        """Compute, then print and draw."""
+        from app.figures_flexible import draw_zero_dynamics
+        from app.zero_dynamics import as_json, as_table, changed_all, study
+
+        _check_plot(self.plot)
+        result = study(changed_all(_assignments(self.set)), self.at)
+        if self.plot:
+            with _whole_file(self.plot) as path:
+                draw_zero_dynamics(result, path)
+        print(json.dumps(as_json(result), indent=2) if self.json else as_table(result))
 
 
 @dataclass(frozen=True)
@@ -130,13 +155,14 @@ def unknown_command(name: str) -> str:
     return f"unknown command {name!r}: there are {', '.join(COMMANDS)}"
 
 
-def _parse(arguments: list[str]) -> Serve | Experiment | Bench:
+def _parse(arguments: list[str]) -> Serve | Experiment | ZeroDynamics | Bench:
     complaint = io.StringIO()
     try:
         with contextlib.redirect_stderr(complaint):
             return tyro.cli(
                 Annotated[Serve, tyro.conf.subcommand("serve")]
                 | Annotated[Experiment, tyro.conf.subcommand("experiment")]
+                | Annotated[ZeroDynamics, tyro.conf.subcommand("zero-dynamics")]
                 | Annotated[Bench, tyro.conf.subcommand("bench")],
                 prog="onpath",
                 description=__doc__,
@@ -169,6 +195,19 @@ def _assignments(pairs: tuple[str, ...]) -> dict[str, str]:
             raise ValueError(f"--set {pair}: expected name=value")
         values[name.strip()] = value.strip()
     return values
+
+
+def _check_plot(path: Path | None) -> None:
+    """Complain of a picture that cannot be made.
+
+    Raises:
+        ValueError: an unknown kind of file, or nothing can be written there.
+    """
+    if path is None:
+        return
+    if path.suffix not in (".png", ".svg", ".pdf"):
+        raise ValueError(f"--plot {path}: expected a name ending in .png, .svg or .pdf")
+    _check_writable(path)
 
 
 def _check_writable(path: Path) -> None:

@@ -11,17 +11,22 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from app.palette import CONTROLLERS
 from app.stage import TITLES
 from models.curves import circle
 from models.experiments import Experiment
+from models.flexible_robot import FlexibleFiveBar
 from models.trajectory import Trajectory
 
 
 def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) -> None:
     """End-point in output space, and distance, xi, eta, speed and torque over time."""
     panels = _panels()
+    robot = experiment.robot()
+    if isinstance(robot, FlexibleFiveBar):
+        panels.insert(1, _deflection(robot))
     figure, axes = plt.subplot_mosaic(
         [["space", name] for name, _, _ in panels],
         figsize=(13, 2.1 * len(panels)),
@@ -40,6 +45,11 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
         axes[name].tick_params(labelbottom=False)
         axes[name].sharex(axes[panels[-1][0]])
     axes[panels[-1][0]].set_xlabel("t  [s]")
+    save(figure, path)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """To a file, the same bytes for the same figure."""
     with plt.rc_context({"svg.hashsalt": "onpath"}):  # else its names are drawn by lot
         figure.savefig(path, metadata=_reproducible(path), dpi=110)
     plt.close(figure)
@@ -77,6 +87,13 @@ def _panels():
     ]
 
 
+def _deflection(robot: FlexibleFiveBar):
+    def column(run: Trajectory) -> tuple[np.ndarray]:
+        return (1e3 * robot.deflection(run.fields["q"])[:, None],)
+
+    return "w", "deflection of\nthe tip  [mm]", column
+
+
 def _wrapped(theta: np.ndarray) -> np.ndarray:
     """Angles in (-pi, pi], broken where they jump."""
     wrapped = np.angle(np.exp(1j * theta))
@@ -104,7 +121,12 @@ def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> N
     axes.plot(*path.T, color="0.75", linewidth=6, solid_capstyle="round", label="path")
     for run in runs:
         z = 1e3 * frame.planar(run.fields["y"])
-        axes.plot(*z.T, color=CONTROLLERS[run.controller].hex, linewidth=1.6, label=TITLES[run.controller][0])
+        axes.plot(
+            *z.T,
+            color=CONTROLLERS[run.controller].hex,
+            linewidth=1.6,
+            label=TITLES[run.controller][0],
+        )
         axes.plot(*z[0], "o", color=CONTROLLERS[run.controller].hex, markersize=6)
         axes.plot(*z[-1], "s", color=CONTROLLERS[run.controller].hex, markersize=7)
     axes.plot([], [], "o", color="0.3", label="start")
