@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
 from app.path_editor import BLEND, PathEditor
@@ -60,7 +60,7 @@ def test_path_leaves_the_workspace_where_the_arm_ends(offset: float) -> None:
 
 
 @settings(max_examples=40, deadline=None)
-@given(st.floats(0.0, 2 * math.pi), st.floats(0.05, 0.39))
+@given(st.floats(0.0, 2 * math.pi), st.one_of(st.floats(0.012, 0.06), st.floats(0.36, 0.42)))
 def test_singular_configurations_are_kept_clear_of(angle: float, reach: float) -> None:
     # |sin(q1 - q2)| at distance d from the base, by the cosine rule
     middle = reach * np.array([np.cos(angle), np.sin(angle)]) - 0.2
@@ -70,6 +70,7 @@ def test_singular_configurations_are_kept_clear_of(angle: float, reach: float) -
     margin = np.abs(np.sin(gap))
     assume(np.abs(margin - LEAST_MARGIN).min() > 1e-6 and np.abs(d - 0.4).min() > 1e-6)
     near = any("singular" in reason for reason in reasons(small))
+    event(f"near: {near}")
     assert near == bool(np.any((margin < LEAST_MARGIN) & (d < 0.4)))
 
 

@@ -55,6 +55,17 @@ def test_error_across_moves_as_the_poles_say(gains: tuple[float, ...], rate: int
     assert xi[-1] < 0.7 * offset  # it did move
 
 
+@pytest.mark.parametrize("rate", [200, 500, 1000])
+def test_undamped_swing_grows_or_stays_as_the_poles_say(rate: int) -> None:
+    values = {"K1": 2500.0, "K2": 0.0, "control_rate": rate}
+    pole = slowest(channels(dataclasses.replace(FiveBarParameters(), **values))[0].poles)
+    dt, log = simulated(1.5, 1e-6, "path_following", speed=0.0, **values)
+    xi, period = np.abs(log["xi"][:, 0]), round(2 * np.pi / abs(pole.imag) / dt)
+    grown = np.log(xi[-period:].max() / xi[:period].max())
+    assert grown == pytest.approx(pole.real * dt * (len(xi) - period), rel=0.05, abs=0.1)
+    assert rate > 200 or grown > 2
+
+
 @pytest.mark.parametrize("gain", [2.0, 10.0, 40.0])
 def test_speed_settles_as_the_pole_says(gain: float) -> None:
     along = channels(dataclasses.replace(FiveBarParameters(), K5=gain))[1]

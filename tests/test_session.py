@@ -281,6 +281,17 @@ def test_grab_pulls_both_by_the_same_or_one_alone(controller: str, copy: bool) -
     assert all(np.all(r.shown()["force"] == 0) for r in session.runs.values())
 
 
+def test_the_hand_holds_one_robot_at_a_time_unless_it_is_copied() -> None:
+    session = new_session(0.3)
+    do(session, c.SetCopy(False))
+    for name in (TRACKER, FOLLOWER):
+        target = session.robot.place(y(session, name)) + np.array([0.02, 0.0, 0.02])
+        do(session, c.Grab(name, target))
+        session.simulate(1)
+        pulled = {n for n, r in session.runs.items() if np.any(r.shown()["force"] != 0)}
+        assert pulled == {name} == set(session.hands)
+
+
 def test_same_state_same_hand_same_force() -> None:
     session = new_session()
     do(
@@ -371,6 +382,19 @@ def test_drag_of_a_point_is_one_edit_and_follows_meanwhile() -> None:
     assert session.editor.design is first and "nothing" in session.message
 
 
+def test_drag_that_ends_in_a_refused_place_goes_all_the_way_back() -> None:
+    session = new_session(0.3)
+    first = session.editor.design
+    place = session.robot.place(first.points[2])
+    do(session, c.MovePoint(2, place + np.array([0.0, 0.0, 0.01]), finished=False))
+    run(session, 0.4)
+    assert not np.allclose(session.editor.table, first.curve.table(), atol=1e-4)
+    do(session, c.MovePoint(2, place + np.array([0.15, 0.0, 0.15])))
+    assert "refused" in session.message
+    run(session, 0.4)
+    assert session.editor.design is first and session.editor.curve is first.curve
+
+
 def test_undo_in_the_middle_of_a_drag_takes_the_drag_back() -> None:
     session = new_session(0.3)
     first = session.editor.design
@@ -454,6 +478,37 @@ def test_divergence_freezes_the_robot_says_why_and_reset_brings_it_back() -> Non
     run(session, 0.5)
     assert session.message == ""
     assert all(r.diverged is None and r.distance < 0.005 for r in session.runs.values())
+
+
+def test_frozen_robot_shows_the_last_instant_that_is_all_numbers() -> None:
+    session = new_session(0.1)
+    run_ = session.runs[FOLLOWER]
+
+    class Breaking:
+        """A loop whose closest point is lost before the robot is."""
+
+        kernel = kernel_of(session.robot, run_.kind)
+
+        def run(self, state: np.ndarray, *_: object) -> tuple[np.ndarray, np.ndarray]:
+            rows = np.tile(run_.row, (9, 1))
+            fields = self.kernel.log.unpack(rows)
+            fields["y"][:, 0] = np.arange(9)
+            fields["theta"][4:] = np.nan
+            fields["q"][6:] = np.inf
+            return state * np.nan, rows
+
+    class Store:
+        def get(self, *_: object) -> Breaking:
+            return Breaking()
+
+    session._store = Store()  # type: ignore[assignment]
+    before = run_.state.copy()
+    session.simulate(9)
+    assert run_.diverged and run_.diverged.time == pytest.approx(session.time - 9e-3 + 6e-3)
+    assert run_.shown()["y"][0] == 3 and np.array_equal(run_.state, before)
+    assert_drawable(take_snapshot(session, 1.0))
+    do(session, c.Hold(True), c.Grab(FOLLOWER, np.array([0.2, 0.0, 0.2])))
+    session.simulate(9)
 
 
 def test_one_robot_stands_still_and_the_other_goes_on() -> None:
