@@ -103,7 +103,7 @@ class PlantRun:
         state, rows = store.get(self.robot, self.kind).run(self.state, self.settings, table, ticks)
         log = kernel_of(self.robot, self.kind).log
         fields = log.unpack(rows)
-        fault = self.robot.fault(fields["q"], fields["v"])
+        fault = self.robot.fault(fields["q"], fields["v"], parameters)
         if fault is None and not np.isfinite(state).all():
             fault = (len(rows), "the numbers have left the range of a computer")
         if fault is not None:

@@ -169,7 +169,7 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
     done = 0
     for rows, held in _segments(experiment, kernel, curve, state):
         fields = kernel.log.unpack(rows)
-        fault = robot.fault(fields["q"], fields["v"])
+        fault = robot.fault(fields["q"], fields["v"], experiment.parameters)
         if fault is not None:
             rows = rows[: fault[0]]
         segments.append((rows, curve, held))

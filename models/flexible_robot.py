@@ -15,9 +15,14 @@ from models.frames import Frame, SlantedPlane
 from models.parameters import Parameters, choice, number
 from models.robots import collapse, first_fault
 from models.system import Array, MechanicalSystem, conditioning, decoupling_matrix
+from models.zero_dynamics import flexible_zero_dynamics
 
 MOST_BENT = 0.3  # of the beam's length: far beyond what small deflections allow
 FASTEST_TIP = 20.0  # [m/s], of the deflection
+BENT = (
+    "the link bends too far although its zero dynamics are stable: the pull is too strong, the"
+    " control too slow or the controller's model too wrong"
+)
 UNSTABLE = "the output is on the path, the inside is not: unstable zero dynamics"
 PIECES = 10  # straight bars that the bent link is drawn with
 _SHARES = np.linspace(0.0, 1.0, PIECES + 1)
@@ -229,12 +234,21 @@ class FlexibleFiveBar:
         columns = _decoupling(self)(q.T, self.plant(FlexibleParameters())).full()
         return columns.reshape(RIGID, len(q), RIGID).transpose(1, 0, 2)
 
-    def fault(self, q: Array, v: Array) -> tuple[int, str] | None:
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
         """See `Robot.fault`."""
         with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
             bent = np.abs(self.deflection(q)) > MOST_BENT * self.links.beam
-            swift = np.abs(self.deflection(v)) > FASTEST_TIP
-            return first_fault(q, v, (bent | swift, UNSTABLE), collapse(q))
+            bent |= np.abs(self.deflection(v)) > FASTEST_TIP
+            found = first_fault(q, v, (bent, BENT), collapse(q))
+        if found is None or found[1] != BENT or not self.is_unstable_inside(q[0], parameters):
+            return found
+        return found[0], UNSTABLE
+
+    def is_unstable_inside(self, q: Array, parameters: Parameters) -> bool:
+        """Whether the zero dynamics at rest are unstable with the joints as in q, (n,)."""
+        straight = np.concatenate([q[:RIGID], np.zeros(self.modes)])
+        zero = flexible_zero_dynamics(self.modes, self.plant_name)
+        return bool(zero.exponents(straight, self.plant(parameters))[0, 0].real > 0)
 
     def place(self, y: Array) -> Array:
         """See `Robot.place`."""

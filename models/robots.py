@@ -75,7 +75,7 @@ class Robot(Protocol):
         """How far points of the path's plane are from singular, (n, 2) -> (n,); 0: out of reach."""
         ...
 
-    def fault(self, q: Array, v: Array) -> tuple[int, str] | None:
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
         """First row at which a run is no longer to be believed, and why. q, v: (rows, n)."""
         ...
 
@@ -137,7 +137,7 @@ class RigidFiveBar:
         cosine = (l1**2 + l4**2 - squared) / (2 * l1 * l4)
         return np.sqrt(np.maximum(1 - cosine**2, 0.0))
 
-    def fault(self, q: Array, v: Array) -> tuple[int, str] | None:
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
         """See `Robot.fault`."""
         return first_fault(q, v, collapse(q))
 
