@@ -129,7 +129,7 @@ def test_every_command_is_tried() -> None:
     assert set(COMMANDS) == set(c.Command.__args__)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(
     st.lists(
         st.tuples(st.one_of(*COMMANDS.values()), st.sampled_from([0, 0, 1, 5, 20])),
