@@ -113,10 +113,18 @@ class LabView:
         self._scene.show_singular_zone(0.0, 0.4, 0.02, visible)
 
     def _help(self) -> None:
-        with self._client.gui.add_modal("How to use the lab") as modal:
-            self._client.gui.add_markdown(help_text())
-            close = self._client.gui.add_button("Close")
-            on_press(close, modal.close)
+        gui = self._client.gui
+        escape = gui.add_command("Close the help window", hotkey="escape")
+        with gui.add_modal("How to use the lab") as modal:
+            gui.add_markdown(help_text())
+            close = gui.add_button("Close")
+
+        async def shut(_: object) -> None:
+            escape.remove()
+            modal.close()
+
+        close.on_click(shut)
+        escape.on_trigger(shut)
 
     def _show_progress(self) -> None:
         done, wanted = self._store.progress()
