@@ -102,7 +102,8 @@ def _(command: c.Hold, session: Session) -> None:
     _leave_past(session)
     if command.controller is not None:
         _known(command.controller)
-    names = list(NAMES) if command.controller is None else session.targets(command.controller)
+    everyone: list[str] = list(NAMES)
+    names = everyone if command.controller is None else session.targets(command.controller)
     on = not session.held.intersection(names) if command.on is None else command.on
     session.hold(names, on)
 
@@ -180,7 +181,10 @@ def _(command: c.PlacePoint, session: Session) -> None:
     index = _selected(session)
     design = session.editor.design
     old = design.points[index]
-    new = [o if n is None else _finite(n) for o, n in zip(old, (command.first, command.second))]
+    new = [
+        o if n is None else _finite(n)
+        for o, n in zip(old, (command.first, command.second), strict=True)
+    ]
     if not np.allclose(old, new, atol=1e-6):
         _commit(session, design.moved(index, np.array(new)))
 

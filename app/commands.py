@@ -1,4 +1,4 @@
-"""What a user can ask of a session. Callbacks only make these; the simulation thread applies them."""
+"""What a user can ask of a session: callbacks make these, the simulation thread applies them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a user can take home: the last minute as CSV, the plots as a picture, the scene as a film."""
+"""What a user can take home: the last minute as CSV, the plots as a picture, a film."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def _replayed(robot: Robot, name: str, history: list[Stretch]) -> list[Trajector
         kernel = kernel_of(robot, kind)
         loop = loops.setdefault(kind, InterpretedLoop(kernel))
         segments = [(rows, s.curve, held) for s, rows, held in _rows(loop, name, stretches)]
-        times = np.concatenate([s.time + dt * np.arange(s.ticks) for s in stretches])
+        times = np.concatenate([s.time + dt * np.arange(s.ticks, dtype=float) for s in stretches])
         parts.append(record(robot, kernel.log, name, merged(segments), dt, times).thinned())
     return parts
 

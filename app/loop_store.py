@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -85,5 +84,3 @@ class LoopStore:
             return
         with self._lock:
             self._compiled[key] = loop
-
-

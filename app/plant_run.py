@@ -62,7 +62,7 @@ class PlantRun:
         self._fill_row(curve)
 
     def project(self, curve: Curve) -> None:
-        """Search the closest point globally and put the reference there: after a jump of the path."""
+        """Search the closest point globally, put the reference there: after a jump of the path."""
         self.state = self.state.copy()  # history may hold it
         fields = self.fields()
         z = self.robot.frame.planar(self.robot.endpoint(fields["q"]))
@@ -146,4 +146,6 @@ class PlantRun:
             row[name][:] = state[name]
         row["y"][:] = self.robot.endpoint(state["q"])
         row["force"][:] = 0.0
-        self.distance = float(near_distance(self.robot.frame, curve, row["y"][None], row["theta"])[0])
+        self.distance = float(
+            near_distance(self.robot.frame, curve, row["y"][None], row["theta"])[0]
+        )

@@ -66,9 +66,7 @@ class LabServer:
             return
         entry = self.sessions.join(client.client_id, known)
         try:
-            client.local_storage.set_item(
-                STORAGE_KEY, self.sessions.remembered(entry.code, known)
-            )
+            client.local_storage.set_item(STORAGE_KEY, self.sessions.remembered(entry.code, known))
             view = LabView(client, entry.lab.session, self._store)
         except Exception as error:
             log_error(error)

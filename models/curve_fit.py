@@ -45,8 +45,9 @@ def open_through(points: Array) -> Curve:
         return chebyshev_curve(np.stack([points.mean(0), (points[1] - points[0]) / 2]))
     spline = CubicSpline(_chords(points), points, bc_type="natural")
     samples = _equal_arc(spline, endpoint=True)
-    x = np.linspace(-1, 1, SAMPLES)
-    return chebyshev_curve(chebyshev.chebfit(x, samples, HARMONICS))
+    x = _even(-1, 1, SAMPLES)
+    coefficients: Array = chebyshev.chebfit(x, samples, HARMONICS).astype(np.float64)
+    return chebyshev_curve(coefficients)
 
 
 def from_stroke(points: Array, closed: bool, passes: int = 40) -> Curve:
@@ -63,9 +64,9 @@ def from_stroke(points: Array, closed: bool, passes: int = 40) -> Curve:
     points = _distinct(points, least=3)
     if closed:
         points = np.vstack([points, points[:1]])
-    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    even = np.linspace(0, s[-1], 96, endpoint=not closed)
-    line = np.column_stack([np.interp(even, s, points[:, i]) for i in range(2)])
+    s = _arc_length(points)
+    even = _even(0, s[-1], 96, endpoint=not closed)
+    line = np.column_stack([np.interp(even, s, points[:, 0]), np.interp(even, s, points[:, 1])])
     smooth = _smoothed(line, closed, passes)
     smooth = smooth + _smoothed(line - smooth, closed, passes)  # undoes most of the shrinking
     return closed_through(smooth) if closed else open_through(smooth)
@@ -81,10 +82,10 @@ def _smoothed(line: Array, closed: bool, passes: int) -> Array:
 
 def control_points(curve: Curve, count: int) -> Array:
     """`count` points on the curve, evenly spaced by arc length, shape (count, 2), [m]."""
-    theta = np.linspace(-np.pi, np.pi, 2049)
+    theta = _even(-np.pi, np.pi, 2049)
     points = curve.at(theta)
-    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    even = np.linspace(0, s[-1], count, endpoint=not curve.closed)
+    s = _arc_length(points)
+    even = _even(0, s[-1], count, endpoint=not curve.closed)
     return curve.at(np.interp(even, s, theta))
 
 
@@ -105,6 +106,15 @@ def _distinct(points: Array, least: int) -> Array:
     return points
 
 
+def _arc_length(points: Array) -> Array:
+    """Of a polyline up to each of its points, shape (n,), [m]."""
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+
+
+def _even(low: float, high: float, count: int, endpoint: bool = True) -> Array:
+    return np.linspace(float(low), float(high), count, endpoint=endpoint, dtype=np.float64)
+
+
 def _chords(points: Array) -> Array:
     """Centripetal knots: no loops between unevenly spaced points."""
     gaps = np.sqrt(np.linalg.norm(np.diff(points, axis=0), axis=1))
@@ -112,13 +122,13 @@ def _chords(points: Array) -> Array:
 
 
 def _equal_arc(spline: CubicSpline, endpoint: bool) -> Array:
-    knots = np.linspace(spline.x[0], spline.x[-1], 16 * SAMPLES + 1)
-    points = spline(knots)
-    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    even = np.linspace(0, s[-1], SAMPLES, endpoint=endpoint)
-    return spline(np.interp(even, s, knots))
+    knots = _even(spline.x[0], spline.x[-1], 16 * SAMPLES + 1)
+    points = np.asarray(spline(knots), dtype=np.float64)
+    s = _arc_length(points)
+    even = _even(0, s[-1], SAMPLES, endpoint=endpoint)
+    return np.asarray(spline(np.interp(even, s, knots)), dtype=np.float64)
 
 
 def _half_turns() -> Array:
     """theta starts at -pi, the FFT at 0."""
-    return (-1.0) ** np.arange(1, HARMONICS + 1)
+    return np.array([(-1.0) ** k for k in range(1, HARMONICS + 1)])

@@ -68,7 +68,7 @@ class Curve:
         return np.ascontiguousarray(self.series.transpose(1, 0, 2)).ravel()
 
     def sample(self, count: int = 256) -> Array:
-        """Evenly spaced theta over the curve, shape (count,), without the repeated end if closed."""
+        """Evenly spaced theta over the curve, shape (count,); a closed one's end is left out."""
         return np.linspace(-np.pi, np.pi, count, endpoint=not self.closed)
 
     def curvature(self, theta: Array) -> Array:
@@ -114,9 +114,7 @@ class Curve:
         return table[0], np.array([b / a, a / b]), float(a * b)
 
 
-def nearest(
-    curve: Callable[[Array], Array], grid: Array, points: Array
-) -> tuple[Array, Array]:
+def nearest(curve: Callable[[Array], Array], grid: Array, points: Array) -> tuple[Array, Array]:
     """Closest points of any curve in R^p: global search over `grid`, then golden sections.
 
     Args:
@@ -130,9 +128,9 @@ def nearest(
     points = np.atleast_2d(points)
     samples = curve(grid)
     squared = ((points[:, None, :] - samples[None]) ** 2).sum(-1)
-    middle, step = grid[squared.argmin(axis=1)], grid[1] - grid[0]
+    middle, step = grid[squared.argmin(axis=1)], float(grid[1] - grid[0])
     low, high = middle - step, middle + step
-    ratio = (np.sqrt(5) - 1) / 2
+    ratio = 0.5 * (5**0.5 - 1)
     for _ in range(36):
         span = ratio * (high - low)
         left, right = high - span, low + span

@@ -63,61 +63,116 @@ class Parameters:
     """What both controllers share: gains, task, realism. Defaults of the rigid robot."""
 
     K1: float = number(
-        400.0, "1/s²", (0, 2500, 5), "spring that pulls back onto the path", group="gains",
+        400.0,
+        "1/s²",
+        (0, 2500, 5),
+        "spring that pulls back onto the path",
+        group="gains",
         label="K1 across",
     )
     K2: float = number(
-        40.0, "1/s", (0, 200, 1), "damps motion across the path", group="gains",
+        40.0,
+        "1/s",
+        (0, 200, 1),
+        "damps motion across the path",
+        group="gains",
         label="K2 across",
     )
     K3: float = number(
-        0.0, "1/s³", (0, 8000, 50), "removes a lasting offset (integral)", group="gains",
+        0.0,
+        "1/s³",
+        (0, 8000, 50),
+        "removes a lasting offset (integral)",
+        group="gains",
         label="K3 across",
     )
     K4: float = number(
-        25.0, "1/s²", (0, 400, 1), "spring towards the target position", group="gains",
+        25.0,
+        "1/s²",
+        (0, 400, 1),
+        "spring towards the target position",
+        group="gains",
         label="K4 along",
     )
     K5: float = number(
-        10.0, "1/s", (0, 100, 0.5), "how hard the speed along the path is held", group="gains",
+        10.0,
+        "1/s",
+        (0, 100, 0.5),
+        "how hard the speed along the path is held",
+        group="gains",
         label="K5 along",
     )
     task: str = choice(
-        "speed", ("speed", "position"), "go along the path at a speed, or to a place on it",
-        group="task", label="Task",
+        "speed",
+        ("speed", "position"),
+        "go along the path at a speed, or to a place on it",
+        group="task",
+        label="Task",
     )
     speed: float = number(
-        2 * math.pi, "rad/s", (-20, 20, 0.1), "wanted speed along the path; negative: backwards",
-        group="task", label="Speed",
+        2 * math.pi,
+        "rad/s",
+        (-20, 20, 0.1),
+        "wanted speed along the path; negative: backwards",
+        group="task",
+        label="Speed",
     )
     target: float = number(
-        math.pi / 2, "rad", (-math.pi, math.pi, 0.01), "where to stop, with task = position",
-        group="task", label="Target",
+        math.pi / 2,
+        "rad",
+        (-math.pi, math.pi, 0.01),
+        "where to stop, with task = position",
+        group="task",
+        label="Target",
     )
     across: str = choice(
-        "distance", ("distance", "level_set"),
+        "distance",
+        ("distance", "level_set"),
         "what to measure across the path: the distance, or the paper's s(y) (circle, ellipse)",
-        group="gains", label="Across is",
+        group="gains",
+        label="Across is",
     )
     torque_limit: float = number(
-        0.0, "N m", (0, 5, 0.05), "motors give no more than this; 0: no limit", group="realism",
-        label="Torque limit", on=0.5,
+        0.0,
+        "N m",
+        (0, 5, 0.05),
+        "motors give no more than this; 0: no limit",
+        group="realism",
+        label="Torque limit",
+        on=0.5,
     )
     encoder_counts: float = number(
-        0.0, "per turn", (0, 20000, 100), "steps of the joint encoders; 0: exact sensing",
-        group="realism", label="Encoder", on=2000.0,
+        0.0,
+        "per turn",
+        (0, 20000, 100),
+        "steps of the joint encoders; 0: exact sensing",
+        group="realism",
+        label="Encoder",
+        on=2000.0,
     )
     encoder_filter: float = number(
-        0.005, "s", (0.0005, 0.05, 0.0005), "time constant of the velocity filter behind them",
-        group="realism", label="Velocity filter",
+        0.005,
+        "s",
+        (0.0005, 0.05, 0.0005),
+        "time constant of the velocity filter behind them",
+        group="realism",
+        label="Velocity filter",
     )
     coulomb: float = number(
-        0.0, "N m", (0, 0.3, 0.005), "dry friction in the joints; 0: none", group="realism",
-        label="Dry friction", on=0.05,
+        0.0,
+        "N m",
+        (0, 0.3, 0.005),
+        "dry friction in the joints; 0: none",
+        group="realism",
+        label="Dry friction",
+        on=0.05,
     )
     control_rate: int = choice(
-        1000, (50, 100, 200, 250, 500, 1000, 2000), "how often the controller acts, Hz",
-        group="realism", label="Control rate",
+        1000,
+        (50, 100, 200, 250, 500, 1000, 2000),
+        "how often the controller acts, Hz",
+        group="realism",
+        label="Control rate",
     )
 
 
@@ -126,28 +181,58 @@ class FiveBarParameters(Parameters):
     """The rigid five-bar's own: a wrong model, a spoiled balance."""
 
     error_M11: float = number(
-        0.0, "%", (-50, 50, 1), "the controller's M11 is off by this", group="realism",
-        label="M11 wrong", on=30.0,
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's M11 is off by this",
+        group="realism",
+        label="M11 wrong",
+        on=30.0,
     )
     error_M22: float = number(
-        0.0, "%", (-50, 50, 1), "the controller's M22 is off by this", group="realism",
-        label="M22 wrong", on=30.0,
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's M22 is off by this",
+        group="realism",
+        label="M22 wrong",
+        on=30.0,
     )
     error_b1: float = number(
-        0.0, "%", (-50, 50, 1), "the controller's b1 is off by this", group="realism",
-        label="b1 wrong", on=50.0,
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's b1 is off by this",
+        group="realism",
+        label="b1 wrong",
+        on=50.0,
     )
     error_b2: float = number(
-        0.0, "%", (-50, 50, 1), "the controller's b2 is off by this", group="realism",
-        label="b2 wrong", on=50.0,
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's b2 is off by this",
+        group="realism",
+        label="b2 wrong",
+        on=50.0,
     )
     counterweights_removed: float = number(
-        0.0, "%", (0, 100, 5), "counterweights taken off; the controller does not know",
-        group="realism", label="Counterweights off", on=50.0,
+        0.0,
+        "%",
+        (0, 100, 5),
+        "counterweights taken off; the controller does not know",
+        group="realism",
+        label="Counterweights off",
+        on=50.0,
     )
     payload: float = number(
-        0.0, "kg", (0, 0.3, 0.01), "mass at the end-point; the controller does not know",
-        group="realism", label="Payload", on=0.1,
+        0.0,
+        "kg",
+        (0, 0.3, 0.01),
+        "mass at the end-point; the controller does not know",
+        group="realism",
+        label="Payload",
+        on=0.1,
     )
 
 

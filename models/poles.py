@@ -61,7 +61,8 @@ def channels(parameters: Parameters) -> tuple[Channel, Channel]:
 def _channel(name: str, roots: Complex, interval: float) -> Channel:
     stable = bool(np.all(np.abs(roots) < 1 - 1e-9))
     telling = roots[np.argsort(np.abs(roots))][1:]  # the first forgets the held acceleration
-    return Channel(name, np.log(telling + 1e-300) / interval, stable)
+    poles: Complex = np.asarray(np.log(telling + 1e-300) / interval, dtype=np.complex128)
+    return Channel(name, poles, stable)
 
 
 def _sampled(t: float, h: float, gains: tuple[float, float, float], kept: str) -> Complex:

@@ -98,7 +98,7 @@ class RigidFiveBar:
 
     links: five_bar.FiveBarLinks = field(default_factory=five_bar.load_links)
     system: MechanicalSystem = field(default_factory=five_bar.five_bar, repr=False)
-    frame: Frame = Plane()
+    frame: Frame = field(default_factory=Plane)
     name: str = "five_bar"
     label: str = "Five-bar linkage"
     substeps: int = 1

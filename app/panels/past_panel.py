@@ -15,12 +15,14 @@ REACH = 60.0
 class PastPanel:
     """Rewind and export."""
 
-    def __init__(
-        self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter
-    ) -> None:
+    def __init__(self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter) -> None:
         with gui.add_folder("Look back", expand_by_default=False):
             self._ago = gui.add_slider(
-                "Seconds ago", min=0.0, max=REACH, step=0.1, initial_value=0.0,
+                "Seconds ago",
+                min=0.0,
+                max=REACH,
+                step=0.1,
+                initial_value=0.0,
                 hint="Pauses and shows the lab as it was",
             )
             self._go_on = gui.add_button(

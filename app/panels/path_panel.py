@@ -20,7 +20,9 @@ class PathChoice:
 
     def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
         self._choice = gui.add_dropdown(
-            "Path", [*session.presets, EDITED], initial_value="circle",
+            "Path",
+            [*session.presets, EDITED],
+            initial_value="circle",
             hint="Both robots follow it. Drag its points in the scene to bend it.",
         )
         on_user_update(
@@ -47,7 +49,8 @@ class PathPanel:
     ) -> None:
         self._version = -1
         drawing = gui.add_button(
-            "Draw freehand", icon=viser.Icon.PENCIL,
+            "Draw freehand",
+            icon=viser.Icon.PENCIL,
             hint="Then draw one stroke around a robot with the mouse.",
         )
         on_press(drawing, draw)
@@ -56,7 +59,7 @@ class PathPanel:
         points = gui.add_button_group("Point", ["Add", "Remove"])
         on_press(points, lambda: post(c.AddPoint() if points.value == "Add" else c.RemovePoint()))
         self._which = gui.add_number(
-            "Selected", 0, min=0, max=24, step=1, hint="Number of the control point; 0: none"
+            "Selected", 0.0, min=0, max=24, step=1, hint="Number of the control point; 0: none"
         )
         self._first = gui.add_number("y1 [mm]", 0.0, min=-200.0, max=200.0, step=0.5)
         self._second = gui.add_number("y2 [mm]", 0.0, min=-200.0, max=200.0, step=0.5)

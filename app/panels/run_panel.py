@@ -21,11 +21,15 @@ class RunPanel:
         self._post = post
         self._pressed_at: float | None = None
         self._hold = gui.add_button(
-            "Hold both back", icon=viser.Icon.HAND_STOP, color="orange",
+            "Hold both back",
+            icon=viser.Icon.HAND_STOP,
+            color="orange",
             hint="Holds the end-points back along the path until pressed again. Key: H",
         )
         self._press = gui.add_button(
-            "Hold while pressed", icon=viser.Icon.HAND_CLICK, color="gray",
+            "Hold while pressed",
+            icon=viser.Icon.HAND_CLICK,
+            color="gray",
             hint="Holds the end-points back as long as the mouse button is down.",
         )
         self._run = gui.add_button(
@@ -33,7 +37,9 @@ class RunPanel:
         )
         self._row = gui.add_button_group("", ["Step", "Reset"])
         self._rate = gui.add_dropdown(
-            "Time runs at", list(RATE_LABELS), initial_value="1×",
+            "Time runs at",
+            list(RATE_LABELS),
+            initial_value="1×",
             hint="Simulated seconds per second",
         )
         on_press(self._hold, lambda: post(c.Hold()))
@@ -54,9 +60,7 @@ class RunPanel:
         label = "Pause" if session.running else "Run"
         if self._run.label != label:
             self._run.label = label
-            self._run.icon = (
-                viser.Icon.PLAYER_PAUSE if session.running else viser.Icon.PLAYER_PLAY
-            )
+            self._run.icon = viser.Icon.PLAYER_PAUSE if session.running else viser.Icon.PLAYER_PLAY
         rate = f"{session.rate:g}×"
         if self._rate.value != rate:
             self._rate.value = rate
