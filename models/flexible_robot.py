@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import lru_cache
 
-import casadi as ca
 import numpy as np
 
 from models import five_bar, flexible_five_bar
@@ -14,7 +13,7 @@ from models.flexible_five_bar import PLANTS, RIGID, FlexibleLinks
 from models.frames import Frame, SlantedPlane
 from models.parameters import Parameters, choice, number
 from models.robots import collapse, first_fault
-from models.system import Array, MechanicalSystem, conditioning, decoupling_matrix
+from models.system import Array, MechanicalSystem, conditioning
 from models.zero_dynamics import flexible_zero_dynamics
 
 MOST_BENT = 0.3  # of the beam's length: far beyond what small deflections allow
@@ -284,13 +283,17 @@ class FlexibleFiveBar:
         return self.place(y)
 
 
-@lru_cache(maxsize=2 * MOST_MODES)
 def flexible_five_bar_robot(modes: int = 3, plant: str = "lagrangian") -> FlexibleFiveBar:
     """The one instance for a number of modes and a plant: its kernels are built once.
 
     Raises:
         ValueError: an unknown plant or number of modes.
     """
+    return _robot(modes, plant)
+
+
+@lru_cache(maxsize=2 * MOST_MODES)
+def _robot(modes: int, plant: str) -> FlexibleFiveBar:
     return FlexibleFiveBar(modes, plant)
 
 
