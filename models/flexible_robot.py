@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import lru_cache
 
+import casadi as ca
+import casadi as ca
 import numpy as np
 
 from models import five_bar, flexible_five_bar
@@ -13,7 +15,7 @@ from models.flexible_five_bar import PLANTS, RIGID, FlexibleLinks
 from models.frames import Frame, SlantedPlane
 from models.parameters import Parameters, choice, number
 from models.robots import collapse, first_fault
-from models.system import Array, MechanicalSystem, conditioning
+from models.system import Array, MechanicalSystem, conditioning, decoupling_matrix
 from models.zero_dynamics import flexible_zero_dynamics
 
 MOST_BENT = 0.3  # of the beam's length: far beyond what small deflections allow
