@@ -2,12 +2,13 @@
 
 Slow part: what follows the path is the straight link's tip moved aside by n = w_hat - m,
 
-    y_c = h_0(q) + n e_theta(q3),    w_hat = -C a_hat,    C = sum_j phi_j(l) b_j / omega_j^2,
+    y_c = h_0(q) + n e_theta(q3).
 
-with w_hat the deflection that the commanded acceleration a across the link's plane is about to
-cause (f_j'' = -b_j a - omega_j^2 f_j) and a_hat its third-order filter, led by as much as it lags.
-y_c'' is the command of (16)-(19) exactly, whatever the modes do: they are driven and drive nothing,
-so no zero dynamics are unstable. The tip is y_c + (w - w_hat + m) e_theta.
+w_hat is the deflection that the commanded acceleration a across the link's plane is about to
+cause, -C a with C = sum_j phi_j(l) b_j / omega_j^2 for f_j'' = -b_j a - omega_j^2 f_j, through a
+third-order filter that is led by as much as it lags. y_c'' is the command of (16)-(19) exactly,
+whatever the modes do, and they act back on the motion by the absorber m alone: no zero dynamics
+are left to be unstable. The tip is y_c + (w - w_hat + m) e_theta.
 
 Fast part: a virtual absorber m, positive position feedback (Goh and Caughey 1985) from the first
 mode beyond its predicted part f_hat, places both it and the mode at damping ratio zeta:
@@ -29,7 +30,7 @@ from models.layout import Layout
 from models.system import MechanicalSystem
 from models.virtual_output import VirtualOutput
 
-MEMORY = Layout((("speed_chain", 3), ("demand_chain", 3), ("absorber", 2)))
+MEMORY = Layout((("speed_chain", 3), ("bend_chain", 3), ("absorber", 2)))
 GAINS = {"tip_damping": 0.3, "tip_prediction": 1.2, "tip_shaping": 0.25, "tip_yielding": 25.0}
 TINY = 1e-9
 Fields = dict[str, ca.SX]
@@ -41,7 +42,7 @@ class CompositeGains:
 
     Attributes:
         damping: zeta, that of the first mode and the absorber.
-        prediction: pole of the filter behind a_hat, in units of omega_1.
+        prediction: pole of the filter behind w_hat, in units of omega_1.
         shaping: pole of the filter on the wanted speed, in units of omega_1.
         yielding: how much progress gives way to a tip left behind, [1/s^2].
     """
@@ -64,7 +65,7 @@ class Compensation:
         shift, shift_rate: n and n', [m], [m/s].
         y, y_rate: y_c and its rate, (3, 1), [m], [m/s].
         surprise: w - w_hat + m, how far aside of y_c the tip is, [m].
-        excess: (f_1 - f_hat_1) / b_1, [m/s^2 s^2].
+        excess: (f_1 - f_hat_1) / b_1, [m].
         gain, free: y_c'' = gain u + free + n'' aside, (3, 3), (3, 1).
     """
 
@@ -111,9 +112,9 @@ def compensation(
     per_demand = -gain[3:, 2] / (radius * gain[2, 2])  # b_j
     compliance = ca.dot(tip * per_demand, 1 / omega**2)
 
-    led, led_rate = _led(memory["demand_chain"], gains.prediction * p["omega1"])
+    bend, bend_rate = _led(memory["bend_chain"], gains.prediction * p["omega1"])
     m, m_rate = ca.vertsplit(memory["absorber"])
-    shift, shift_rate = -compliance * led - m, -compliance * led_rate - m_rate
+    shift, shift_rate = bend - m, bend_rate - m_rate
     y, y_rate, jacobian, turning = _shifted(system)(q, v, model, shift, shift_rate)
     return Compensation(
         memory=memory,
@@ -126,14 +127,14 @@ def compensation(
         y=y,
         y_rate=y_rate,
         surprise=ca.dot(tip, q[3:]) - shift,
-        excess=q[3] / per_demand[0] + led / omega[0] ** 2,
+        excess=q[3] / per_demand[0] - bend / (compliance * omega[0] ** 2),
         gain=jacobian @ gain[:3, :],
         free=jacobian @ drift[:3] + turning,
     )
 
 
 def _led(chain: ca.SX, pole: ca.SX) -> tuple[ca.SX, ca.SX]:
-    """a_hat and its rate from the filter's chain; the zero takes the three poles' lag away."""
+    """w_hat and its rate from the filter's chain; the zero takes the three poles' lag away."""
     lead = 3 / pole
     return chain[0] + lead * chain[1], chain[1] + lead * chain[2]
 
@@ -175,10 +176,10 @@ def rates(now: Compensation, speed: ca.SX, command: ca.SX) -> Fields:
     m, m_rate = ca.vertsplit(memory["absorber"])
     m_acceleration = now.omega1**2 * (4 * gains.damping**2 * now.excess - m)
     m_acceleration -= 4 * gains.damping * now.omega1 * m_rate
-    across = ca.dot(now.aside, command)
+    bend = -now.compliance * ca.dot(now.aside, command)
     return {
         "speed_chain": _filtered(memory["speed_chain"], speed, gains.shaping * now.omega1),
-        "demand_chain": _filtered(memory["demand_chain"], across, gains.prediction * now.omega1),
+        "bend_chain": _filtered(memory["bend_chain"], bend, gains.prediction * now.omega1),
         "absorber": ca.vertcat(m_rate, m_acceleration),
     }
 
@@ -195,7 +196,7 @@ def torques(now: Compensation, rate: Fields, command: ca.SX) -> ca.SX:
     Source: eq. (16) for y_c.
     """
     lead = 3 / (now.gains.prediction * now.omega1)
-    bend = rate["demand_chain"][1] + lead * rate["demand_chain"][2]
-    shift_acceleration = -now.compliance * bend - rate["absorber"][1]
+    bend = rate["bend_chain"][1] + lead * rate["bend_chain"][2]
+    shift_acceleration = bend - rate["absorber"][1]
     wanted = command - now.free - shift_acceleration * now.aside
     return (1 / ca.det(now.gain)) * (ca.adj(now.gain) @ wanted)
