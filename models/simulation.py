@@ -8,7 +8,8 @@ from functools import lru_cache
 import numpy as np
 
 from models.curves import Curve
-from models.kernel import GAINS, Kernel, Kind, build_kernel
+from models.kernel import Kernel, Kind, build_kernel
+from models.loop_vectors import GAINS
 from models.parameters import Parameters
 from models.robots import Robot
 from models.system import Array
