@@ -230,7 +230,7 @@ def _finish(session: Session) -> None:
     """End an edit of the path and say why if it is refused."""
     _leave_past(session)
     if session.editor.finish():
-        session.say("")
+        session.hush()
     elif session.editor.faults:
         reasons = "; ".join(fault.reason for fault in session.editor.faults)
         session.say(f"This path is refused: {reasons}. The previous one is kept.", "warning")

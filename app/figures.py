@@ -6,9 +6,6 @@ import io
 from pathlib import Path
 
 import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -27,12 +24,8 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
     robot = experiment.robot()
     if isinstance(robot, FlexibleFiveBar):
         panels.insert(1, _deflection(robot))
-    figure, axes = plt.subplot_mosaic(
-        [["space", name] for name, _, _ in panels],
-        figsize=(13, 2.1 * len(panels)),
-        width_ratios=(1, 1.25),
-        layout="constrained",
-    )
+    figure = Figure(figsize=(13, 2.1 * len(panels)), layout="constrained")
+    axes = figure.subplot_mosaic([["space", name] for name, _, _ in panels], width_ratios=(1, 1.25))
     figure.suptitle(experiment.title, fontsize=15)
     _draw_space(axes["space"], experiment, runs)
     for name, label, column in panels:
@@ -50,17 +43,15 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
 
 def save(figure: Figure, path: Path) -> None:
     """To a file, the same bytes for the same figure."""
-    with plt.rc_context({"svg.hashsalt": "onpath"}):  # else its names are drawn by lot
+    with matplotlib.rc_context({"svg.hashsalt": "onpath"}):  # else its names are drawn by lot
         figure.savefig(path, metadata=_reproducible(path), dpi=110)
-    plt.close(figure)
 
 
 def draw_history(runs: dict[str, Trajectory]) -> bytes:
     """The lab's plots over the last minute, as PNG."""
     panels = _panels()
-    figure, axes = plt.subplots(
-        len(panels), 1, figsize=(11, 2.2 * len(panels)), sharex=True, layout="constrained"
-    )
+    figure = Figure(figsize=(11, 2.2 * len(panels)), layout="constrained")
+    axes = figure.subplots(len(panels), 1, sharex=True)
     for axis, (_, label, column) in zip(axes, panels, strict=True):
         for run in runs.values():
             _draw_column(axis, run, *column(run))
@@ -72,7 +63,6 @@ def draw_history(runs: dict[str, Trajectory]) -> bytes:
     axes[-1].set_xlabel("t  [s]")
     file = io.BytesIO()
     figure.savefig(file, format="png", dpi=110)
-    plt.close(figure)
     return file.getvalue()
 
 

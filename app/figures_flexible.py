@@ -6,11 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from app.figures import save
 from app.zero_dynamics import Study, critical_alpha, critical_map, highest, study
@@ -23,11 +21,9 @@ RHOS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0)
 
 def draw_zero_dynamics(result: Study, path: Path) -> None:
     """Exponents against alpha for 1 to 6 modes; critical alpha over the path's plane and rho."""
-    figure, axes = plt.subplot_mosaic(
-        [["exponents", "map"], ["exponents", "rho"]],
-        figsize=(13, 7.5),
-        width_ratios=(1.5, 1),
-        layout="constrained",
+    figure = Figure(figsize=(13, 7.5), layout="constrained")
+    axes = figure.subplot_mosaic(
+        [["exponents", "map"], ["exponents", "rho"]], width_ratios=(1.5, 1)
     )
     own = result.parameters
     name = own.plant.replace("_", " ")
@@ -41,7 +37,7 @@ def draw_zero_dynamics(result: Study, path: Path) -> None:
 
 
 def _draw_exponents(axes: Axes, fine: Study) -> None:
-    colours = plt.get_cmap("viridis")(np.linspace(0, 0.9, MOST_MODES))
+    colours = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, MOST_MODES))
     for modes, colour in enumerate(colours, start=1):
         critical = fine.critical[modes - 1]
         label = f"{modes} mode{'s' if modes > 1 else ''}, critical α = {critical:.3f}"

@@ -108,12 +108,21 @@ class Session:
         """Show a sentence to the user."""
         self.message, self.message_level = message, level
 
+    def hush(self) -> None:
+        """Say nothing more, but for robots that still stand still."""
+        self.say("")
+        for name, run in self.runs.items():
+            if run.diverged is not None:
+                self._tell_divergence(name)
+
     # Time
 
     def advance(self, seconds: float) -> None:
         """Simulate `seconds` of simulated time, if running."""
         if not self.running:
             self._owed = 0.0
+            if self.viewing is None:
+                self._bend(seconds)
             return
         dt = time_step(self.parameters)
         self._owed += seconds
@@ -125,9 +134,7 @@ class Session:
     def simulate(self, ticks: int) -> None:
         """Both robots by some ticks, with the same path, settings and push."""
         dt = time_step(self.parameters)
-        if self.editor.advance(ticks * dt):
-            for run in self.runs.values():
-                run.project(self.editor.curve)
+        self._bend(ticks * dt)
         curve = self.editor.curve
         before = {name: run.drive() for name, run in self.runs.items()}
         sample = self.sample()
@@ -156,6 +163,12 @@ class Session:
         }
         self.history.append(Stretch(self.time, ticks, dt, curve, drives, sample))
         self.time += ticks * dt
+
+    def _bend(self, seconds: float) -> None:
+        """Let an edit of the path blend in."""
+        if self.editor.advance(seconds):
+            for run in self.runs.values():
+                run.project(self.editor.curve)
 
     def step_once(self) -> None:
         """One step of a paused lab: the controller's next action, at least a millisecond."""
