@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import casadi as ca
-import casadi as ca
 import numpy as np
 
 from models import five_bar, flexible_five_bar
