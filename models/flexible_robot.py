@@ -56,6 +56,45 @@ class FlexibleParameters(Parameters):
         group="basic",
         label="α",
     )
+    law: str = choice(
+        "redefined",
+        ("redefined", "composite"),
+        "what the controller puts on the path: y with a share of the deflection, or the tip itself",
+        group="basic",
+        label="Output",
+    )
+    tip_damping: float = number(
+        0.3,
+        "",
+        (0.02, 0.7, 0.01),
+        "damping ratio that the waist gives the beam",
+        group="gains",
+        label="Tip damping",
+    )
+    tip_prediction: float = number(
+        1.2,
+        "ω₁",
+        (0.3, 2, 0.1),
+        "how quickly the deflection is foreseen",
+        group="gains",
+        label="Tip prediction",
+    )
+    tip_shaping: float = number(
+        0.25,
+        "ω₁",
+        (0.05, 2, 0.05),
+        "how quickly the wanted speed may change",
+        group="gains",
+        label="Speed shaping",
+    )
+    tip_yielding: float = number(
+        100.0,
+        "1/s²",
+        (0, 200, 5),
+        "how much progress gives way to a tip held back",
+        group="gains",
+        label="Yielding",
+    )
     plant: str = choice(
         "lagrangian",
         PLANTS,

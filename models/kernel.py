@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from models import composite_control as composite
 from models import controllers, forces
 from models.controllers import Gains, Task
 from models.curves import TABLE_SHAPE
@@ -33,6 +34,8 @@ class Kind:
         controller: one of `controllers.NAMES`.
         closed: whether its path is a closed curve.
         level_set: lambda is the paper's s(y) instead of the distance.
+        law: what is put on the path, the "redefined" output, or by "composite" control the tip
+            of a flexible link; see composite_control.py.
         encoder: the controller sees encoder steps and filtered velocities, not the truth.
         free: nothing pushes, no limit or dry friction bears on the torque, and the controller
             acts in every tick; what these need is left out, for speed alone.
@@ -41,6 +44,7 @@ class Kind:
     controller: str
     closed: bool = True
     level_set: bool = False
+    law: str = "redefined"
     encoder: bool = False
     free: bool = False
 
@@ -122,10 +126,12 @@ def _turn(
 
     measured_q, measured_v, reading = _measure(system, kind, state, settings)
     q, v = _ahead(system, state, settings, measured_q, measured_v)
-    y, y_rate = system.with_rate(system.controlled_output)(q, v, settings["model"])
+    beam = _beam(system, state, settings, q, v) if kind.law == "composite" else None
+    y, y_rate = _controlled(system, settings, q, v) if beam is None else (beam.y, beam.y_rate)
     output = _coordinates(frame, kind, state, settings, values[:, 0], y, y_rate)
-    command, error = _command(frame, kind, state, settings, values, (y, y_rate), output)
-    u, acts, saturated = _torque(system, kind, state, settings, q, v, command)
+    command, error = _command(frame, kind, state, settings, values, output, (y, y_rate), beam)
+    wanted, memory = _wanted(system, state, settings, q, v, command, beam)
+    u, acts, saturated = _torque(kind, state, settings, wanted)
     tip, force, effort = _push(system, kind, state, settings, u)
     next_q, next_v = _integrate(system, state, settings, effort, substeps)
 
@@ -139,14 +145,52 @@ def _turn(
         "encoder": _held(kind, acts, reading, state["encoder"]),
         "encoder_rate": _held(kind, acts, measured_v[: system.m], state["encoder_rate"]),
         "u": u,
+        **memory,
         "phase": ca.SX(0) if kind.free else _next_phase(state, settings),
     }
-    now_rate = system.with_rate(system.controlled_output)(q, measured_v, settings["model"])[1]
-    now = _coordinates(frame, kind, state, settings, values[:, 0], y, now_rate)
+    now = output
+    if beam is None:
+        now_rate = _controlled(system, settings, q, measured_v)[1]
+        now = _coordinates(frame, kind, state, settings, values[:, 0], y, now_rate)
     row = state | {"y": tip, "u": u, "force": force} | _now(output, now.theta_rate, settings)
     outputs = [state_layout(system).join(after), log_layout(system).join(row)]
     outputs.append(bases(outputs[0], settings_symbol))
     return ca.Function("turn", [state_symbol, settings_symbol, values], ca.cse(outputs))
+
+
+def _controlled(
+    system: MechanicalSystem, settings: Fields, q: ca.SX, v: ca.SX
+) -> tuple[ca.SX, ca.SX]:
+    """The controlled output and its rate, as the controller believes them."""
+    return system.with_rate(system.controlled_output)(q, v, settings["model"])
+
+
+def _beam(
+    system: MechanicalSystem, state: Fields, settings: Fields, q: ca.SX, v: ca.SX
+) -> composite.Compensation:
+    """What composite control makes of the flexible link, half a tick ahead."""
+    memory = {name: state[name] for name, _ in composite.MEMORY.fields}
+    gains = composite.CompositeGains(*[settings[name] for name in composite.GAINS])
+    later = composite.ahead(memory, settings["dt"] / 2)
+    return composite.compensation(system, q, v, settings["model"], later, gains)
+
+
+def _wanted(
+    system: MechanicalSystem,
+    state: Fields,
+    settings: Fields,
+    q: ca.SX,
+    v: ca.SX,
+    command: ca.SX,
+    beam: composite.Compensation | None,
+) -> tuple[ca.SX, Fields]:
+    """Torque for the commanded y'', and the memory of composite control a tick later."""
+    memory = {name: state[name] for name, _ in composite.MEMORY.fields if name in state}
+    if beam is None:
+        return controllers.linearization(system, q, v, settings["model"], command), memory
+    rate = composite.rates(beam, settings["speed"], command)
+    after = {name: x + settings["dt"] * rate[name] for name, x in memory.items()}
+    return composite.torques(beam, rate, command), after
 
 
 def _next_phase(state: Fields, settings: Fields) -> ca.SX:
@@ -234,7 +278,8 @@ def _coordinates(
 
 def _reference(kind: Kind, state: Fields, settings: Fields) -> tuple[ca.SX, ca.SX]:
     """The tracker's reference point half a tick ahead, and its speed."""
-    task = Task(settings["position"], settings["target"], settings["speed"])
+    speed = state["speed_chain"][0] if kind.law == "composite" else settings["speed"]
+    task = Task(settings["position"], settings["target"], speed)
     theta_ref, dt = state["theta_ref"], settings["dt"]
     rate = controllers.reference_rate(theta_ref, kind.closed, task, dt)
     return theta_ref + dt / 2 * rate, rate
@@ -246,12 +291,15 @@ def _command(
     state: Fields,
     settings: Fields,
     values: ca.SX,
-    measured: tuple[ca.SX, ca.SX],
     output: VirtualOutput,
+    measured: tuple[ca.SX, ca.SX],
+    beam: composite.Compensation | None,
 ) -> tuple[ca.SX, ca.SX]:
     """Commanded y'' and the error to integrate, both (p, 1)."""
     gains = Gains(*[settings[name] for name in GAINS])
-    task = Task(settings["position"], settings["target"], settings["speed"])
+    k5, speed = settings["K5"], settings["speed"]
+    speed = speed if beam is None else composite.wanted_speed(beam, output, k5)
+    task = Task(settings["position"], settings["target"], speed)
     integral = state["integral"]
     if not _tracks(kind):
         across = integral[: frame.p - 1]
@@ -265,16 +313,9 @@ def _command(
 
 
 def _torque(
-    system: MechanicalSystem,
-    kind: Kind,
-    state: Fields,
-    settings: Fields,
-    q: ca.SX,
-    v: ca.SX,
-    command: ca.SX,
+    kind: Kind, state: Fields, settings: Fields, wanted: ca.SX
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
     """Torque of this tick, whether the controller acts in it, whether it saturates."""
-    wanted = controllers.linearization(system, q, v, settings["model"], command)
     limit = settings["torque_limit"]
     fresh = ca.fmin(ca.fmax(wanted, -limit), limit)
     if kind.free:

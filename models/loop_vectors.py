@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from models import composite_control as composite
 from models.layout import Layout
 from models.system import MechanicalSystem
 
@@ -21,6 +22,7 @@ def state_layout(system: MechanicalSystem) -> Layout:
             ("integral", p),  # of xi, or of the tracking error
             ("encoder", m),  # last reading
             ("encoder_rate", m),  # filtered velocity
+            *(composite.MEMORY.fields if n > m else ()),
             ("u", m),  # torque being held
             ("phase", 1),  # ticks since the controller acted
         )
@@ -31,10 +33,11 @@ def settings_layout(system: MechanicalSystem) -> Layout:
     """All that may change between ticks, but for the curve's coefficients."""
     p, k = system.p, len(system.parameter_names)
     scalars = (*GAINS, "position", "target", "speed")
+    flexible = tuple(composite.GAINS) if system.n > system.m else ()
     realism = ("torque_limit", "coulomb", "encoder_step", "encoder_filter", "hold_ticks", "dt")
     return Layout(
         (
-            *((name, 1) for name in scalars),
+            *((name, 1) for name in (*scalars, *flexible)),
             ("level_centre", 2),
             ("level_weights", 2),
             ("level_constant", 1),

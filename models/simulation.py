@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from models import composite_control
 from models.curves import Curve
 from models.kernel import Kernel, Kind, build_kernel
 from models.loop_vectors import GAINS
@@ -50,6 +51,7 @@ def kind_of(
         closed=curve.closed,
         level_set=parameters.across == "level_set" and curve.conic() is not None,
         encoder=parameters.encoder_counts > 0,
+        law=getattr(parameters, "law", "redefined"),
         free=plain and every_tick and untouched,
     )
 
@@ -93,10 +95,23 @@ def settings_vector(
             "hold_active": float(push.hold is not None),
             "hold_anchor": anchor,
             "hold_tangent": tangent,
+            **_composite_gains(kernel, parameters),
             "plant": robot.plant(parameters),
             "model": robot.model(parameters),
         }
     )
+
+
+def _composite_gains(kernel: Kernel, parameters: Parameters) -> dict[str, float]:
+    """Those of composite control, where the robot has a use for them."""
+    names = kernel.settings.slices.keys() & composite_control.GAINS.keys()
+    return {name: getattr(parameters, name) for name in names}
+
+
+def _empty_memory(kernel: Kernel) -> dict[str, Array]:
+    """Composite control's, at the start of a run."""
+    fields = composite_control.MEMORY.fields
+    return {name: np.zeros(size) for name, size in fields if name in kernel.state.slices}
 
 
 def first_state(
@@ -123,6 +138,7 @@ def first_state(
             "encoder_rate": velocity[:m],
             "u": np.zeros(m),
             "phase": 0.0,
+            **_empty_memory(kernel),
         }
     )
 
