@@ -35,7 +35,7 @@ def _(command: c.SetParameter, session: Session) -> None:
 
 @apply.register(c.ResetParameters)
 def _(_: c.ResetParameters, session: Session) -> None:
-    session.set_parameters(type(session.parameters)())
+    session.set_parameters(session.entry.lab)
 
 
 @apply.register(c.ChooseRobot)

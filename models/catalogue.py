@@ -19,7 +19,8 @@ class Entry:
         label: as shown.
         text: a sentence about it.
         picture: name of an asset.
-        parameters: the type of its parameters; their defaults are the robot's.
+        parameters: the type of its parameters, with the defaults of the experiments.
+        lab: what the lab starts with.
         make: the instance for some parameters; structural ones select it, others do not matter.
     """
 
@@ -28,6 +29,7 @@ class Entry:
     text: str
     picture: str
     parameters: type[Parameters]
+    lab: Parameters
     make: Callable[[Parameters], Robot]
 
 
@@ -37,6 +39,7 @@ FIVE_BAR = Entry(
     text="Two motors, rigid links, a pen in a vertical plane.",
     picture="five_bar.png",
     parameters=FiveBarParameters,
+    lab=FiveBarParameters(),
     make=lambda _: rigid_five_bar(),
 )
 
@@ -46,6 +49,7 @@ FLEXIBLE = Entry(
     text="Three motors, a last link that bends: the tip is not where the motors put it.",
     picture="flexible_five_bar.png",
     parameters=FlexibleParameters,
+    lab=FlexibleParameters(law="composite"),  # the only one that survives every pull at the tip
     make=robot_for,
 )
 

@@ -11,6 +11,7 @@ import numpy as np
 from models import five_bar, flexible_five_bar
 from models.beam import MOST_MODES, BeamModes, beam_modes
 from models.flexible_five_bar import PLANTS, RIGID, FlexibleLinks
+from models.forces import Grip, SpringLimits
 from models.frames import Frame, SlantedPlane
 from models.parameters import Parameters, choice, number
 from models.robots import collapse, first_fault
@@ -24,6 +25,8 @@ BENT = (
     " control too slow or the controller's model too wrong"
 )
 UNSTABLE = "the output is on the path, the inside is not: unstable zero dynamics"
+# The bare tip is light and soft (15 N/m): a stiff grip held over a tick would chatter.
+SOFT_GRIP = Grip(SpringLimits(100.0, 2.0, 1.0), SpringLimits(500.0, 4.0, 5.0))
 PIECES = 10  # straight bars that the bent link is drawn with
 _SHARES = np.linspace(0.0, 1.0, PIECES + 1)
 
@@ -199,6 +202,7 @@ class FlexibleFiveBar:
     name: str = "flexible"
     label: str = "Five-bar with a flexible link"
     substeps: int = 2
+    grip: Grip = SOFT_GRIP
 
     def __post_init__(self) -> None:
         system = flexible_five_bar.flexible_five_bar(self.modes, self.plant_name)

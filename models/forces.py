@@ -19,24 +19,36 @@ class SpringLimits:
     largest: float
 
 
-HAND = SpringLimits(stiffness=300.0, damping=10.0, largest=15.0)
-HOLD = SpringLimits(stiffness=2000.0, damping=40.0, largest=30.0)
+@dataclass(frozen=True, slots=True)
+class Grip:
+    """How a hand and a brake take hold of a robot's end-point."""
+
+    hand: SpringLimits = SpringLimits(stiffness=300.0, damping=10.0, largest=15.0)
+    hold: SpringLimits = SpringLimits(stiffness=2000.0, damping=40.0, largest=30.0)
 
 
-def hand(y: ca.SX, y_rate: ca.SX, target: ca.SX, active: ca.SX) -> ca.SX:
+def hand(y: ca.SX, y_rate: ca.SX, target: ca.SX, active: ca.SX, limits: SpringLimits) -> ca.SX:
     """Spring-damper from the end-point to where the hand is, saturated, (p, 1), [N]."""
-    force = HAND.stiffness * (target - y) - HAND.damping * y_rate
+    force = limits.stiffness * (target - y) - limits.damping * y_rate
     size = ca.sqrt(ca.dot(force, force) + TINY)
-    return (active * ca.fmin(1, HAND.largest / size)) * force
+    return (active * ca.fmin(1, limits.largest / size)) * force
 
 
-def hold(y: ca.SX, y_rate: ca.SX, anchor: ca.SX, tangent: ca.SX, active: ca.SX) -> ca.SX:
+def hold(
+    y: ca.SX,
+    y_rate: ca.SX,
+    anchor: ca.SX,
+    tangent: ca.SX,
+    active: ca.SX,
+    limits: SpringLimits,
+) -> ca.SX:
     """Stiff brake along the tangent at the anchor, nothing across it, (p, 1), [N].
 
     Source: the obstruction of experiment 2.
     """
-    along = HOLD.stiffness * ca.dot(tangent, y - anchor) + HOLD.damping * ca.dot(tangent, y_rate)
-    return (active * ca.fmin(ca.fmax(-along, -HOLD.largest), HOLD.largest)) * tangent
+    ahead, rate = ca.dot(tangent, y - anchor), ca.dot(tangent, y_rate)
+    along = limits.stiffness * ahead + limits.damping * rate
+    return (active * ca.fmin(ca.fmax(-along, -limits.largest), limits.largest)) * tangent
 
 
 def dry_friction(v: ca.SX, coulomb: ca.SX) -> ca.SX:

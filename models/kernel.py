@@ -24,6 +24,7 @@ from models.system import MechanicalSystem
 from models.virtual_output import LevelSet, VirtualOutput, virtual_output
 
 Fields = dict[str, ca.SX]
+DEFAULT_GRIP = forces.Grip()
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,12 +81,19 @@ class Kernel:
         return ca.Function("block", [state, settings, table], [after, ca.horzcat(*rows)])
 
 
-def build_kernel(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int = 1) -> Kernel:
+def build_kernel(
+    system: MechanicalSystem,
+    frame: Frame,
+    kind: Kind,
+    substeps: int = 1,
+    grip: forces.Grip = DEFAULT_GRIP,
+) -> Kernel:
     """Assemble the tick.
 
     Args:
         substeps: Runge-Kutta steps per tick; the fastest mode times dt / substeps must stay
             below 2.8.
+        grip: how a hand and a brake take hold of the end-point.
 
     Raises:
         ValueError: an unknown controller.
@@ -94,7 +102,7 @@ def build_kernel(system: MechanicalSystem, frame: Frame, kind: Kind, substeps: i
         raise ValueError(f"controller {kind.controller!r}: expected one of {controllers.NAMES}")
     layouts = state_layout(system), settings_layout(system), log_layout(system)
     bases = _bases(system, kind)
-    return Kernel(bases, _turn(system, frame, kind, substeps, bases), *layouts)
+    return Kernel(bases, _turn(system, frame, kind, (substeps, grip), bases), *layouts)
 
 
 def _tracks(kind: Kind) -> bool:
@@ -117,9 +125,13 @@ def _bases(system: MechanicalSystem, kind: Kind) -> ca.Function:
 
 
 def _turn(
-    system: MechanicalSystem, frame: Frame, kind: Kind, substeps: int, bases: ca.Function
+    system: MechanicalSystem,
+    frame: Frame,
+    kind: Kind,
+    world: tuple[int, forces.Grip],
+    bases: ca.Function,
 ) -> ca.Function:
-    """All scalar operations of a tick; see `Kernel.turn`."""
+    """All scalar operations of a tick; see `Kernel.turn`. `world`: substeps and grip."""
     state_symbol, state = state_layout(system).symbols("state")
     settings_symbol, settings = settings_layout(system).symbols("settings")
     values = ca.SX.sym("values", TABLE_SHAPE[0], 2 if _tracks(kind) else 1)
@@ -132,7 +144,8 @@ def _turn(
     command, error = _command(frame, kind, state, settings, values, output, (y, y_rate), beam)
     wanted, memory = _wanted(system, state, settings, q, v, command, beam)
     u, acts, saturated = _torque(kind, state, settings, wanted)
-    tip, force, effort = _push(system, kind, state, settings, u)
+    substeps, grip = world
+    tip, force, effort = _push(system, kind, state, settings, u, grip)
     next_q, next_v = _integrate(system, state, settings, effort, substeps)
 
     after = {
@@ -325,17 +338,21 @@ def _torque(
 
 
 def _push(
-    system: MechanicalSystem, kind: Kind, state: Fields, settings: Fields, u: ca.SX
+    system: MechanicalSystem,
+    kind: Kind,
+    state: Fields,
+    settings: Fields,
+    u: ca.SX,
+    grip: forces.Grip,
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
     """The actual end-point, the force on it, and all generalized forces, held over the tick."""
     y, y_rate = system.with_rate(system.output)(state["q"], state["v"], settings["plant"])
     unactuated = ca.SX(system.n - system.m, 1)
     if kind.free:
         return y, ca.SX.zeros(system.p, 1), ca.vertcat(u, unactuated)
-    pull = forces.hand(y, y_rate, settings["hand_target"], settings["hand_active"])
-    brake = forces.hold(
-        y, y_rate, settings["hold_anchor"], settings["hold_tangent"], settings["hold_active"]
-    )
+    pull = forces.hand(y, y_rate, settings["hand_target"], settings["hand_active"], grip.hand)
+    where = settings["hold_anchor"], settings["hold_tangent"]
+    brake = forces.hold(y, y_rate, *where, settings["hold_active"], grip.hold)
     force = ca.SX.sym("force", system.p)
     transposed = ca.Function(
         "transposed",

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import five_bar
+from models.forces import Grip
 from models.frames import Frame, Plane
 from models.parameters import FiveBarParameters, Parameters
 from models.system import Array, MechanicalSystem
@@ -44,6 +45,11 @@ class Robot(Protocol):
     @property
     def substeps(self) -> int:
         """Runge-Kutta steps per tick."""
+        ...
+
+    @property
+    def grip(self) -> Grip:
+        """How a hand and a brake take hold of its end-point."""
         ...
 
     @property
@@ -102,6 +108,7 @@ class RigidFiveBar:
     name: str = "five_bar"
     label: str = "Five-bar linkage"
     substeps: int = 1
+    grip: Grip = field(default_factory=Grip)
     coordinate_names: tuple[str, ...] = ("q1_rad", "q2_rad")
 
     @property
@@ -144,7 +151,9 @@ class RigidFiveBar:
     def place(self, y: Array) -> Array:
         """See `Robot.place`."""
         l1, l4 = self._lengths
-        return np.stack([y[..., 0] + l4, np.zeros(y.shape[:-1]), y[..., 1] + l1], axis=-1)
+        points = np.zeros((*y.shape[:-1], 3))
+        points[..., 0], points[..., 2] = y[..., 0] + l4, y[..., 1] + l1
+        return points
 
     def unplace(self, point: Array) -> Array:
         """See `Robot.unplace`."""
@@ -180,6 +189,9 @@ def first_fault(
     Args:
         checks: (bad rows as booleans, reason).
     """
+    if np.abs(v).max() <= FASTEST_JOINT and np.isfinite(q).all():  # not so if v has a NaN
+        if not any(bad.any() for bad, _ in checks):
+            return None
     finite = np.isfinite(q).all(-1) & np.isfinite(v).all(-1)
     fast = np.abs(np.where(np.isfinite(v), v, 0)).max(-1) > FASTEST_JOINT
     every = [

@@ -59,7 +59,7 @@ def kind_of(
 @lru_cache(maxsize=64)
 def kernel_of(robot: Robot, kind: Kind) -> Kernel:
     """The kernel of a robot and kind, built once."""
-    return build_kernel(robot.system, robot.frame, kind, robot.substeps)
+    return build_kernel(robot.system, robot.frame, kind, robot.substeps, robot.grip)
 
 
 def time_step(parameters: Parameters) -> float:

@@ -159,7 +159,7 @@ def test_compiled_and_interpreted_loops_agree(
     ]
     assert np.abs(runs[0][1] - runs[1][1]).max() < 1e-12
     fields = kernel.log.unpack(runs[0][1])
-    assert np.ptp(fields["y"][:, 1]) > 0.02 and np.abs(fields["force"]).max() > 1
+    assert np.ptp(fields["y"][:, 1]) > 0.02 and np.abs(fields["force"]).max() > 0.9
 
 
 def pulled(alpha: float) -> tuple[Array, Array]:
