@@ -144,30 +144,26 @@ def _turn(
     command, error = _command(frame, kind, state, settings, values, output, (y, y_rate), beam)
     wanted, memory = _wanted(system, state, settings, q, v, command, beam)
     u, acts, saturated = _torque(kind, state, settings, wanted)
-    substeps, grip = world
-    tip, force, effort = _push(system, kind, state, settings, u, grip)
-    next_q, next_v = _integrate(system, state, settings, effort, substeps)
+    tip, force, effort = _push(system, kind, state, settings, u, world[1])
 
     after = {
-        "q": next_q,
-        "v": next_v,
+        **_integrate(system, state, settings, effort, world[0]),
         "theta": output.theta,
         "theta_rate": output.theta_rate,
         "theta_ref": state["theta_ref"] + settings["dt"] * _reference(kind, state, settings)[1],
         "integral": state["integral"] + _interval(kind, settings, acts, saturated) * error,
-        "encoder": _held(kind, acts, reading, state["encoder"]),
-        "encoder_rate": _held(kind, acts, measured_v[: system.m], state["encoder_rate"]),
-        "u": u,
+        **_remembered(kind, state, acts, reading, measured_v[: system.m]),
         **memory,
+        "u": u,
         "phase": ca.SX(0) if kind.free else _next_phase(state, settings),
     }
-    now = output
-    if beam is None:
-        now_rate = _controlled(system, settings, q, measured_v)[1]
-        now = _coordinates(frame, kind, state, settings, values[:, 0], y, now_rate)
-    row = state | {"y": tip, "u": u, "force": force} | _now(output, now.theta_rate, settings)
-    outputs = [state_layout(system).join(after), log_layout(system).join(row)]
-    outputs.append(bases(outputs[0], settings_symbol))
+    seen = output
+    if beam is None:  # the log's speed is from velocities as they are measured
+        own = _controlled(system, settings, q, measured_v)
+        seen = _coordinates(frame, kind, state, settings, values[:, 0], *own)
+    row = state | {"y": tip, "u": u, "force": force} | _now(output, seen.theta_rate, settings)
+    later = state_layout(system).join(after)
+    outputs = [later, log_layout(system).join(row), bases(later, settings_symbol)]
     return ca.Function("turn", [state_symbol, settings_symbol, values], ca.cse(outputs))
 
 
@@ -269,9 +265,14 @@ def _now(output: VirtualOutput, theta_rate: ca.SX, settings: Fields) -> Fields:
     }
 
 
-def _held(kind: Kind, acts: ca.SX, new: ca.SX, old: ca.SX) -> ca.SX:
+def _remembered(kind: Kind, state: Fields, acts: ca.SX, reading: ca.SX, rate: ca.SX) -> Fields:
     """What the encoders remember: exact sensing needs no sampling."""
-    return ca.if_else(acts, new, old) if kind.encoder else new
+    if not kind.encoder:
+        return {"encoder": reading, "encoder_rate": rate}
+    return {
+        "encoder": ca.if_else(acts, reading, state["encoder"]),
+        "encoder_rate": ca.if_else(acts, rate, state["encoder_rate"]),
+    }
 
 
 def _coordinates(
@@ -366,7 +367,7 @@ def _push(
 
 def _integrate(
     system: MechanicalSystem, state: Fields, settings: Fields, tau: ca.SX, substeps: int
-) -> tuple[ca.SX, ca.SX]:
+) -> Fields:
     """Classical Runge-Kutta of the plant over one tick with generalized forces tau held."""
     slope = ca.Function(
         "slope",
@@ -385,4 +386,4 @@ def _integrate(
         a4 = slope(ahead + half * h * a2, v + h * a3, tau, plant)
         early, late = a1 + (a2 + a3), (a2 + a3) + a4
         q, v = ahead + h * sixth * early, v + sixth * (early + late)
-    return q, v
+    return {"q": q, "v": v}
