@@ -135,7 +135,6 @@ def _turn(
     state_symbol, state = state_layout(system).symbols("state")
     settings_symbol, settings = settings_layout(system).symbols("settings")
     values = ca.SX.sym("values", TABLE_SHAPE[0], 2 if _tracks(kind) else 1)
-
     measured_q, measured_v, reading = _measure(system, kind, state, settings)
     q, v = _ahead(system, state, settings, measured_q, measured_v)
     beam = _beam(system, state, settings, q, v) if kind.law == "composite" else None
