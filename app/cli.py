@@ -256,3 +256,7 @@ def _table(result: dict, reasons: dict[str, str]) -> str:
         if reasons[controller]:
             lines.append(f"    {reasons[controller]}")
     return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main()

@@ -18,12 +18,12 @@ import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 import viser
 import websockets.asyncio.server
-from viser import _gui_api, _gui_handles, _scene_api, _viser
+from viser import _gui_api, _gui_handles, _icons, _scene_api, _viser
 from viser import _messages as wire
 from viser.infra import ClientId, WebsockClientConnection, WebsockMessageHandler
 from websockets.asyncio.server import ServerConnection
@@ -105,6 +105,7 @@ def make_server(
         PortInUse: where viser alone would move on to the next port without a word.
         OSError: the address cannot be bound.
     """
+    _cache_icons()
     listener = _listen(host, port)
     door = Door(allowed_origins, local_only=is_loopback(host))
     with _guarded_serve(listener, door, limits):
@@ -113,6 +114,14 @@ def make_server(
     harden(server, limits=limits)
     door.open = True
     return server
+
+
+def _cache_icons() -> None:
+    """viser reads its archive of icons anew for every button, 25 ms each; once is enough."""
+    if not hasattr(_icons.svg_from_icon, "cache_info"):
+        cached: Any = lru_cache(maxsize=None)(_icons.svg_from_icon)
+        for module in (_icons, _gui_api, _gui_handles):
+            setattr(module, "svg_from_icon", cached)  # noqa: B010, the module's own function
 
 
 def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app import meshes, palette
+from app.node_update import update_node
 from app.poses import Poses, trace_segments
 from app.snapshot import RobotView, TrackerName
 from app.stage import MIDDLE, add_copies
@@ -67,6 +68,15 @@ def part_looks(name: str, robot: RobotView) -> tuple[list[tuple[float, ...]], li
     return [*[BEARING] * joints, PEN, *discs, *[EXTRA] * extras], [c.linear for c in colours]
 
 
+def _add_traces(scene: viser.SceneApi, names: list[str]) -> viser.LineSegmentsHandle:
+    return scene.add_line_segments(
+        "/traces",
+        np.zeros((TRACE_SEGMENTS * len(names), 2, 3)),
+        np.concatenate([fading(palette.CONTROLLERS[name]) for name in names]),
+        thickness=0.006,
+    )
+
+
 class Machine:
     """Nodes for all robots together, as few as can be.
 
@@ -84,8 +94,8 @@ class Machine:
         robots: list[RobotView],
         poses: Poses,
     ) -> None:
-        self._bases = bases
-        self._lengths = poses.lengths
+        self._bases, self._lengths = bases, poses.lengths
+        self._drawn: Poses | None = None
         named = list(zip(bases, robots, strict=True))
         self._links = add_copies(
             scene,
@@ -113,30 +123,29 @@ class Machine:
             scales=np.tile((GRIP_RADIUS, 0.01, GRIP_RADIUS), (len(bases), 1)),
             opacity=0.22,
         )
-        self._traces = scene.add_line_segments(
-            "/traces",
-            np.zeros((TRACE_SEGMENTS * len(bases), 2, 3)),
-            np.concatenate([fading(palette.CONTROLLERS[name]) for name in bases]),
-            thickness=0.006,
-        )
+        self._traces = _add_traces(scene, list(bases))
         self._add_force(scene)
         self.update(poses)
 
     def update(self, poses: Poses) -> None:
-        """Four assignments, five with a force; viser sends none for an array that is the same."""
-        self._links.batched_positions = poses.bars
-        self._links.batched_wxyzs = poses.quaternions
+        """Three messages, four with a force, none when nothing has moved."""
+        if self._drawn is not None and poses.same(self._drawn):
+            return
+        self._drawn = poses
+        links = {"batched_positions": poses.bars, "batched_wxyzs": poses.quaternions}
         if np.abs(poses.lengths - self._lengths).max() > 1e-4:
             self._lengths = poses.lengths
-            self._links.batched_scales = link_scales(poses.lengths)
-        self._parts.batched_positions = poses.parts
-        self.grips.batched_positions = poses.tips
+            links["batched_scales"] = link_scales(poses.lengths)
+        update_node(self._links, **links)
+        update_node(self._parts, batched_positions=poses.parts)
+        update_node(self.grips, batched_positions=poses.tips)
         acts = bool(np.abs(poses.forces).max() > FORCE_SHOWN)
         if acts:
             tails = poses.tips - [0.0, 0.01, 0.0]
             arrows = np.stack([tails, tails + FORCE_SCALE * poses.forces], axis=1)
-            self._arrows.points = arrows.astype(np.float32)
-        self._arrows.visible = acts
+            update_node(self._arrows, points=arrows)
+        if self._arrows.visible != acts:
+            self._arrows.visible = acts
 
     def update_traces(self, robots: list[RobotView]) -> None:
         """Redraws the traces and says how large each force is."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from app.loop_store import LoopStore
 from models.curves import Curve
 from models.distance import near_distance
 from models.kernel import Kind
+from models.layout import Layout
 from models.parameters import Parameters
 from models.robots import Robot
 from models.simulation import Push, first_state, kernel_of, kind_of, settings_vector
@@ -78,7 +80,13 @@ class PlantRun:
 
     def shown(self) -> dict[str, np.ndarray]:
         """The last log row by name."""
-        return kernel_of(self.robot, self.kind).log.unpack(self.row)
+        return self.log.unpack(self.row)
+
+    def speed(self, curve: Curve) -> float:
+        """Along the path, [m/s]."""
+        slices = self.log.slices
+        per_radian = math.hypot(*curve.at(self.row[slices["theta"]][0], 1))
+        return per_radian * float(self.row[slices["theta_rate"]][0])
 
     def drive(self) -> Drive:
         """The inputs and state as history keeps them."""
@@ -101,8 +109,7 @@ class PlantRun:
         if self.diverged is not None:
             return
         state, rows = store.get(self.robot, self.kind).run(self.state, self.settings, table, ticks)
-        log = kernel_of(self.robot, self.kind).log
-        fields = log.unpack(rows)
+        fields = self.log.unpack(rows)
         fault = self.robot.fault(fields["q"], fields["v"], parameters)
         if fault is None and not np.isfinite(state).all():
             fault = (len(rows), "the numbers have left the range of a computer")
@@ -137,6 +144,7 @@ class PlantRun:
         self._inputs = inputs
         self.kind: Kind = kind_of(self.controller, parameters, curve, push)
         kernel = kernel_of(self.robot, self.kind)
+        self.log: Layout = kernel.log
         self.settings = settings_vector(self.robot, kernel, parameters, curve, push)
 
     def _fill_row(self, curve: Curve) -> None:

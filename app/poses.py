@@ -12,6 +12,7 @@ from app.snapshot import RobotView
 
 PEN_DEPTH = 0.0103
 """y of the pen's centre [m], such that it touches the plane y = 0."""
+UNSEEN = 1e-5
 MARKER_DEPTHS = (-0.008, -0.0095)
 """y of a marker's two discs [m]: before the path and its control points."""
 
@@ -69,6 +70,11 @@ class Poses:
     parts: np.ndarray
     tips: np.ndarray
     forces: np.ndarray
+
+    def same(self, other: Poses) -> bool:
+        """Whether nobody could see a difference: 10 µm, 10 µN."""
+        pairs = ((self.parts, other.parts), (self.bars, other.bars), (self.forces, other.forces))
+        return all(float(np.abs(one - two).max()) < UNSEEN for one, two in pairs)
 
     def is_finite(self) -> bool:
         """Whether all of it can be drawn."""

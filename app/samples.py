@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+import numpy as np
+
 from models.layout import Layout
 from models.robots import Robot
 
@@ -26,3 +28,13 @@ def sample_layout(robot: Robot) -> Layout:
             ("y", p),
         )
     )
+
+
+@lru_cache(maxsize=64)
+def places(log: Layout, sample: Layout) -> np.ndarray:
+    """Where a sample's entries lie in a log row; 0 for those that are not in it."""
+    found: list[int] = []
+    for name, size in sample.fields:
+        where = log.slices.get(name)
+        found.extend([0] * size if where is None else range(where.start, where.stop))
+    return np.array(found)

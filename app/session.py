@@ -18,7 +18,7 @@ from app.history import History, Stretch
 from app.loop_store import LoopStore
 from app.path_editor import PathEditor
 from app.plant_run import PlantRun
-from app.samples import sample_layout
+from app.samples import places, sample_layout
 from app.snapshot import PathView
 from models.catalogue import FIVE_BAR, Entry
 from models.controllers import NAMES
@@ -82,7 +82,7 @@ class Session:
 
     def _set_up(self, entry: Entry) -> None:
         self.entry = entry
-        parameters, editor = self._benches.get(entry.name, (entry.parameters(), None))
+        parameters, editor = self._benches.get(entry.name, (entry.lab, None))
         self.parameters: Parameters = parameters
         self.robot: Robot = entry.make(parameters)
         self.editor = editor or PathEditor(self.robot, self.presets["circle"])
@@ -294,13 +294,10 @@ class Session:
 
     def sample(self) -> np.ndarray:
         """Now, shape (robots, sample_layout.size), float32."""
-        curve, values = self.editor.curve, []
-        for run in self.runs.values():
-            row = run.shown()
-            per_radian = float(np.linalg.norm(curve.at(row["theta"][0], 1)))
-            derived = {"distance": run.distance, "speed": per_radian * row["theta_rate"]}
-            fields = self.sample_layout.fields
-            values.append(
-                np.concatenate([np.ravel(derived.get(n, row.get(n, 0.0))) for n, _ in fields])
-            )
-        return np.array(values, dtype=np.float32)
+        layout = self.sample_layout
+        samples = np.empty((len(self.runs), layout.size), dtype=np.float32)
+        for sample, run in zip(samples, self.runs.values(), strict=True):
+            sample[:] = run.row[places(run.log, layout)]
+            sample[layout.slices["distance"]] = run.distance
+            sample[layout.slices["speed"]] = run.speed(self.editor.curve)
+        return samples

@@ -53,8 +53,7 @@ def _robot_view(session: Session, index: int, name: str, samples: Array | None) 
         most = past.drives[name].max_distance
         return robot_view(robot, name, curve, q, row, most, trace)
     row = run.shown() | {"distance": np.array([run.distance])}
-    per_radian = np.linalg.norm(curve.at(row["theta"][0], 1))
-    row["speed"] = per_radian * row["theta_rate"]
+    row["speed"] = np.array([run.speed(curve)])
     return robot_view(robot, name, curve, row["q"], row, run.max_distance, trace)
 
 

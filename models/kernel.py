@@ -35,19 +35,19 @@ class Kind:
         controller: one of `controllers.NAMES`.
         closed: whether its path is a closed curve.
         level_set: lambda is the paper's s(y) instead of the distance.
-        law: what is put on the path, the "redefined" output, or by "composite" control the tip
-            of a flexible link; see composite_control.py.
         encoder: the controller sees encoder steps and filtered velocities, not the truth.
         free: nothing pushes, no limit or dry friction bears on the torque, and the controller
             acts in every tick; what these need is left out, for speed alone.
+        law: what is put on the path, the "redefined" output, or by "composite" control the tip
+            of a flexible link; see composite_control.py.
     """
 
     controller: str
     closed: bool = True
     level_set: bool = False
-    law: str = "redefined"
     encoder: bool = False
     free: bool = False
+    law: str = "redefined"
 
 
 @dataclass(frozen=True, slots=True)

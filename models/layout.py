@@ -58,6 +58,11 @@ class Layout:
         odd = set(names).symmetric_difference(values)
         if odd:
             raise ValueError(f"missing or unknown: {', '.join(sorted(odd))}")
+        parts = [np.ravel(values[name]) for name in names]
+        if all(part.size == size for part, (_, size) in zip(parts, self.fields, strict=True)):
+            whole = np.concatenate(parts, dtype=float)
+            if np.isfinite(whole).all():
+                return whole
         vector = np.empty(self.size)
         for name, where in self.slices.items():
             value = np.asarray(values[name], dtype=float).ravel()

@@ -189,9 +189,9 @@ def first_fault(
     Args:
         checks: (bad rows as booleans, reason).
     """
-    if np.abs(v).max() <= FASTEST_JOINT and np.isfinite(q).all():  # not so if v has a NaN
-        if not any(bad.any() for bad, _ in checks):
-            return None
+    quiet = np.abs(v).max() <= FASTEST_JOINT and np.isfinite(q).all()  # not so if v has a NaN
+    if quiet and not any(bad.any() for bad, _ in checks):
+        return None
     finite = np.isfinite(q).all(-1) & np.isfinite(v).all(-1)
     fast = np.abs(np.where(np.isfinite(v), v, 0)).max(-1) > FASTEST_JOINT
     every = [

@@ -19,13 +19,28 @@ from models.system import Array, MechanicalSystem
 
 FOLLOWING, TRACKING = Kind("path_following"), Kind("trajectory_tracking")
 DEFAULTS: dict[str, Any] = {
-    "K1": 400, "K2": 40, "K3": 0, "K4": 25, "K5": 10,
-    "position": 0, "target": 0, "speed": 2 * np.pi,
-    "level_centre": (0, 0), "level_weights": (1, 1), "level_constant": 0.05**2,
-    "torque_limit": 1e3, "coulomb": 0, "hold_ticks": 1, "dt": 1e-3,
-    "encoder_step": 1e-3, "encoder_filter": 5e-3,
-    "hand_active": 0, "hand_target": (0, 0),
-    "hold_active": 0, "hold_anchor": (0, 0), "hold_tangent": (0, 1),
+    "K1": 400,
+    "K2": 40,
+    "K3": 0,
+    "K4": 25,
+    "K5": 10,
+    "position": 0,
+    "target": 0,
+    "speed": 2 * np.pi,
+    "level_centre": (0, 0),
+    "level_weights": (1, 1),
+    "level_constant": 0.05**2,
+    "torque_limit": 1e3,
+    "coulomb": 0,
+    "hold_ticks": 1,
+    "dt": 1e-3,
+    "encoder_step": 1e-3,
+    "encoder_filter": 5e-3,
+    "hand_active": 0,
+    "hand_target": (0, 0),
+    "hold_active": 0,
+    "hold_anchor": (0, 0),
+    "hold_tangent": (0, 1),
 }
 
 

@@ -1,0 +1,182 @@
+"""How fast the lab is: closed loops, frames under load, start-up, mouse to picture."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib.util
+import json
+import os
+import platform
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from app.load import first_poses
+from app.loop_store import LoopStore
+from app.mouse_latency import find_browser, mouse_latency
+from app.server import LabServer
+from models.catalogue import FIVE_BAR, FLEXIBLE, Entry
+from models.controllers import NAMES
+from models.curves import circle
+from models.flexible_robot import FlexibleParameters
+from models.loops import InterpretedLoop, Loop, compile_loop, find_compiler
+from models.parameters import Parameters
+from models.simulation import FREE, first_state, kernel_of, kind_of, settings_vector
+
+TICKS = 160  # per timed call
+REFERENCE = Path(__file__).parents[1] / "tests" / "reference.py"
+SETTLED = 4.0  # [s] of load that are not counted
+
+
+def bench(quick: bool = False) -> None:
+    """Print all tables; `quick` leaves out what needs clients or a browser."""
+    load = os.getloadavg()[0]
+    print(f"{platform.platform()}, {os.cpu_count()} cores, load {load:.1f}; medians\n")
+    with tempfile.TemporaryDirectory() as folder:
+        _loops(Path(folder), 20 if quick else 60)
+        _modes(Path(folder), 10 if quick else 30)
+    if not quick:
+        for clients in (1, 20):
+            _crowd(clients)
+        _start_up()
+        _mouse()
+
+
+def _loops(folder: Path, repeats: int) -> None:
+    """Microseconds per simulated millisecond, tiers interleaved, and the ratio to C by hand."""
+    print(f"{'robot':10s} {'controller':20s} {'pushed':7s} {'tier':12s} {'µs/ms':>8s} {'/ C':>6s}")
+    for entry in (FIVE_BAR, FLEXIBLE):
+        for controller in NAMES:
+            for lean in (True, False):
+                _row(entry, controller, lean, folder, repeats)
+    print()
+
+
+def _row(entry: Entry, controller: str, lean: bool, folder: Path, repeats: int) -> None:
+    parameters = entry.parameters()
+    loops, call = _prepared(entry, parameters, controller, lean, folder)
+    times = _interleaved(loops, call, repeats)
+    for tier, value in times.items():
+        ratio = f"{value / times['C by hand']:6.2f}" if "C by hand" in times else ""
+        pushed = "no" if lean else "may be"
+        print(f"{entry.name:10s} {controller:20s} {pushed:7s} {tier:12s} {value:8.2f} {ratio}")
+
+
+def _prepared(
+    entry: Entry, parameters: Parameters, controller: str, lean: bool, folder: Path
+) -> tuple[dict[str, Loop], tuple]:
+    """The loops to time, and what to call them with."""
+    robot, curve = entry.make(parameters), circle(0.05)
+    kernel = kernel_of(robot, kind_of(controller, parameters, curve, FREE if lean else None))
+    start = robot.rest(robot.frame.lift(curve.at(np.array(0.0))))
+    loops: dict[str, Loop] = {"interpreted": InterpretedLoop(kernel)}
+    compiler = find_compiler()
+    if compiler is not None:
+        loops["compiled"] = compile_loop(kernel, folder, compiler)
+        if entry is FIVE_BAR and REFERENCE.exists():
+            general = kernel_of(robot, kind_of("path_following", parameters, curve))
+            loops["C by hand"] = _reference().reference_loop(general, folder, compiler)
+    settings = settings_vector(robot, kernel, parameters, curve, FREE)
+    state = first_state(robot, kernel, curve, start)
+    return loops, (state, settings, curve.table(), TICKS)
+
+
+def _reference():
+    """The hand-written loop of the tests; only a checkout has it."""
+    spec = importlib.util.spec_from_file_location("reference", REFERENCE)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _interleaved(loops: dict[str, Loop], call: tuple, repeats: int) -> dict[str, float]:
+    """Median microseconds per tick of each, taken in turn so that drift hits all alike."""
+    times: dict[str, list[float]] = {name: [] for name in loops}
+    for _ in range(repeats):
+        for name, loop in loops.items():
+            begin = time.perf_counter()
+            loop.run(*call)
+            times[name].append((time.perf_counter() - begin) / TICKS * 1e6)
+    return {name: float(np.median(values)) for name, values in times.items()}
+
+
+def _modes(folder: Path, repeats: int) -> None:
+    """Cost of the flexible follower against the number of modes."""
+    for modes in range(1, 7):
+        parameters = replace(FlexibleParameters(), modes=modes)
+        loops, call = _prepared(FLEXIBLE, parameters, "path_following", True, folder)
+        times = _interleaved(loops, call, repeats)
+        shown = ", ".join(f"{tier} {value:.2f} µs" for tier, value in times.items())
+        print(f"flexible, {modes} modes: {shown}")
+    print()
+
+
+def _crowd(clients: int, seconds: float = 15.0) -> None:
+    """Lateness of frames and display rate with some simulated browsers, in their own process."""
+    lab = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler())
+    try:
+        port = lab.server.get_port()
+        command = [sys.executable, "-m", "app.load", str(port), str(clients), str(seconds)]
+        before = time.process_time()
+        outcome = subprocess.run(command, capture_output=True, text=True, check=True)
+        busy = (time.process_time() - before) / seconds
+        frames = np.array(lab.simulation.lateness)[-round(60 * (seconds - SETTLED)) :] * 1e3
+    finally:
+        lab.stop()
+    seen = json.loads(outcome.stdout)
+    late = f"p50 {np.quantile(frames, 0.5):.2f} ms, p99 {np.quantile(frames, 0.99):.2f} ms"
+    rate = f"slowest display {seen['slowest_hz']:.1f} Hz, {seen['bytes_per_s'] / 1e3:.0f} kB/s each"
+    print(f"{clients:3d} clients: frames late by {late}; {rate}; server {busy:.0%} of a core")
+
+
+def _start_up() -> None:
+    """From the start of the process to the first picture: cold, warm, and without a compiler."""
+    with tempfile.TemporaryDirectory() as cache:
+        for name, extra in (
+            ("cold cache", {}),
+            ("warm cache", {}),
+            ("no compiler", {"CC": "none"}),
+        ):
+            with _serving({"XDG_CACHE_HOME": cache, **extra}) as (port, begun):
+                asyncio.run(asyncio.wait_for(first_poses(port), 30.0))
+                print(f"start-up, {name}: {time.monotonic() - begun:.2f} s to the first picture")
+                time.sleep(2.0)  # lets the cache be filled
+
+
+@contextmanager
+def _serving(environment: dict[str, str]) -> Iterator[tuple[int, float]]:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = int(probe.getsockname()[1])
+    command = [sys.executable, "-m", "app.cli", "--port", str(port), "--log-level", "error"]
+    begun = time.monotonic()
+    quiet = subprocess.DEVNULL
+    process = subprocess.Popen(command, env={**os.environ, **environment}, stdout=quiet)
+    try:
+        yield port, begun
+    finally:
+        process.terminate()
+        process.wait(timeout=10)
+
+
+def _mouse() -> None:
+    """From a mouse move in Chromium to the changed pose that comes back."""
+    browser = find_browser()
+    if browser is None:
+        print("mouse to picture: not measured, it needs Chromium and Playwright")
+        return
+    lab = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler())
+    try:
+        delays = mouse_latency(lab, browser, 20) * 1e3
+    finally:
+        lab.stop()
+    print(f"mouse to picture: median {np.median(delays):.0f} ms, worst {delays.max():.0f} ms")
