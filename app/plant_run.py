@@ -15,7 +15,7 @@ from models.kernel import Kind
 from models.layout import Layout
 from models.parameters import Parameters
 from models.robots import Robot
-from models.simulation import Push, first_state, kernel_of, kind_of, settings_vector
+from models.simulation import Push, first_state, kernel_of, kind_of, pushed, settings_vector
 
 EVERY = 4  # rows between looks at the distance, where the loop does not log it
 
@@ -141,11 +141,14 @@ class PlantRun:
             a is b for a, b in zip(self._inputs, inputs, strict=True)
         ):
             return
-        self._inputs = inputs
+        before, self._inputs = self._inputs, inputs
         self.kind: Kind = kind_of(self.controller, parameters, curve, push)
         kernel = kernel_of(self.robot, self.kind)
         self.log: Layout = kernel.log
-        self.settings = settings_vector(self.robot, kernel, parameters, curve, push)
+        if before is not None and before[0] is parameters and before[1] is curve:
+            self.settings = pushed(kernel, self.settings, push)
+        else:
+            self.settings = settings_vector(self.robot, kernel, parameters, curve, push)
 
     def _fill_row(self, curve: Curve) -> None:
         """The log row of a robot that has not moved yet."""

@@ -22,6 +22,7 @@ from models.kernel import Kernel
 from models.system import Array
 
 BLOCK = 16  # ticks per call of the interpreted loop, about one frame
+SHORT = 100  # ticks, for which a compiled loop keeps the interpreter's lock
 FLAGS = (
     *("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math"),
     "-ffp-contract=off",  # rounds as the interpreter does: both loops agree to the last bit
@@ -108,12 +109,18 @@ class _Block:
 
 
 class CompiledLoop:
-    """Runs machine code through ctypes, which lets other Python threads run. Re-entrant."""
+    """Runs machine code through ctypes. Re-entrant.
+
+    Other Python threads run during a long call, but not during a frame's worth: that takes some
+    microseconds, and to get the interpreter back from a busy thread takes a hundred times as long.
+    """
 
     def __init__(self, kernel: Kernel, library: Path) -> None:
         self.kernel = kernel
-        self._run = ctypes.CDLL(str(library)).onpath_run
-        self._run.argtypes = [ctypes.c_void_p] * 4 + [ctypes.c_longlong]
+        self._short = ctypes.PyDLL(str(library)).onpath_run
+        self._long = ctypes.CDLL(str(library)).onpath_run
+        for function in (self._short, self._long):
+            function.argtypes = [ctypes.c_void_p] * 4 + [ctypes.c_longlong]
 
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """See `Loop.run`."""
@@ -121,7 +128,8 @@ class CompiledLoop:
         rows = np.empty((ticks, self.kernel.log.size))
         inputs = [np.ascontiguousarray(part, dtype=float) for part in (settings, table)]
         pointers = [array.ctypes.data for array in (*inputs, after, rows)]
-        if self._run(*pointers, ticks):
+        run = self._short if ticks <= SHORT else self._long
+        if run(*pointers, ticks):
             raise RuntimeError("the compiled loop failed")
         return after, rows
 
