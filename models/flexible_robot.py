@@ -301,12 +301,23 @@ class FlexibleFiveBar:
         """See `Robot.unplace`."""
         return np.stack([-point[..., 1], point[..., 0], point[..., 2] - self.links.link1], axis=-1)
 
-    def skeleton(self, q: Array) -> tuple[Array, Array]:
-        """See `Robot.skeleton`: links 1 to 3, then link 4 in pieces from its joint with link 3."""
-        return self.bent_skeleton(q, 1.0)
+    def marks(self, q: Array) -> Array:
+        """See `Robot.marks`: where the tip would be if the link were straight."""
+        return self.place(self.rigid_endpoint(q))[None]
 
-    def bent_skeleton(self, q: Array, exaggeration: float) -> tuple[Array, Array]:
-        """The same with the deflection drawn so many times larger than it is.
+    @property
+    def extra_fields(self) -> tuple[tuple[str, int], ...]:
+        """See `Robot.extra_fields`: of the tip [m], of each mode at the tip [m], [J]."""
+        return (("deflection", 1), ("modes", self.modes), ("internal_energy", 1))
+
+    def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
+        """See `Robot.extras`."""
+        modes = q[RIGID:] * self.beam.tip
+        energy = self.internal_energy(q, v, parameters)[None]
+        return {"deflection": modes.sum()[None], "modes": modes, "internal_energy": energy}
+
+    def skeleton(self, q: Array, exaggeration: float = 1.0) -> tuple[Array, Array]:
+        """See `Robot.skeleton`: links 1 to 3, then link 4 in pieces from its joint with link 3.
 
         Returns:
             bars, (4 + PIECES, 2, 3): link 1, 2, 3, link 4 behind its joint with link 1, the beam's

@@ -117,6 +117,7 @@ class CompiledLoop:
 
     def __init__(self, kernel: Kernel, library: Path) -> None:
         self.kernel = kernel
+        self._width = kernel.log.size
         self._short = ctypes.PyDLL(str(library)).onpath_run
         self._long = ctypes.CDLL(str(library)).onpath_run
         for function in (self._short, self._long):
@@ -125,7 +126,7 @@ class CompiledLoop:
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """See `Loop.run`."""
         after = np.array(state, dtype=float)
-        rows = np.empty((ticks, self.kernel.log.size))
+        rows = np.empty((ticks, self._width))
         inputs = [np.ascontiguousarray(part, dtype=float) for part in (settings, table)]
         pointers = [array.ctypes.data for array in (*inputs, after, rows)]
         run = self._short if ticks <= SHORT else self._long

@@ -93,8 +93,24 @@ class Robot(Protocol):
         """The inverse of `place`, (..., 3) -> (..., p)."""
         ...
 
-    def skeleton(self, q: Array) -> tuple[Array, Array]:
-        """Bars (n, 2, 3) and joints (m, 3) in the robot's frame, [m]."""
+    def skeleton(self, q: Array, exaggeration: float = 1.0) -> tuple[Array, Array]:
+        """Bars (n, 2, 3) and joints (m, 3) in the robot's frame, [m].
+
+        The last bar ends at the end-point. A deflection is drawn so many times larger than it is.
+        """
+        ...
+
+    def marks(self, q: Array) -> Array:
+        """Further points worth a mark, (n,) -> (k, 3) in the robot's frame, [m]."""
+        ...
+
+    @property
+    def extra_fields(self) -> tuple[tuple[str, int], ...]:
+        """Names and sizes of what is worth a plot besides what every robot has."""
+        ...
+
+    def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
+        """Their values, shape (size,) each, by name; q and v: (n,)."""
         ...
 
 
@@ -110,6 +126,7 @@ class RigidFiveBar:
     substeps: int = 1
     grip: Grip = field(default_factory=Grip)
     coordinate_names: tuple[str, ...] = ("q1_rad", "q2_rad")
+    extra_fields: tuple[tuple[str, int], ...] = ()
 
     @property
     def _lengths(self) -> tuple[float, float]:
@@ -160,10 +177,18 @@ class RigidFiveBar:
         l1, l4 = self._lengths
         return np.stack([point[..., 0] - l4, point[..., 2] - l1], axis=-1)
 
-    def skeleton(self, q: Array) -> tuple[Array, Array]:
-        """See `Robot.skeleton`."""
+    def skeleton(self, q: Array, exaggeration: float = 1.0) -> tuple[Array, Array]:
+        """See `Robot.skeleton`: nothing bends."""
         l1, l4 = self._lengths
         return five_bar.skeleton(q, l1, self.links.link2.length, l4)
+
+    def marks(self, q: Array) -> Array:
+        """See `Robot.marks`: none."""
+        return np.zeros((0, 3))
+
+    def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
+        """See `Robot.extras`: none."""
+        return {}
 
 
 @lru_cache(maxsize=1)
