@@ -21,6 +21,7 @@ log = logging.getLogger(__name__)
 FRAME = 1 / 60  # [s]
 FADING = 1 / 60  # of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; further behind, the schedule starts anew
+PAUSE = 1e-3  # [s] at least between frames: when this thread is late, the network is later still
 SWITCH_INTERVAL = 5e-4  # [s], so that the network thread does not keep this one waiting
 
 
@@ -115,12 +116,12 @@ class SimulationThread:
 
     def run(self) -> None:
         """Frame after frame, each at its deadline."""
-        count, deadline, last = 0, self._clock(), self._clock() - FRAME
+        last = self._clock()
+        count, deadline = 0, last + FRAME
         while not self._stop.is_set():
             now = self._clock()
-            if now < deadline:
-                self._sleep(deadline - now)
-                now = self._clock()
+            self._sleep(max(deadline - now, PAUSE))
+            now = self._clock()
             late = now - deadline
             self.lateness.append(late)
             deadline = now + FRAME if late > LATEST else deadline + FRAME
