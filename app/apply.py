@@ -71,6 +71,14 @@ def _(command: c.SetCopy, session: Session) -> None:
     session.copy = bool(command.on)
 
 
+@apply.register(c.SetExaggeration)
+def _(command: c.SetExaggeration, session: Session) -> None:
+    factor = _finite(command.factor)
+    if not c.EXAGGERATIONS[0] <= factor <= c.EXAGGERATIONS[-1]:
+        raise ValueError(f"exaggeration {factor:g}: between 1 and {c.EXAGGERATIONS[-1]:g}")
+    session.exaggeration = factor
+
+
 @apply.register(c.SelectPoint)
 def _(command: c.SelectPoint, session: Session) -> None:
     session.editor.select(command.index)

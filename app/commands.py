@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+EXAGGERATIONS = (1.0, 20.0)  # the least and the most
 RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)  # simulated seconds per second
 
 
@@ -112,6 +113,13 @@ class SetCopy:
 
 
 @dataclass(frozen=True, slots=True)
+class SetExaggeration:
+    """How many times larger a deflection is drawn; the simulation knows nothing of it."""
+
+    factor: float
+
+
+@dataclass(frozen=True, slots=True)
 class ChoosePath:
     """Follow a preset."""
 
@@ -207,6 +215,7 @@ Command = (
     | Release
     | Tug
     | SetCopy
+    | SetExaggeration
     | ChoosePath
     | SelectPoint
     | MovePoint

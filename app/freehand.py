@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app import meshes, palette
-from app.drag import Plane, pointer_on_plane
-from app.stage import VIEW_HIGH, VIEW_LOW, add_copies
+from app.drag import pointer_on_plane
+from app.stage import Stage, add_copies
 
 if TYPE_CHECKING:
     import viser
 
-SHEET_DEPTH = -0.06
-"""y of the sheet [m]: before everything else, so that it takes every press."""
 CLOSEST = 0.002
 """Two points of a stroke are at least this far apart [m]."""
 
@@ -25,27 +23,24 @@ class Freehand:
 
     Args:
         scene: the client's scene.
-        bases: origins of the robots' frames in the world, shape (k, 3), [m].
-        plane: the plane of the path in a robot's frame.
+        stage: where the robots stand.
         on_stroke: called with the points in the robot's frame, shape (n, 3), [m].
     """
 
     def __init__(
         self,
         scene: viser.SceneApi,
-        bases: np.ndarray,
-        plane: Plane,
+        stage: Stage,
         on_stroke: Callable[[np.ndarray], None],
     ) -> None:
         self._scene = scene
-        self._bases = bases
-        self._plane = plane
+        self._bases = stage.origins
+        self._plane = stage.path_plane
         self._on_stroke = on_stroke
         self._points: list[np.ndarray] = []
         self._ink: viser.LineSegmentsHandle | None = None
         self.active = True
-        low, high = VIEW_LOW[[0, 2]] + 0.01, VIEW_HIGH[[0, 2]] - [0.01, 0.1]
-        sheet = meshes.sheet(tuple(low), tuple(high), SHEET_DEPTH)
+        sheet = meshes.sheet(*stage.sheet)
         self._sheets = add_copies(
             scene, "/freehand/sheet", sheet, self._bases, palette.SELECTED, opacity=0.1
         )

@@ -9,18 +9,22 @@ import viser
 from app import commands as c
 from app.exports import Exporter
 from app.loop_store import LoopStore
+from app.panels.flexible_panel import FlexiblePanel
 from app.panels.gains_panel import GainsPanel
 from app.panels.keys import add_keys, help_text
 from app.panels.past_panel import PastPanel
 from app.panels.path_panel import PathChoice, PathPanel
 from app.panels.readout import Readout
+from app.panels.robot_panel import RobotPanel
 from app.panels.run_panel import RunPanel
 from app.panels.widgets import on_press, on_user_update
 from app.plots import DISTANCE, LivePlot, MorePlots
 from app.scene import Hooks, Scene
 from app.session import Session
 from app.stage import Insets
+from app.stages import stage_of
 from app.take_snapshot import take_snapshot
+from models.flexible_robot import FlexibleParameters
 
 DISPLAY = 2  # frames of simulation per frame of display: 30 Hz
 SLOW = 6  # frames per update of traces, plots and readouts: 10 Hz
@@ -75,11 +79,16 @@ class LabView:
         self._client.scene.reset()
         self._client.gui.reset()
         self._framed = 0.0
-        self._build(session)
+        robot = session.robot
+        try:
+            self._build(session)
+        finally:
+            if session.robot is not robot:  # another one meanwhile: build that
+                self._robot = robot
 
     def _build(self, session: Session) -> None:
         robot, post = session.robot, session.post
-        self._scene = Scene(self._client, hooks=_hooks(post))
+        self._scene = Scene(self._client, _hooks(post), stage_of(robot))
         self._scene.build(take_snapshot(session, 1.0))
         self._build_panels(session, post)
         add_keys(self._client.gui, post)
@@ -89,14 +98,17 @@ class LabView:
         gui = self._client.gui
         self._progress = gui.add_progress_bar(0.0, visible=False, animated=True)
         self._readout = Readout(gui)
+        RobotPanel(gui, session, post)
         self._parts = [
             LivePlot(gui, session, DISTANCE, height=190),
             RunPanel(gui, session, post),
             PathChoice(gui, session, post),
-            GainsPanel(gui, session, post),
         ]
+        if isinstance(session.parameters, FlexibleParameters):
+            self._parts.append(self._flexible_panel(session, post))
+        self._parts.append(GainsPanel(gui, session, post))
         with gui.add_folder("Path editor", expand_by_default=False):
-            self._parts.append(PathPanel(gui, post, self._draw(post), self._show_zone))
+            self._parts.append(PathPanel(gui, session, post, self._draw(post), self._show_zone))
         self._parts.append(MorePlots(gui, session))
         self._parts.append(PastPanel(gui, session, post, self._exporter))
         copy = gui.add_checkbox(
@@ -105,6 +117,14 @@ class LabView:
         on_user_update(copy, lambda on: post(c.SetCopy(on)))
         helping = gui.add_button("Help and keys", icon=viser.Icon.HELP)
         on_press(helping, self._help)
+
+    def _flexible_panel(self, session: Session, post: Callable[[c.Command], None]) -> FlexiblePanel:
+        pulls = list(stage_of(session.robot).pulls)
+
+        def choose(name: str) -> None:
+            self._scene.pull = name
+
+        return FlexiblePanel(self._client.gui, session, post, pulls, choose, self._exporter.submit)
 
     def _draw(self, post: Callable[[c.Command], None]) -> Callable[[], None]:
         return lambda: self._scene.begin_freehand(lambda stroke: post(c.DrawPath(stroke)))

@@ -10,21 +10,20 @@ from app import meshes, palette
 from app.node_update import update_node
 from app.poses import Poses, trace_segments
 from app.snapshot import RobotView, TrackerName
-from app.stage import MIDDLE, add_copies
+from app.stage import IDENTITY, Stage, add_copies, add_text
 
 if TYPE_CHECKING:
+    import trimesh
     import viser
 
-FORCE_SCALE = 0.005
-"""Length of the force arrow [m/N]."""
 FORCE_SHOWN = 0.05
 """Smallest force that is drawn [N]."""
+LINKS = 4
+"""Bars of a robot that are machined links; further ones are pieces of a strip that bends."""
 TRACE_SEGMENTS = 120
 TRACE_DEPTH = np.zeros((TRACE_SEGMENTS, 2, 3))
 TRACE_DEPTH[:, :, 1] = np.linspace(0.012, 0.002, TRACE_SEGMENTS)[:, None]
 """Behind the path, and older laps behind newer ones [m]."""
-GRIP_RADIUS = 0.02
-"""Of the disc about the end-point that the mouse can take hold of [m]."""
 
 # Scales of the bearing's mesh, which also serves as pen and as the discs of a marker.
 BEARING = (1.0, 1.0, 1.0)
@@ -46,11 +45,11 @@ def link_scales(lengths: np.ndarray) -> np.ndarray:
     return np.column_stack([lengths, np.ones_like(lengths), np.ones_like(lengths)])
 
 
-def link_colours(name: str, robot: RobotView) -> list[np.ndarray]:
-    """Linear colours of a robot's bars: links 1 and 3, which lie behind, are darker."""
+def link_colours(name: str) -> list[np.ndarray]:
+    """Linear colours of a robot's links: links 1 and 3, which lie behind, are darker."""
     front = palette.CONTROLLERS[name]
     back = front.toward(palette.INK, 0.25)
-    return [c.linear for c in (back, front, back, *[front] * (len(robot.bars) - 3))]
+    return [c.linear for c in (back, front, back, front)]
 
 
 def part_looks(name: str, robot: RobotView) -> tuple[list[tuple[float, ...]], list[np.ndarray]]:
@@ -77,12 +76,44 @@ def _add_traces(scene: viser.SceneApi, names: list[str]) -> viser.LineSegmentsHa
     )
 
 
+class Bars:
+    """Some of the bars as copies of one mesh along x from 0 to 1.
+
+    Args:
+        which: of all bars, booleans, shape (n,).
+        colours: of those, linear, shape (k, 3).
+    """
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        name: str,
+        mesh: trimesh.Trimesh,
+        which: np.ndarray,
+        colours: np.ndarray,
+        poses: Poses,
+    ) -> None:
+        self._which = which
+        self._lengths = poses.lengths[which]
+        scales = link_scales(self._lengths)
+        self._node = add_copies(scene, name, mesh, poses.bars[which], colours, scales=scales)
+
+    def update(self, poses: Poses) -> None:
+        """One message."""
+        which, lengths = self._which, poses.lengths[self._which]
+        arrays = {"batched_positions": poses.bars[which], "batched_wxyzs": poses.quaternions[which]}
+        if np.abs(lengths - self._lengths).max() > 1e-4:
+            self._lengths = lengths
+            arrays["batched_scales"] = link_scales(lengths)
+        update_node(self._node, **arrays)
+
+
 class Machine:
     """Nodes for all robots together, as few as can be.
 
     Args:
         scene: the client's scene.
-        bases: origins of the robots' frames in the world, [m], by controller name.
+        stage: where the robots stand.
         robots: as they are at first, in the same order.
         poses: of them.
     """
@@ -90,23 +121,44 @@ class Machine:
     def __init__(
         self,
         scene: viser.SceneApi,
-        bases: dict[str, np.ndarray],
+        stage: Stage,
         robots: list[RobotView],
         poses: Poses,
     ) -> None:
-        self._bases, self._lengths = bases, poses.lengths
+        self._bases = bases = stage.bases
+        self._force_scale = stage.force_scale
         self._drawn: Poses | None = None
-        named = list(zip(bases, robots, strict=True))
-        self._links = add_copies(
+        self._bars = self._add_bars(scene, robots, poses)
+        self._parts = self._add_parts(scene, robots, poses)
+        self._turns = np.tile(IDENTITY, (len(poses.turns), 1))
+        self.grips = add_copies(
             scene,
-            "/links",
-            meshes.link(),
-            poses.bars,
-            np.stack([c for name, robot in named for c in link_colours(name, robot)]),
-            scales=link_scales(poses.lengths),
+            "/grips",
+            meshes.grip(),
+            poses.tips,
+            np.stack([palette.CONTROLLERS[name].linear for name in bases]),
+            opacity=0.22,
         )
+        self._traces = _add_traces(scene, list(bases))
+        self._add_force(scene, stage)
+        self.update(poses)
+
+    def _add_bars(self, scene: viser.SceneApi, robots: list[RobotView], poses: Poses) -> list[Bars]:
+        is_link = np.concatenate([np.arange(len(robot.bars)) < LINKS for robot in robots])
+        links = np.stack([colour for name in self._bases for colour in link_colours(name)])
+        bars = [Bars(scene, "/links", meshes.link(), is_link, links, poses)]
+        if not is_link.all():
+            pieces = [len(robot.bars) - LINKS for robot in robots]
+            front = np.repeat(links[LINKS - 1 :: LINKS], pieces, axis=0)
+            bars.append(Bars(scene, "/beams", meshes.blade(), ~is_link, front, poses))
+        return bars
+
+    def _add_parts(
+        self, scene: viser.SceneApi, robots: list[RobotView], poses: Poses
+    ) -> viser.BatchedMeshHandle:
+        named = zip(self._bases, robots, strict=True)
         looks = [part_looks(name, robot) for name, robot in named]
-        self._parts = add_copies(
+        return add_copies(
             scene,
             "/parts",
             meshes.bearing(),
@@ -114,35 +166,23 @@ class Machine:
             np.stack([colour for _, colours in looks for colour in colours]),
             scales=np.array([scale for scales, _ in looks for scale in scales]),
         )
-        self.grips = add_copies(
-            scene,
-            "/grips",
-            meshes.coin(),
-            poses.tips,
-            np.stack([palette.CONTROLLERS[name].linear for name in bases]),
-            scales=np.tile((GRIP_RADIUS, 0.01, GRIP_RADIUS), (len(bases), 1)),
-            opacity=0.22,
-        )
-        self._traces = _add_traces(scene, list(bases))
-        self._add_force(scene)
-        self.update(poses)
 
     def update(self, poses: Poses) -> None:
-        """Three messages, four with a force, none when nothing has moved."""
+        """Three messages, one more with a force, one with a strip, none when nothing has moved."""
         if self._drawn is not None and poses.same(self._drawn):
             return
         self._drawn = poses
-        links = {"batched_positions": poses.bars, "batched_wxyzs": poses.quaternions}
-        if np.abs(poses.lengths - self._lengths).max() > 1e-4:
-            self._lengths = poses.lengths
-            links["batched_scales"] = link_scales(poses.lengths)
-        update_node(self._links, **links)
-        update_node(self._parts, batched_positions=poses.parts)
+        for bars in self._bars:
+            bars.update(poses)
+        parts = {"batched_positions": poses.parts}
+        if np.abs(poses.turns - self._turns).max() > 1e-3:
+            self._turns = parts["batched_wxyzs"] = poses.turns
+        update_node(self._parts, **parts)
         update_node(self.grips, batched_positions=poses.tips)
         acts = bool(np.abs(poses.forces).max() > FORCE_SHOWN)
         if acts:
             tails = poses.tips - [0.0, 0.01, 0.0]
-            arrows = np.stack([tails, tails + FORCE_SCALE * poses.forces], axis=1)
+            arrows = np.stack([tails, tails + self._force_scale * poses.forces], axis=1)
             update_node(self._arrows, points=arrows)
         if self._arrows.visible != acts:
             self._arrows.visible = acts
@@ -162,7 +202,7 @@ class Machine:
                 label.text = f"force {force:.0f} N" if force >= 1.0 else f"force {force:.1f} N"
             label.visible = force > FORCE_SHOWN
 
-    def _add_force(self, scene: viser.SceneApi) -> None:
+    def _add_force(self, scene: viser.SceneApi, stage: Stage) -> None:
         self._arrows = scene.add_arrows(
             "/force",
             np.zeros((len(self._bases), 2, 3)),
@@ -173,14 +213,8 @@ class Machine:
             visible=False,
         )
         self._force_labels = [
-            scene.add_label(
-                f"/force_labels/{name}",
-                "force",
-                position=base + [MIDDLE + 0.13, 0.0, -0.11],
-                font_size_mode="scene",
-                font_scene_height=0.026,
-                anchor="center-center",
-                visible=False,
-            )
-            for name, base in self._bases.items()
+            add_text(scene, f"/force_labels/{name}", "force", base + stage.force)
+            for name, base in stage.bases.items()
         ]
+        for label in self._force_labels:
+            label.visible = False

@@ -17,7 +17,9 @@ ROUND = 40  # points of a full circle
 FRONT_LAYER = 0.022  # centre of the layer of links 2 and 4 behind the robot's plane [m]
 BACK_LAYER = 0.038  # the same for links 1 and 3 [m]
 BOSS = (FRONT_LAYER + BACK_LAYER) / 2  # centre of the bearings, which span both layers [m]
+PEN_DEPTH = 0.0103  # of the pen's centre, such that it touches the robot's plane [m]
 LINK_THICKNESS = 0.012
+GRIP = (0.02, 0.009, 0.02)  # half-axes of what the mouse takes hold of at an end-point [m]
 FLOOR_DEPTH = 0.17  # of the floor below the base pivot [m]
 
 
@@ -103,6 +105,13 @@ def link() -> trimesh.Trimesh:
 
 
 @lru_cache
+def blade() -> trimesh.Trimesh:
+    """A piece of a thin strip from x = 0 to 1, upright, a little longer so that pieces overlap."""
+    outline = np.array([(1.03, 0.011), (-0.03, 0.011), (-0.03, -0.011), (1.03, -0.011)])
+    return crisp(extruded(outline, -0.0022, 0.0022, 0.0008))
+
+
+@lru_cache
 def bearing() -> trimesh.Trimesh:
     """A bearing through both layers with a bolt head towards the camera, axis y, about its centre.
 
@@ -114,9 +123,9 @@ def bearing() -> trimesh.Trimesh:
 
 
 @lru_cache
-def coin() -> trimesh.Trimesh:
-    """A disc of radius 1 m and thickness 0.2 m with its face at y = 0, to be scaled down."""
-    return crisp(turned([(0.93, 0.0), (1.0, 0.07), (1.0, 0.2)]))
+def grip() -> trimesh.Trimesh:
+    """A lens about an end-point, thick enough that a control point within does not take a press."""
+    return ball(1.0).apply_scale(GRIP)
 
 
 @lru_cache
@@ -141,6 +150,29 @@ def base() -> trimesh.Trimesh:
         extruded(upright, 0.054, 0.066, 0.002),
         extruded(foot, -0.06, 0.13, 0.003),
     )
+
+
+def _upright(solid: trimesh.Trimesh) -> trimesh.Trimesh:
+    """A solid of revolution about y, turned so that its axis is z."""
+    solid.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, [1.0, 0.0, 0.0]))
+    return solid
+
+
+@lru_cache
+def pedestal() -> trimesh.Trimesh:
+    """A round foot and column that carry a turning waist."""
+    floor = -FLOOR_DEPTH
+    foot = [(0.1, floor), (0.1, floor + 0.012), (0.096, floor + 0.016)]
+    column = [(0.045, floor + 0.016), (0.04, floor + 0.03), (0.04, -0.055), (0.05, -0.045)]
+    return crisp(_upright(turned(foot)), _upright(turned(column)))
+
+
+@lru_cache
+def turntable() -> trimesh.Trimesh:
+    """The turning plate on the pedestal, looking the same however it is turned, and its hub."""
+    plate = [(0.062, -0.044), (0.064, -0.042), (0.064, -0.03), (0.061, -0.027)]
+    hub = [(0.024, -0.027), (0.022, -0.014), (0.012, -0.01)]
+    return crisp(_upright(turned(plate)), _upright(turned(hub)))
 
 
 @lru_cache

@@ -14,7 +14,7 @@ from app import commands as c
 from app.loop import Lab
 from app.protocol import unpacked
 from app.server import LabServer
-from app.stage import BASES
+from app.stages import RIGID
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 ARGUMENTS = (
@@ -120,7 +120,7 @@ class _Watch:
         for message in unpacked(raw) if isinstance(raw, bytes) else ():
             tips = message.get("updates", {}).get("batched_positions")
             if message.get("name") == "/grips" and tips is not None:
-                self.tip = np.reshape(tips, (-1, 3))[list(BASES).index(ROBOT)]
+                self.tip = np.reshape(tips, (-1, 3))[list(RIGID.bases).index(ROBOT)]
                 if self.rest is None or np.abs(self.tip - self.rest).max() > MOVED:
                     self.moved_at = self.moved_at or now
 
@@ -128,4 +128,4 @@ class _Watch:
 def _tip(lab: Lab) -> np.ndarray:
     """The end-point in the world, shape (3,), [m]."""
     session = lab.session
-    return BASES[ROBOT] + session.robot.place(session.runs[ROBOT].shown()["y"])
+    return RIGID.bases[ROBOT] + session.robot.place(session.runs[ROBOT].shown()["y"])

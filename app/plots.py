@@ -51,6 +51,9 @@ MORE = {
     "ξ₂ rate across": Plot("ξ₂ [mm/s]", "xi_rate", 1e3, _numbered("ξ'", "xi_rate")),
     "η₁ place along": Plot("η₁ = θ [rad]", "theta", 1.0, lambda _: ["θ"]),
     "η₂ rate along": Plot("η₂ = θ' [rad/s]", "theta_rate", 1.0, lambda _: ["θ'"]),
+    "modes of the link": Plot("each mode, at the tip [mm]", "modes", 1e3, _numbered("f", "modes")),
+    "deflection of the tip": Plot("deflection [mm]", "deflection", 1e3, lambda _: ["w"]),
+    "internal energy": Plot("energy in the link [mJ]", "internal_energy", 1e3, lambda _: ["E"]),
     "force": Plot("force [N]", "force", 1.0, _numbered("F", "force")),
 }
 
@@ -98,6 +101,12 @@ class LivePlot:
         self._handle.remove()
 
 
+def _shown(session: Session) -> list[str]:
+    """Names of the plots that this robot has something for."""
+    fields = dict(session.sample_layout.fields)
+    return [name for name, plot in MORE.items() if plot.field in fields]
+
+
 class MorePlots:
     """A plot to choose."""
 
@@ -109,7 +118,10 @@ class MorePlots:
         self._folder = gui.add_folder("More plots", expand_by_default=False)
         with self._folder:
             self._choice = gui.add_dropdown(
-                "Show", [self.NONE, *MORE], initial_value=self.NONE, hint="Over the last 10 s"
+                "Show",
+                [self.NONE, *_shown(session)],
+                initial_value=self.NONE,
+                hint="Over the last 10 s",
             )
         self._drawn = self.NONE
 

@@ -7,27 +7,26 @@ from math import atan2, hypot
 
 import numpy as np
 
-from app import meshes
 from app.snapshot import RobotView
+from app.stage import Stage
 
-PEN_DEPTH = 0.0103
-"""y of the pen's centre [m], such that it touches the plane y = 0."""
 UNSEEN = 1e-5
 MARKER_DEPTHS = (-0.008, -0.0095)
 """y of a marker's two discs [m]: before the path and its control points."""
 
 
-def waist_angle(bars: np.ndarray) -> float:
+def waist_angle(bars: np.ndarray, away: tuple[float, float] = (0.0, 1.0)) -> float:
     """Angle of the linkage's plane, which is vertical, about the vertical, [rad].
 
     Args:
         bars: link 1, link 2 and others, shape (n, 2, 3), [m].
+        away: to which side of it the plane's normal (-sin, cos) shall look.
     """
     (ax, ay, az), (bx, by, bz) = (bars[:2, 1] - bars[:2, 0]).tolist()
     x, y = by * az - bz * ay, bz * ax - bx * az  # normal of the plane
     if hypot(x, y) < 1e-9:
-        return 0.0
-    return atan2(-x, y) if y >= 0.0 else atan2(x, -y)
+        x, y = away
+    return atan2(-x, y) if x * away[0] + y * away[1] >= 0.0 else atan2(x, -y)
 
 
 def bar_quaternions(along: np.ndarray, waist: np.ndarray) -> np.ndarray:
@@ -60,6 +59,7 @@ class Poses:
         quaternions: how they are turned, scalar first, shape (n, 4).
         lengths: of the bars, shape (n,), [m].
         parts: for each robot its bearings, pen, two marker discs and extra points, (m, 3), [m].
+        turns: how these are turned about the vertical, scalar first, shape (m, 4).
         tips: end-points, shape (k, 3), [m].
         forces: on the end-points, shape (k, 3), [N].
     """
@@ -68,6 +68,7 @@ class Poses:
     quaternions: np.ndarray
     lengths: np.ndarray
     parts: np.ndarray
+    turns: np.ndarray
     tips: np.ndarray
     forces: np.ndarray
 
@@ -89,29 +90,32 @@ class Layout:
     none runs through another; bearings span both.
 
     Args:
-        bases: origins of the robots' frames in the world, shape (k, 3), [m].
-        robots: k robots as they are at first.
+        stage: where k robots stand.
+        robots: as they are at first.
     """
 
-    def __init__(self, bases: np.ndarray, robots: list[RobotView]) -> None:
-        self._bases = bases
+    def __init__(self, stage: Stage, robots: list[RobotView]) -> None:
+        self._bases = stage.origins
+        self._away = float(stage.away[0]), float(stage.away[1])
         n_bars = [len(robot.bars) for robot in robots]
         n_parts = [len(robot.joints) + 3 + len(robot.extra_points) for robot in robots]
         self._bar_robot = np.repeat(np.arange(len(robots)), n_bars)
         self._part_robot = np.repeat(np.arange(len(robots)), n_parts)
-        front, back, boss = meshes.FRONT_LAYER, meshes.BACK_LAYER, meshes.BOSS
+        back, front, boss, pen = stage.depths
         self._bar_depth = np.concatenate([[back, front, back] + [front] * (n - 3) for n in n_bars])
-        self._part_depth = np.concatenate(
-            [
-                [boss] * len(robot.joints) + [PEN_DEPTH, *MARKER_DEPTHS]
-                + [MARKER_DEPTHS[0]] * len(robot.extra_points)
-                for robot in robots
-            ]
-        )  # fmt: skip
+        across, before = list[float](), list[float]()
+        for robot in robots:
+            extras = len(robot.extra_points)
+            across += [*[boss] * len(robot.joints), pen, *[0.0] * (2 + extras)]
+            before += [*[0.0] * (len(robot.joints) + 1), *MARKER_DEPTHS]
+            before += [MARKER_DEPTHS[0]] * extras
+        self._part_depth, depth = np.array(across), np.array(before)
+        self._marks = depth < 0.0  # these face the viewer, however the linkage is turned
+        self._before = np.column_stack([np.zeros_like(depth), depth, np.zeros_like(depth)])
 
     def poses(self, robots: list[RobotView]) -> Poses:
         """The poses at one instant."""
-        waists = np.array([waist_angle(robot.bars) for robot in robots])
+        waists = np.array([waist_angle(robot.bars, self._away) for robot in robots])
         normals = np.stack([-np.sin(waists), np.cos(waists), np.zeros_like(waists)], axis=1)
         bars = np.concatenate([robot.bars for robot in robots])
         along = bars[:, 1] - bars[:, 0]
@@ -119,12 +123,16 @@ class Layout:
         for robot in robots:
             marker = robot.marker[None]
             parts += [robot.joints, robot.tip[None], marker, marker, robot.extra_points]
+        half = np.where(self._marks, 0.0, waists[self._part_robot]) / 2
+        still = np.zeros_like(half)
         return Poses(
             bars=bars[:, 0] + self._offsets(self._bar_robot, self._bar_depth, normals),
             quaternions=bar_quaternions(along, waists[self._bar_robot]),
             lengths=np.sqrt((along * along).sum(axis=1)),
             parts=np.concatenate(parts)
-            + self._offsets(self._part_robot, self._part_depth, normals),
+            + self._offsets(self._part_robot, self._part_depth, normals)
+            + self._before,
+            turns=np.column_stack([np.cos(half), still, still, np.sin(half)]),
             tips=np.stack([robot.tip for robot in robots]) + self._bases,
             forces=np.stack([robot.force for robot in robots]),
         )

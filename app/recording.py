@@ -10,6 +10,7 @@ from app.samples import sample_layout
 from app.scene import Scene
 from app.snapshot import PathView, Snapshot
 from app.stage import set_initial_camera
+from app.stages import stage_of
 from app.take_snapshot import CURVE_POINTS, robot_view
 from models.robots import Robot
 from models.system import Array
@@ -24,8 +25,9 @@ def record_scene(robot: Robot, history: list[Stretch]) -> bytes:
     """
     server = make_server(port=0)
     try:
-        set_initial_camera(server)
-        scene = Scene(server)  # type: ignore[arg-type]  # has the scene and atomic() of a client
+        stage = stage_of(robot)
+        set_initial_camera(server, stage)
+        scene = Scene(server, stage=stage)  # type: ignore[arg-type]  # has the scene and atomic() of a client
         frames = _frames(history)
         serializer = None
         for number, stretch in enumerate(frames):

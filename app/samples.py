@@ -26,6 +26,7 @@ def sample_layout(robot: Robot) -> Layout:
             ("u", m),
             ("force", p),
             ("y", p),
+            *robot.extra_fields,
         )
     )
 

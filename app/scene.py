@@ -13,22 +13,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app import meshes, palette
-from app.drag import VERTICAL_PLANE, Plane, pointer_on_plane
+from app.drag import Plane, pointer_on_plane
 from app.freehand import Freehand
 from app.machine import Machine
 from app.path_nodes import PathNodes
 from app.poses import Layout
 from app.snapshot import PathView, RobotView, Snapshot
-from app.stage import (
-    BASES,
-    FIELD_OF_VIEW,
-    MIDDLE,
-    TITLES,
-    Insets,
-    add_copies,
-    build_stage,
-    view_of,
-)
+from app.stage import FIELD_OF_VIEW, Insets, Stage, add_copies, add_text, build_stage, view_of
+from app.stages import RIGID
 
 if TYPE_CHECKING:
     import viser
@@ -69,27 +61,24 @@ class Scene:
 
     Args:
         client: whose scene it is; nothing here touches another client or the server's scene.
-        bases: origins of the robots' frames in the world, [m], by controller name.
         hooks: what the scene tells.
-        plane: the plane in a robot's frame on which pointers are read.
-        titles: label and second line over each robot.
+        stage: where the robots stand.
+
+    Attributes:
+        pull: name of the plane in which an end-point is pulled, one of the stage's.
     """
 
     def __init__(
-        self,
-        client: viser.ClientHandle,
-        bases: dict[str, np.ndarray] = BASES,
-        hooks: Hooks | None = None,
-        plane: Plane = VERTICAL_PLANE,
-        titles: dict[str, tuple[str, str]] = TITLES,
+        self, client: viser.ClientHandle, hooks: Hooks | None = None, stage: Stage = RIGID
     ) -> None:
         self._client = client
-        self._bases = {name: np.asarray(base, dtype=float) for name, base in bases.items()}
-        self._names = list(bases)
-        self._origins = np.stack(list(self._bases.values()))
+        self._stage = stage
+        self._names = list(stage.bases)
+        self._origins = stage.origins
         self._hooks = hooks or Hooks()
-        self._plane = plane
-        self._titles = titles
+        self.pull = next(iter(stage.pulls))
+        self._snapshot: Snapshot | None = None
+        self._grip: tuple[Plane, np.ndarray] | None = None
         self._path: PathView | None = None
         self._path_nodes = PathNodes(client.scene, self._origins, self._connect_points)
         self._point_offset = np.zeros(3)
@@ -99,16 +88,22 @@ class Scene:
     def build(self, snapshot: Snapshot) -> None:
         """Creates every node, once, with as many bars, joints and points as the snapshot has."""
         robots = self._robots(snapshot)
-        build_stage(self._client.scene, self._bases, self._titles)
-        self._layout = Layout(self._origins, robots)
+        build_stage(self._client.scene, self._stage)
+        self._layout = Layout(self._stage, robots)
         poses = self._layout.poses(robots)
-        self._machine = Machine(self._client.scene, self._bases, robots, poses)
+        self._machine = Machine(self._client.scene, self._stage, robots, poses)
         self._machine.grips.on_drag("left")(self._tip_dragged)
+        self._snapshot = snapshot
+        self._notes = [
+            add_text(self._client.scene, f"/notes/{name}", "true scale", base + self._stage.note)
+            for name, base in self._stage.bases.items()
+        ]
         self.update_path(snapshot)
         self.update_traces(snapshot)
 
     def update(self, snapshot: Snapshot) -> None:
         """Moves everything that moves; at about 30 Hz. What is not finite is not drawn."""
+        self._snapshot = snapshot
         poses = self._layout.poses(self._robots(snapshot))
         if poses.is_finite():
             with self._client.atomic():
@@ -117,6 +112,11 @@ class Scene:
     def update_traces(self, snapshot: Snapshot) -> None:
         """Redraws the end-points' traces and the forces' labels; at 5 to 10 Hz."""
         self._machine.update_traces(self._robots(snapshot))
+        for note in self._notes:
+            if snapshot.note and note.text != snapshot.note:
+                note.text = snapshot.note
+            if note.visible != bool(snapshot.note):
+                note.visible = bool(snapshot.note)
 
     def update_path(self, snapshot: Snapshot) -> None:
         """Redraws the path and its control points if the path's version changed."""
@@ -136,7 +136,8 @@ class Scene:
         if not visible:
             return
         half = float(np.ptp(self._origins[:, 0])) / 2 or 0.6
-        box = ((MIDDLE - half, -meshes.FLOOR_DEPTH), (MIDDLE + half, 0.6))
+        middle = float(self._stage.low[0] + self._stage.high[0]) / 2
+        box = ((middle - half, -meshes.FLOOR_DEPTH), (middle + half, 0.6))
         inside = max(0.0, inner_radius - margin)
         core = meshes.ring(inside, inner_radius + margin, *box, ZONE_DEPTH)
         rim = meshes.ring(outer_radius - margin, outer_radius, *box, ZONE_DEPTH)
@@ -149,7 +150,7 @@ class Scene:
         """Points the client's camera so that both robots fill what panels leave of the canvas."""
         camera = self._client.camera
         size = (max(camera.image_width, 1), max(camera.image_height, 1))
-        pose = view_of(self._bases, size, insets or Insets())
+        pose = view_of(self._stage, size, insets or Insets())
         with self._client.atomic():
             camera.fov = float(FIELD_OF_VIEW)
             camera.up_direction = (0.0, 0.0, 1.0)
@@ -159,7 +160,7 @@ class Scene:
     def begin_freehand(self, on_stroke: Callable[[np.ndarray], None]) -> None:
         """Lets the user draw one stroke on a robot's plane; calls back with (n, 3), [m]."""
         self.end_freehand()
-        self._freehand = Freehand(self._client.scene, self._origins, self._plane, on_stroke)
+        self._freehand = Freehand(self._client.scene, self._stage, on_stroke)
 
     def end_freehand(self) -> None:
         """Gives up drawing; without effect when nothing is being drawn."""
@@ -179,9 +180,19 @@ class Scene:
         if event.phase == "end":
             self._hooks.on_release(name)
             return
-        target = self._on_plane(event, event.end_position, name)
+        if event.phase == "start" or self._grip is None:
+            self._grip = self._grip_of(name)
+        plane, offset = self._grip
+        target = self._on_plane(event, event.end_position, name, plane)
         if target is not None:
-            self._hooks.on_grab(name, target)
+            self._hooks.on_grab(name, target + offset)
+
+    def _grip_of(self, name: str) -> tuple[Plane, np.ndarray]:
+        """The plane of a pull that begins, and from the drawn end-point to the actual one, [m]."""
+        assert self._snapshot is not None
+        robot = self._snapshot.robots[name]
+        normal = self._stage.pulls[self.pull].normal
+        return Plane(robot.tip, normal), robot.trace[-1] - robot.tip
 
     def _connect_points(self, points: viser.BatchedMeshHandle) -> None:
         points.on_drag("left")(self._point_dragged)
@@ -209,7 +220,12 @@ class Scene:
             self._hooks.on_point_selected(event.instance_index % len(self._path.control_points))
 
     def _on_plane(
-        self, event: DragEvent, pointer: tuple[float, float, float], name: str
+        self,
+        event: DragEvent,
+        pointer: tuple[float, float, float],
+        name: str,
+        plane: Plane | None = None,
     ) -> np.ndarray | None:
-        camera = event.client.camera.position
-        return pointer_on_plane(camera, np.array(pointer), self._bases[name], self._plane)
+        """Where a pointer is, in a robot's frame, on the path's plane unless another is given."""
+        camera, base = event.client.camera.position, self._stage.bases[name]
+        return pointer_on_plane(camera, np.array(pointer), base, plane or self._stage.path_plane)

@@ -16,6 +16,7 @@ from app.loop_store import LoopStore
 from app.session import Session
 from app.sessions import Sessions
 from app.stage import set_initial_camera
+from app.stages import RIGID
 
 log = logging.getLogger(__name__)
 STORAGE_KEY = "onpath_sessions"
@@ -39,7 +40,7 @@ class LabServer:
         self.simulation = SimulationThread()
         self.sessions = Sessions(self.simulation, lambda: Session(store))
         self._views: dict[int, LabView] = {}
-        set_initial_camera(self.server)
+        set_initial_camera(self.server, RIGID)
         self.server.on_client_connect(self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self.simulation.start()

@@ -58,6 +58,7 @@ class Session:
         self.running = True
         self.rate = 1.0
         self.copy = True
+        self.exaggeration = 1.0  # of a deflection, in the drawing alone
         self.path_view: PathView | None = None  # the last one drawn, while it is still right
         self.message, self.message_level = "", "info"
         self._set_up(entry)
@@ -300,4 +301,9 @@ class Session:
             sample[:] = run.row[places(run.log, layout)]
             sample[layout.slices["distance"]] = run.distance
             sample[layout.slices["speed"]] = run.speed(self.editor.curve)
+            if self.robot.extra_fields:
+                row = run.shown()
+                extras = self.robot.extras(row["q"], row["v"], self.parameters)
+                for name, value in extras.items():
+                    sample[layout.slices[name]] = value
         return samples

@@ -17,16 +17,17 @@ class RobotView:
     Attributes:
         bars: straight pieces of the links, shape (n_bars, 2, 3).
         joints: bearing centres, shape (n_joints, 3).
-        tip: the actual end-point, shape (3,).
+        tip: the end-point as drawn, a deflection perhaps exaggerated, shape (3,).
         marker: what the controller aims at: the tracker's moving reference point, the follower's
             closest point, shape (3,).
         force: external force on the end-point, shape (3,), [N].
-        trace: the end-point's recent positions, oldest first, shape (n, 3).
+        trace: the end-point's recent positions, never exaggerated, oldest first, shape (n, 3).
         distance: of the end-point to the path, [m].
         max_distance: the same, largest since reset, [m].
         speed: along the path, [m/s].
         torque: shape (m,), [N m].
         extra_points: further marked points (a rigid tip, for instance), shape (n, 3).
+        deflection: of the end-point from where rigid links would have it, [m]; NaN for those.
     """
 
     bars: np.ndarray
@@ -40,6 +41,7 @@ class RobotView:
     speed: float
     torque: np.ndarray
     extra_points: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    deflection: float = float("nan")
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +77,7 @@ class Snapshot:
         grabbed: controller name of the robot whose end-point the hand holds, or None.
         message: what the lab says now (a divergence, a refusal), plain text, or "".
         message_level: "info", "warning" or "error".
+        note: what the drawing itself must say of its scale, or "".
     """
 
     time: float
@@ -86,3 +89,4 @@ class Snapshot:
     grabbed: str | None
     message: str
     message_level: str
+    note: str = ""

@@ -2,35 +2,76 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 import trimesh
 
 from app import meshes, palette
+from app.drag import Plane
 from app.snapshot import FollowerName, TrackerName
 
 if TYPE_CHECKING:
     import viser
 
-BASES = {TrackerName: np.array([-0.26, 0.0, 0.0]), FollowerName: np.array([0.26, 0.0, 0.0])}
-"""Origins of the robots' frames in the world [m]."""
-
+FIELD_OF_VIEW = np.radians(15.0)
+IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 TITLES = {
     TrackerName: ("Trajectory tracking", "chases a moving point"),
     FollowerName: ("Path following", "stays on the curve"),
 }
-MIDDLE = 0.075
-"""x about which a robot with its path is drawn, in its own frame [m]."""
 
-VIEW_LOW = np.array([-0.16, -0.03, -meshes.FLOOR_DEPTH - 0.02])
-VIEW_HIGH = np.array([0.31, 0.03, 0.425])
-"""What the camera shows of a robot, in its own frame [m]."""
 
-FIELD_OF_VIEW = np.radians(15.0)
-ELEVATION = np.radians(9.0)
-IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
+@dataclass(frozen=True, slots=True, eq=False)
+class Stage:
+    """Where a kind of robot stands and how it is looked at. Points in the robot's own frame, [m].
+
+    Attributes:
+        bases: origins of the robots' frames in the world, [m], by controller name.
+        low, high: opposite corners of what the camera shows of a robot, shape (3,).
+        elevation, azimuth: the camera looks down, and comes from the right, by these, [rad].
+        path_plane: where the path lies and control points are dragged.
+        pulls: planes through the end-point in which it is pulled, by name, the usual one first;
+            their own points do not matter.
+        away: horizontal direction across the links, away from the camera, shape (3,).
+        depths: along it of links 1 and 3, of links 2 and 4, of the bearings' middle and of the pen.
+        title: where the title is, and the second line below it by a third of its height.
+        note: where the drawing says that it is not to scale.
+        force: where the force's size is written.
+        force_scale: length of the force's arrow [m/N].
+        sheet: low and high corner (x, z), and y, of the sheet that takes a freehand stroke.
+        parts: what never moves, with colours.
+    """
+
+    bases: dict[str, np.ndarray]
+    low: np.ndarray
+    high: np.ndarray
+    elevation: float
+    azimuth: float
+    path_plane: Plane
+    pulls: dict[str, Plane]
+    away: np.ndarray
+    depths: tuple[float, float, float, float]
+    title: np.ndarray
+    note: np.ndarray
+    force: np.ndarray
+    force_scale: float
+    sheet: tuple[tuple[float, float], tuple[float, float], float]
+    parts: Callable[[], list[tuple[str, trimesh.Trimesh, palette.Colour]]]
+
+    @property
+    def origins(self) -> np.ndarray:
+        """The bases, shape (k, 3), [m]."""
+        return np.stack(list(self.bases.values()))
+
+    @property
+    def corners(self) -> np.ndarray:
+        """Of all robots' boxes, in the world, shape (8 k, 3), [m]."""
+        box = np.array(list(product(*np.stack([self.low, self.high], axis=1))))
+        return (self.origins[:, None] + box).reshape(-1, 3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,54 +92,46 @@ class Pose:
     look_at: np.ndarray
 
 
-def frame_box(
-    low: np.ndarray, high: np.ndarray, width: float, height: float, insets: Insets
-) -> Pose:
-    """The camera that shows a box as large as the uncovered part of the canvas allows.
+def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
+    """The camera that shows all robots as large as the uncovered part of the canvas allows.
 
     Args:
-        low: corner of the box with the smallest coordinates, shape (3,), [m].
-        high: the opposite corner, shape (3,), [m].
-        width: of the canvas [px].
-        height: of the canvas [px].
+        size: width and height of the canvas [px].
         insets: what panels cover.
     """
-    forward = np.array([0.0, np.cos(ELEVATION), -np.sin(ELEVATION)])
-    up = np.array([0.0, np.sin(ELEVATION), np.cos(ELEVATION)])
-    right = np.array([1.0, 0.0, 0.0])
-    half = (high - low) / 2
-    reach = {axis: float(np.abs(v) @ half) for axis, v in (("x", right), ("y", up), ("z", forward))}
+    width, height = size
+    ce, se = np.cos(stage.elevation), np.sin(stage.elevation)
+    ca, sa = np.cos(stage.azimuth), np.sin(stage.azimuth)
+    right = np.array([ca, sa, 0.0])
+    forward = np.array([-sa * ce, ca * ce, -se])
+    up = np.array([-sa * se, ca * se, ce])
+    corners = stage.corners
+    centre = (corners.min(0) + corners.max(0)) / 2
+    reach_x, reach_y, reach_z = np.abs((corners - centre) @ np.stack([right, up, forward], 1)).max(
+        0
+    )
     tan_y = np.tan(FIELD_OF_VIEW / 2)
     tan_x = tan_y * width / height
     free_x = max(width - insets.left - insets.right, 0.2 * width) / width
     free_y = max(height - insets.top - insets.bottom, 0.2 * height) / height
-    distance = reach["z"] + max(reach["x"] / (tan_x * free_x), reach["y"] / (tan_y * free_y))
+    distance = reach_z + max(reach_x / (tan_x * free_x), reach_y / (tan_y * free_y))
     aside = (insets.left - insets.right) / width * tan_x * distance
     above = (insets.bottom - insets.top) / height * tan_y * distance
-    target = (low + high) / 2 - aside * right - above * up
+    target = centre - aside * right - above * up
     return Pose(target - distance * forward, target)
 
 
-def view_of(bases: dict[str, np.ndarray], size: tuple[float, float], insets: Insets) -> Pose:
-    """The camera that shows all robots on a canvas of this size [px]."""
-    corners = np.stack(list(bases.values()))
-    return frame_box(corners.min(0) + VIEW_LOW, corners.max(0) + VIEW_HIGH, *size, insets)
-
-
-def set_initial_camera(server: viser.ViserServer, bases: dict[str, np.ndarray] = BASES) -> None:
+def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
     """Makes a new client open on the robots, before its own size is known."""
-    pose = view_of(bases, (1400, 800), Insets())
+    pose = view_of(stage, (1400, 800), Insets())
     server.initial_camera.fov = FIELD_OF_VIEW
     server.initial_camera.position = pose.position
     server.initial_camera.look_at = pose.look_at
 
 
-def build_stage(
-    scene: viser.SceneApi, bases: dict[str, np.ndarray], titles: dict[str, tuple[str, str]]
-) -> None:
+def build_stage(scene: viser.SceneApi, stage: Stage) -> None:
     """Adds floor, lights, machine bases and labels to a client's scene."""
-    corners = np.stack(list(bases.values()))
-    floor = corners.mean(0) + [MIDDLE, 0.05, -meshes.FLOOR_DEPTH]
+    middle = (stage.low[0] + stage.high[0]) / 2
     scene.configure_environment_map(None)
     scene.add_light_ambient("/stage/ambient", intensity=1.9)
     scene.add_light_directional("/stage/front", intensity=1.5, position=(-0.4, -1.0, 0.7))
@@ -113,24 +146,32 @@ def build_stage(
         plane_color=palette.FLOOR.rgb,
         plane_opacity=1.0,
         shadow_opacity=0.18,
-        position=floor,
+        position=stage.origins.mean(0) + [middle, 0.05, -meshes.FLOOR_DEPTH],
     )
-    for part, mesh, colour in (
-        ("base", meshes.base(), palette.FRAME),
-        ("motors", meshes.motors(), palette.MOTOR),
-    ):
-        add_copies(scene, f"/stage/{part}", mesh, corners, colour)
-    for name, base in bases.items():
-        title, subtitle = titles[name]
-        for text, z, size in ((title, 0.392, 0.036), (subtitle, 0.345, 0.026)):
-            scene.add_label(
-                f"/stage/{name}/label_{text}",
-                text,
-                position=base + [MIDDLE, 0.0, z],
-                font_size_mode="scene",
-                font_scene_height=size,
-                anchor="center-center",
-            )
+    for part, mesh, colour in stage.parts():
+        add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
+    for name, base in stage.bases.items():
+        for text, below, size in zip(TITLES[name], (0.0, 0.047), (0.036, 0.026), strict=True):
+            add_text(scene, f"/stage/{name}/label_{text}", text, base + stage.title, size, below)
+
+
+def add_text(
+    scene: viser.SceneApi,
+    name: str,
+    text: str,
+    position: np.ndarray,
+    size: float = 0.026,
+    below: float = 0.0,
+) -> viser.LabelHandle:
+    """Words in the scene, `size` high and `below` lower than a position, [m]."""
+    return scene.add_label(
+        name,
+        text,
+        position=position - [0.0, 0.0, below],
+        font_size_mode="scene",
+        font_scene_height=size,
+        anchor="center-center",
+    )
 
 
 def add_copies(

@@ -32,7 +32,15 @@ def take_snapshot(session: Session, achieved_speed: float, traces: bool = True) 
         grabbed=session.grabbed,
         message=session.message,
         message_level=session.message_level,
+        note=scale_note(session.robot, session.exaggeration),
     )
+
+
+def scale_note(robot: Robot, exaggeration: float) -> str:
+    """A drawing that is not true to scale says so."""
+    if exaggeration == 1.0 or not robot.extra_fields:
+        return ""
+    return f"deflection drawn {exaggeration:g}×"
 
 
 def _samples(session: Session, time: float) -> Array:
@@ -51,10 +59,12 @@ def _robot_view(session: Session, index: int, name: str, samples: Array | None) 
         row = session.sample_layout.unpack(past.sample[index].astype(float))
         q = past.drives[name].state[: robot.system.n]
         most = past.drives[name].max_distance
-        return robot_view(robot, name, curve, q, row, most, trace)
+        return robot_view(robot, name, curve, q, row, most, trace, session.exaggeration)
     row = run.shown() | {"distance": np.array([run.distance])}
     row["speed"] = np.array([run.speed(curve)])
-    return robot_view(robot, name, curve, row["q"], row, run.max_distance, trace)
+    row |= robot.extras(row["q"], row["v"], session.parameters)
+    q, most = row["q"], run.max_distance
+    return robot_view(robot, name, curve, q, row, most, trace, session.exaggeration)
 
 
 def robot_view(
@@ -65,6 +75,7 @@ def robot_view(
     row: dict[str, Array],
     max_distance: float,
     trace: Array,
+    exaggeration: float = 1.0,
 ) -> RobotView:
     """One robot at one instant.
 
@@ -72,14 +83,16 @@ def robot_view(
         q: configuration, shape (n,).
         row: fields of a sample, see `Session.sample_layout`.
         trace: end-points lately, in the robot's frame, shape (k, 3), [m].
+        exaggeration: of a deflection, in the bars and the drawn end-point.
     """
     tip = robot.place(row["y"])
     target = row["theta" if name == FollowerName else "theta_ref"][0]
-    bars, joints = robot.skeleton(q)
+    bars, joints = robot.skeleton(q, exaggeration)
+    drawn = tip if exaggeration == 1.0 else bars[-1, 1]
     return RobotView(
         bars=bars,
         joints=joints,
-        tip=tip,
+        tip=drawn,
         marker=robot.place(robot.frame.lift(curve.at(np.array(target)))),
         force=robot.place(row["force"]) - robot.place(np.zeros_like(row["force"])),
         trace=np.concatenate([trace, tip[None]]),
@@ -87,6 +100,8 @@ def robot_view(
         max_distance=max_distance,
         speed=float(row["speed"][0]),
         torque=row["u"],
+        extra_points=robot.marks(q),
+        deflection=float(row["deflection"][0]) if "deflection" in row else float("nan"),
     )
 
 

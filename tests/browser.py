@@ -17,7 +17,7 @@ from app.commands import Command
 from app.loop import Lab
 from app.server import LabServer
 from app.session import Session
-from app.stage import BASES
+from app.stages import stage_of
 
 ARGUMENTS = (
     *("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
@@ -131,7 +131,7 @@ class Tab:
         forward = forward / np.linalg.norm(forward)
         right = np.cross(forward, [0.0, 0.0, 1.0])
         right /= np.linalg.norm(right)
-        seen = point + BASES[name] - camera.position
+        seen = point + stage_of(self.session.robot).bases[name] - camera.position
         depth, scale = seen @ forward, box["height"] / 2 / np.tan(camera.fov / 2)
         x = box["width"] / 2 + scale * (seen @ right) / depth
         y = box["height"] / 2 - scale * (seen @ np.cross(right, forward)) / depth

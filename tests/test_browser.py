@@ -8,6 +8,7 @@ import threading
 import weakref
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -45,9 +46,9 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
     server.stop()
 
 
-def fresh(browser: Browser, **options: object) -> BrowserContext:
+def fresh(browser: Browser, **options: Any) -> BrowserContext:
     """Another browser: nothing in it is known to the lab."""
-    return browser.new_context(**{"viewport": WINDOW, "accept_downloads": True, **options})  # type: ignore[arg-type]
+    return browser.new_context(**{"viewport": WINDOW, "accept_downloads": True, **options})
 
 
 @pytest.fixture(scope="module")
@@ -140,7 +141,7 @@ def test_dragging_a_control_point_bends_the_path_and_blends_in(tab: Tab) -> None
         wait_for(lambda: np.linalg.norm(editor.points()[index] - old[index] - [0, 0.02]) < 3e-3)
         assert editor.selected == index
         times = [tab.session.time]
-        wait_for(lambda: editor.curve is editor.proposed.curve)  # type: ignore[union-attr]
+        wait_for(lambda: editor.proposed is not None and editor.curve is editor.proposed.curve)
         times.append(tab.session.time)
     assert times[1] - times[0] < 1.0
     wait_for(lambda: editor.proposed is None)

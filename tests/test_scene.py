@@ -18,7 +18,8 @@ from app.machine import TRACE_SEGMENTS
 from app.poses import bar_quaternions, trace_segments, waist_angle
 from app.scene import Hooks, Scene
 from app.snapshot import FollowerName, PathView, RobotView, Snapshot, TrackerName
-from app.stage import BASES, FIELD_OF_VIEW, VIEW_HIGH, VIEW_LOW, Insets, view_of
+from app.stage import FIELD_OF_VIEW, Insets, Stage, view_of
+from app.stages import FLEXIBLE, RIGID
 
 NAMES = (TrackerName, FollowerName)
 
@@ -165,14 +166,14 @@ def test_refused_places_come_and_go(lab):
 def test_pulling_an_end_point_tells_the_robot_and_the_place(lab, instance):
     name, target = NAMES[instance], np.array([0.21, 0.0, 0.13])
     for phase in ("start", "update", "end"):
-        play(lab, "/grips", phase, instance, BASES[name], BASES[name] + target)
+        play(lab, "/grips", phase, instance, RIGID.bases[name], RIGID.bases[name] + target)
     assert [event[:2] for event in lab.heard] == [("grab", name)] * 2 + [("release", name)]
     np.testing.assert_allclose(lab.heard[1][2], target, atol=1e-9)
 
 
 @pytest.mark.parametrize("robot_index", [0, 1])
 def test_a_dragged_point_moves_by_what_the_mouse_moved(lab, robot_index):
-    base, index = BASES[NAMES[robot_index]], 4
+    base, index = RIGID.bases[NAMES[robot_index]], 4
     point = path().control_points[index]
     pressed = base + point + [0.003, 0.0, -0.002]
     shift = np.array([0.02, 0.0, 0.01])
@@ -191,7 +192,7 @@ def test_a_dragged_point_moves_by_what_the_mouse_moved(lab, robot_index):
 def test_a_freehand_stroke_is_told_once_in_the_robots_frame(lab):
     strokes: list[np.ndarray] = []
     lab.scene.begin_freehand(strokes.append)
-    base = BASES[FollowerName]
+    base = RIGID.bases[FollowerName]
     corners = np.array([(0.1, 0.0, 0.1), (0.2, 0.0, 0.1), (0.2, 0.0, 0.2), (0.1, 0.0, 0.2)])
     phases = ("start", "update", "update", "end")
     for phase, corner in zip(phases, corners, strict=True):
@@ -234,24 +235,28 @@ def test_traces_are_connected_and_end_at_the_newest_point(length):
 
 @pytest.mark.parametrize("size", [(1400, 800), (390, 844), (2560, 600)])
 @pytest.mark.parametrize("insets", [Insets(), Insets(left=60, right=90, bottom=200)])
-def test_camera_shows_both_robots_clear_of_the_panels(size, insets):
-    pose = view_of(BASES, size, insets)
+@pytest.mark.parametrize("stage", [RIGID, FLEXIBLE], ids=["rigid", "flexible"])
+def test_camera_shows_both_robots_clear_of_the_panels(size, insets, stage: Stage):
+    pose = view_of(stage, size, insets)
     forward = (pose.look_at - pose.position) / np.linalg.norm(pose.look_at - pose.position)
-    right = np.array([1.0, 0.0, 0.0])
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
     up = np.cross(right, forward)
     scale = size[1] / 2 / np.tan(FIELD_OF_VIEW / 2)
-    corners = [base + corner for base in BASES.values() for corner in (VIEW_LOW, VIEW_HIGH)]
-    seen = np.array(corners) - pose.position
+    seen = stage.corners - pose.position
     x = size[0] / 2 + scale * (seen @ right) / (seen @ forward)
     y = size[1] / 2 - scale * (seen @ up) / (seen @ forward)
     slack = 2.0
     assert x.min() > insets.left - slack and x.max() < size[0] - insets.right + slack
     assert y.min() > insets.top - slack and y.max() < size[1] - insets.bottom + slack
-    widest = max(np.ptp(x) / (size[0] - insets.left - insets.right), np.ptp(y) / size[1])
-    assert widest > 0.6
+    free = size[0] - insets.left - insets.right, size[1] - insets.top - insets.bottom
+    widest = max(np.ptp(x) / free[0], np.ptp(y) / free[1])
+    assert widest > 0.8
 
 
-@pytest.mark.parametrize("part", ["link", "bearing", "coin", "motors", "base", "cross"])
+@pytest.mark.parametrize(
+    "part", ["link", "bearing", "grip", "motors", "base", "cross", "blade", "pedestal", "turntable"]
+)
 def test_parts_are_solids_that_look_outward(part):
     mesh = getattr(meshes, part)().copy()
     mesh.merge_vertices()

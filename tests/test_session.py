@@ -83,6 +83,7 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.Release: st.builds(c.Release, st.one_of(st.none(), CONTROLLERS)),
     c.Tug: st.builds(c.Tug, WILD, WILD),
     c.SetCopy: st.builds(c.SetCopy, st.booleans()),
+    c.SetExaggeration: st.builds(c.SetExaggeration, WILD),
     c.ChoosePath: st.builds(c.ChoosePath, st.sampled_from([*new_session().presets, "", "hexagon"])),
     c.SelectPoint: st.builds(c.SelectPoint, INDICES),
     c.MovePoint: st.builds(c.MovePoint, st.integers(-3, 30), points(1), st.booleans()),
@@ -501,7 +502,7 @@ def test_frozen_robot_shows_the_last_instant_that_is_all_numbers() -> None:
         def get(self, *_: object) -> Breaking:
             return Breaking()
 
-    session._store = Store()  # type: ignore[assignment]
+    session._store = Store()  # pyright: ignore[reportAttributeAccessIssue]
     before = run_.state.copy()
     session.simulate(9)
     assert run_.diverged and run_.diverged.time == pytest.approx(session.time - 9e-3 + 6e-3)

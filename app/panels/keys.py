@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import viser
+from viser._messages import HotkeyKey, KeyModifier
 
 from app import commands as c
 from app.panels.widgets import Post
@@ -17,11 +18,11 @@ TUG = 0.005  # [m], of the hand
 class Key:
     """One key: viser's name for it, how it is written, what it does."""
 
-    hotkey: str
+    hotkey: HotkeyKey
     shown: str
     does: str
     command: c.Command
-    modifier: str | None = None
+    modifier: KeyModifier | None = None
 
 
 KEYS = (
@@ -52,7 +53,7 @@ KEYS = (
 def add_keys(gui: viser.GuiApi, post: Post) -> None:
     """Make the keys work; they are also in viser's command palette."""
     for key in KEYS:
-        handle = gui.add_command(key.does, hotkey=key.hotkey, modifier=key.modifier)  # type: ignore[arg-type]
+        handle = gui.add_command(key.does, hotkey=key.hotkey, modifier=key.modifier)
 
         async def triggered(_: object, command: c.Command = key.command) -> None:
             post(command)

@@ -43,11 +43,14 @@ class PathPanel:
     def __init__(
         self,
         gui: viser.GuiApi,
+        session: Session,
         post: Post,
         draw: Callable[[], None],
         show_zone: Callable[[bool], None],
     ) -> None:
         self._version = -1
+        planar = session.robot.frame.p == 2
+        first, second = ("y1", "y2") if planar else ("y2", "y3")
         drawing = gui.add_button(
             "Draw freehand",
             icon=viser.Icon.PENCIL,
@@ -61,8 +64,8 @@ class PathPanel:
         self._which = gui.add_number(
             "Selected", 0.0, min=0, max=24, step=1, hint="Number of the control point; 0: none"
         )
-        self._first = gui.add_number("y1 [mm]", 0.0, min=-200.0, max=200.0, step=0.5)
-        self._second = gui.add_number("y2 [mm]", 0.0, min=-200.0, max=200.0, step=0.5)
+        self._first = gui.add_number(f"{first} [mm]", 0.0, min=-200.0, max=200.0, step=0.5)
+        self._second = gui.add_number(f"{second} [mm]", 0.0, min=-200.0, max=200.0, step=0.5)
         on_user_update(self._which, lambda n: post(c.SelectPoint(int(n) - 1 if n else None)))
         on_user_update(self._first, lambda mm: post(c.PlacePoint(first=mm / 1e3)))
         on_user_update(self._second, lambda mm: post(c.PlacePoint(second=mm / 1e3)))
@@ -72,6 +75,7 @@ class PathPanel:
         zone = gui.add_checkbox(
             "Show singular zone", False, hint="Where the arm is stretched or folded, eq. (14)"
         )
+        zone.visible = planar  # it is drawn about the base pivot, in the robot's own plane
         on_user_update(zone, show_zone)
 
     def follow(self, session: Session) -> None:
