@@ -17,7 +17,7 @@ from typing import Annotated, Literal
 
 import tyro
 
-COMMANDS = ("serve", "experiment", "zero-dynamics", "bench")
+COMMANDS = ("serve", "experiment", "zero-dynamics", "lessons", "bench")
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,8 @@ class Serve:
     """Port to listen on."""
     open: bool = False
     """Open the lab in the default browser."""
+    lessons: Path | None = None
+    """A folder with lessons of your own, shown after the built-in ones."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     """How much to log."""
 
@@ -40,7 +42,7 @@ class Serve:
         level = getattr(logging, self.log_level.upper())
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
         logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
-        serve(self.host, self.port, open_browser=self.open)
+        serve(self.host, self.port, self.lessons, open_browser=self.open)
 
 
 @dataclass(frozen=True)
@@ -115,6 +117,31 @@ class ZeroDynamics:
 
 
 @dataclass(frozen=True)
+class Lessons:
+    """List the lessons, or check lessons of your own."""
+
+    do: Annotated[Literal["list", "check"], tyro.conf.Positional]
+    """list or check."""
+    folder: Annotated[Path | None, tyro.conf.Positional] = None
+    """A folder of lessons; the built-in ones if there is none."""
+
+    def run(self) -> int:
+        """Print; exit code 1 when something is wrong."""
+        from lessons.course import BUILT_IN, read_course
+
+        course, problems = read_course([self.folder or BUILT_IN])
+        if self.do == "list":
+            for name, versions in course.lessons.items():
+                facts = course.lesson(name, "en").front
+                print(f"{name:30s} {facts.minutes:3d} min  {','.join(versions):8s} {facts.title}")
+        for problem in problems:
+            print(problem, file=sys.stderr)
+        if self.do == "check" and not problems:
+            print(f"{len(course.lessons)} lessons, nothing wrong")
+        return 1 if problems else 0
+
+
+@dataclass(frozen=True)
 class Bench:
     """Measure the speed of the closed loops and of the lab."""
 
@@ -134,20 +161,22 @@ def main() -> None:
 
 
 def run_command(arguments: list[str]) -> int:
-    """Run one command line; returns the exit code: 0, or 2 with one line on standard error."""
+    """Run one command line; returns the exit code.
+
+    That is 0, or 2 with one line on standard error, or 1 for lessons with something wrong.
+    """
     if not arguments or arguments[0] not in (*COMMANDS, "-h", "--help"):
         if arguments and not arguments[0].startswith("-"):
             print(f"onpath: {unknown_command(arguments[0])}", file=sys.stderr)
             return 2
         arguments = ["serve", *arguments]
     try:
-        _parse(arguments).run()
+        return _parse(arguments).run() or 0
     except BrokenPipeError:
         return 0
     except (ValueError, OSError) as error:
         print(f"onpath: {_one_line(str(error))}", file=sys.stderr)
         return 2
-    return 0
 
 
 def unknown_command(name: str) -> str:
@@ -155,7 +184,7 @@ def unknown_command(name: str) -> str:
     return f"unknown command {name!r}: there are {', '.join(COMMANDS)}"
 
 
-def _parse(arguments: list[str]) -> Serve | Experiment | ZeroDynamics | Bench:
+def _parse(arguments: list[str]) -> Serve | Experiment | ZeroDynamics | Lessons | Bench:
     complaint = io.StringIO()
     try:
         with contextlib.redirect_stderr(complaint):
@@ -163,6 +192,7 @@ def _parse(arguments: list[str]) -> Serve | Experiment | ZeroDynamics | Bench:
                 Annotated[Serve, tyro.conf.subcommand("serve")]
                 | Annotated[Experiment, tyro.conf.subcommand("experiment")]
                 | Annotated[ZeroDynamics, tyro.conf.subcommand("zero-dynamics")]
+                | Annotated[Lessons, tyro.conf.subcommand("lessons")]
                 | Annotated[Bench, tyro.conf.subcommand("bench")],
                 prog="onpath",
                 description=__doc__,

@@ -1,0 +1,191 @@
+"""Whether a check of a task holds, and words on how far it is from that. Pure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import singledispatch
+
+import msgspec
+import numpy as np
+
+from lessons.record import QUANTITIES, Mask, Record
+from lessons.schema import (
+    Bound,
+    Check,
+    Compare,
+    Event,
+    Order,
+    RobotName,
+    Setting,
+    Stat,
+    Task,
+    Window,
+)
+from lessons.words import Words
+
+TINY = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether it holds, and a sentence on what was measured and what is wanted."""
+
+    passed: bool
+    words: str
+
+
+def judge(task: Task, record: Record, words: Words) -> list[Verdict]:
+    """A verdict on each check of a task; it is passed when all are."""
+    return [verdict(check, record, words) for check in task.check]
+
+
+@singledispatch
+def verdict(check: Check, record: Record, words: Words) -> Verdict:
+    """Whether a check holds for what has happened."""
+    raise TypeError(f"no such check: {check!r}")
+
+
+@verdict.register
+def _(check: Bound, record: Record, words: Words) -> Verdict:
+    chosen = record.chosen(check.robot, check)
+    seconds = _seconds(check, record, chosen, words)
+    names = {
+        "robot": words(f"robot.{check.robot}"),
+        "stat": _stat_words(check.stat, check.quantity, words),
+        "during": words(f"during.{check.during}"),
+        "wanted": _range_words(check.below, check.above, QUANTITIES[check.quantity], words),
+    }
+    value = statistic(record, check.robot, check.quantity, check.stat, chosen)
+    if value is None:
+        return Verdict(False, words("check.nothing", **names, seconds=seconds))
+    enough = record.seconds(chosen) >= check.least - TINY
+    unit = QUANTITIES[check.quantity]
+    said = words("check.bound", **names, value=f"{value:.3g}", unit=unit) + seconds
+    return Verdict(enough and _within(value, check.below, check.above), said)
+
+
+@verdict.register
+def _(check: Compare, record: Record, words: Words) -> Verdict:
+    smaller: RobotName = "follower" if check.larger == "tracker" else "tracker"
+    chosen = record.chosen(check.larger, check)
+    both = [
+        statistic(record, robot, check.quantity, check.stat, record.chosen(robot, check))
+        for robot in (check.larger, smaller)
+    ]
+    seconds = _seconds(check, record, chosen, words)
+    names = {
+        "stat": _stat_words(check.stat, check.quantity, words),
+        "during": words(f"during.{check.during}"),
+    }
+    large, small = both
+    if large is None or small is None:
+        wanted = f"{check.ratio:g}×"
+        robot = words(f"robot.{check.larger}")
+        said = words("check.nothing", robot=robot, seconds=seconds, wanted=wanted, **names)
+        return Verdict(False, said)
+    ratio = large / max(small, TINY)
+    said = words(
+        "check.compare",
+        larger=words(f"robot.{check.larger}"),
+        ratio=f"{ratio:.3g}" if ratio < 1000 else ">1000",
+        wanted=f"{check.ratio:g}",
+        **names,
+    )
+    enough = record.seconds(chosen) >= check.least - TINY
+    return Verdict(enough and ratio >= check.ratio, said + seconds)
+
+
+@verdict.register
+def _(check: Event, record: Record, words: Words) -> Verdict:
+    have = sum(_is(event.name, event.detail, check) for event in record.happenings)
+    said = words(
+        "check.event",
+        event=_event_words(check, words),
+        have=min(have, check.times),
+        need=check.times,
+    )
+    return Verdict(have >= check.times, said)
+
+
+@verdict.register
+def _(check: Order, record: Record, words: Words) -> Verdict:
+    wanted = [_event(event) for event in check.events]
+    found = 0
+    for event in record.happenings:
+        if found < len(wanted) and _is(event.name, event.detail, wanted[found]):
+            found += 1
+    marked = [
+        ("✓ " if i < found else "") + _event_words(event, words) for i, event in enumerate(wanted)
+    ]
+    return Verdict(found == len(wanted), words("check.order", events=" → ".join(marked)))
+
+
+@verdict.register
+def _(check: Setting, record: Record, words: Words) -> Verdict:
+    own: dict[str, object] = {"path": record.path, "robot": record.robot}
+    value = own.get(check.name, getattr(record.parameters, check.name, None))
+    if check.equals is not None:
+        passed, wanted = _same(value, check.equals), words("check.equals", value=check.equals)
+    else:
+        passed = isinstance(value, int | float) and _within(value, check.below, check.above)
+        wanted = _range_words(check.below, check.above, "", words)
+    shown = f"{value:.4g}" if isinstance(value, float) else value
+    return Verdict(passed, words("check.setting", name=check.name, value=shown, wanted=wanted))
+
+
+def statistic(
+    record: Record, robot: RobotName, quantity: str, stat: Stat, chosen: Mask
+) -> float | None:
+    """Of a quantity over the chosen instants; None when there are none, or it is not known."""
+    values = record.values[robot].get(quantity)
+    if values is None or not chosen.any():
+        return None
+    values = values[chosen]
+    if stat == "rms":
+        return float(np.sqrt(np.mean(values**2)))
+    if stat == "final":
+        return float(values[-1])
+    return float({"max": np.max, "min": np.min, "mean": np.mean}[stat](values))
+
+
+def _within(value: float, below: float | None, above: float | None) -> bool:
+    return (below is None or value <= below) and (above is None or value >= above)
+
+
+def _same(value: object, wanted: object) -> bool:
+    if isinstance(value, float) and isinstance(wanted, int | float):
+        return bool(np.isclose(value, wanted, rtol=1e-3, atol=1e-6))
+    return str(value) == str(wanted)
+
+
+def _event(text: str) -> Event:
+    """`hold`, or `set:K1`."""
+    event, _, name = text.partition(":")
+    return msgspec.convert({"kind": "event", "event": event, "name": name}, Event)
+
+
+def _is(name: str, detail: str, wanted: Event) -> bool:
+    return name == wanted.event and wanted.name in ("", detail)
+
+
+def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> str:
+    have = min(record.seconds(chosen), check.least)
+    return words("check.seconds", have=f"{have:.1f}", need=f"{check.least:g}")
+
+
+def _stat_words(stat: Stat, quantity: str, words: Words) -> str:
+    return words(f"stat.{stat}", quantity=words(f"quantity.{quantity}"))
+
+
+def _range_words(below: float | None, above: float | None, unit: str, words: Words) -> str:
+    limits = [
+        words(f"check.{way}", limit=f"{limit:g}", unit=unit).rstrip()
+        for way, limit in (("above", above), ("below", below))
+        if limit is not None
+    ]
+    return limits[0] if len(limits) == 1 else words("check.and", first=limits[0], second=limits[1])
+
+
+def _event_words(check: Event, words: Words) -> str:
+    key = f"event.{check.event}"
+    return words(key, detail=check.name) if check.name else words.get(f"{key}_any", words(key))

@@ -1,0 +1,117 @@
+"""Folders of lessons: what there is, in which languages, and whether it is all right."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from lessons.parse import LessonError, Problem, read_lesson
+from lessons.schema import Lesson, Reference, Step
+from lessons.vocabulary import script_faults
+from lessons.words import DEFAULT
+
+BUILT_IN = Path(__file__).parent / "course"
+REFERENCE = "reference.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """Lessons in order, each in the languages it is written in.
+
+    Attributes:
+        lessons: name -> language -> lesson.
+    """
+
+    lessons: dict[str, dict[str, Lesson]]
+
+    def lesson(self, name: str, language: str) -> Lesson:
+        """A lesson in a language, or else in English, or else in any.
+
+        Raises:
+            KeyError: there is no such lesson.
+        """
+        versions = self.lessons[name]
+        return versions.get(language) or versions.get(DEFAULT) or next(iter(versions.values()))
+
+    def languages(self) -> list[str]:
+        """Those that any lesson is written in."""
+        return sorted({language for versions in self.lessons.values() for language in versions})
+
+
+def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
+    """All lessons in some folders, without those that are not all right, and what is wrong."""
+    lessons: dict[str, dict[str, Lesson]] = {}
+    problems: list[Problem] = []
+    for folder in folders:
+        found = sorted({file.parent for file in folder.glob("*/*.md") if file.stem != "README"})
+        if not found:
+            text = "no lessons: a lesson is a folder in it with en.md"
+            problems.append(Problem(str(folder), 1, text))
+        for home in found:
+            versions, wrong = read_versions(home)
+            problems += wrong
+            if versions and home.name in lessons:
+                problems.append(Problem(str(home), 1, f"a second lesson {home.name!r}"))
+            elif versions:
+                lessons[home.name] = versions
+    return Course(lessons), sorted(problems)
+
+
+def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
+    """One lesson in all its languages, and what is wrong with it."""
+    versions: dict[str, Lesson] = {}
+    problems: list[Problem] = []
+    for file in sorted(home.glob("*.md"), key=lambda f: (f.stem != DEFAULT, f.stem)):
+        try:
+            versions[file.stem] = read_lesson(file)
+        except LessonError as error:
+            problems += error.problems
+    if versions:
+        first, *others = versions.values()
+        for other in others:
+            problems += _differences(first, other, home / f"{other.language}.md")
+        problems += read_references(first, home / REFERENCE)[1]
+    return versions, problems
+
+
+def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], list[Problem]]:
+    """Task id -> what solves it and what does not, and what is wrong with the file."""
+
+    def problem(text: str, line: int = 1) -> Problem:
+        return Problem(str(file), line, text)
+
+    try:
+        content = file.read_text("utf-8")
+        read = msgspec.convert(tomllib.loads(content), dict[str, Reference])
+    except (OSError, ValueError) as error:
+        text = "there must be one" if isinstance(error, FileNotFoundError) else str(error)
+        return {}, [problem(text)]
+    ids = [task.id for task in lesson.tasks()]
+    problems = [problem(f"no solution of task {task!r}") for task in ids if task not in read]
+    problems += [problem(f"there is no task {name!r}") for name in read if name not in ids]
+    for name, reference in read.items():
+        for script in (reference.solution, reference.failure):
+            faults = script_faults(script, lesson.front.robot)
+            problems += [problem(f"{name}: {fault}") for fault in faults]
+    return read, problems
+
+
+def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
+    """Where a translation does something else than the lesson."""
+    if len(first.steps) != len(other.steps):
+        text = f"{len(other.steps)} steps, {len(first.steps)} in {first.language}.md"
+        yield Problem(str(file), 1, text)
+    for own, theirs in zip(first.steps, other.steps, strict=False):
+        if _bones(own) != _bones(theirs):
+            text = f"step {theirs.title!r} is not as in {first.language}.md, line {own.line}"
+            yield Problem(str(file), theirs.line, f"{text}: same kind, scene, script and tasks")
+
+
+def _bones(step: Step) -> tuple[object, ...]:
+    """What of a step is the same in all languages."""
+    tasks = [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()]
+    return step.kind, step.scene, step.script, tasks, [type(block) for block in step.predictions()]

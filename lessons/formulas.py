@@ -1,0 +1,83 @@
+"""Markdown to safe HTML: HTML that was typed is shown as typed, LaTeX becomes MathML."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from latex2mathml.converter import convert
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+from mdit_py_plugins.dollarmath import dollarmath_plugin
+
+MIME = {
+    ".svg": "image/svg+xml",
+    ".png": "image/png",
+    ".jpg": "image/jpeg",
+    ".jpeg": "image/jpeg",
+    ".webp": "image/webp",
+}
+LARGEST = 400_000
+"""Of a picture [B]."""
+
+
+class FormulaError(ValueError):
+    """LaTeX that cannot be read."""
+
+
+def mathml(latex: str, options: dict[str, Any]) -> str:
+    """A formula as MathML.
+
+    Raises:
+        FormulaError: it is not LaTeX that we can read.
+    """
+    display = "block" if options.get("display_mode") else "inline"
+    try:
+        return convert(latex, display=display)
+    except Exception as error:  # the library raises many kinds
+        raise FormulaError(f"formula {latex!r}: {error or type(error).__name__}") from None
+
+
+def reader() -> MarkdownIt:
+    """CommonMark with tables and formulas, without HTML."""
+    markdown = MarkdownIt("commonmark", {"html": False, "typographer": True}).enable(["table"])
+    return markdown.use(dollarmath_plugin, renderer=mathml, double_inline=True)
+
+
+def render(markdown: MarkdownIt, tokens: Sequence[Token]) -> str:
+    """HTML of tokens.
+
+    Raises:
+        FormulaError: see `mathml`.
+    """
+    return str(markdown.renderer.render(tokens, markdown.options, {}))
+
+
+def to_html(text: str) -> str:
+    """HTML of a short text, such as a question or a hint.
+
+    Raises:
+        FormulaError: see `mathml`.
+    """
+    markdown = reader()
+    tokens = markdown.parse(text)
+    if len(tokens) == 3 and tokens[0].type == "paragraph_open":
+        tokens = tokens[1:2]
+    return render(markdown, tokens)
+
+
+def embedded(picture: Path) -> str:
+    """A picture as an address that holds all of it.
+
+    Raises:
+        ValueError: no picture that a page can show, or one too large.
+        OSError: it cannot be read.
+    """
+    mime = MIME.get(picture.suffix.lower())
+    if mime is None:
+        raise ValueError(f"picture {picture.name!r}: its name must end in {', '.join(MIME)}")
+    if picture.stat().st_size > LARGEST:
+        raise ValueError(f"picture {picture.name!r} is larger than {LARGEST // 1000} kB")
+    return f"data:{mime};base64,{base64.b64encode(picture.read_bytes()).decode()}"

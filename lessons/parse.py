@@ -1,0 +1,337 @@
+"""From a lesson's file to a Lesson, or to a list of what is wrong and where."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar, get_args
+
+import msgspec
+from markdown_it.token import Token
+
+from lessons import vocabulary
+from lessons.formulas import FormulaError, embedded, reader, render, to_html
+from lessons.links import read_link
+from lessons.schema import (
+    Block,
+    Choice,
+    Front,
+    Lesson,
+    Link,
+    Option,
+    Prediction,
+    Quiz,
+    Scene,
+    Script,
+    Sketch,
+    Step,
+    StepKind,
+    Task,
+    Text,
+)
+
+LARGEST = 1_000_000
+"""Of a lesson's file [B]."""
+KINDS: tuple[str, ...] = get_args(StepKind)
+FENCES = ("scene", "script", "predict", "task", "quiz")
+HEADING = re.compile(r"(\w+):\s*(.+)")
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Problem:
+    """What is wrong with a file, and where."""
+
+    path: str
+    line: int
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.path}:{self.line}: {self.text}"
+
+
+class LessonError(ValueError):
+    """A lesson that cannot be used, and everything that is wrong with it."""
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = sorted(set(problems))
+        super().__init__("\n".join(map(str, self.problems)))
+
+
+@dataclass(slots=True)
+class _Draft:
+    """A step that is being read."""
+
+    kind: str
+    title: str
+    line: int
+    blocks: list[Block]
+    scene: Scene | None = None
+    script: Script | None = None
+
+    def step(self) -> Step:
+        kind: Any = self.kind
+        blocks = tuple(self.blocks)
+        return Step(kind, self.title, self.line, blocks, self.scene, self.script)
+
+
+def read_lesson(path: Path) -> Lesson:
+    """The lesson in a file.
+
+    Raises:
+        LessonError: with file, line and words for everything that is wrong.
+    """
+    try:
+        if path.stat().st_size > LARGEST:
+            raise LessonError([Problem(str(path), 1, f"larger than {LARGEST // 1000} kB")])
+        text = path.read_text("utf-8")
+    except OSError as error:
+        raise LessonError([Problem(str(path), 1, error.strerror or "cannot be read")]) from None
+    except UnicodeDecodeError as error:
+        raise LessonError([Problem(str(path), 1, f"not UTF-8 text: {error.reason}")]) from None
+    return _Reader(path, text).lesson()
+
+
+class _Reader:
+    def __init__(self, path: Path, text: str) -> None:
+        self._path = path
+        self._text = text
+        self._problems: list[Problem] = []
+        self._markdown = reader()
+        self._robot = "five_bar"
+
+    def lesson(self) -> Lesson:
+        """Read all of it.
+
+        Raises:
+            LessonError: anything is wrong.
+        """
+        front, first = self._front()
+        body = self._text.split("\n", first)[first] if first else self._text
+        steps = self._steps(body, first)
+        if not self._problems and front is not None:
+            name, language = self._path.parent.name, self._path.stem
+            return Lesson(name, language, front, tuple(draft.step() for draft in steps))
+        raise LessonError(self._problems)
+
+    def _front(self) -> tuple[Front | None, int]:
+        """The facts at the top and how many lines they take."""
+        lines = self._text.split("\n")
+        ends = [i for i, line in enumerate(lines) if line.rstrip() == "+++"]
+        if len(ends) < 2 or ends[0] != 0:
+            self._complain(1, "a lesson begins with facts between two lines +++")
+            return None, 0
+        front = self._toml("\n".join(lines[1 : ends[1]]), 2, Front)
+        if front is not None:
+            self._complain_all(1, vocabulary.scene_faults(Scene(robot=front.robot), front.robot))
+            self._robot = front.robot
+        return front, ends[1] + 1
+
+    def _steps(self, body: str, first: int) -> list[_Draft]:
+        drafts: list[_Draft] = []
+        for tokens in _sections(self._markdown.parse(body)):
+            head = tokens[0]
+            line = first + (head.map[0] if head.map else 0) + 1
+            if head.type == "heading_open" and head.tag == "h1":
+                drafts.append(self._begin(tokens[1].content, line))
+            elif not drafts:
+                self._complain(line, "before the first step: a step begins with `# kind: Title`")
+            elif head.type == "fence" and head.info.strip() in FENCES:
+                self._fence(drafts[-1], head.info.strip(), head.content, line + 1)
+            else:
+                self._prose(drafts[-1], tokens, line)
+        self._complain_all(1, _missing(drafts))
+        return drafts
+
+    def _begin(self, heading: str, line: int) -> _Draft:
+        match = HEADING.fullmatch(heading.strip())
+        if match is None or match[1] not in KINDS:
+            self._complain(
+                line, f"heading {heading!r}: `# kind: Title`, kind one of {', '.join(KINDS)}"
+            )
+            return _Draft("play", heading, line, [])
+        return _Draft(match[1], match[2], line, [])
+
+    def _fence(self, draft: _Draft, what: str, content: str, line: int) -> None:
+        """A block of TOML."""
+        if what == "scene":
+            draft.scene = self._checked(content, line, Scene, self._scene_faults)
+        elif what == "script":
+            draft.script = self._checked(content, line, Script, self._script_faults)
+        elif what == "predict":
+            read: Any = self._checked(content, line, Prediction, vocabulary.prediction_faults)
+            self._add(draft, read, line)
+        elif what == "task":
+            self._add(draft, self._checked(content, line, Task, self._task_faults), line)
+        else:
+            self._add(draft, self._checked(content, line, Quiz, _quiz_faults), line)
+
+    def _add(self, draft: _Draft, block: Choice | Sketch | Task | Quiz | None, line: int) -> None:
+        if block is None:
+            return
+        try:
+            draft.blocks.append(_rendered(block))
+        except FormulaError as error:
+            self._complain(line, str(error))
+
+    def _scene_faults(self, scene: Scene) -> Iterator[str]:
+        self._robot = scene.robot or self._robot
+        return vocabulary.scene_faults(scene, self._robot)
+
+    def _script_faults(self, script: Script) -> Iterator[str]:
+        return vocabulary.script_faults(script, self._robot)
+
+    def _task_faults(self, task: Task) -> Iterator[str]:
+        return vocabulary.task_faults(task, self._robot)
+
+    def _prose(self, draft: _Draft, tokens: list[Token], line: int) -> None:
+        """A paragraph, list, table or picture; links that act on the lab end a text block."""
+        links: list[Link] = []
+        for token in tokens:
+            for child in token.children or ():
+                if child.type == "image":
+                    self._embed(child, line)
+            links += self._links(token.children or [], line)
+        try:
+            html = render(self._markdown, tokens)
+        except FormulaError as error:
+            self._complain(line, str(error))
+            return
+        last = draft.blocks[-1] if draft.blocks else None
+        if isinstance(last, Text) and not last.links:
+            draft.blocks[-1] = Text(last.html + html, tuple(links))
+        else:
+            draft.blocks.append(Text(html, tuple(links)))
+
+    def _embed(self, image: Token, line: int) -> None:
+        source = str(image.attrGet("src") or "")
+        picture = (self._path.parent / source).resolve()
+        try:
+            if not picture.is_relative_to(self._path.parent.resolve()):
+                raise ValueError(f"picture {source!r} is not in the lesson's folder")
+            image.attrSet("src", embedded(picture))
+        except OSError:
+            self._complain(line, f"no picture {source!r}")
+        except ValueError as error:
+            self._complain(line, str(error))
+
+    def _links(self, children: list[Token], line: int) -> Iterator[Link]:
+        """Links that act on the lab; in the text their words stand out."""
+        for i, token in enumerate(children):
+            if token.type != "link_open":
+                continue
+            address = str(token.attrGet("href") or "")
+            if address.startswith("https://"):
+                token.attrSet("target", "_blank")
+                token.attrSet("rel", "noopener noreferrer")
+                continue
+            end = next(j for j in range(i, len(children)) if children[j].type == "link_close")
+            label = "".join(child.content for child in children[i + 1 : end])
+            token.tag = children[end].tag = "strong"
+            token.attrs = {}
+            try:
+                actions = read_link(address)
+            except ValueError as error:
+                self._complain(line, str(error))
+                continue
+            for action in actions:
+                self._complain_all(line, vocabulary.action_faults(action, self._robot))
+            yield Link(label, actions)
+
+    def _checked(
+        self, content: str, line: int, kind: Any, faults: Callable[[Any], Iterable[str]]
+    ) -> Any:
+        read = self._toml(content, line, kind)
+        if read is not None:
+            found = list(faults(read))
+            for fault in found:
+                self._complain(_line_of(fault, content, line), fault)
+            if found:
+                return None
+        return read
+
+    def _toml(self, content: str, line: int, kind: type[T]) -> T | None:
+        """TOML that begins at a line, as a value of some type; None after a complaint."""
+        try:
+            return msgspec.convert(tomllib.loads(content), kind)
+        except tomllib.TOMLDecodeError as error:
+            place = re.search(r"at line (\d+)", str(error))
+            self._complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}")
+        except msgspec.ValidationError as error:
+            self._complain(_line_of(str(error), content, line), str(error))
+        except RecursionError:
+            self._complain(line, "nested too deeply")
+        return None
+
+    def _complain(self, line: int, text: str) -> None:
+        self._problems.append(Problem(str(self._path), line, text))
+
+    def _complain_all(self, line: int, texts: Iterable[str]) -> None:
+        for text in texts:
+            self._complain(line, text)
+
+
+def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
+    """The tokens of one block of the top level after another."""
+    section: list[Token] = []
+    depth = 0
+    for token in tokens:
+        section.append(token)
+        depth += token.nesting
+        if depth == 0:
+            yield section
+            section = []
+
+
+def _line_of(fault: str, content: str, first: int) -> int:
+    """Where in a block of TOML a fault is: the first line with a word that it names."""
+    names = re.findall(r"[`'$.]([A-Za-z_]\w*)|'([^']+)'|^(\w+)", fault)
+    words = [word for found in names for word in found if word]
+    lines = content.split("\n")
+    for word in words:
+        for number, line in enumerate(lines):
+            if re.search(rf"(?<!\w){re.escape(word)}(?!\w)", line):
+                return first + number
+    return first
+
+
+def _quiz_faults(quiz: Quiz) -> Iterator[str]:
+    return vocabulary.option_faults([option.right for option in quiz.options])
+
+
+def _rendered(block: Choice | Sketch | Task | Quiz) -> Choice | Sketch | Task | Quiz:
+    """The same with its words as safe HTML."""
+    replace = msgspec.structs.replace
+    if isinstance(block, Sketch):
+        return replace(block, question=to_html(block.question))
+    if isinstance(block, Task):
+        return replace(block, text=to_html(block.text), hints=tuple(map(to_html, block.hints)))
+    options = tuple(
+        Option(to_html(option.text), to_html(option.answer), option.right)
+        for option in block.options
+    )
+    return replace(block, question=to_html(block.question), options=options)
+
+
+def _missing(drafts: list[_Draft]) -> Iterator[str]:
+    """What every lesson has and this one lacks."""
+    kinds = [draft.kind for draft in drafts]
+    for kind in ("play", "predict", "run", "explain", "task"):
+        if kind not in kinds:
+            yield f"the lesson has no step `# {kind}: …`"
+    ids = [block.id for draft in drafts for block in draft.blocks if isinstance(block, Task)]
+    for repeated in {task for task in ids if ids.count(task) > 1}:
+        yield f"two tasks have the id {repeated!r}"
+    for draft, after in zip(drafts, [*drafts[1:], None], strict=False):
+        has = any(isinstance(block, Choice | Sketch) for block in draft.blocks)
+        if draft.kind == "predict" and not has:
+            yield f"step {draft.title!r} at line {draft.line} has no prediction"
+        if draft.kind == "predict" and (after is None or after.kind != "run"):
+            yield f"step {draft.title!r} at line {draft.line}: a `run` step must follow"
+        if draft.kind == "run" and draft.script is None:
+            yield f"step {draft.title!r} at line {draft.line} has no script"
+        if draft.kind == "task" and not any(isinstance(b, Task) for b in draft.blocks):
+            yield f"step {draft.title!r} at line {draft.line} has no task"

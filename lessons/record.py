@@ -1,0 +1,120 @@
+"""What happened in a run, as the checks look at it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lessons.schema import RobotName, Window
+from models.parameters import Parameters
+from models.system import Array
+
+Mask = NDArray[np.bool_]
+ROBOTS: tuple[RobotName, ...] = ("tracker", "follower")
+QUANTITIES: dict[str, str] = {
+    "distance": "mm",
+    "lag": "mm",
+    "speed": "mm/s",
+    "rate": "rad/s",
+    "place": "rad",
+    "across": "mm",
+    "across_rate": "mm/s",
+    "torque": "N m",
+    "force": "N",
+    "deflection": "mm",
+    "energy": "mJ",
+}
+"""Name -> unit."""
+PLOTS = (
+    *("speed", "torques", "across", "across_rate", "place", "rate", "force"),
+    *("modes", "deflection", "energy"),
+)
+"""Names of the plots a scene can ask for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Happening:
+    """Something that was done, or that came about.
+
+    Attributes:
+        run: how often the lab had been reset before.
+        time: simulated, [s].
+        name: one of lessons.schema.EventName.
+        detail: the parameter, the path, the robot; or empty.
+        robots: whom it concerns.
+    """
+
+    run: int
+    time: float
+    name: str
+    detail: str = ""
+    robots: tuple[RobotName, ...] = ROBOTS
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Record:
+    """A run since a step began or the last reset.
+
+    Attributes:
+        times: shape (n,), [s], rising.
+        values: robot -> quantity -> shape (n,), in the units of QUANTITIES.
+        happenings: since the step began, in order; those before the last reset too.
+        run: the present one.
+        parameters: as they are now.
+        path, robot: names of what is followed and who follows.
+    """
+
+    times: Array
+    values: dict[RobotName, dict[str, Array]]
+    happenings: tuple[Happening, ...]
+    run: int
+    parameters: Parameters
+    path: str = "circle"
+    robot: str = "five_bar"
+    _masks: dict[tuple[RobotName, str], Mask] = field(
+        default_factory=dict[tuple[RobotName, str], Mask]
+    )
+
+    def chosen(self, robot: RobotName, window: Window) -> Mask:
+        """Which instants count, booleans, shape (n,)."""
+        held = self._during(robot, "hold", "let_go")
+        pulled = self._during(robot, "pull", "release")
+        chosen: Mask = {
+            "always": np.ones(len(self.times), dtype=bool),
+            "held": held,
+            "pulled": pulled,
+            "free": ~(held | pulled),
+        }[window.during]
+        if window.last > 0:
+            seconds: Array = np.cumsum((chosen * self._steps())[::-1])[::-1]
+            chosen = chosen & (seconds <= window.last + 1e-9)
+        return chosen
+
+    def seconds(self, chosen: Mask) -> float:
+        """How long the chosen instants last, [s]."""
+        return float(self._steps()[chosen].sum())
+
+    def _steps(self) -> Array:
+        if len(self.times) < 2:
+            return np.zeros(len(self.times))
+        return np.diff(self.times, append=2 * self.times[-1] - self.times[-2])
+
+    def _during(self, robot: RobotName, begin: str, end: str) -> Mask:
+        """Instants between two happenings of this run."""
+        if (robot, begin) not in self._masks:
+            mask = np.zeros(len(self.times), dtype=bool)
+            since: float | None = None
+            for event in self.happenings:
+                if event.run != self.run or robot not in event.robots:
+                    continue
+                if event.name == begin and since is None:
+                    since = event.time
+                elif event.name == end and since is not None:
+                    mask |= (self.times >= since) & (self.times < event.time)
+                    since = None
+            if since is not None:
+                mask |= self.times >= since
+            self._masks[robot, begin] = mask
+        return self._masks[robot, begin]

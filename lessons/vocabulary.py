@@ -1,0 +1,136 @@
+"""Which names a lesson may use: controls, plots, paths, robots, parameters, quantities, events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import get_args
+
+from lessons.record import PLOTS, QUANTITIES
+from lessons.schema import (
+    Action,
+    Bound,
+    Check,
+    Compare,
+    Event,
+    EventName,
+    Order,
+    Prediction,
+    Scene,
+    Script,
+    Setting,
+    Sketch,
+    Task,
+    Value,
+)
+from models.catalogue import ROBOTS, Entry
+from models.parameters import changed, specs, unknown_name
+from models.path_design import presets
+
+CONTROLS = (
+    *("hold", "path", "editor", "gains", "plots", "past", "robot", "copy", "flexible", "identify"),
+)
+EVENTS: tuple[str, ...] = get_args(EventName)
+LONGEST = 60.0
+"""Of a script or a sketch [s]: the lab remembers a minute."""
+
+
+def scene_faults(scene: Scene, robot: str) -> Iterator[str]:
+    """What is wrong with a scene, in words."""
+    if scene.robot:
+        yield from _one_of(scene.robot, ROBOTS, "robot")
+    if scene.path:
+        yield from _one_of(scene.path, presets(), "path")
+    if scene.plot:
+        yield from _one_of(scene.plot, PLOTS, "plot")
+    entry = ROBOTS.get(scene.robot or robot)
+    if entry is not None:
+        yield from _setting_faults(scene.set, entry)
+        for name in scene.controls:
+            yield from _one_of(name, [*CONTROLS, *specs(entry.parameters)], "control")
+
+
+def script_faults(script: Script, robot: str) -> Iterator[str]:
+    """What is wrong with a script, in words."""
+    if not 0 < script.until <= LONGEST:
+        yield f"until = {script.until:g}: a script ends between 0 and {LONGEST:g} s"
+    for action in script.do:
+        if not 0 <= action.at <= script.until:
+            yield f"at = {action.at:g}: between 0 and the script's end at {script.until:g} s"
+        yield from action_faults(action, robot)
+        robot = action.robot or robot
+
+
+def action_faults(action: Action, robot: str) -> Iterator[str]:
+    """What is wrong with an action, in words."""
+    try:
+        what = action.what
+    except ValueError as error:
+        yield str(error)
+        return
+    if what == "set" and robot in ROBOTS:
+        yield from _setting_faults(action.set or {}, ROBOTS[robot])
+    elif what == "path":
+        yield from _one_of(action.path or "", presets(), "path")
+    elif what == "robot":
+        yield from _one_of(action.robot or "", ROBOTS, "robot")
+
+
+def prediction_faults(prediction: Prediction) -> Iterator[str]:
+    """What is wrong with a prediction, in words."""
+    if isinstance(prediction, Sketch):
+        yield from _one_of(prediction.quantity, QUANTITIES, "quantity")
+        if not 0 < prediction.seconds <= LONGEST:
+            yield f"seconds = {prediction.seconds:g}: between 0 and {LONGEST:g}"
+        if not prediction.bottom < prediction.top:
+            yield f"top = {prediction.top:g} must be above bottom = {prediction.bottom:g}"
+    else:
+        yield from option_faults([option.right for option in prediction.options])
+
+
+def option_faults(right: list[bool]) -> Iterator[str]:
+    """What is wrong with the options of a question."""
+    if len(right) < 2 or sum(right) != 1:
+        yield f"{len(right)} options, {sum(right)} right: two or more are needed, one of them right"
+
+
+def task_faults(task: Task, robot: str) -> Iterator[str]:
+    """What is wrong with a task, in words."""
+    if not task.id.replace("-", "").isalnum():
+        yield f"id {task.id!r}: letters, digits and hyphens"
+    if not task.check:
+        yield f"task {task.id!r} has no check"
+    if task.best:
+        yield from _one_of(task.best, QUANTITIES, "quantity")
+    for check in task.check:
+        yield from _check_faults(check, ROBOTS.get(robot))
+
+
+def _check_faults(check: Check, entry: Entry | None) -> Iterator[str]:
+    if isinstance(check, Bound | Compare):
+        yield from _one_of(check.quantity, QUANTITIES, "quantity")
+    if isinstance(check, Bound | Setting):
+        equals = getattr(check, "equals", None)
+        if check.below is None and check.above is None and equals is None:
+            yield "a check needs below or above"
+    if isinstance(check, Setting) and check.name not in ("path", "robot") and entry is not None:
+        yield from _one_of(check.name, specs(entry.parameters), "parameter")
+    if isinstance(check, Order):
+        for event in check.events:
+            yield from _one_of(event.partition(":")[0], EVENTS, "event")
+    if isinstance(check, Event) and check.event == "set" and check.name and entry is not None:
+        yield from _one_of(check.name, specs(entry.parameters), "parameter")
+
+
+def _setting_faults(values: dict[str, Value], entry: Entry) -> Iterator[str]:
+    for name, value in values.items():
+        try:
+            changed(replace(entry.lab), name, value)
+        except ValueError as error:
+            yield str(error)
+
+
+def _one_of(name: str, known: object, what: str) -> Iterator[str]:
+    names = [str(each) for each in known]  # type: ignore[union-attr]
+    if name not in names:
+        yield str(unknown_name(name, names, what=what))
