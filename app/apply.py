@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app import commands as c
+from app.identify import identify_model
 from models.catalogue import ROBOTS
 from models.controllers import NAMES
 from models.parameters import changed
@@ -30,12 +31,21 @@ def apply(command: object, session: Session) -> None:
 
 @apply.register(c.SetParameter)
 def _(command: c.SetParameter, session: Session) -> None:
-    session.set_parameters(changed(session.parameters, command.name, command.value))
+    before = session.parameters
+    session.set_parameters(changed(before, command.name, command.value))
+    if session.parameters != before:
+        session.note("set", command.name)
 
 
 @apply.register(c.ResetParameters)
 def _(_: c.ResetParameters, session: Session) -> None:
     session.set_parameters(session.entry.lab)
+
+
+@apply.register(c.Identify)
+def _(_: c.Identify, session: Session) -> None:
+    identify_model(session)
+    session.note("identify")
 
 
 @apply.register(c.ChooseRobot)
@@ -237,7 +247,10 @@ def _commit(session: Session, design: PathDesign) -> None:
 def _finish(session: Session) -> None:
     """End an edit of the path and say why if it is refused."""
     _leave_past(session)
+    before = session.editor.design
     if session.editor.finish():
+        if session.editor.design is not before:
+            session.note("path", session.editor.design.name)
         session.hush()
     elif session.editor.faults:
         reasons = "; ".join(fault.reason for fault in session.editor.faults)

@@ -25,6 +25,11 @@ class ResetParameters:
 
 
 @dataclass(frozen=True, slots=True)
+class Identify:
+    """Give the controllers the model that the follower's last seconds tell."""
+
+
+@dataclass(frozen=True, slots=True)
 class ChooseRobot:
     """Another robot; path and parameters are those that it had before, or its defaults."""
 
@@ -202,6 +207,7 @@ class Redo:
 Command = (
     SetParameter
     | ResetParameters
+    | Identify
     | ChooseRobot
     | SetRunning
     | Step
@@ -229,3 +235,6 @@ Command = (
     | Undo
     | Redo
 )
+
+LETS_TIME_RUN = (SetRunning, Step, GoOn)
+"""What a locked session refuses."""

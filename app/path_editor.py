@@ -106,6 +106,11 @@ class PathEditor:
             self._follow(blend(self._from, self._target, self._progress))
         return False
 
+    def settle(self) -> None:
+        """Follow the last valid path at once, without a blend."""
+        self._from, self.proposed, self.faults = None, None, []
+        self._follow(self.design.curve)
+
     def points(self) -> np.ndarray:
         """Control points as shown, shape (k, 2), [m]."""
         return (self.proposed or self.design).points

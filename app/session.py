@@ -19,7 +19,10 @@ from app.loop_store import LoopStore
 from app.path_editor import PathEditor
 from app.plant_run import PlantRun
 from app.samples import places, sample_layout
+from app.script_player import ScriptPlayer
 from app.snapshot import PathView
+from lessons.record import ROLES, Happening
+from lessons.schema import RobotName
 from models.catalogue import FIVE_BAR, Entry
 from models.controllers import NAMES
 from models.curves import Curve
@@ -34,6 +37,7 @@ log = logging.getLogger(__name__)
 
 MOST_COMMANDS = 500  # waiting at once; a flood beyond is dropped
 MOST_TICKS = 200  # in one frame
+MOST_HAPPENINGS = 2000
 REACH = 0.4  # [m], a hand's target stays within this of the middle
 
 
@@ -47,6 +51,10 @@ class Session:
         time: simulated, [s].
         viewing: the past instant being looked at, [s], or None.
         held, hands: who is held back; where hands pull, by controller, in output coordinates.
+        happenings: what was done and came about, for the lessons' checks.
+        run_number: how often the robots have been set back to the start.
+        script: what is being done by itself, or None.
+        locked: why time must not run now; empty when it may.
     """
 
     def __init__(self, store: LoopStore, entry: Entry = FIVE_BAR) -> None:
@@ -61,6 +69,10 @@ class Session:
         self.exaggeration = 1.0  # of a deflection, in the drawing alone
         self.path_view: PathView | None = None  # the last one drawn, while it is still right
         self.message, self.message_level = "", "info"
+        self.happenings: deque[Happening] = deque(maxlen=MOST_HAPPENINGS)
+        self.run_number = 0
+        self.script: ScriptPlayer | None = None
+        self.locked = ""
         self._set_up(entry)
 
     # The robot
@@ -70,6 +82,7 @@ class Session:
         if entry is not self.entry:
             self._benches[self.entry.name] = (self.parameters, self.editor)
             self._set_up(entry)
+            self.note("robot", entry.name)
             self.say("")
 
     def set_parameters(self, parameters: Parameters) -> None:
@@ -100,10 +113,28 @@ class Session:
         """Apply what has been asked for. A command that makes no sense is answered in words."""
         while self._inbox:
             command = self._inbox.popleft()
+            if self.locked and isinstance(command, commands.LETS_TIME_RUN):
+                self.say(self.locked, "warning")
+                continue
             try:
                 apply(command, self)
             except ValueError as error:
                 self.say(str(error), "warning")
+        self._play()
+
+    def _play(self) -> None:
+        """What a script says."""
+        try:
+            if self.script is not None and self.script.play(self):
+                self.script = None
+        except ValueError as error:
+            self.script = None
+            self.say(str(error), "warning")
+
+    def note(self, name: str, detail: str = "", controllers: tuple[str, ...] = NAMES) -> None:
+        """Remember that something has happened."""
+        robots: tuple[RobotName, ...] = tuple(ROLES[controller] for controller in controllers)
+        self.happenings.append(Happening(self.run_number, self.time, name, detail, robots))
 
     def say(self, message: str, level: str = "info") -> None:
         """Show a sentence to the user."""
@@ -173,6 +204,8 @@ class Session:
 
     def step_once(self) -> None:
         """One step of a paused lab: the controller's next action, at least a millisecond."""
+        if self.locked:
+            raise ValueError(self.locked)
         self.running = False
         dt = time_step(self.parameters)
         self.simulate(max(1, round(max(TICK, 1 / self.parameters.control_rate) / dt)))
@@ -180,9 +213,11 @@ class Session:
     def reset(self) -> None:
         """Both robots to the start, at rest. The past is forgotten; path and parameters stay."""
         self._restart()
+        self.note("reset")
         self.say("")
 
     def _restart(self) -> None:
+        self.run_number += 1
         self.time = 0.0
         self._owed = 0.0
         self.viewing: float | None = None
@@ -205,6 +240,7 @@ class Session:
     def _tell_divergence(self, name: str) -> None:
         run = self.runs[name]
         assert run.diverged is not None
+        self.note("diverged", controllers=(name,))
         title = name.replace("_", " ").capitalize()
         self.say(
             f"{title} stopped at {run.diverged.time:.2f} s: {run.diverged.reason}."
@@ -224,9 +260,10 @@ class Session:
 
     def hold(self, names: list[str], on: bool) -> None:
         """Begin or end holding robots back, each where it is now."""
-        for name in names:
-            if on == (name in self.held):
-                continue
+        changed = tuple(name for name in names if on != (name in self.held))
+        if changed:
+            self.note("hold" if on else "let_go", controllers=changed)
+        for name in changed:
             (self.held.add if on else self.held.discard)(name)
             brake = None
             if on:
@@ -245,6 +282,7 @@ class Session:
             self._grab_offset = {
                 name: self.runs[name].shown()["y"] - own for name in self.targets(controller)
             }
+            self.note("pull", controllers=tuple(self._grab_offset))
         home = self.robot.frame.lift(np.zeros(2))
         for name, offset in self._grab_offset.items():
             self.hands[name] = np.clip(target + offset, home - REACH, home + REACH)
@@ -252,6 +290,8 @@ class Session:
 
     def release(self) -> None:
         """Let all end-points go."""
+        if self.hands:
+            self.note("release", controllers=tuple(self.hands))
         for name in self.hands:
             self._pushes[name] = Push(None, self._pushes[name].hold)
         self.hands.clear()
@@ -274,6 +314,7 @@ class Session:
             stretch = self.history.at(self.viewing)
             if stretch is not None:
                 self.history.forget_after(stretch)
+                self._forget_happenings(stretch.time)
                 self.time = stretch.time
                 for name, run in self.runs.items():
                     run.restore(stretch.drives[name], self.editor.curve, stretch.curve)
@@ -285,6 +326,14 @@ class Session:
         for name, run in self.runs.items():
             if run.diverged is not None:
                 self._tell_divergence(name)
+
+    def _forget_happenings(self, time: float) -> None:
+        """Those of this run after a time; what went on then is over."""
+        kept = [h for h in self.happenings if h.run != self.run_number or h.time <= time]
+        self.happenings = deque(kept, maxlen=MOST_HAPPENINGS)
+        self.time = time
+        self.note("let_go")
+        self.note("release")
 
     # What is kept of an instant
 

@@ -13,6 +13,11 @@ from models.system import Array
 
 Mask = NDArray[np.bool_]
 ROBOTS: tuple[RobotName, ...] = ("tracker", "follower")
+ROLES: dict[str, RobotName] = {
+    "path_following": "follower",
+    "trajectory_tracking": "tracker",
+}
+"""Controller -> robot, as the lessons call it."""
 QUANTITIES: dict[str, str] = {
     "distance": "mm",
     "lag": "mm",
