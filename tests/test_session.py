@@ -68,6 +68,7 @@ def parameter_values() -> st.SearchStrategy[c.SetParameter]:
 COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.SetParameter: parameter_values(),
     c.ResetParameters: st.builds(c.ResetParameters),
+    c.Identify: st.builds(c.Identify),
     c.ChooseRobot: st.builds(c.ChooseRobot, st.sampled_from(["five_bar", "", "hexapod"])),
     c.SetRunning: st.builds(c.SetRunning, st.sampled_from([None, True, True, False])),
     c.Step: st.builds(c.Step),

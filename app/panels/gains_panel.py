@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import viser
 
-from app.commands import ResetParameters
+from app.commands import Identify, ResetParameters
 from app.panels.widgets import ParameterWidgets, Post, SwitchedParameter, on_press
 from app.session import Session
 from models.parameters import Parameters, specs
@@ -12,6 +12,8 @@ from models.poles import Channel, channels
 
 BASIC = ["speed", "K1", "K2", "K5"]
 ADVANCED = ["task", "target", "K3", "K4", "across"]
+
+LAST_OF_MODEL = "error_b2"
 
 
 class GainsPanel:
@@ -35,6 +37,8 @@ class GainsPanel:
                     self._widgets.append(ParameterWidgets(gui, parameters, [name], post))
                 else:
                     self._widgets.append(SwitchedParameter(gui, parameters, name, post))
+                if name == LAST_OF_MODEL:
+                    _add_identify(gui, post)
 
     def follow(self, session: Session) -> None:
         """Show the session's values and what follows from them."""
@@ -44,6 +48,12 @@ class GainsPanel:
         for widgets in self._widgets:
             widgets.follow(session.parameters)
         self._words.content = "\n\n".join(_line(ch) for ch in channels(session.parameters))
+
+
+def _add_identify(gui: viser.GuiApi, post: Post) -> None:
+    hint = "Estimates M and b from the follower's last 4 s, and lets both controllers believe it."
+    button = gui.add_button("Identify M and b", icon=viser.Icon.RULER_MEASURE, hint=hint)
+    on_press(button, lambda: post(Identify()))
 
 
 def _line(channel: Channel) -> str:
