@@ -9,6 +9,7 @@ import viser
 from app import commands as c
 from app.exports import Exporter
 from app.loop_store import LoopStore
+from app.node_update import Channel
 from app.panels.flexible_panel import FlexiblePanel
 from app.panels.gains_panel import GainsPanel
 from app.panels.keys import add_keys, help_text
@@ -37,6 +38,7 @@ class LabView:
 
     def __init__(self, client: viser.ClientHandle, session: Session, store: LoopStore) -> None:
         self._client = client
+        self._channel = Channel(client)
         self._store = store
         self._offset = client.client_id  # spreads the clients' slow updates over the frames
         self._exporter = Exporter(client)
@@ -56,13 +58,20 @@ class LabView:
     def show(self, session: Session, achieved: float, frame: int) -> None:
         """See `app.loop.View`."""
         count = frame + self._offset
-        if count % DISPLAY or self._robot is None:
+        if count % DISPLAY or self._robot is None or self._channel.closed:
             return
         if session.robot is not self._robot:
             self._robot = None  # nothing is shown until the new one stands
             self._exporter.submit(lambda: self._rebuild(session))
             return
-        slow = count % SLOW == 0
+        with self._channel.frame():
+            self._show(session, achieved, slow=count % SLOW == 0)
+
+    def send(self) -> None:
+        """See `app.loop.View`."""
+        self._channel.send()
+
+    def _show(self, session: Session, achieved: float, slow: bool) -> None:
         snapshot = take_snapshot(session, achieved, traces=slow)
         self._scene.update(snapshot)
         self._scene.update_path(snapshot)

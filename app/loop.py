@@ -32,6 +32,10 @@ class View(Protocol):
         """Show it; `frame` counts up, so that slow parts can be shown less often."""
         ...
 
+    def send(self) -> None:
+        """Let out what has been shown, once all labs have been simulated."""
+        ...
+
 
 class Lab:
     """A session, how fast it really runs, and who looks at it.
@@ -130,4 +134,7 @@ class SimulationThread:
                     lab.frame(now - last, count)
                 except Exception as error:  # one lab must not stop the others
                     log_error(error)
+            for view in [lab.view for lab in self._labs]:
+                if view is not None:
+                    view.send()
             last, count = now, count + 1

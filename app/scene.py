@@ -106,8 +106,7 @@ class Scene:
         self._snapshot = snapshot
         poses = self._layout.poses(self._robots(snapshot))
         if poses.is_finite():
-            with self._client.atomic():
-                self._machine.update(poses)
+            self._machine.update(poses)
 
     def update_traces(self, snapshot: Snapshot) -> None:
         """Redraws the end-points' traces and the forces' labels; at 5 to 10 Hz."""
@@ -123,8 +122,7 @@ class Scene:
         path = snapshot.path
         if self._path is None or path.version != self._path.version:
             self._path = path
-            with self._client.atomic():
-                self._path_nodes.draw(path)
+            self._path_nodes.draw(path)
 
     def show_singular_zone(
         self, inner_radius: float, outer_radius: float, margin: float, visible: bool = True
@@ -151,11 +149,10 @@ class Scene:
         camera = self._client.camera
         size = (max(camera.image_width, 1), max(camera.image_height, 1))
         pose = view_of(self._stage, size, insets or Insets())
-        with self._client.atomic():
-            camera.fov = float(FIELD_OF_VIEW)
-            camera.up_direction = (0.0, 0.0, 1.0)
-            camera.position = pose.position
-            camera.look_at = pose.look_at
+        camera.fov = float(FIELD_OF_VIEW)
+        camera.up_direction = (0.0, 0.0, 1.0)
+        camera.position = pose.position
+        camera.look_at = pose.look_at
 
     def begin_freehand(self, on_stroke: Callable[[np.ndarray], None]) -> None:
         """Lets the user draw one stroke on a robot's plane; calls back with (n, 3), [m]."""

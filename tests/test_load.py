@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from threading import Event, Thread
+from time import sleep
 from typing import Any
 
 import numpy as np
@@ -17,7 +20,7 @@ from websockets.typing import Subprotocol
 from app.hardening import make_server
 from app.load import crowd
 from app.loop_store import LoopStore
-from app.node_update import update_node
+from app.node_update import Channel, update_node
 from app.protocol import CAMERA, SUBPROTOCOL, packed, unpacked
 from app.server import LabServer
 from models.catalogue import ROBOTS
@@ -99,3 +102,75 @@ def test_simulated_browsers_see_and_do_what_real_ones_do(tmp_path: Path) -> None
     assert all(lab.session.time > 1.0 for lab in labs)
     assert max(run.max_distance for lab in labs for run in lab.session.runs.values()) > 0.004
     assert any(lab.session.parameters.K1 != 400.0 for lab in labs)
+
+
+@contextmanager
+def browser(server: viser.ViserServer) -> Iterator[tuple[viser.ClientHandle, Any]]:
+    """A client as the server knows it, and its socket."""
+    address = f"ws://127.0.0.1:{server.get_port()}"
+    with websockets.sync.client.connect(
+        address, subprotocols=[Subprotocol(SUBPROTOCOL)], compression=None
+    ) as socket:
+        socket.send(packed("ViewerCameraMessage", **CAMERA))
+        while not server.get_clients():
+            sleep(0.01)
+        (client,) = server.get_clients().values()
+        yield client, socket
+
+
+def told_until(socket: Any, last: str) -> list[list[str]]:
+    """What a browser is told of nodes, frame by frame, until the node `last` is updated.
+
+    A node's name, marked when it is made anew.
+    """
+    frames: list[list[str]] = []
+    while not any(last in frame for frame in frames):
+        messages = [m for m in unpacked(socket.recv(timeout=10)) if m.get("name", "")[1:].isdigit()]
+        made = ["" if "updates" in m else "new " for m in messages]
+        frames.append([how + m["name"] for how, m in zip(made, messages, strict=True)])
+    return [frame for frame in frames if frame]
+
+
+def test_what_one_thread_tells_in_a_frame_arrives_at_once_and_in_order(
+    server: viser.ViserServer,
+) -> None:
+    with browser(server) as (client, socket):
+        channel = Channel(client)
+        names = [f"/{i}" for i in range(5)]
+        nodes = [client.scene.add_point_cloud(n, np.zeros((1, 3)), (0, 0, 0)) for n in names]
+        for node in nodes[:2]:  # nodes wait in viser's queue: these must wait behind them
+            with channel.frame():
+                update_node(node, points=np.ones((1, 3)))
+            channel.send()
+        told = sum(told_until(socket, "/1"), [])
+        assert all(told.index(f"new {name}") < told.index(name) for name in names[:2])
+        with channel.frame():
+            for node in nodes[2:4]:
+                update_node(node, points=np.ones((1, 3)))
+            other = Thread(target=lambda: update_node(nodes[4], points=np.ones((1, 3))))
+            other.start()
+            other.join()
+            assert told_until(socket, "/4") == [["/4"]]  # another thread waits for nothing
+        channel.send()
+        assert told_until(socket, "/3") == [["/2", "/3"]]
+        channel.send()  # nothing is sent twice
+        update_node(nodes[0], points=np.zeros((1, 3)))
+        assert told_until(socket, "/0") == [["/0"]]
+
+
+def test_nobody_is_told_anything_when_he_is_gone(
+    server: viser.ViserServer, recwarn: pytest.WarningsRecorder
+) -> None:
+    with browser(server) as (client, _):
+        channel = Channel(client)
+        node = client.scene.add_point_cloud("/node", np.zeros((1, 3)), (0, 0, 0))
+        assert not channel.closed
+    while server.get_clients():
+        sleep(0.01)
+    assert channel.closed
+    with channel.frame():
+        update_node(node, points=np.ones((1, 3)))
+    channel.send()
+    done = Event()
+    server.get_event_loop().call_soon_threadsafe(done.set)
+    assert done.wait(5.0) and not recwarn.list

@@ -45,6 +45,9 @@ class View:
         self.shown.append((session.time, achieved, frame))
         self.work(frame)
 
+    def send(self) -> None:
+        pass
+
 
 def simulated(
     seconds: float, cost: Callable[[int], float], *others: Lab
