@@ -31,7 +31,7 @@ from models.system import Array
 if TYPE_CHECKING:
     from app.session import Session
 
-MOST_TICKS = 4000  # of the past, so that the lab does not stop for it
+MOST_TICKS = 3000  # of the past, so that the lab does not stop for it
 FOLLOWER = "path_following"
 PLANT = ("plant", "coulomb", "encoder_step")  # as long as these stay, it is the same robot
 UNITS = {"M": "kg m²", "b": "N m s", "c": "N m", "G": "N m"}

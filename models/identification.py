@@ -31,8 +31,8 @@ CHOICES = (INERTIA, INERTIA + DRY, INERTIA + BALANCE, ALL)
 
 BUMP = 0.25  # [s], length of the filter
 OVERLAP = 5  # bumps that cover an instant
+LAGS = 2 * OVERLAP  # over which residuals may be correlated
 FEWEST = 20  # samples in a bump
-PARTS = 10  # of the record, one left out at a time for the standard errors
 SMOOTHING = 41  # samples
 SHORTEST = 1.0  # [s]
 LEAST_MOTION = 0.02  # [rad], of each joint, from end to end
@@ -141,12 +141,12 @@ def _estimated(names: tuple[str, ...], columns: Array, torque: Array) -> Identif
             "the motion was too regular to tell the parameters apart: change the speed while it"
             " runs, then try again"
         )
-    spread = np.array([_solved(*rest)[0] for rest in _without_parts(scaled, torque)]) - values
-    errors = np.sqrt((PARTS - 1) / PARTS * np.sum(spread**2, axis=0))
+    residual = torque - scaled @ values
+    errors = _standard_errors(scaled, residual)
     result = Identified(
         dict(zip(names, (values / scale).tolist(), strict=True)),
         dict(zip(names, (errors / scale).tolist(), strict=True)),
-        float(np.sqrt(np.mean((torque - scaled @ values) ** 2))),
+        float(np.sqrt(np.mean(residual**2))),
         float(np.sqrt(np.mean(torque**2))),
         condition,
     )
@@ -173,13 +173,23 @@ def _solved(regressor: Array, torque: Array) -> tuple[Array, float]:
     return solution[0], condition
 
 
-def _without_parts(regressor: Array, torque: Array) -> list[tuple[Array, Array]]:
-    """The equations without one part of the record at a time (jackknife).
+def _standard_errors(regressor: Array, residual: Array) -> Array:
+    """Of the least squares solution, (unknowns,), from residuals that overlapping bumps correlate.
 
-    Whole parts, since neighbouring equations share their noise.
+    Noise is taken to be stationary: its covariance is averaged over the record, for each joint,
+    and fades with the lag (Bartlett's weights), so that no variance becomes negative.
     """
-    part = np.arange(len(torque)) * PARTS // len(torque)
-    return [(regressor[part != i], torque[part != i]) for i in range(PARTS)]
+    k, joints, unknowns = regressor.shape
+    flat = regressor.reshape(-1, unknowns)
+    inverse = np.linalg.inv(flat.T @ flat)
+    middle = np.zeros((unknowns, unknowns))
+    for lag in range(min(LAGS, k)):
+        early, late = slice(None, k - lag), slice(lag, None)
+        covariance = (1 - lag / LAGS) * np.sum(residual[early] * residual[late], axis=0) / k
+        part = np.einsum("kji,kjl,j->il", regressor[early], regressor[late], covariance)
+        middle += part if lag == 0 else part + part.T
+    freedom = joints * k / max(joints * k - OVERLAP * unknowns, 1)
+    return np.sqrt(np.maximum(np.diag(inverse @ middle @ inverse), 0.0) * freedom)
 
 
 def _equations(record: Record) -> tuple[Array, Array]:

@@ -51,7 +51,7 @@ class GainsPanel:
 
 
 def _add_identify(gui: viser.GuiApi, post: Post) -> None:
-    hint = "Estimates M and b from the follower's last 4 s, and lets both controllers believe it."
+    hint = "Estimates M and b from the follower's last 3 s, and lets both controllers believe it."
     button = gui.add_button("Identify M and b", icon=viser.Icon.RULER_MEASURE, hint=hint)
     on_press(button, lambda: post(Identify()))
 
