@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from app.lesson_commands import LessonCommand
+
 EXAGGERATIONS = (1.0, 20.0)  # the least and the most
 RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)  # simulated seconds per second
 
@@ -234,6 +236,7 @@ Command = (
     | DrawPath
     | Undo
     | Redo
+    | LessonCommand
 )
 
 LETS_TIME_RUN = (SetRunning, Step, GoOn)

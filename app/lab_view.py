@@ -7,30 +7,26 @@ from collections.abc import Callable
 import viser
 
 from app import commands as c
+from app.controls import Controls, Part
 from app.exports import Exporter
+from app.lesson_menu import LessonMenu
+from app.lesson_panel import LessonPanel
 from app.loop_store import LoopStore
 from app.node_update import Channel
-from app.panels.flexible_panel import FlexiblePanel
-from app.panels.gains_panel import GainsPanel
-from app.panels.keys import add_keys, help_text
-from app.panels.past_panel import PastPanel
-from app.panels.path_panel import PathChoice, PathPanel
+from app.panels.keys import add_keys
 from app.panels.readout import Readout
-from app.panels.robot_panel import RobotPanel
-from app.panels.run_panel import RunPanel
-from app.panels.widgets import on_press, on_user_update
-from app.plots import DISTANCE, LivePlot, MorePlots
+from app.plots import DISTANCE, LivePlot
 from app.scene import Hooks, Scene
 from app.session import Session
 from app.stage import Insets
 from app.stages import stage_of
+from app.step_controls import StepControls
 from app.take_snapshot import take_snapshot
-from models.flexible_robot import FlexibleParameters
 
 DISPLAY = 2  # frames of simulation per frame of display: 30 Hz
 SLOW = 6  # frames per update of traces, plots and readouts: 10 Hz
 CONTROL_WIDTH = 330  # [px]
-NARROW = 0.75  # width to height: a telephone, where the panel lies over the lower part
+NARROW = 0.6  # width to height: a telephone, where the panel lies over the lower part
 
 
 class LabView:
@@ -60,7 +56,7 @@ class LabView:
         count = frame + self._offset
         if count % DISPLAY or self._robot is None or self._channel.closed:
             return
-        if session.robot is not self._robot:
+        if self._page(session) != self._built:
             self._robot = None  # nothing is shown until the new one stands
             self._exporter.submit(lambda: self._rebuild(session))
             return
@@ -88,15 +84,17 @@ class LabView:
         self._client.scene.reset()
         self._client.gui.reset()
         self._framed = 0.0
-        robot = session.robot
-        try:
-            self._build(session)
-        finally:
-            if session.robot is not robot:  # another one meanwhile: build that
-                self._robot = robot
+        self._build(session)
+
+    @staticmethod
+    def _page(session: Session) -> tuple[object, ...]:
+        """What the whole page depends on: when it is another, all is built anew."""
+        run = session.lessons
+        return session.robot, run.lesson is not None, run.words.language
 
     def _build(self, session: Session) -> None:
         robot, post = session.robot, session.post
+        self._built = self._page(session)
         self._scene = Scene(self._client, _hooks(post), stage_of(robot))
         self._scene.build(take_snapshot(session, 1.0))
         self._build_panels(session, post)
@@ -104,56 +102,22 @@ class LabView:
         self._robot = robot
 
     def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
-        gui = self._client.gui
+        gui, run = self._client.gui, session.lessons
         self._progress = gui.add_progress_bar(0.0, visible=False, animated=True)
         self._readout = Readout(gui)
-        RobotPanel(gui, session, post)
-        self._parts = [
-            LivePlot(gui, session, DISTANCE, height=190),
-            RunPanel(gui, session, post),
-            PathChoice(gui, session, post),
-        ]
-        if isinstance(session.parameters, FlexibleParameters):
-            self._parts.append(self._flexible_panel(session, post))
-        self._parts.append(GainsPanel(gui, session, post))
-        with gui.add_folder("Path editor", expand_by_default=False):
-            self._parts.append(PathPanel(gui, session, post, self._draw(post), self._show_zone))
-        self._parts.append(MorePlots(gui, session))
-        self._parts.append(PastPanel(gui, session, post, self._exporter))
-        copy = gui.add_checkbox(
-            "Copy to both", session.copy, hint="Hand and hold act on both robots alike"
-        )
-        on_user_update(copy, lambda on: post(c.SetCopy(on)))
-        helping = gui.add_button("Help and keys", icon=viser.Icon.HELP)
-        on_press(helping, self._help)
-
-    def _flexible_panel(self, session: Session, post: Callable[[c.Command], None]) -> FlexiblePanel:
-        pulls = list(stage_of(session.robot).pulls)
-
-        def choose(name: str) -> None:
-            self._scene.pull = name
-
-        return FlexiblePanel(self._client.gui, session, post, pulls, choose, self._exporter.submit)
-
-    def _draw(self, post: Callable[[c.Command], None]) -> Callable[[], None]:
-        return lambda: self._scene.begin_freehand(lambda stroke: post(c.DrawPath(stroke)))
-
-    def _show_zone(self, visible: bool) -> None:
-        self._scene.show_singular_zone(0.0, 0.4, 0.02, visible)
-
-    def _help(self) -> None:
-        gui = self._client.gui
-        escape = gui.add_command("Close the help window", hotkey="escape")
-        with gui.add_modal("How to use the lab") as modal:
-            gui.add_markdown(help_text())
-            close = gui.add_button("Close")
-
-        async def shut(_: object) -> None:
-            escape.remove()
-            modal.close()
-
-        close.on_click(shut)
-        escape.on_trigger(shut)
+        if run.course.lessons:
+            LessonMenu(gui, session, post)
+        self._parts: list[Part] = [LivePlot(gui, session, DISTANCE, height=190)]
+        controls = Controls(gui, session, post, self._exporter, self._scene)
+        if run.lesson is None:
+            self._parts += controls.everything()
+            return
+        tabs = gui.add_tab_group()
+        own = tabs.add_tab(run.words("lesson.this_step"), viser.Icon.SCHOOL)
+        self._parts.append(StepControls(gui, own, session, controls, self._exporter.submit))
+        with tabs.add_tab(run.words("lesson.all_controls"), viser.Icon.ADJUSTMENTS):
+            self._parts += controls.everything()
+        self._parts.append(LessonPanel(self._client, session, post, self._exporter.submit))
 
     def _show_progress(self) -> None:
         done, wanted = self._store.progress()

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.session import Session
 from lessons.record import ROLES, Record
 from lessons.schema import RobotName
 from models.layout import Layout
 from models.system import Array
+
+if TYPE_CHECKING:
+    from app.session import Session
 
 MOST_SAMPLES = 3600
 

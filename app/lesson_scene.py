@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from app import commands as c
 from app.apply import apply
-from app.session import Session
 from lessons.schema import Scene
+
+if TYPE_CHECKING:
+    from app.session import Session
 
 PATH = "circle"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 import webbrowser
+from pathlib import Path
 
 import viser
 
@@ -17,6 +18,9 @@ from app.session import Session
 from app.sessions import Sessions
 from app.stage import set_initial_camera
 from app.stages import RIGID
+from lessons.course import BUILT_IN, Course, read_course
+from lessons.parse import LessonError
+from models.catalogue import FIVE_BAR
 
 log = logging.getLogger(__name__)
 STORAGE_KEY = "onpath_sessions"
@@ -29,16 +33,20 @@ class LabServer:
     Args:
         host, port: where to listen; port 0 takes a free one.
         store: where the loops come from.
+        course: the lessons; the built-in ones if there is none.
 
     Raises:
         OSError: the address cannot be had; the message says why and the way out.
     """
 
-    def __init__(self, host: str, port: int, store: LoopStore) -> None:
+    def __init__(
+        self, host: str, port: int, store: LoopStore, course: Course | None = None
+    ) -> None:
         self._store = store
+        lessons = course or read_course([BUILT_IN])[0]
         self.server = make_server(host, port, label="OnPath")
         self.simulation = SimulationThread()
-        self.sessions = Sessions(self.simulation, lambda: Session(store))
+        self.sessions = Sessions(self.simulation, lambda: Session(store, FIVE_BAR, lessons))
         self._views: dict[int, LabView] = {}
         set_initial_camera(self.server, RIGID)
         self.server.on_client_connect(self._connected)
@@ -85,9 +93,19 @@ class LabServer:
             view.close()
 
 
-def serve(host: str, port: int, open_browser: bool = False) -> None:
-    """Serve the lab until Ctrl-C."""
-    lab = LabServer(host, port, LoopStore.with_system_compiler())
+def serve(host: str, port: int, lessons: Path | None = None, open_browser: bool = False) -> None:
+    """Serve the lab until Ctrl-C.
+
+    Args:
+        lessons: a folder of lessons of one's own.
+
+    Raises:
+        LessonError: one of those is not all right.
+    """
+    course, problems = read_course([BUILT_IN, *([lessons] if lessons else [])])
+    if problems:
+        raise LessonError(problems)
+    lab = LabServer(host, port, LoopStore.with_system_compiler(), course)
     log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
     if open_browser:
         webbrowser.open(lab.address)

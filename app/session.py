@@ -13,14 +13,16 @@ from dataclasses import replace
 import numpy as np
 
 from app import commands
-from app.apply import apply
+from app.apply_lesson import apply
 from app.history import History, Stretch
+from app.lesson_run import LessonRun
 from app.loop_store import LoopStore
 from app.path_editor import PathEditor
 from app.plant_run import PlantRun
 from app.samples import places, sample_layout
 from app.script_player import ScriptPlayer
 from app.snapshot import PathView
+from lessons.course import NO_LESSONS, Course
 from lessons.record import ROLES, Happening
 from lessons.schema import RobotName
 from models.catalogue import FIVE_BAR, Entry
@@ -54,10 +56,13 @@ class Session:
         happenings: what was done and came about, for the lessons' checks.
         run_number: how often the robots have been set back to the start.
         script: what is being done by itself, or None.
+        lessons: the way through the lessons.
         locked: why time must not run now; empty when it may.
     """
 
-    def __init__(self, store: LoopStore, entry: Entry = FIVE_BAR) -> None:
+    def __init__(
+        self, store: LoopStore, entry: Entry = FIVE_BAR, course: Course = NO_LESSONS
+    ) -> None:
         self._store = store
         self._inbox: deque[commands.Command] = deque(maxlen=MOST_COMMANDS)
         self._benches: dict[str, tuple[Parameters, PathEditor]] = {}
@@ -73,6 +78,7 @@ class Session:
         self.run_number = 0
         self.script: ScriptPlayer | None = None
         self.locked = ""
+        self.lessons = LessonRun(course)
         self._set_up(entry)
 
     # The robot
@@ -121,6 +127,7 @@ class Session:
             except ValueError as error:
                 self.say(str(error), "warning")
         self._play()
+        self.lessons.follow(self)
 
     def _play(self) -> None:
         """What a script says."""

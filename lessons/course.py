@@ -42,6 +42,9 @@ class Course:
         return sorted({language for versions in self.lessons.values() for language in versions})
 
 
+NO_LESSONS = Course({})
+
+
 def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
     """All lessons in some folders, without those that are not all right, and what is wrong."""
     lessons: dict[str, dict[str, Lesson]] = {}

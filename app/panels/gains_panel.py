@@ -38,7 +38,7 @@ class GainsPanel:
                 else:
                     self._widgets.append(SwitchedParameter(gui, parameters, name, post))
                 if name == LAST_OF_MODEL:
-                    _add_identify(gui, post)
+                    add_identify(gui, post)
 
     def follow(self, session: Session) -> None:
         """Show the session's values and what follows from them."""
@@ -50,7 +50,8 @@ class GainsPanel:
         self._words.content = "\n\n".join(_line(ch) for ch in channels(session.parameters))
 
 
-def _add_identify(gui: viser.GuiApi, post: Post) -> None:
+def add_identify(gui: viser.GuiApi, post: Post) -> None:
+    """The button that fits the controllers' model to what was measured."""
     hint = "Estimates M and b from the follower's last 3 s, and lets both controllers believe it."
     button = gui.add_button("Identify M and b", icon=viser.Icon.RULER_MEASURE, hint=hint)
     on_press(button, lambda: post(Identify()))

@@ -1,0 +1,159 @@
+"""The panels on the right: all of them, or only those that a lesson's step speaks of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import viser
+
+from app import commands as c
+from app.exports import Exporter
+from app.panels.flexible_panel import FlexiblePanel
+from app.panels.gains_panel import GainsPanel, add_identify
+from app.panels.keys import help_text
+from app.panels.past_panel import PastPanel
+from app.panels.path_panel import PathChoice, PathPanel
+from app.panels.robot_panel import RobotPanel
+from app.panels.run_panel import RunPanel
+from app.panels.widgets import ParameterWidgets, Post, on_press, on_user_update
+from app.plots import MORE, LivePlot, MorePlots
+from app.scene import Scene
+from app.session import Session
+from app.stages import stage_of
+from lessons.schema import Scene as LessonScene
+from models.flexible_robot import FlexibleParameters
+from models.parameters import specs
+
+PLOTS = {
+    "speed": "speed along the path",
+    "torques": "torques",
+    "across": "ξ₁ across",
+    "across_rate": "ξ₂ rate across",
+    "place": "η₁ place along",
+    "rate": "η₂ rate along",
+    "force": "force",
+    "modes": "modes of the link",
+    "deflection": "deflection of the tip",
+    "energy": "internal energy",
+}
+"""A plot as lessons call it -> as it is called here."""
+
+
+class Part(Protocol):
+    """Something on the page that follows the session."""
+
+    def follow(self, session: Session) -> None:
+        """Show what is."""
+        ...
+
+
+class Controls:
+    """Makes panels for one client.
+
+    Args:
+        scene: what drawing, pulling and shading act on.
+    """
+
+    def __init__(
+        self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter, scene: Scene
+    ) -> None:
+        self._gui, self._session, self._post = gui, session, post
+        self._exporter, self._scene = exporter, scene
+
+    def everything(self) -> list[Part]:
+        """All there is."""
+        names = ["robot", "hold", "path", "flexible", "gains", "editor", "plots", "past", "copy"]
+        parts = [part for name in names for part in self._add(name)]
+        helping = self._gui.add_button("Help and keys", icon=viser.Icon.HELP)
+        on_press(helping, self._help)
+        return parts
+
+    def of_step(self, scene: LessonScene) -> list[Part]:
+        """Run and hold, and what a lesson's scene names."""
+        parts = list(self._add("hold"))
+        known = specs(self._session.parameters)
+        parameters = [name for name in scene.controls if name in known]
+        if parameters:
+            parts.append(_Numbers(self._gui, self._session, parameters, self._post))
+        for name in scene.controls:
+            if name not in known and name != "hold":
+                parts += self._add(name)
+        if scene.plot and PLOTS[scene.plot] in MORE:
+            plot = MORE[PLOTS[scene.plot]]
+            if plot.field in dict(self._session.sample_layout.fields):
+                parts.append(LivePlot(self._gui, self._session, plot, height=200))
+        return parts
+
+    def _add(self, name: str) -> list[Part]:
+        gui, session, post = self._gui, self._session, self._post
+        make: dict[str, Callable[[], Part | None]] = {
+            "hold": lambda: RunPanel(gui, session, post),
+            "path": lambda: PathChoice(gui, session, post),
+            "editor": self._editor,
+            "gains": lambda: GainsPanel(gui, session, post),
+            "plots": lambda: MorePlots(gui, session),
+            "past": lambda: PastPanel(gui, session, post, self._exporter),
+            "robot": lambda: _silent(RobotPanel(gui, session, post)),
+            "copy": self._copy,
+            "flexible": self._flexible,
+            "identify": lambda: _silent(add_identify(gui, post)),
+        }
+        part = make[name]()
+        return [] if part is None else [part]
+
+    def _editor(self) -> Part:
+        def draw() -> None:
+            self._scene.begin_freehand(lambda stroke: self._post(c.DrawPath(stroke)))
+
+        def shade(visible: bool) -> None:
+            self._scene.show_singular_zone(0.0, 0.4, 0.02, visible)
+
+        with self._gui.add_folder("Path editor", expand_by_default=False):
+            return PathPanel(self._gui, self._session, self._post, draw, shade)
+
+    def _flexible(self) -> Part | None:
+        if not isinstance(self._session.parameters, FlexibleParameters):
+            return None
+
+        def choose(name: str) -> None:
+            self._scene.pull = name
+
+        pulls = list(stage_of(self._session.robot).pulls)
+        submit = self._exporter.submit
+        return FlexiblePanel(self._gui, self._session, self._post, pulls, choose, submit)
+
+    def _copy(self) -> None:
+        copy = self._gui.add_checkbox(
+            "Copy to both", self._session.copy, hint="Hand and hold act on both robots alike"
+        )
+        on_user_update(copy, lambda on: self._post(c.SetCopy(on)))
+
+    def _help(self) -> None:
+        gui = self._gui
+        escape = gui.add_command("Close the help window", hotkey="escape")
+        with gui.add_modal("How to use the lab") as modal:
+            gui.add_markdown(help_text())
+            close = gui.add_button("Close")
+
+        async def shut(_: object) -> None:
+            escape.remove()
+            modal.close()
+
+        close.on_click(shut)
+        escape.on_trigger(shut)
+
+
+class _Numbers(ParameterWidgets):
+    """Some parameters, as a part of the page."""
+
+    def __init__(self, gui: viser.GuiApi, session: Session, names: list[str], post: Post) -> None:
+        super().__init__(gui, session.parameters, names, post)
+
+    def follow(self, session: Session) -> None:  # type: ignore[override]
+        """Show the session's values."""
+        super().follow(session.parameters)
+
+
+def _silent(_: object) -> None:
+    """A part that never changes."""

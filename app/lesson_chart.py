@@ -1,0 +1,69 @@
+"""A prediction and the truth on the same axes."""
+
+from __future__ import annotations
+
+import numpy as np
+import viser
+from viser import uplot
+
+from app.palette import FOLLOWER, SELECTED, TRACKER
+from lessons.progress import Answer, Truth
+from lessons.record import QUANTITIES
+from lessons.schema import Sketch
+from lessons.words import Words
+
+POINTS = 160
+
+
+class PredictionChart:
+    """One uPlot chart."""
+
+    def __init__(
+        self, gui: viser.GuiApi, sketch: Sketch, answer: Answer | None, words: Words
+    ) -> None:
+        self._sketch, self._answer = sketch, answer
+        self._shown: Truth | None = None
+        unit = QUANTITIES[sketch.quantity]
+        lines = (
+            uplot.Series(label=words("robot.tracker"), stroke=TRACKER.hex, width=2),
+            uplot.Series(label=words("robot.follower"), stroke=FOLLOWER.hex, width=2),
+            uplot.Series(label=words("lesson.yours"), stroke=SELECTED.hex, width=4),
+        )
+        self._handle = gui.add_uplot(
+            self._data(None),
+            (uplot.Series(label="t [s]"), *lines),
+            title=f"{words(f'quantity.{sketch.quantity}')} [{unit}]",
+            scales={
+                "x": uplot.Scale(time=False, auto=False, range=(0.0, sketch.seconds)),
+                "y": uplot.Scale(auto=False, range=(sketch.bottom, sketch.top)),
+            },
+            legend=uplot.Legend(live=False),
+            height=230,
+        )
+
+    def show(self, truth: Truth | None) -> None:
+        """Draw what has happened so far."""
+        if truth is not None and truth != self._shown:
+            self._shown = truth
+            self._handle.data = self._data(truth)
+
+    def remove(self) -> None:
+        """Take it off the page."""
+        self._handle.remove()
+
+    def _data(self, truth: Truth | None) -> tuple[np.ndarray, ...]:
+        """Times and three curves, NaN where there is nothing yet."""
+        at = np.linspace(0.0, self._sketch.seconds, POINTS)
+        answer = self._answer
+        curves = [
+            (truth.times, truth.tracker) if truth else ((), ()),
+            (truth.times, truth.follower) if truth else ((), ()),
+            (answer.times, answer.values) if answer else ((), ()),
+        ]
+        return (at, *[_resampled(at, times, values) for times, values in curves])
+
+
+def _resampled(at: np.ndarray, times: tuple[float, ...], values: tuple[float, ...]) -> np.ndarray:
+    if len(times) < 2:
+        return np.full(len(at), np.nan)
+    return np.interp(at, times, values, left=np.nan, right=np.nan)

@@ -1,0 +1,315 @@
+"""A student's way through the lessons: which step, what was predicted, which tasks are passed.
+
+No viser in it. Only the simulation thread calls it; app/apply_lesson.py brings it the commands.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from msgspec.structs import replace
+
+from app.lesson_record import Beginning, record_of
+from app.lesson_scene import apply_scene
+from app.script_player import ScriptPlayer, perform
+from app.setups import Setup, capture, restore
+from lessons.checks import Verdict, judge, statistic
+from lessons.course import Course
+from lessons.progress import Answer, Notes, Progress, Truth
+from lessons.record import Record
+from lessons.schema import Action, Lesson, Prediction, Quiz, Scene, Sketch, Step, Task, Window
+from lessons.words import Words
+
+if TYPE_CHECKING:
+    from app.session import Session
+
+EVERY = 30  # frames between looks at the tasks
+MOST_POINTS = 160  # of a truth that is kept
+
+
+class LessonRun:
+    """The lessons as one student goes through them.
+
+    Attributes:
+        course: all lessons there are.
+        progress: what is kept.
+        words: of the student's language.
+        version: changes whenever the page must be drawn anew.
+        verdicts: on the checks of the open step's tasks, by task.
+    """
+
+    def __init__(self, course: Course, progress: Progress | None = None) -> None:
+        self.course = course
+        self.progress = progress or Progress()
+        self.words = Words(self.progress.language)
+        self.version = 0
+        self.verdicts: dict[str, list[Verdict]] = {}
+        self._begin = Beginning(0, 0.0)
+        self._frames = 0
+        self._playing = False
+        self._aside: Setup | None = None  # the lab as it was before any lesson
+
+    # Where we are
+
+    @property
+    def lesson(self) -> Lesson | None:
+        """The open one."""
+        name = self.progress.lesson
+        if name not in self.course.lessons:
+            return None
+        return self.course.lesson(name, self.progress.language)
+
+    @property
+    def notes(self) -> Notes:
+        """On the open lesson."""
+        return self.progress.notes.get(self.progress.lesson, Notes())
+
+    @property
+    def index(self) -> int:
+        """Of the open step."""
+        lesson = self.lesson
+        return min(self.notes.step, len(lesson.steps) - 1) if lesson else 0
+
+    @property
+    def step(self) -> Step | None:
+        """The open one."""
+        lesson = self.lesson
+        return lesson.steps[self.index] if lesson else None
+
+    def prediction(self) -> tuple[str, Prediction] | None:
+        """The one that belongs to the open step, here or in the step before, and its key."""
+        lesson = self.lesson
+        if lesson is None:
+            return None
+        for index in (self.index, self.index - 1):
+            step = lesson.steps[index] if index >= 0 else None
+            if step is not None and (step is self.step or self.step_is("run")):
+                for prediction in step.predictions():
+                    return str(index), prediction
+        return None
+
+    def step_is(self, kind: str) -> bool:
+        """Whether the open step is of a kind."""
+        return self.step is not None and self.step.kind == kind
+
+    def answer(self) -> Answer | None:
+        """To the open step's prediction; None while there is none."""
+        found = self.prediction()
+        return None if found is None else self.notes.answers.get(found[0])
+
+    @property
+    def playing(self) -> bool:
+        """Whether the lab does by itself what the step shows."""
+        return self._playing
+
+    # What is asked
+
+    def open(self, name: str, session: Session) -> None:
+        """Open a lesson where it was left.
+
+        Raises:
+            ValueError: there is no such lesson.
+        """
+        if name not in self.course.lessons:
+            raise ValueError(f"no lesson {name!r}: there are {', '.join(self.course.lessons)}")
+        if self.lesson is None:
+            self._aside = capture(session)
+        self.progress = replace(self.progress, lesson=name)
+        self._go(self.index, session)
+
+    def close(self, session: Session) -> None:
+        """No lesson is open; the lab is as it was before."""
+        self.progress = replace(self.progress, lesson="")
+        session.script, session.locked = None, ""
+        self._playing = False
+        if self._aside is not None:
+            restore(session, self._aside)
+            session.running = True
+        self.version += 1
+
+    def go(self, by: int, session: Session) -> None:
+        """Another step; skips a prediction that is not made."""
+        lesson = self.lesson
+        if lesson is None:
+            return
+        target = min(max(self.index + by, 0), len(lesson.steps) - 1)
+        if target > self.index and self.prediction() and self.answer() is None:
+            self._note_answer(Answer())
+        self._go(target, session)
+
+    def begin_anew(self, session: Session) -> None:
+        """Set the lab up again for the open step."""
+        self._go(self.index, session)
+
+    def predict(self, answer: Answer, session: Session) -> None:
+        """Commit to a prediction.
+
+        Raises:
+            ValueError: there is none to make, or this is no answer to it.
+        """
+        found = self.prediction()
+        if found is None:
+            raise ValueError(self.words("lesson.nothing_to_predict"))
+        _, prediction = found
+        if isinstance(prediction, Sketch):
+            answer = sketched(prediction, answer)
+        elif answer.option is not None and answer.option >= len(prediction.options):
+            raise ValueError(self.words("lesson.no_such_option"))
+        self._note_answer(answer)
+        self._lock(session)
+        self.version += 1
+
+    def play(self, session: Session) -> None:
+        """Let the lab do what the step shows."""
+        step = self.step
+        if step is None or step.script is None:
+            return
+        if session.locked:
+            raise ValueError(session.locked)
+        session.reset()
+        self._begin = Beginning.now(session)
+        session.script, session.running, self._playing = ScriptPlayer(step.script), True, True
+        self.version += 1
+
+    def act(self, actions: tuple[Action, ...], session: Session) -> None:
+        """What a link in the text does."""
+        for action in actions:
+            if session.locked and action.run:
+                raise ValueError(session.locked)
+            perform(action, session)
+
+    def hint(self, task: str) -> None:
+        """One hint more."""
+        shown = self.notes.hints.get(task, 0) + 1
+        self._note(hints={**self.notes.hints, task: shown})
+
+    def answer_quiz(self, block: int, option: int) -> None:
+        """Choose an option of the quiz that is the open step's block.
+
+        Raises:
+            ValueError: there is no such quiz or option.
+        """
+        step = self.step
+        quiz = step.blocks[block] if step and 0 <= block < len(step.blocks) else None
+        if not isinstance(quiz, Quiz) or not 0 <= option < len(quiz.options):
+            raise ValueError(self.words("lesson.no_such_option"))
+        self._note(quiz={**self.notes.quiz, f"{self.index}.{block}": option})
+
+    def set_language(self, language: str) -> None:
+        """Of texts and interface."""
+        self.words = Words(language)
+        self.progress = replace(self.progress, language=self.words.language)
+        self.version += 1
+
+    def set_presenting(self, on: bool) -> None:
+        """Large type, or not."""
+        self.progress = replace(self.progress, presenting=on)
+        self.version += 1
+
+    # What happens
+
+    def follow(self, session: Session) -> None:
+        """Look at the tasks now and then, and at the end of what a step shows; every frame."""
+        self._frames += 1
+        if self._playing and session.script is None:
+            self._playing = False
+            self._note_truth(session)
+        if self._frames % EVERY == 0 and self.step is not None and self.step.tasks():
+            self._judge(session, self.step.tasks())
+
+    def truth(self, session: Session) -> Truth | None:
+        """What has happened of the predicted quantity: now, or when the step was last played."""
+        found = self.prediction()
+        if found is None or not self._playing:
+            return None if found is None else self.notes.truths.get(found[0])
+        return self._truth(session, found[1])
+
+    def _judge(self, session: Session, tasks: list[Task]) -> None:
+        record = record_of(session, self._begin)
+        for task in tasks:
+            verdicts = judge(task, record, self.words)
+            self.verdicts[task.id] = verdicts
+            if all(verdict.passed for verdict in verdicts):
+                self._pass(task, record)
+
+    def _pass(self, task: Task, record: Record) -> None:
+        best = self.notes.tasks.get(task.id)
+        value = 0.0
+        if task.best:
+            chosen = record.chosen("follower", Window())
+            value = statistic(record, "follower", task.best, "max", chosen) or 0.0
+        if best is None or value < best:
+            self._note(tasks={**self.notes.tasks, task.id: round(value, 3)})
+
+    def _go(self, index: int, session: Session) -> None:
+        lesson = self.lesson
+        assert lesson is not None
+        self._note(step=index, seen=max(self.notes.seen, index + 1))
+        step = lesson.steps[index]
+        session.script, self._playing = None, False
+        scene = step.scene or (Scene() if index == 0 else None)
+        session.locked = ""
+        if scene is not None:
+            apply_scene(session, scene, lesson.front.robot)
+        self._lock(session)
+        self.verdicts = {}
+        self._begin = Beginning.now(session)
+
+    def _lock(self, session: Session) -> None:
+        """Time stands still until a prediction has been made or skipped."""
+        waits = self.prediction() is not None and self.answer() is None
+        session.locked = self.words("lesson.locked") if waits else ""
+        if waits:
+            session.running = False
+
+    def _note_truth(self, session: Session) -> None:
+        found = self.prediction()
+        if found is not None:
+            truth = self._truth(session, found[1])
+            self._note(truths={**self.notes.truths, found[0]: truth})
+        self.version += 1
+
+    def _truth(self, session: Session, prediction: Prediction) -> Truth:
+        quantity = prediction.quantity if isinstance(prediction, Sketch) else "distance"
+        record = record_of(session, self._begin)
+        step = max(1, -(-len(record.times) // MOST_POINTS))
+        curves = [
+            np.nan_to_num(record.values[robot].get(quantity, np.zeros(len(record.times))))
+            for robot in ("tracker", "follower")
+        ]
+        times, tracker, follower = (
+            tuple(np.round(curve[::step], 4).tolist()) for curve in (record.times, *curves)
+        )
+        return Truth(quantity, times, tracker, follower)
+
+    def _note_answer(self, answer: Answer) -> None:
+        found = self.prediction()
+        assert found is not None
+        self._note(answers={**self.notes.answers, found[0]: answer})
+
+    def _note(self, **changes: Any) -> None:
+        notes = {**self.progress.notes, self.progress.lesson: replace(self.notes, **changes)}
+        self.progress = replace(self.progress, notes=notes)
+        self.version += 1
+
+
+def sketched(prediction: Sketch, answer: Answer) -> Answer:
+    """A sketch on the prediction's axes, at rising times, within its range.
+
+    Raises:
+        ValueError: it is not a curve.
+    """
+    if answer.skipped:
+        return answer
+    times, values = np.array(answer.times), np.array(answer.values)
+    if times.shape != values.shape or not np.isfinite(times).all() or not np.isfinite(values).all():
+        raise ValueError("a sketch needs points")
+    order = np.argsort(times, kind="stable")
+    times, first = np.unique(np.clip(times[order], 0.0, prediction.seconds), return_index=True)
+    values = np.clip(values[order][first], prediction.bottom, prediction.top)
+    if len(times) < 2:
+        raise ValueError("draw a curve from left to right")
+    at = np.linspace(times[0], times[-1], min(MOST_POINTS, max(2, len(times))))
+    values = np.interp(at, times, values)
+    return Answer(times=tuple(np.round(at, 3).tolist()), values=tuple(np.round(values, 3).tolist()))

@@ -1,0 +1,171 @@
+"""A board in front of the robots, on which a prediction is drawn with the mouse."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from app import palette
+from app.drag import intersect_ray_plane
+from app.stage import Stage, add_text
+from lessons.record import QUANTITIES
+from lessons.schema import Sketch
+
+if TYPE_CHECKING:
+    import viser
+
+FORM = 0.62  # height to width
+MARGIN = 0.09  # between the board's edge and the axes, of its width
+GRID_COLOUR = palette.PATH.toward(palette.WHITE, 0.6)
+LINES = 4  # of the grid, each way
+CLOSEST = 0.002  # between two points of a curve, of the board's width
+
+
+class SketchBoard:
+    """Axes on a board that faces the camera.
+
+    Args:
+        scene: the client's scene.
+        stage: where the robots stand; the board is before them.
+        sketch: which axes.
+        title: written above.
+        on_drawn: called with times [s] and values, shape (n,) each, when the mouse is let go.
+    """
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        stage: Stage,
+        sketch: Sketch,
+        title: str,
+        on_drawn: Callable[[np.ndarray, np.ndarray], None],
+    ) -> None:
+        self._scene, self._sketch, self._on_drawn = scene, sketch, on_drawn
+        self._right, self._up, self._middle, width = _placed(stage)
+        self._size = width * np.array([1.0, FORM])
+        self._inner = 1 - 2 * MARGIN * np.array([1.0, 1.0 / FORM])
+        self._points: list[np.ndarray] = []
+        self._ink: viser.LineSegmentsHandle | None = None
+        self._parts: list[viser.SceneNodeHandle] = []
+        corners = self._world(np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) * 0.5)
+        board = scene.add_mesh_simple(
+            "/board/sheet",
+            corners,
+            np.array([[0, 1, 2], [0, 2, 3]]),
+            color=palette.WHITE.rgb,
+            side="double",
+            material="standard",
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+        board.on_drag("left")(self._dragged)
+        self._parts.append(board)
+        self._add_axes(title)
+
+    def show(self, times: np.ndarray, values: np.ndarray) -> None:
+        """Draw a curve given by numbers, shape (n,) each."""
+        self._points = list(self._from_axes(np.column_stack([times, values])))
+        self._draw()
+
+    def remove(self) -> None:
+        """Take it away."""
+        for part in (*self._parts, *([self._ink] if self._ink else [])):
+            part.remove()
+        self._parts, self._ink = [], None
+
+    # Between the axes' units, places on the board (fractions from its middle) and the world.
+
+    def _from_axes(self, points: np.ndarray) -> np.ndarray:
+        low, span = self._axes()
+        return ((points - low) / span - 0.5) * self._inner
+
+    def _to_axes(self, places: np.ndarray) -> np.ndarray:
+        low, span = self._axes()
+        return low + span * (places / self._inner + 0.5)
+
+    def _axes(self) -> tuple[np.ndarray, np.ndarray]:
+        low = np.array([0.0, self._sketch.bottom])
+        return low, np.array([self._sketch.seconds, self._sketch.top]) - low
+
+    def _world(self, places: np.ndarray, above: float = 0.0) -> np.ndarray:
+        x, y = (places * self._size).T[:, :, None]
+        toward = np.cross(self._right, self._up)
+        return self._middle + x * self._right + y * self._up + above * toward
+
+    def _add_axes(self, title: str) -> None:
+        low, span = self._axes()
+        shares = np.linspace(0.0, 1.0, LINES + 1)
+        upright = [[[s, 0.0], [s, 1.0]] for s in shares]
+        level = [[[0.0, s], [1.0, s]] for s in shares]
+        ends = self._from_axes(low + span * np.array(upright + level).reshape(-1, 2))
+        grid = self._world(ends, 0.001).reshape(-1, 2, 3)
+        self._parts.append(
+            self._scene.add_line_segments(
+                "/board/grid", grid.astype(np.float32), GRID_COLOUR.rgb, thickness=0.0015
+            )
+        )
+        unit = QUANTITIES[self._sketch.quantity]
+        below, aside = np.array([0.0, 0.5 * MARGIN / FORM]), np.array([0.55 * MARGIN, 0.0])
+        texts = [(title, np.array([0.0, 0.5]) - below, 0.034)]
+        for share in shares[:: LINES // 2]:
+            t, v = low + span * share
+            bottom = self._from_axes(np.array([[t, low[1]]]))[0] - below
+            left = self._from_axes(np.array([[0.0, v]]))[0] - aside
+            texts += [(f"{t:g} s", bottom, 0.028), (f"{v:g} {unit}", left, 0.024)]
+        for number, (words, place, size) in enumerate(texts):
+            at = self._world(place[None], 0.002)[0]
+            high = size * float(self._size[0])
+            self._parts.append(add_text(self._scene, f"/board/text{number}", words, at, high))
+
+    async def _dragged(self, event: viser.SceneNodeDragEvent[viser.MeshHandle]) -> None:
+        if event.phase == "start":
+            self._points = []
+        seen = [event.start_position] if event.phase == "start" else []
+        for pointer in (*seen, event.end_position):
+            place = self._place(event.client.camera.position, np.array(pointer))
+            if place is not None and self._is_new(place):
+                self._points.append(place)
+        self._draw()
+        if event.phase == "end" and len(self._points) > 1:
+            times, values = self._to_axes(np.array(self._points)).T
+            self._on_drawn(times, values)
+
+    def _place(self, camera: np.ndarray, pointer: np.ndarray) -> np.ndarray | None:
+        """Where on the board a pointer is, or None."""
+        normal = np.cross(self._right, self._up)
+        hit = intersect_ray_plane(camera, pointer - camera, self._middle, normal)
+        if hit is None:
+            return None
+        way = hit - self._middle
+        place = np.array([way @ self._right, way @ self._up]) / self._size
+        return np.clip(place, -0.5 * self._inner, 0.5 * self._inner)
+
+    def _is_new(self, place: np.ndarray) -> bool:
+        if not self._points:
+            return True
+        return float(np.abs(place - self._points[-1]).max()) > CLOSEST
+
+    def _draw(self) -> None:
+        line = self._world(np.array(self._points).reshape(-1, 2), 0.003)
+        segments = np.stack([line[:-1], line[1:]], axis=1).astype(np.float32)
+        if self._ink is not None:
+            self._ink.remove()
+            self._ink = None
+        if len(segments):
+            self._ink = self._scene.add_line_segments(
+                "/board/ink", segments, palette.SELECTED.rgb, thickness=0.006
+            )
+
+
+def _placed(stage: Stage) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """The board's axes, its middle and its width [m]: before all robots, square to the camera."""
+    ca, sa = np.cos(stage.azimuth), np.sin(stage.azimuth)
+    ce, se = np.cos(stage.elevation), np.sin(stage.elevation)
+    right, up = np.array([ca, sa, 0.0]), np.array([-sa * se, ca * se, ce])
+    toward = np.cross(right, up)
+    corners = stage.corners
+    middle = (corners.min(0) + corners.max(0)) / 2
+    reach = np.abs((corners - middle) @ np.stack([right, toward], 1)).max(0)
+    return right, up, middle + 0.9 * reach[1] * toward, 1.9 * float(reach[0])
