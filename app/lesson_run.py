@@ -140,7 +140,8 @@ class LessonRun:
 
     def begin_anew(self, session: Session) -> None:
         """Set the lab up again for the open step."""
-        self._go(self.index, session)
+        if self.lesson is not None:
+            self._go(self.index, session)
 
     def predict(self, answer: Answer, session: Session) -> None:
         """Commit to a prediction.

@@ -71,6 +71,7 @@ class _Draft:
     blocks: list[Block]
     scene: Scene | None = None
     script: Script | None = None
+    broken: bool = False  # a block of it could not be read
 
     def step(self) -> Step:
         kind: Any = self.kind
@@ -157,6 +158,7 @@ class _Reader:
 
     def _fence(self, draft: _Draft, what: str, content: str, line: int) -> None:
         """A block of TOML."""
+        before = len(self._problems)
         if what == "scene":
             draft.scene = self._checked(content, line, Scene, self._scene_faults)
         elif what == "script":
@@ -168,6 +170,7 @@ class _Reader:
             self._add(draft, self._checked(content, line, Task, self._task_faults), line)
         else:
             self._add(draft, self._checked(content, line, Quiz, _quiz_faults), line)
+        draft.broken |= len(self._problems) > before
 
     def _add(self, draft: _Draft, block: Choice | Sketch | Task | Quiz | None, line: int) -> None:
         if block is None:
@@ -287,15 +290,32 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
 
 
 def _line_of(fault: str, content: str, first: int) -> int:
-    """Where in a block of TOML a fault is: the first line with a word that it names."""
-    names = re.findall(r"[`'$.]([A-Za-z_]\w*)|'([^']+)'|^(\w+)", fault)
-    words = [word for found in names for word in found if word]
+    """Where in a block of TOML a fault is.
+
+    It names a place such as `$.check[1].below`, or a word: a field, a value, a parameter.
+    """
     lines = content.split("\n")
-    for word in words:
-        for number, line in enumerate(lines):
-            if re.search(rf"(?<!\w){re.escape(word)}(?!\w)", line):
-                return first + number
-    return first
+    _, _, place = fault.partition("`$")
+    here = 0
+    for name, index in re.findall(r"\.(\w+)(?:\[(\d+)\])?", place):
+        found = _lines_with(name, lines, here)
+        if found:
+            here = found[min(int(index or 0), len(found) - 1)]
+    for word in re.findall(r"field `(\w+)`|'([^']+)'|^(\w+)", fault):
+        found = _lines_with("".join(word), lines, here)
+        if found:
+            return first + found[0]
+    return first + here
+
+
+def _lines_with(word: str, lines: list[str], begin: int) -> list[int]:
+    """Which lines from `begin` on give a name a value; if none does, which have the word."""
+    name = rf"(?<!\w){re.escape(word)}(?!\w)"
+    for pattern in (name + r"\s*=", name):
+        found = [i for i in range(begin, len(lines)) if re.search(pattern, lines[i])]
+        if found:
+            return found
+    return []
 
 
 def _quiz_faults(quiz: Quiz) -> Iterator[str]:
@@ -326,6 +346,8 @@ def _missing(drafts: list[_Draft]) -> Iterator[str]:
     for repeated in {task for task in ids if ids.count(task) > 1}:
         yield f"two tasks have the id {repeated!r}"
     for draft, after in zip(drafts, [*drafts[1:], None], strict=False):
+        if draft.broken:
+            continue
         has = any(isinstance(block, Choice | Sketch) for block in draft.blocks)
         if draft.kind == "predict" and not has:
             yield f"step {draft.title!r} at line {draft.line} has no prediction"

@@ -12,9 +12,11 @@ from hypothesis import strategies as st
 from lab import FOLLOWER, FRAME, TRACKER, do, new_session, run, states, y
 
 from app import commands as c
+from app import lesson_commands as lc
 from app.session import MOST_COMMANDS, Session
 from app.snapshot import Snapshot
 from app.take_snapshot import take_snapshot
+from lessons.schema import Action
 from models.controllers import NAMES
 from models.curve_faults import curve_faults
 from models.parameters import checked, specs
@@ -65,7 +67,23 @@ def parameter_values() -> st.SearchStrategy[c.SetParameter]:
     return names.flatmap(lambda name: values(name).map(lambda v: c.SetParameter(name, v)))
 
 
+LESSON_COMMANDS: dict[type, st.SearchStrategy[Any]] = {
+    lc.OpenLesson: st.builds(lc.OpenLesson, st.sampled_from(["", "hexapod"])),
+    lc.CloseLesson: st.builds(lc.CloseLesson),
+    lc.GoToStep: st.builds(lc.GoToStep, st.integers(-3, 3)),
+    lc.Predict: st.builds(
+        lc.Predict, st.one_of(st.none(), INDICES), st.just((0.0, 1.0)), st.tuples(WILD, WILD)
+    ),
+    lc.PlayStep: st.builds(lc.PlayStep),
+    lc.BeginStepAnew: st.builds(lc.BeginStepAnew),
+    lc.ShowHint: st.builds(lc.ShowHint, st.just("")),
+    lc.AnswerQuiz: st.builds(lc.AnswerQuiz, INDICES, INDICES),
+    lc.Act: st.builds(lc.Act, st.just((Action(hold=True), Action(pull=(20.0, -400.0))))),
+    lc.SetLanguage: st.builds(lc.SetLanguage, st.sampled_from(["de", "en", "../en", ""])),
+    lc.SetPresenting: st.builds(lc.SetPresenting, st.booleans()),
+}
 COMMANDS: dict[type, st.SearchStrategy[Any]] = {
+    **LESSON_COMMANDS,
     c.SetParameter: parameter_values(),
     c.ResetParameters: st.builds(c.ResetParameters),
     c.Identify: st.builds(c.Identify),
