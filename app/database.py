@@ -155,10 +155,7 @@ class Records:
 
     def _opened(self) -> sa.Engine:
         if self._url.get_backend_name() != "sqlite":
-            try:
-                return _prepared(self._url)
-            except exc.SQLAlchemyError as error:
-                raise NotKept(f"cannot use {self._url!r}: {_words(error)}") from error
+            return self._opened_server()
         try:
             return self._opened_file()
         except OSError as error:
@@ -166,6 +163,15 @@ class Records:
             self.warning = f"Nothing outlives the server: {self._url.database}: {reason}."
             log.warning("%s", self.warning)
         return _prepared(_parsed("sqlite://"))
+
+    def _opened_server(self) -> sa.Engine:
+        for last in (False, True):
+            try:
+                return _prepared(self._url)
+            except exc.SQLAlchemyError as error:  # perhaps another process made the tables
+                if last:
+                    raise NotKept(f"cannot use {self._url!r}: {_words(error)}") from error
+        raise AssertionError
 
     def _opened_file(self) -> sa.Engine:
         file = Path(self._url.database) if self._url.database else None

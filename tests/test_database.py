@@ -512,12 +512,11 @@ def test_a_database_that_hangs_keeps_nobody_waiting() -> None:
     store = Memory()
     store.gate.clear()
     keeper = Keeper(store, interval=0.0)
-    slowest = 0.0
+    began = time.perf_counter()
     for n in range(2000):
-        began = time.perf_counter()
         keeper.submit(f"code{n % 60}", number(n))
-        slowest = max(slowest, time.perf_counter() - began)
-    assert slowest < 0.05 and not store.saved
+    assert time.perf_counter() - began < 2.0  # the store hangs for 5 s
+    assert not store.saved
     store.gate.set()
     keeper.close()
     assert {code for code, _ in store.saved} == {f"code{i}" for i in range(60)}
