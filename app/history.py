@@ -6,9 +6,9 @@ can be computed again, exactly, when somebody wants it as a file.
 
 from __future__ import annotations
 
-import bisect
-from collections import deque
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +18,45 @@ from models.kernel import Kind
 SECONDS = 60.0
 LONGEST = 17  # ticks in a stretch at most
 MOST = 7200
+FIRST = 256  # stretches that there is room for at first
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Input:
+    """What drives one robot; the same object while nothing changes.
+
+    Attributes:
+        kind: which loop.
+        settings: of the loop.
+        frozen: whether the robot has diverged and stands still.
+    """
+
+    kind: Kind
+    settings: np.ndarray
+    frozen: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Inputs:
+    """All inputs of some stretches.
+
+    Attributes:
+        curve: the path.
+        dt: length of a tick, [s].
+        of: each robot's, by controller.
+    """
+
+    curve: Curve
+    dt: float
+    of: dict[str, Input]
+
+    def same(self, other: Inputs) -> bool:
+        """Whether `other` has the same."""
+        return (
+            self.curve is other.curve
+            and self.dt == other.dt
+            and all(mine is other.of[name] for name, mine in self.of.items())
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,77 +97,136 @@ class Stretch:
     drives: dict[str, Drive]
     sample: np.ndarray
 
-    def continues(self, other: Stretch) -> bool:
-        """Whether `other` only goes on with the same inputs."""
-        return (
-            self.curve is other.curve
-            and self.dt == other.dt
-            and self.ticks + other.ticks <= LONGEST
-            and all(
-                drive.settings is other.drives[name].settings
-                and drive.kind == other.drives[name].kind
-                and drive.frozen == other.drives[name].frozen
-                for name, drive in self.drives.items()
-            )
-        )
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Instant:
+    """Both robots at the beginning of a stretch.
+
+    Attributes:
+        time: [s].
+        states: one row for each robot.
+        max_distances: since reset, shape (robots,), [m].
+        sample: what the plots show, shape (robots, fields).
+    """
+
+    time: float
+    states: Sequence[np.ndarray]
+    max_distances: Sequence[float]
+    sample: np.ndarray
 
 
 class History:
-    """Stretches of the last minute, oldest first."""
+    """Stretches of the last minute, oldest first, as columns: all of one kind in one array.
+
+    The columns' rows from `_begin` to `_end` are in use; when they reach the columns' end they
+    move to the front.
+    """
 
     def __init__(self) -> None:
-        self._stretches: deque[Stretch] = deque(maxlen=MOST)
+        self.clear()
 
     def __len__(self) -> int:
-        return len(self._stretches)
+        return self._end - self._begin
 
     def clear(self) -> None:
         """Forget everything."""
-        self._stretches.clear()
+        self._columns: dict[str, np.ndarray] = {}
+        self._list: list[Stretch] | None = None
+        self._begin = self._end = 0
+        self._before = 0  # rows that have been moved out at the front, ever
 
-    def append(self, stretch: Stretch) -> None:
+    def append(self, instant: Instant, ticks: int, inputs: Inputs) -> None:
         """Add what has just been simulated; drops what is older than a minute."""
-        last = self._stretches[-1] if self._stretches else None
-        if last is not None and last.continues(stretch):
-            self._stretches[-1] = replace(last, ticks=last.ticks + stretch.ticks)
-        else:
-            self._stretches.append(stretch)
-        while self._stretches[0].time < stretch.time - SECONDS:
-            self._stretches.popleft()
+        self._list = None
+        last = self._columns["inputs"][self._end - 1] if len(self) else inputs
+        if last.same(inputs):
+            inputs = last
+            if len(self) and self._columns["ticks"][self._end - 1] + ticks <= LONGEST:
+                self._columns["ticks"][self._end - 1] += ticks
+                return
+        if not self._columns or self._end == len(self._columns["time"]):
+            self._make_room(instant)
+        columns, row = self._columns, self._end
+        columns["time"][row], columns["ticks"][row] = instant.time, ticks
+        columns["inputs"][row] = inputs
+        for robot, state in enumerate(instant.states):
+            columns["state"][row, robot] = state
+        columns["most"][row] = instant.max_distances
+        columns["sample"][row] = instant.sample
+        self._end += 1
+        while columns["time"][self._begin] < instant.time - SECONDS or len(self) > MOST:
+            self._begin += 1
 
     def all(self) -> list[Stretch]:
-        """Everything, oldest first."""
-        return list(self._stretches)
+        """Everything, oldest first; the same objects until something changes."""
+        if self._list is None:
+            self._list = [self._stretch(row) for row in range(self._begin, self._end)]
+        return list(self._list)
 
     def span(self) -> float:
         """How far back it reaches, [s]."""
-        if not self._stretches:
+        if not len(self):
             return 0.0
-        last = self._stretches[-1]
-        return last.time + last.ticks * last.dt - self._stretches[0].time
+        last = self._stretch(self._end - 1)
+        return last.time + last.ticks * last.dt - float(self._columns["time"][self._begin])
 
     def at(self, time: float) -> Stretch | None:
         """The stretch during which it was `time`, or the nearest one; None if there is none."""
-        if not self._stretches:
+        if not len(self):
             return None
-        index = bisect.bisect_right(self._stretches, time, key=lambda s: s.time) - 1
-        return self._stretches[max(index, 0)]
+        return self._stretch(max(self._find(time, "right") - 1, self._begin))
 
     def forget_after(self, stretch: Stretch) -> None:
         """Drop `stretch` and everything later."""
-        while self._stretches and self._stretches[-1].time >= stretch.time:
-            self._stretches.pop()
+        self._list = None
+        self._end = self._find(stretch.time, "left")
 
     def samples(self, begin: float, end: float, most: int) -> tuple[np.ndarray, np.ndarray]:
         """Times (n,) and samples (n, robots, fields) with begin <= time <= end, n <= most."""
-        low = bisect.bisect_left(self._stretches, begin, key=lambda s: s.time)
-        high = bisect.bisect_right(self._stretches, end, key=lambda s: s.time)
-        count = high - low
-        if count <= 0:
+        low, high = self._find(begin, "left"), self._find(end, "right")
+        if low >= high:
             return np.zeros(0), np.zeros((0, 0, 0))
-        step = max(1, -(-count // most))
-        first = low + (-low) % step  # the same ones from call to call
-        chosen = [self._stretches[i] for i in range(first, high, step)]
-        if not chosen:
-            return np.zeros(0), np.zeros((0, 0, 0))
-        return np.array([s.time for s in chosen]), np.stack([s.sample for s in chosen])
+        step = max(1, -(-(high - low) // most))
+        first = low + (-low - self._before) % step  # the same ones from call to call
+        chosen = slice(first, high, step)
+        return self._columns["time"][chosen].copy(), self._columns["sample"][chosen].copy()
+
+    def _find(self, time: float, side: Any) -> int:
+        """Where `time` would have to be put in."""
+        if not len(self):
+            return self._end
+        times = self._columns["time"][self._begin : self._end]
+        return self._begin + int(times.searchsorted(time, side))
+
+    def _stretch(self, row: int) -> Stretch:
+        columns = self._columns
+        inputs: Inputs = columns["inputs"][row]
+        states, most = columns["state"][row].copy(), columns["most"][row]
+        drives = {
+            name: Drive(one.kind, state, one.settings, one.frozen, float(distance))
+            for (name, one), state, distance in zip(inputs.of.items(), states, most, strict=True)
+        }
+        time, ticks = float(columns["time"][row]), int(columns["ticks"][row])
+        return Stretch(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())
+
+    def _make_room(self, instant: Instant) -> None:
+        """Columns with free rows at their end: larger ones, unless enough is free at the front."""
+        size, used = len(self._columns.get("time", ())), slice(self._begin, self._end)
+        old, grows = self._columns, self._begin <= size // 10
+        if grows:
+            rows, robots = max(2 * size, FIRST), len(instant.sample)
+            self._columns = {
+                "time": np.empty(rows),
+                "ticks": np.empty(rows, dtype=int),
+                "inputs": np.empty(rows, dtype=object),
+                "state": np.empty((rows, robots, len(instant.states[0]))),
+                "most": np.empty((rows, robots)),
+                "sample": np.empty((rows, *instant.sample.shape), dtype=np.float32),
+            }
+        count = self._end - self._begin
+        for name, column in old.items():
+            self._columns[name][:count] = column[used]
+        if not grows:
+            self._columns["inputs"][count:] = None  # let go of what nobody needs
+        self._before += self._begin
+        self._begin, self._end = 0, count

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from app.history import Drive
+from app.history import Drive, Input
 from app.loop_store import LoopStore
 from models.curves import Curve
 from models.distance import near_distance
@@ -40,6 +39,7 @@ class PlantRun:
         self.distance = self.max_distance = 0.0
         self._inputs: tuple[Parameters, Curve, Push] | None = None
         self._configure(parameters, curve, Push())
+        self._input = Input(self.kind, self.settings, frozen=False)
         self.reset(curve, start)
 
     def reset(self, curve: Curve, start: np.ndarray) -> None:
@@ -82,16 +82,12 @@ class PlantRun:
         """The last log row by name."""
         return self.log.unpack(self.row)
 
-    def speed(self, curve: Curve) -> float:
-        """Along the path, [m/s]."""
-        slices = self.log.slices
-        per_radian = math.hypot(*curve.at(self.row[slices["theta"]][0], 1))
-        return per_radian * float(self.row[slices["theta_rate"]][0])
-
-    def drive(self) -> Drive:
-        """The inputs and state as history keeps them."""
+    def input(self) -> Input:
+        """What drives it, for the history; the same object while nothing changes."""
         frozen = self.diverged is not None
-        return Drive(self.kind, self.state, self.settings, frozen, self.max_distance)
+        if self._input.settings is not self.settings or self._input.frozen != frozen:
+            self._input = Input(self.kind, self.settings, frozen)
+        return self._input
 
     def advance(
         self,
@@ -109,8 +105,8 @@ class PlantRun:
         if self.diverged is not None:
             return
         state, rows = store.get(self.robot, self.kind).run(self.state, self.settings, table, ticks)
-        fields = self.log.unpack(rows)
-        fault = self.robot.fault(fields["q"], fields["v"], parameters)
+        slices = self.log.slices
+        fault = self.robot.fault(rows[:, slices["q"]], rows[:, slices["v"]], parameters)
         if fault is None and not np.isfinite(state).all():
             fault = (len(rows), "the numbers have left the range of a computer")
         if fault is not None:
@@ -120,32 +116,31 @@ class PlantRun:
                 self.row = rows[good[-1]].copy()
             return
         self.state, self.row = state, rows[-1]
-        distances = self._distances(curve, fields)
+        distances = self._distances(curve, rows)
         self.distance = float(distances[-1])
         self.max_distance = max(self.max_distance, float(distances.max()))
 
-    def _distances(self, curve: Curve, fields: dict[str, np.ndarray]) -> np.ndarray:
+    def _distances(self, curve: Curve, rows: np.ndarray) -> np.ndarray:
         """Of the actual end-point to the path, of the last row at least, [m]."""
-        system = self.robot.system
+        system, slices = self.robot.system, self.log.slices
         seen = system.controlled_output is system.output and not self.kind.encoder
         if seen and not self.kind.level_set and system.p == 2:
-            return np.abs(fields["xi"][:, 0])
-        some = slice((len(fields["y"]) - 1) % EVERY, None, EVERY)
-        theta = fields["theta"][some, 0]
-        return near_distance(self.robot.frame, curve, fields["y"][some], theta)
+            return np.abs(rows[:, slices["xi"].start])
+        some = rows[(len(rows) - 1) % EVERY :: EVERY]
+        return near_distance(
+            self.robot.frame, curve, some[:, slices["y"]], some[:, slices["theta"].start]
+        )
 
     def _configure(self, parameters: Parameters, curve: Curve, push: Push) -> None:
         """New settings vector only when an input changed."""
-        inputs = (parameters, curve, push)
-        if self._inputs is not None and all(
-            a is b for a, b in zip(self._inputs, inputs, strict=True)
-        ):
+        before, self._inputs = self._inputs, (parameters, curve, push)
+        same = [a is b for a, b in zip(before or (), self._inputs, strict=False)]
+        if same == [True, True, True]:
             return
-        before, self._inputs = self._inputs, inputs
         self.kind: Kind = kind_of(self.controller, parameters, curve, push)
         kernel = kernel_of(self.robot, self.kind)
         self.log: Layout = kernel.log
-        if before is not None and before[0] is parameters and before[1] is curve:
+        if same[:2] == [True, True]:
             self.settings = pushed(kernel, self.settings, push)
         else:
             self.settings = settings_vector(self.robot, kernel, parameters, curve, push)

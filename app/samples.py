@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from models.layout import Layout
+from models.loop_vectors import log_layout
 from models.robots import Robot
 
 
@@ -31,11 +32,11 @@ def sample_layout(robot: Robot) -> Layout:
     )
 
 
-@lru_cache(maxsize=64)
-def places(log: Layout, sample: Layout) -> np.ndarray:
+@lru_cache(maxsize=8)
+def places(robot: Robot) -> np.ndarray:
     """Where a sample's entries lie in a log row; 0 for those that are not in it."""
-    found: list[int] = []
-    for name, size in sample.fields:
+    log, found = log_layout(robot.system), list[int]()
+    for name, size in sample_layout(robot).fields:
         where = log.slices.get(name)
         found.extend([0] * size if where is None else range(where.start, where.stop))
     return np.array(found)

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import logging
 from collections import deque
-from dataclasses import replace
 
 import numpy as np
 
 from app import commands
 from app.apply_lesson import apply
-from app.history import History, Stretch
+from app.history import History, Inputs, Instant
 from app.lesson_run import LessonRun
 from app.loop_store import LoopStore
 from app.path_editor import PathEditor
@@ -175,8 +174,13 @@ class Session:
         dt = time_step(self.parameters)
         self._bend(ticks * dt)
         curve = self.editor.curve
-        before = {name: run.drive() for name, run in self.runs.items()}
-        sample = self.sample()
+        runs = self.runs.values()
+        before = Instant(
+            self.time,
+            [run.state for run in runs],
+            [run.max_distance for run in runs],
+            self.sample(),
+        )
         for name, run in self.runs.items():
             was = run.diverged
             run.advance(
@@ -191,16 +195,8 @@ class Session:
             )
             if run.diverged is not None and was is None:
                 self._tell_divergence(name)
-        drives = {
-            name: replace(
-                before[name],
-                kind=run.kind,
-                settings=run.settings,
-                frozen=run.diverged is not None,
-            )
-            for name, run in self.runs.items()
-        }
-        self.history.append(Stretch(self.time, ticks, dt, curve, drives, sample))
+        inputs = Inputs(curve, dt, {name: run.input() for name, run in self.runs.items()})
+        self.history.append(before, ticks, inputs)
         self.time += ticks * dt
 
     def _bend(self, seconds: float) -> None:
@@ -350,16 +346,17 @@ class Session:
         return sample_layout(self.robot)
 
     def sample(self) -> np.ndarray:
-        """Now, shape (robots, sample_layout.size), float32."""
-        layout = self.sample_layout
-        samples = np.empty((len(self.runs), layout.size), dtype=np.float32)
-        for sample, run in zip(samples, self.runs.values(), strict=True):
-            sample[:] = run.row[places(run.log, layout)]
-            sample[layout.slices["distance"]] = run.distance
-            sample[layout.slices["speed"]] = run.speed(self.editor.curve)
-            if self.robot.extra_fields:
+        """Now, shape (robots, sample_layout.size)."""
+        runs, fields = self.runs.values(), self.sample_layout.slices
+        samples = np.array([run.row for run in runs])[:, places(self.robot)]
+        samples[:, fields["distance"].start] = [run.distance for run in runs]
+        per_radian = self.editor.curve.at(samples[:, fields["theta"].start], 1)
+        length = np.sqrt((per_radian * per_radian).sum(-1))
+        samples[:, fields["speed"].start] = length * samples[:, fields["theta_rate"].start]
+        if self.robot.extra_fields:
+            for sample, run in zip(samples, runs, strict=True):
                 row = run.shown()
                 extras = self.robot.extras(row["q"], row["v"], self.parameters)
                 for name, value in extras.items():
-                    sample[layout.slices[name]] = value
+                    sample[fields[name]] = value
         return samples

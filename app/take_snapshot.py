@@ -60,9 +60,7 @@ def _robot_view(session: Session, index: int, name: str, samples: Array | None) 
         q = past.drives[name].state[: robot.system.n]
         most = past.drives[name].max_distance
         return robot_view(robot, name, curve, q, row, most, trace, session.exaggeration)
-    row = run.shown() | {"distance": np.array([run.distance])}
-    row["speed"] = np.array([run.speed(curve)])
-    row |= robot.extras(row["q"], row["v"], session.parameters)
+    row = run.shown() | session.sample_layout.unpack(session.sample()[index])
     q, most = row["q"], run.max_distance
     return robot_view(robot, name, curve, q, row, most, trace, session.exaggeration)
 

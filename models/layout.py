@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, field
+from itertools import accumulate
 
 import casadi as ca
 import numpy as np
@@ -13,31 +13,25 @@ from numpy.typing import ArrayLike
 from models.system import Array
 
 
-@lru_cache(maxsize=256)
-def _slices(fields: tuple[tuple[str, int], ...]) -> dict[str, slice]:
-    result: dict[str, slice] = {}
-    start = 0
-    for name, size in fields:
-        result[name] = slice(start, start + size)
-        start += size
-    return result
-
-
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Fields of a vector: names and sizes, in order."""
+    """Fields of a vector: names and sizes, in order.
+
+    Attributes:
+        slices: where each field lies.
+        size: length of the vector.
+    """
 
     fields: tuple[tuple[str, int], ...]
+    slices: dict[str, slice] = field(init=False, repr=False, compare=False)
+    size: int = field(init=False, repr=False, compare=False)
 
-    @property
-    def size(self) -> int:
-        """Length of the vector."""
-        return sum(size for _, size in self.fields)
-
-    @property
-    def slices(self) -> dict[str, slice]:
-        """Where each field lies."""
-        return _slices(self.fields)
+    def __post_init__(self) -> None:
+        ends = list(accumulate(size for _, size in self.fields))
+        starts = [0, *ends]
+        named = zip(self.fields, starts, ends, strict=False)
+        object.__setattr__(self, "slices", {name: slice(i, j) for (name, _), i, j in named})
+        object.__setattr__(self, "size", starts[-1])
 
     def symbols(self, name: str) -> tuple[ca.SX, dict[str, ca.SX]]:
         """A symbolic vector and its fields, each (size, 1)."""

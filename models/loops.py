@@ -127,12 +127,19 @@ class CompiledLoop:
         """See `Loop.run`."""
         after = np.array(state, dtype=float)
         rows = np.empty((ticks, self._width))
-        inputs = [np.ascontiguousarray(part, dtype=float) for part in (settings, table)]
-        pointers = [array.ctypes.data for array in (*inputs, after, rows)]
+        settings, table = (np.ascontiguousarray(a, dtype=float) for a in (settings, table))
         run = self._short if ticks <= SHORT else self._long
-        if run(*pointers, ticks):
+        if run(_address(settings), _address(table), _address(after), _address(rows), ticks):
             raise RuntimeError("the compiled loop failed")
         return after, rows
+
+
+_Begin = ctypes.c_char * 0
+
+
+def _address(array: Array) -> int:
+    """Of the numbers of a contiguous array; quicker than `array.ctypes.data`."""
+    return ctypes.addressof(_Begin.from_buffer(array.data))
 
 
 def find_compiler() -> str | None:

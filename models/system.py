@@ -7,7 +7,7 @@ with F the external force at the end-point. CasADi differentiates; nothing is de
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import casadi as ca
 import numpy as np
@@ -35,6 +35,7 @@ class MechanicalSystem:
         output: h(q), the actual end-point, (p, 1), [m].
         controlled_output: what a controller is given instead of h, (p, 1), [m]; often h itself.
         energy: total mechanical energy, (1, 1), [J].
+        n, m, p: numbers of degrees of freedom, inputs and outputs.
     """
 
     name: str
@@ -51,21 +52,14 @@ class MechanicalSystem:
     output: ca.SX
     controlled_output: ca.SX
     energy: ca.SX
+    n: int = field(init=False)
+    m: int = field(init=False)
+    p: int = field(init=False)
 
-    @property
-    def n(self) -> int:
-        """Number of degrees of freedom."""
-        return self.q.numel()
-
-    @property
-    def m(self) -> int:
-        """Number of inputs."""
-        return self.input_gain.size2()
-
-    @property
-    def p(self) -> int:
-        """Dimension of the output."""
-        return self.output.numel()
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "n", self.q.numel())
+        object.__setattr__(self, "m", self.input_gain.size2())
+        object.__setattr__(self, "p", self.output.numel())
 
     def function(self, *names: str) -> ca.Function:
         """Numeric function (q, v, parameters) -> the named attributes (not `acceleration`)."""

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import tracemalloc
+from functools import lru_cache
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +13,7 @@ from hypothesis import strategies as st
 from lab import FOLLOWER, FRAME, TRACKER, do, new_session, run, states, y
 
 from app import commands as c
-from app.history import LONGEST, SECONDS, Drive, History, Stretch
+from app.history import LONGEST, MOST, SECONDS, History, Input, Inputs, Instant
 from app.session import Session
 from app.take_snapshot import take_snapshot
 from models.controllers import NAMES
@@ -19,16 +23,25 @@ from models.kernel import Kind
 CURVE, SETTINGS = circle(0.05), np.zeros(3)
 
 
-def stretch(
+def add(
+    history: History,
     time: float,
     ticks: int = 17,
     settings: np.ndarray = SETTINGS,
     frozen: bool = False,
     curve: Curve = CURVE,
     dt: float = 1e-3,
-) -> Stretch:
-    drive = Drive(Kind(FOLLOWER), np.array([time]), settings, frozen, 0.0)
-    return Stretch(time, ticks, dt, curve, {FOLLOWER: drive}, np.array([[time]]))
+) -> None:
+    """A stretch of one robot, whose state and sample are the time."""
+    instant = Instant(time, [np.array([time])], [0.0], np.array([[time]]))
+    inputs = Inputs(curve, dt, {FOLLOWER: drive_input(id(settings), frozen)})
+    history.append(instant, ticks, inputs)
+
+
+@lru_cache
+def drive_input(settings: int, frozen: bool) -> Input:
+    """The same object for the same settings."""
+    return Input(Kind(FOLLOWER), np.full(3, float(settings)), frozen)
 
 
 def contiguous(history: History) -> bool:
@@ -40,10 +53,11 @@ def contiguous(history: History) -> bool:
 @settings(max_examples=60, deadline=None)
 @given(st.lists(st.integers(1, 40), min_size=1, max_size=60), st.data())
 def test_nothing_is_lost_whatever_the_frames_were(ticks: list[int], data: st.DataObject) -> None:
-    history, time = History(), 0.0
+    history, time, kept = History(), 0.0, list[np.ndarray]()
     for count in ticks:
         changed = np.zeros(3) if data.draw(st.booleans()) else SETTINGS
-        history.append(stretch(time, count, changed))
+        kept.append(changed)  # alive, so that ids differ
+        add(history, time, count, changed)
         time += count * 1e-3
     assert contiguous(history) and history.span() == pytest.approx(time)
     assert all(s.ticks <= max(LONGEST, max(ticks)) for s in history.all())
@@ -55,33 +69,63 @@ def test_nothing_is_lost_whatever_the_frames_were(ticks: list[int], data: st.Dat
 
 
 def test_only_stretches_with_the_same_inputs_are_joined() -> None:
-    for other, joined in (
-        (stretch(0.005, 5), True),
-        (stretch(0.005, 13), False),  # too long together
-        (stretch(0.005, 5, np.zeros(3)), False),
-        (stretch(0.005, 5, frozen=True), False),
-        (stretch(0.005, 5, curve=circle(0.05)), False),
-        (stretch(0.005, 5, dt=5e-4), False),
-    ):
+    other_settings, other_curve = np.zeros(3), circle(0.05)
+    cases: list[tuple[dict[str, Any], bool]] = [
+        ({"ticks": 5}, True),
+        ({"ticks": 13}, False),  # too long together
+        ({"ticks": 5, "settings": other_settings}, False),
+        ({"ticks": 5, "frozen": True}, False),
+        ({"ticks": 5, "curve": other_curve}, False),
+        ({"ticks": 5, "dt": 5e-4}, False),
+    ]
+    for changes, joined in cases:
         history = History()
-        history.append(stretch(0.0, 5))
-        history.append(other)
+        add(history, 0.0, 5)
+        add(history, 0.005, **changes)
         assert (len(history) == 1) is joined
-        assert sum(s.ticks for s in history.all()) == 5 + other.ticks
+        assert sum(s.ticks for s in history.all()) == 5 + changes["ticks"]
 
 
 def test_a_minute_is_kept_and_no_more() -> None:
     history = History()
     for k in range(5000):
-        history.append(stretch(k * 0.017))
+        add(history, k * 0.017)
     assert SECONDS <= history.span() < SECONDS + 0.1
     assert history.all()[-1].time == pytest.approx(4999 * 0.017)
+
+
+def test_short_stretches_do_not_pile_up() -> None:
+    history = History()
+    for k in range(3 * MOST):
+        add(history, k * 1e-3, 1, dt=1e-3 if k % 2 else 5e-4)
+    assert len(history) == MOST and history.all()[-1].time == pytest.approx(3 * MOST * 1e-3 - 1e-3)
+    assert [s.sample[0, 0] for s in history.all()] == pytest.approx(
+        [s.time for s in history.all()], abs=1e-6
+    )
+
+
+def test_a_minute_takes_little_memory() -> None:
+    """At 60 Hz, both robots, after a long time: less than 2.5 MB."""
+    session = new_session(0.5)
+    session.simulate(17)
+    names, one = list(session.runs), session.history.at(session.time)
+    assert one is not None
+    tracemalloc.start()
+    history = History()
+    for k in range(8000):
+        drives = {name: session.runs[name].input() for name in names}
+        states = [one.drives[name].state for name in names]
+        instant = Instant(k / 60, states, [0.0, 0.0], one.sample)
+        history.append(instant, 17, Inputs(one.curve, one.dt, drives))
+    used, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert history.span() > 59 and used < 2.5e6 and peak < 4e6
 
 
 def test_what_comes_after_is_forgotten() -> None:
     history = History()
     for k in range(10):
-        history.append(stretch(k * 0.017))
+        add(history, k * 0.017)
     found = history.at(0.1)
     assert found is not None
     history.forget_after(found)
@@ -97,12 +141,12 @@ def test_samples_are_few_in_order_and_within(
 ) -> None:
     history = History()
     for k in range(count):
-        history.append(stretch(k * 0.017))
+        add(history, k * 0.017)
     times, samples = history.samples(begin, begin + span, most)
     assert len(times) == len(samples) <= most
     assert np.all(np.diff(times) > 0) and np.all((begin <= times) & (times <= begin + span))
     if len(times):
-        assert np.array_equal(samples[:, 0, 0], times)
+        assert np.array_equal(samples[:, 0, 0], times.astype(np.float32))
     inside = sum(begin <= k * 0.017 <= begin + span for k in range(count))
     assert inside == len(times) if inside <= most else len(times) > most / 4
 
