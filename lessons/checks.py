@@ -47,6 +47,8 @@ def verdict(check: Check, record: Record, words: Words) -> Verdict:
 
 @verdict.register
 def _(check: Bound, record: Record, words: Words) -> Verdict:
+    if record.stopped(check.robot):
+        return Verdict(False, words("check.stopped", robot=words(f"robot.{check.robot}")))
     chosen = record.chosen(check.robot, check)
     seconds = _seconds(check, record, chosen, words)
     names = {
@@ -67,6 +69,8 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
 @verdict.register
 def _(check: Compare, record: Record, words: Words) -> Verdict:
     smaller: RobotName = "follower" if check.larger == "tracker" else "tracker"
+    if record.stopped(smaller):
+        return Verdict(False, words("check.stopped", robot=words(f"robot.{smaller}")))
     chosen = record.chosen(check.larger, check)
     both = [
         statistic(record, robot, check.quantity, check.stat, record.chosen(robot, check))

@@ -43,7 +43,9 @@ def read_link(address: str) -> tuple[Action, ...]:
 
 
 def _value(text: str) -> Value:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

@@ -97,6 +97,13 @@ class Record:
             chosen = chosen & (seconds <= window.last + 1e-9)
         return chosen
 
+    def stopped(self, robot: RobotName) -> bool:
+        """Whether a robot stands still because the simulation had to stop."""
+        return any(
+            event.name == "diverged" and event.run == self.run and robot in event.robots
+            for event in self.happenings
+        )
+
     def seconds(self, chosen: Mask) -> float:
         """How long the chosen instants last, [s]."""
         return float(self._steps()[chosen].sum())

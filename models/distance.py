@@ -9,6 +9,7 @@ from models.frames import Frame
 from models.system import Array
 
 CHUNK = 4096
+NEAR = 0.1  # [rad]; within it the Taylor polynomial stands for the curve
 
 
 def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> Array:
@@ -27,8 +28,16 @@ def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> A
 
 
 def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:
-    """The same from guesses near the closest points, shape (n,), [rad]; for live display."""
-    return _refined(frame, curve, y, theta)[1]
+    """The same from guesses near the closest points, shape (n,), [rad]; for live display.
+
+    Where a guess proves to be far off, the search is global.
+    """
+    better, distances = _refined(frame, curve, y, theta)
+    guessed = np.sqrt(((frame.lift(curve.at(theta)) - y) ** 2).sum(-1))
+    astray = ~((np.abs(better - theta) < NEAR) & (distances <= guessed + 1e-12))
+    if astray.any():
+        distances[astray] = path_distance(frame, curve, y[astray], 64)
+    return distances
 
 
 def _refined(frame: Frame, curve: Curve, y: Array, theta: Array) -> tuple[Array, Array]:

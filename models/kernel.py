@@ -150,7 +150,7 @@ def _turn(
         "theta": output.theta,
         "theta_rate": output.theta_rate,
         "theta_ref": state["theta_ref"] + settings["dt"] * _reference(kind, state, settings)[1],
-        "integral": state["integral"] + _interval(kind, settings, acts, saturated) * error,
+        "integral": _integral(kind, state, settings, acts, saturated, error),
         **_remembered(kind, state, acts, reading, measured_v[: system.m]),
         **memory,
         "u": u,
@@ -206,12 +206,15 @@ def _next_phase(state: Fields, settings: Fields) -> ca.SX:
     return phase * (phase < settings["hold_ticks"] - 0.5)
 
 
-def _interval(kind: Kind, settings: Fields, acts: ca.SX, saturated: ca.SX) -> ca.SX:
-    """Time that integral action counts in this tick: none while its error cannot be acted on."""
-    if kind.free:
-        return settings["dt"]
-    counts = acts * (1 - saturated) * (1 - settings["hold_active"])
-    return counts * settings["dt"] * settings["hold_ticks"]
+def _integral(
+    kind: Kind, state: Fields, settings: Fields, acts: ca.SX, saturated: ca.SX, error: ca.SX
+) -> ca.SX:
+    """What K3 multiplies; empty without K3, and still while its error cannot be acted on."""
+    interval = settings["dt"]
+    if not kind.free:
+        counts = acts * (1 - saturated) * (1 - settings["hold_active"])
+        interval = counts * interval * settings["hold_ticks"]
+    return (settings["K3"] != 0) * (state["integral"] + interval * error)
 
 
 def _measure(

@@ -12,6 +12,9 @@ from difflib import get_close_matches
 from typing import Any
 
 
+NOTHING = 1e-9  # of any parameter; what is smaller is taken as 0, so that its inverse is finite
+
+
 @dataclass(frozen=True, slots=True)
 class Spec:
     """How a parameter is shown and what it may be.
@@ -269,7 +272,7 @@ def checked(spec: Spec, name: str, value: Any) -> Any:
     if not math.isfinite(result) or not spec.low <= result <= spec.high:
         unit = f" {spec.unit}" if spec.unit else ""
         raise ValueError(f"{name}: {value} is not between {spec.low:g} and {spec.high:g}{unit}")
-    return result
+    return result if abs(result) > NOTHING else 0.0
 
 
 def changed(parameters: Parameters, name: str, value: Any) -> Parameters:

@@ -179,6 +179,7 @@ static void tick(const Settings *s, const double *table, State *x, Row *row) {
   integrate(&s->plant, &x->q, &x->v, tau, s->dt);
   if (acts && !saturated && s->hold_active == 0)
     x->integral.x += s->dt * s->hold_ticks * row->xi;
+  if (s->K3 == 0) x->integral = (Vec){0, 0};
   double top = fabs(s->speed), gap = wrap(s->target - x->theta_ref) / s->dt;
   x->theta_ref += s->dt * (s->position != 0 ? clamp(gap, -top, top) : s->speed);
   x->theta = theta, x->theta_rate = row->theta_rate;

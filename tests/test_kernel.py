@@ -209,6 +209,12 @@ def test_integral_grows_unless_torque_saturates_or_a_hold_acts(rig: Rig, kind: K
     assert integral(rig, kind, start, 30, K3=50, hold_active=1) == pytest.approx(memory, abs=0)
 
 
+@BOTH
+def test_without_integral_gain_nothing_collects(rig: Rig, kind: Kind) -> None:
+    start = rig.state(kind, np.array([0.07, 0.01]), integral=(1e-3, -5e-4))
+    assert np.all(integral(rig, kind, start, 1, K3=0) == 0.0)
+
+
 @pytest.mark.parametrize("kind", [FOLLOWING, TRACKING, replace(FOLLOWING, encoder=True)])
 def test_torque_is_held_between_the_controller_s_ticks(rig: Rig, kind: Kind) -> None:
     start = rig.state(kind, np.array([0.06, 0.0]))
