@@ -79,6 +79,23 @@ class Drive:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Instant:
+    """Both robots at one time.
+
+    Attributes:
+        time: [s].
+        states: one for each robot.
+        max_distances: since reset, shape (robots,), [m].
+        sample: what the plots show, shape (robots, fields).
+    """
+
+    time: float
+    states: Sequence[np.ndarray]
+    max_distances: Sequence[float]
+    sample: np.ndarray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Stretch:
     """Some ticks with the same inputs.
 
@@ -97,22 +114,11 @@ class Stretch:
     drives: dict[str, Drive]
     sample: np.ndarray
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Instant:
-    """Both robots at the beginning of a stretch.
-
-    Attributes:
-        time: [s].
-        states: one row for each robot.
-        max_distances: since reset, shape (robots,), [m].
-        sample: what the plots show, shape (robots, fields).
-    """
-
-    time: float
-    states: Sequence[np.ndarray]
-    max_distances: Sequence[float]
-    sample: np.ndarray
+    def instant(self) -> Instant:
+        """Its beginning."""
+        drives = self.drives.values()
+        states, most = [d.state for d in drives], [d.max_distance for d in drives]
+        return Instant(self.time, states, most, self.sample.astype(float))
 
 
 class History:

@@ -195,7 +195,7 @@ class Machine:
         ]
         points = np.concatenate(lines)
         if np.isfinite(points).all():
-            self._traces.points = points.astype(np.float32)
+            update_node(self._traces, points=points)
         for robot, label in zip(robots, self._force_labels, strict=True):
             force = float(np.linalg.norm(robot.force))
             if force > FORCE_SHOWN:

@@ -39,6 +39,13 @@ def update_node(handle: Any, **arrays: np.ndarray) -> None:
     handle._impl.api._queue_scene_message(message)
 
 
+def update_plot(handle: Any, lines: np.ndarray) -> None:
+    """Set the data of a plot, shape (series, points), without a look at types and changes."""
+    data = tuple(np.array(lines, dtype=float))
+    handle._impl.props.data = data
+    handle._queue_update("data", data)
+
+
 class Channel:
     """All that the simulation thread tells one browser during a frame, as one message.
 

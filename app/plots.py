@@ -9,6 +9,7 @@ import numpy as np
 import viser
 from viser import uplot
 
+from app.node_update import update_plot
 from app.palette import CONTROLLERS
 from app.session import Session
 from app.snapshot import FollowerName, TrackerName
@@ -92,9 +93,10 @@ class LivePlot:
         times, samples = session.history.samples(now - WINDOW, now, POINTS)
         if len(times) < 2:
             return
-        values = session.sample_layout.unpack(samples)[self._plot.field] * self._plot.scale
-        lines = values[:, :, : self._lines].reshape(len(times), -1).T.astype(float)
-        self._handle.data = (times, *np.nan_to_num(lines))
+        begin = session.sample_layout.slices[self._plot.field].start
+        values = samples[:, :, begin : begin + self._lines].astype(float) * self._plot.scale
+        lines = np.vstack([times, values.reshape(len(times), -1).T])
+        update_plot(self._handle, lines if np.isfinite(lines).all() else np.nan_to_num(lines))
 
     def remove(self) -> None:
         """Take it off the page."""

@@ -112,30 +112,41 @@ class Layout:
         self._part_depth, depth = np.array(across), np.array(before)
         self._marks = depth < 0.0  # these face the viewer, however the linkage is turned
         self._before = np.column_stack([np.zeros_like(depth), depth, np.zeros_like(depth)])
+        self._turn([0.0] * len(robots))
 
     def poses(self, robots: list[RobotView]) -> Poses:
         """The poses at one instant."""
-        waists = np.array([waist_angle(robot.bars, self._away) for robot in robots])
-        normals = np.stack([-np.sin(waists), np.cos(waists), np.zeros_like(waists)], axis=1)
+        waists = [waist_angle(robot.bars, self._away) for robot in robots]
+        if waists != self._waists:
+            self._turn(waists)
         bars = np.concatenate([robot.bars for robot in robots])
-        along = bars[:, 1] - bars[:, 0]
+        begins = bars[:, 0]
+        along = bars[:, 1] - begins
         parts: list[np.ndarray] = []
         for robot in robots:
             marker = robot.marker[None]
             parts += [robot.joints, robot.tip[None], marker, marker, robot.extra_points]
-        half = np.where(self._marks, 0.0, waists[self._part_robot]) / 2
-        still = np.zeros_like(half)
         return Poses(
-            bars=bars[:, 0] + self._offsets(self._bar_robot, self._bar_depth, normals),
-            quaternions=bar_quaternions(along, waists[self._bar_robot]),
+            bars=begins + self._bar_offsets,
+            quaternions=bar_quaternions(along, self._bar_waists),
             lengths=np.sqrt((along * along).sum(axis=1)),
-            parts=np.concatenate(parts)
-            + self._offsets(self._part_robot, self._part_depth, normals)
-            + self._before,
-            turns=np.column_stack([np.cos(half), still, still, np.sin(half)]),
-            tips=np.stack([robot.tip for robot in robots]) + self._bases,
-            forces=np.stack([robot.force for robot in robots]),
+            parts=np.concatenate(parts) + self._part_offsets,
+            turns=self._turns,
+            tips=np.array([robot.tip for robot in robots]) + self._bases,
+            forces=np.array([robot.force for robot in robots]),
         )
+
+    def _turn(self, waists: list[float]) -> None:
+        """Find what depends on the angles of the linkages' planes alone, [rad]."""
+        self._waists, angles = waists, np.array(waists)
+        normals = np.stack([-np.sin(angles), np.cos(angles), np.zeros_like(angles)], axis=1)
+        self._bar_waists = angles[self._bar_robot]
+        half = np.where(self._marks, 0.0, angles[self._part_robot]) / 2
+        still = np.zeros_like(half)
+        self._turns = np.column_stack([np.cos(half), still, still, np.sin(half)])
+        self._bar_offsets = self._offsets(self._bar_robot, self._bar_depth, normals)
+        aside = self._offsets(self._part_robot, self._part_depth, normals)
+        self._part_offsets = aside + self._before
 
     def _offsets(self, robot: np.ndarray, depth: np.ndarray, normals: np.ndarray) -> np.ndarray:
         return self._bases[robot] + depth[:, None] * normals[robot]

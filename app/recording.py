@@ -11,9 +11,8 @@ from app.scene import Scene
 from app.snapshot import PathView, Snapshot
 from app.stage import set_initial_camera
 from app.stages import stage_of
-from app.take_snapshot import CURVE_POINTS, robot_view
+from app.take_snapshot import CURVE_POINTS, robot_views
 from models.robots import Robot
-from models.system import Array
 
 RATE = 30.0  # [Hz]
 
@@ -54,14 +53,9 @@ def _frames(history: list[Stretch]) -> list[Stretch]:
 
 
 def _snapshot(robot: Robot, stretch: Stretch, number: int, before: list[Stretch]) -> Snapshot:
-    layout = sample_layout(robot)
-    views = {}
-    for index, (name, drive) in enumerate(stretch.drives.items()):
-        row = layout.unpack(stretch.sample[index].astype(float))
-        trace: Array = np.array([layout.unpack(s.sample[index])["y"] for s in before], dtype=float)
-        placed = robot.place(trace) if len(trace) else np.zeros((0, 3))
-        q = drive.state[: robot.system.n]
-        views[name] = robot_view(robot, name, stretch.curve, q, row, 0.0, placed)
+    where = sample_layout(robot).slices["y"]
+    traces = np.array([s.sample[:, where] for s in [*before, stretch]], dtype=float)
+    views = robot_views(robot, stretch.curve, stretch.instant(), traces[:-1])
     theta = np.linspace(-np.pi, np.pi, CURVE_POINTS)
     path = PathView(
         version=id(stretch.curve),

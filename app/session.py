@@ -174,13 +174,7 @@ class Session:
         dt = time_step(self.parameters)
         self._bend(ticks * dt)
         curve = self.editor.curve
-        runs = self.runs.values()
-        before = Instant(
-            self.time,
-            [run.state for run in runs],
-            [run.max_distance for run in runs],
-            self.sample(),
-        )
+        before = self.instant()
         for name, run in self.runs.items():
             was = run.diverged
             run.advance(
@@ -344,6 +338,12 @@ class Session:
     def sample_layout(self) -> Layout:
         """See `app.samples`."""
         return sample_layout(self.robot)
+
+    def instant(self) -> Instant:
+        """Now."""
+        runs = self.runs.values()
+        states, most = [run.state for run in runs], [run.max_distance for run in runs]
+        return Instant(self.time, states, most, self.sample())
 
     def sample(self) -> np.ndarray:
         """Now, shape (robots, sample_layout.size)."""

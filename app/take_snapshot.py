@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.history import Instant
+from app.samples import sample_layout
 from app.session import Session
-from app.snapshot import FollowerName, PathView, RobotView, Snapshot
+from app.snapshot import FollowerName, PathView, RobotView, Snapshot, TrackerName
+from models.controllers import NAMES
 from models.curves import Curve
 from models.robots import Robot
 from models.system import Array
@@ -13,20 +16,25 @@ from models.system import Array
 TRACE = 1.6  # [s]
 TRACE_POINTS = 120
 CURVE_POINTS = 160
+AIMS = {TrackerName: "theta_ref", FollowerName: "theta"}
+"""Where on the path each controller aims."""
 
 
 def take_snapshot(session: Session, achieved_speed: float, traces: bool = True) -> Snapshot:
     """The session now, or at the past instant it looks at."""
+    past = None if session.viewing is None else session.history.at(session.viewing)
     time = session.time if session.viewing is None else session.viewing
-    samples = _samples(session, time) if traces else None
     return Snapshot(
         time=time,
         running=session.running,
         achieved_speed=achieved_speed,
-        robots={
-            name: _robot_view(session, index, name, samples)
-            for index, name in enumerate(session.runs)
-        },
+        robots=robot_views(
+            session.robot,
+            session.editor.curve,
+            session.instant() if past is None else past.instant(),
+            _traces(session, time) if traces else None,
+            session.exaggeration,
+        ),
         path=_path_view(session),
         held=bool(session.held),
         grabbed=session.grabbed,
@@ -43,64 +51,54 @@ def scale_note(robot: Robot, exaggeration: float) -> str:
     return f"deflection drawn {exaggeration:g}×"
 
 
-def _samples(session: Session, time: float) -> Array:
+def _traces(session: Session, time: float) -> Array:
     """End-points of both robots lately, shape (n, robots, p)."""
     _, samples = session.history.samples(time - TRACE, time, TRACE_POINTS)
     if not samples.size:
         return np.zeros((0, len(session.runs), session.robot.system.p))
-    return session.sample_layout.unpack(samples)["y"]
+    return samples[..., session.sample_layout.slices["y"]]
 
 
-def _robot_view(session: Session, index: int, name: str, samples: Array | None) -> RobotView:
-    robot, run, curve = session.robot, session.runs[name], session.editor.curve
-    past = None if session.viewing is None else session.history.at(session.viewing)
-    trace = np.zeros((0, 3)) if samples is None else robot.place(samples[:, index])
-    if past is not None:
-        row = session.sample_layout.unpack(past.sample[index].astype(float))
-        q = past.drives[name].state[: robot.system.n]
-        most = past.drives[name].max_distance
-        return robot_view(robot, name, curve, q, row, most, trace, session.exaggeration)
-    row = run.shown() | session.sample_layout.unpack(session.sample()[index])
-    q, most = row["q"], run.max_distance
-    return robot_view(robot, name, curve, q, row, most, trace, session.exaggeration)
-
-
-def robot_view(
+def robot_views(
     robot: Robot,
-    name: str,
     curve: Curve,
-    q: Array,
-    row: dict[str, Array],
-    max_distance: float,
-    trace: Array,
+    instant: Instant,
+    traces: Array | None = None,
     exaggeration: float = 1.0,
-) -> RobotView:
-    """One robot at one instant.
+) -> dict[str, RobotView]:
+    """Both robots at one instant.
 
     Args:
-        q: configuration, shape (n,).
-        row: fields of a sample, see `Session.sample_layout`.
-        trace: end-points lately, in the robot's frame, shape (k, 3), [m].
+        traces: their end-points lately, shape (n, robots, p), [m].
         exaggeration: of a deflection, in the bars and the drawn end-point.
     """
-    tip = robot.place(row["y"])
-    target = row["theta" if name == FollowerName else "theta_ref"][0]
-    bars, joints = robot.skeleton(q, exaggeration)
-    drawn = tip if exaggeration == 1.0 else bars[-1, 1]
-    return RobotView(
-        bars=bars,
-        joints=joints,
-        tip=drawn,
-        marker=robot.place(robot.frame.lift(curve.at(np.array(target)))),
-        force=robot.place(row["force"]) - robot.place(np.zeros_like(row["force"])),
-        trace=np.concatenate([trace, tip[None]]),
-        distance=float(row["distance"][0]),
-        max_distance=max_distance,
-        speed=float(row["speed"][0]),
-        torque=row["u"],
-        extra_points=robot.marks(q),
-        deflection=float(row["deflection"][0]) if "deflection" in row else float("nan"),
+    fields = sample_layout(robot).unpack(instant.sample)
+    aims = [fields[AIMS[name]][i, 0] for i, name in enumerate(NAMES)]
+    markers = robot.frame.lift(curve.at(np.array(aims)))
+    none = np.zeros_like(markers)
+    tips, markers, forces, origins = robot.place(
+        np.array([fields["y"], markers, fields["force"], none])
     )
+    views: dict[str, RobotView] = {}
+    for i, name in enumerate(NAMES):
+        q, tip = instant.states[i][: robot.system.n], tips[i]
+        bars, joints = robot.skeleton(q, exaggeration)
+        before = np.zeros((0, 3)) if traces is None else robot.place(traces[:, i])
+        views[name] = RobotView(
+            bars=bars,
+            joints=joints,
+            tip=tip if exaggeration == 1.0 else bars[-1, 1],
+            marker=markers[i],
+            force=forces[i] - origins[i],
+            trace=np.concatenate([before, tips[i : i + 1]]),
+            distance=float(fields["distance"][i, 0]),
+            max_distance=instant.max_distances[i],
+            speed=float(fields["speed"][i, 0]),
+            torque=fields["u"][i],
+            extra_points=robot.marks(q),
+            deflection=float(fields["deflection"][i, 0]) if "deflection" in fields else np.nan,
+        )
+    return views
 
 
 def _path_view(session: Session) -> PathView:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -192,8 +193,14 @@ def skeleton(q: Array, l1: float, l2: float, l4: float) -> tuple[Array, Array]:
         bars, shape (4, 2, 3), links 1 to 4 as end to end segments; joints, shape (4, 3): base,
         link 1-4, link 2-3, link 3-4, [m].
     """
-    e1 = np.array([np.cos(q[0]), 0.0, np.sin(q[0])])
-    e2 = np.array([np.cos(q[1]), 0.0, np.sin(q[1])])
-    base, a, b = np.zeros(3), l1 * e1, l2 * e2
-    c, tip = a + b, a - l4 * e2
-    return np.array([[base, a], [base, b], [b, c], [c, tip]]), np.array([base, a, b, c])
+    directions = np.zeros((2, 3))
+    directions[:, 0], directions[:, 2] = np.cos(q[:2]), np.sin(q[:2])
+    points = _reaches(l1, l2, l4) @ directions
+    return points[:8].reshape(4, 2, 3), points[8:]
+
+
+@lru_cache(maxsize=16)
+def _reaches(l1: float, l2: float, l4: float) -> Array:
+    """How far both ends of each bar, then the joints, are along links 1 and 2, (12, 2), [m]."""
+    base, a, b, c, tip = (0.0, 0.0), (l1, 0.0), (0.0, l2), (l1, l2), (l1, -l4)
+    return np.array([base, a, base, b, b, c, c, tip, base, a, b, c])

@@ -15,12 +15,13 @@ import pytest
 import viser
 import websockets.sync.client
 from lab import FOLLOWER
+from viser import uplot
 from websockets.typing import Subprotocol
 
 from app.hardening import make_server
 from app.load import crowd
 from app.loop_store import LoopStore
-from app.node_update import Channel, update_node
+from app.node_update import Channel, update_node, update_plot
 from app.protocol import CAMERA, SUBPROTOCOL, packed, unpacked
 from app.server import LabServer
 from models.catalogue import ROBOTS
@@ -76,6 +77,26 @@ def test_one_message_does_what_assignments_do(server: viser.ViserServer) -> None
         assert np.array_equal(one["updates"][field], both["updates"][field])
     assert np.array_equal(both["updates"]["batched_positions"].reshape(2, 3), kept)
     assert np.array_equal(nodes[1].batched_positions, kept)
+
+
+def test_a_plot_is_told_what_an_assignment_tells(server: viser.ViserServer) -> None:
+    lines = np.arange(6.0).reshape(2, 3)
+    series = (uplot.Series(label="x"), uplot.Series(label="y"))
+    with browser(server) as (client, socket):
+        plots = [client.gui.add_uplot((np.zeros(2), np.zeros(2)), series) for _ in range(2)]
+        plots[0].data = tuple(lines)
+        update_plot(plots[1], lines)
+        kept = lines.copy()
+        lines += 1  # nobody may hold on to what was given
+        updates: list[Any] = []
+        while len(updates) < 2:
+            messages = unpacked(socket.recv(timeout=10))
+            updates += [m for m in messages if "data" in m.get("updates", {})]
+    assert [m["uuid"] for m in updates] == [plot._impl.uuid for plot in plots]
+    assert updates[0]["type"] == updates[1]["type"]
+    for one, other in zip(*(m["updates"]["data"] for m in updates), strict=True):
+        assert one.dtype == other.dtype and np.array_equal(one, other)
+    assert np.array_equal(np.array(plots[1].data), kept)
 
 
 @pytest.mark.parametrize("name", ROBOTS)
@@ -142,7 +163,7 @@ def test_what_one_thread_tells_in_a_frame_arrives_at_once_and_in_order(
             with channel.frame():
                 update_node(node, points=np.ones((1, 3)))
             channel.send()
-        told = sum(told_until(socket, "/1"), [])
+        told = [name for frame in told_until(socket, "/1") for name in frame]
         assert all(told.index(f"new {name}") < told.index(name) for name in names[:2])
         with channel.frame():
             for node in nodes[2:4]:
