@@ -10,6 +10,8 @@ import numpy as np
 
 from app import commands as c
 from app.identify import identify_model
+from app.setups import capture, restore
+from app.share_code import decode, encode
 from models.catalogue import ROBOTS
 from models.controllers import NAMES
 from models.parameters import changed
@@ -237,6 +239,17 @@ def _(_: c.Undo, session: Session) -> None:
 @apply.register(c.Redo)
 def _(_: c.Redo, session: Session) -> None:
     session.say("" if session.editor.redo() else "nothing to redo")
+
+
+@apply.register(c.Share)
+def _(_: c.Share, session: Session) -> None:
+    session.shared = encode(capture(session))
+
+
+@apply.register(c.UseShared)
+def _(command: c.UseShared, session: Session) -> None:
+    restore(session, decode(command.text))
+    session.say("")
 
 
 def _commit(session: Session, design: PathDesign) -> None:

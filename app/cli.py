@@ -32,6 +32,8 @@ class Serve:
     """Open the lab in the default browser."""
     lessons: Path | None = None
     """A folder with lessons of your own, shown after the built-in ones."""
+    database: str | None = None
+    """URL of a database that keeps the labs; a file in your data folder if not given."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     """How much to log."""
 
@@ -42,7 +44,7 @@ class Serve:
         level = getattr(logging, self.log_level.upper())
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
         logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
-        serve(self.host, self.port, self.lessons, open_browser=self.open)
+        serve(self.host, self.port, self.lessons, self.database, open_browser=self.open)
 
 
 @dataclass(frozen=True)

@@ -206,6 +206,18 @@ class Redo:
     """The path as before the last undo."""
 
 
+@dataclass(frozen=True, slots=True)
+class Share:
+    """Make a share code of the lab as it is."""
+
+
+@dataclass(frozen=True, slots=True)
+class UseShared:
+    """Set the lab up as a share code says."""
+
+    text: str
+
+
 Command = (
     SetParameter
     | ResetParameters
@@ -236,6 +248,8 @@ Command = (
     | DrawPath
     | Undo
     | Redo
+    | Share
+    | UseShared
     | LessonCommand
 )
 

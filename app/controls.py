@@ -8,9 +8,11 @@ from typing import Protocol
 import viser
 
 from app import commands as c
+from app.desk import Desk
 from app.exports import Exporter
 from app.panels.flexible_panel import FlexiblePanel
 from app.panels.gains_panel import GainsPanel, add_identify
+from app.panels.keep_panel import KeepPanel
 from app.panels.keys import help_text
 from app.panels.past_panel import PastPanel
 from app.panels.path_panel import PathChoice, PathPanel
@@ -40,6 +42,12 @@ PLOTS = {
 """A plot as lessons call it -> as it is called here."""
 
 
+ALL = (
+    *("robot", "hold", "path", "flexible", "gains", "editor", "plots", "past", "keep"),
+    "copy",
+)
+
+
 class Part(Protocol):
     """Something on the page that follows the session."""
 
@@ -56,14 +64,31 @@ class Controls:
     """
 
     def __init__(
-        self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter, scene: Scene
+        self,
+        gui: viser.GuiApi,
+        session: Session,
+        post: Post,
+        exporter: Exporter,
+        scene: Scene,
+        desk: Desk,
     ) -> None:
         self._gui, self._session, self._post = gui, session, post
-        self._exporter, self._scene = exporter, scene
+        self._exporter, self._scene, self._desk = exporter, scene, desk
 
     def everything(self) -> list[Part]:
         """All there is."""
-        names = ["robot", "hold", "path", "flexible", "gains", "editor", "plots", "past", "copy"]
+        names = [
+            "robot",
+            "hold",
+            "path",
+            "flexible",
+            "gains",
+            "editor",
+            "plots",
+            "past",
+            "keep",
+            "copy",
+        ]
         parts = [part for name in names for part in self._add(name)]
         helping = self._gui.add_button("Help and keys", icon=viser.Icon.HELP)
         on_press(helping, self._help)
@@ -94,6 +119,7 @@ class Controls:
             "gains": lambda: GainsPanel(gui, session, post),
             "plots": lambda: MorePlots(gui, session),
             "past": lambda: PastPanel(gui, session, post, self._exporter),
+            "keep": lambda: KeepPanel(gui, session, post, self._exporter, self._desk),
             "robot": lambda: _silent(RobotPanel(gui, session, post)),
             "copy": self._copy,
             "flexible": self._flexible,

@@ -8,6 +8,7 @@ import viser
 
 from app import commands as c
 from app.controls import Controls, Part
+from app.desk import Desk
 from app.exports import Exporter
 from app.lesson_menu import LessonMenu
 from app.lesson_panel import LessonPanel
@@ -32,8 +33,11 @@ NARROW = 0.6  # width to height: a telephone, where the panel lies over the lowe
 class LabView:
     """What one client sees. Built in a thread of its own, then used by the simulation thread."""
 
-    def __init__(self, client: viser.ClientHandle, session: Session, store: LoopStore) -> None:
+    def __init__(
+        self, client: viser.ClientHandle, session: Session, store: LoopStore, desk: Desk
+    ) -> None:
         self._client = client
+        self._desk = desk
         self._channel = Channel(client)
         self._store = store
         self._offset = client.client_id  # spreads the clients' slow updates over the frames
@@ -108,7 +112,7 @@ class LabView:
         if run.course.lessons:
             LessonMenu(gui, session, post)
         self._parts: list[Part] = [LivePlot(gui, session, DISTANCE, height=190)]
-        controls = Controls(gui, session, post, self._exporter, self._scene)
+        controls = Controls(gui, session, post, self._exporter, self._scene, self._desk)
         if run.lesson is None:
             self._parts += controls.everything()
             return

@@ -19,7 +19,8 @@ STYLE = """<style>
 .op-text li{margin:0.2em 0}.op-text img{max-width:100%;display:block;margin:0.6em auto}
 .op-text table{border-collapse:collapse;margin:0.6em 0}
 .op-text td,.op-text th{border:1px solid #d5dae1;padding:0.25em 0.55em;text-align:left}
-.op-text math,.op-box math{font-size:1.15em}.op-text math[display=block]{margin:0.7em 0;overflow-x:auto;overflow-y:hidden;max-width:100%}
+.op-text math,.op-box math{font-size:1.15em}
+.op-text math[display=block]{margin:0.7em 0;overflow-x:auto;overflow-y:hidden;max-width:100%}
 .op-text blockquote{border-left:3px solid #b8c4d3;margin:0.6em 0;padding:0.1em 0.9em;color:#3b4a5f}
 .op-text code{background:#eef1f5;padding:0 0.25em;border-radius:3px}
 .op-text h2{font-size:1.08em;margin:0.8em 0 0.3em}

@@ -37,6 +37,7 @@ class LessonRun:
         words: of the student's language.
         version: changes whenever the page must be drawn anew.
         verdicts: on the checks of the open step's tasks, by task.
+        before: the lab as it was before any lesson was open.
     """
 
     def __init__(self, course: Course, progress: Progress | None = None) -> None:
@@ -48,7 +49,7 @@ class LessonRun:
         self._begin = Beginning(0, 0.0)
         self._frames = 0
         self._playing = False
-        self._aside: Setup | None = None  # the lab as it was before any lesson
+        self.before: Setup | None = None
 
     # Where we are
 
@@ -114,17 +115,25 @@ class LessonRun:
         if name not in self.course.lessons:
             raise ValueError(f"no lesson {name!r}: there are {', '.join(self.course.lessons)}")
         if self.lesson is None:
-            self._aside = capture(session)
+            self.before = capture(session)
         self.progress = replace(self.progress, lesson=name)
         self._go(self.index, session)
+
+    def resume(self, progress: Progress, before: Setup | None, session: Session) -> None:
+        """Go on as it was kept."""
+        self.progress, self.before = progress, before
+        self.words = Words(progress.language)
+        self.version += 1
+        if self.lesson is not None:
+            self._go(self.index, session)
 
     def close(self, session: Session) -> None:
         """No lesson is open; the lab is as it was before."""
         self.progress = replace(self.progress, lesson="")
         session.script, session.locked = None, ""
         self._playing = False
-        if self._aside is not None:
-            restore(session, self._aside)
+        if self.before is not None:
+            restore(session, self.before)
             session.running = True
         self.version += 1
 

@@ -5,17 +5,22 @@ from __future__ import annotations
 import logging
 import threading
 import webbrowser
+from functools import partial
 from pathlib import Path
 
 import viser
 
+from app.codes import normalised
+from app.database import Records
+from app.desk import Desk
 from app.error_log import log_error
 from app.hardening import make_server
+from app.keeper import Keeper
 from app.lab_view import LabView
 from app.loop import SimulationThread
 from app.loop_store import LoopStore
 from app.session import Session
-from app.sessions import Sessions
+from app.sessions import Entry, Sessions
 from app.stage import set_initial_camera
 from app.stages import RIGID
 from lessons.course import BUILT_IN, Course, read_course
@@ -34,19 +39,29 @@ class LabServer:
         host, port: where to listen; port 0 takes a free one.
         store: where the loops come from.
         course: the lessons; the built-in ones if there is none.
+        records: where labs are kept; nowhere if there is none.
 
     Raises:
         OSError: the address cannot be had; the message says why and the way out.
     """
 
     def __init__(
-        self, host: str, port: int, store: LoopStore, course: Course | None = None
+        self,
+        host: str,
+        port: int,
+        store: LoopStore,
+        course: Course | None = None,
+        records: Records | None = None,
     ) -> None:
         self._store = store
         lessons = course or read_course([BUILT_IN])[0]
         self.server = make_server(host, port, label="OnPath")
         self.simulation = SimulationThread()
+        self._records = records
+        self._keeper = Keeper(records) if records else None
         self.sessions = Sessions(self.simulation, lambda: Session(store, FIVE_BAR, lessons))
+        if records is not None:
+            self.sessions.load, self.sessions.keeper = records.load, self._keeper
         self._views: dict[int, LabView] = {}
         set_initial_camera(self.server, RIGID)
         self.server.on_client_connect(self._connected)
@@ -65,6 +80,9 @@ class LabServer:
         self.simulation.stop()
         self._store.close()
         self.server.stop()
+        if self._keeper is not None and self._records is not None:
+            self._keeper.close()
+            self._records.close()
 
     def _connected(self, client: viser.ClientHandle) -> None:
         try:
@@ -73,10 +91,14 @@ class LabServer:
             known = None  # a browser that keeps nothing, or one that is gone again
         if client.client_id not in self.server.get_clients():
             return
-        entry = self.sessions.join(client.client_id, known)
+        self._show(client, self.sessions.join(client.client_id, known), known)
+
+    def _show(self, client: viser.ClientHandle, entry: Entry, known: str | None) -> None:
+        """A client's page is that of a session."""
+        desk = Desk(entry.code, self._records is not None, partial(self._enter, client))
         try:
             client.local_storage.set_item(STORAGE_KEY, self.sessions.remembered(entry.code, known))
-            view = LabView(client, entry.lab.session, self._store)
+            view = LabView(client, entry.lab.session, self._store, desk)
         except Exception as error:
             log_error(error)
             self.sessions.leave(client.client_id)
@@ -86,6 +108,20 @@ class LabServer:
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
 
+    def _enter(self, client: viser.ClientHandle, text: str) -> None:
+        """Another session for a client, by a code that was typed.
+
+        Raises:
+            ValueError: it is no code, there is no such session, or it is in use.
+        """
+        entry = self.sessions.enter(client.client_id, normalised(text))
+        view = self._views.pop(client.client_id, None)
+        if view is not None:
+            view.close()
+        client.scene.reset()
+        client.gui.reset()
+        self._show(client, entry, None)
+
     def _disconnected(self, client: viser.ClientHandle) -> None:
         self.sessions.leave(client.client_id)
         view = self._views.pop(client.client_id, None)
@@ -93,11 +129,18 @@ class LabServer:
             view.close()
 
 
-def serve(host: str, port: int, lessons: Path | None = None, open_browser: bool = False) -> None:
+def serve(
+    host: str,
+    port: int,
+    lessons: Path | None = None,
+    database: str | None = None,
+    open_browser: bool = False,
+) -> None:
     """Serve the lab until Ctrl-C.
 
     Args:
         lessons: a folder of lessons of one's own.
+        database: URL of the one that keeps the labs; a file of the user's if there is none.
 
     Raises:
         LessonError: one of those is not all right.
@@ -105,7 +148,10 @@ def serve(host: str, port: int, lessons: Path | None = None, open_browser: bool 
     course, problems = read_course([BUILT_IN, *([lessons] if lessons else [])])
     if problems:
         raise LessonError(problems)
-    lab = LabServer(host, port, LoopStore.with_system_compiler(), course)
+    records = Records(database)
+    if records.warning:
+        log.warning("%s", records.warning)
+    lab = LabServer(host, port, LoopStore.with_system_compiler(), course, records)
     log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
     if open_browser:
         webbrowser.open(lab.address)

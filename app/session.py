@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections import deque
+from collections.abc import Callable
 
 import numpy as np
 
@@ -56,6 +57,8 @@ class Session:
         run_number: how often the robots have been set back to the start.
         script: what is being done by itself, or None.
         lessons: the way through the lessons.
+        watch: called at every frame, or None.
+        shared: the share code asked for last.
         locked: why time must not run now; empty when it may.
     """
 
@@ -78,6 +81,8 @@ class Session:
         self.script: ScriptPlayer | None = None
         self.locked = ""
         self.lessons = LessonRun(course)
+        self.watch: Callable[[Session], None] | None = None
+        self.shared = ""
         self._set_up(entry)
 
     # The robot
@@ -127,6 +132,8 @@ class Session:
                 self.say(str(error), "warning")
         self._play()
         self.lessons.follow(self)
+        if self.watch is not None:
+            self.watch(self)
 
     def _play(self) -> None:
         """What a script says."""

@@ -6,15 +6,21 @@ was left last; a session that nobody looks at is paused, and dropped after a whi
 
 from __future__ import annotations
 
+import logging
 import re
-import secrets
 import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from app.codes import new_code
+from app.database import NotKept
+from app.keeper import Keeper
+from app.kept import State, Watch, put_back
 from app.loop import Lab, SimulationThread
 from app.session import Session
+
+log = logging.getLogger(__name__)
 
 CODE = re.compile(r"[a-z0-9]{12}")
 MOST_CODES = 8
@@ -39,11 +45,19 @@ class Entry:
 
 @dataclass(slots=True)
 class Sessions:
-    """All sessions by code."""
+    """All sessions by code.
+
+    Attributes:
+        make: a new session.
+        load: what was kept under a code, or None.
+        keeper: keeps what changes, or None.
+    """
 
     simulation: SimulationThread
     make: Callable[[], Session]
     clock: Callable[[], float] = time.monotonic
+    load: Callable[[str], State | None] = lambda _: None
+    keeper: Keeper | None = None
     _entries: dict[str, Entry] = field(default_factory=dict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
@@ -61,11 +75,55 @@ class Sessions:
             if free:
                 entry = max(free, key=lambda e: e.left)
             else:
-                entry = Entry(secrets.token_hex(6), Lab(self.make()))
-                self._entries[entry.code] = entry
-                self.simulation.add(entry.lab)
+                entry = self._entry([code for code in codes if code not in self._entries])
             entry.client = client
             return entry
+
+    def enter(self, client: int, code: str) -> Entry:
+        """The session of a code that somebody typed, for a client that leaves its own.
+
+        Raises:
+            ValueError: there is none, or it is open elsewhere.
+        """
+        with self._lock:
+            entry = self._entries.get(code)
+            if entry is not None and entry.client is not None:
+                raise ValueError("this lab is open in another window: close that one first")
+            if entry is None:
+                entry = self._entry([code])
+                if entry.code != code:
+                    self.simulation.remove(entry.lab)
+                    del self._entries[entry.code]
+                    raise ValueError("there is no lab with this code")
+        self.leave(client)
+        entry.client = client
+        return entry
+
+    def _entry(self, codes: list[str]) -> Entry:
+        """A session kept under one of some codes, or else a new one under a new code."""
+        session, code = self.make(), new_code()
+        for known in codes:
+            try:
+                state = self.load(known)
+            except NotKept as error:
+                session.say(f"Your lab is kept, but cannot be read now: {error}", "warning")
+                break
+            if state is not None:
+                code = known
+                try:
+                    put_back(session, state)
+                except ValueError as error:
+                    log.warning("what was kept cannot be read: %s", error)
+                    session.say("What was kept of your lab cannot be read.", "warning")
+                    code = new_code()
+                break
+        keeper = self.keeper
+        if keeper is not None:
+            session.watch = Watch(lambda make: keeper.submit(code, make), session)
+        entry = Entry(code, Lab(session))
+        self._entries[code] = entry
+        self.simulation.add(entry.lab)
+        return entry
 
     def leave(self, client: int) -> Entry | None:
         """A client is gone; its session waits, paused, for it to come back."""

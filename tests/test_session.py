@@ -115,6 +115,8 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.DrawPath: st.builds(c.DrawPath, st.one_of(points(6), circles(), circles())),
     c.Undo: st.builds(c.Undo),
     c.Redo: st.builds(c.Redo),
+    c.Share: st.builds(c.Share),
+    c.UseShared: st.builds(c.UseShared, st.sampled_from(["", "ONPATH1-aaaa", "x" * 10_000])),
 }
 
 

@@ -1,0 +1,69 @@
+"""What is kept of a lab: its set-up and the way through the lessons."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+
+from app.session import Session
+from app.setups import Setup, capture, from_data, restore, to_data
+from lessons.progress import Progress, read_progress
+
+EVERY = 60  # frames between two looks at what has changed
+State = dict[str, Any]
+NEW = (Setup(), Progress(), None)
+
+
+class Watch:
+    """Called by a session at every frame; submits what has changed, once a second.
+
+    Args:
+        submit: takes a function that makes the state, to be called in another thread.
+        seen: what is kept already.
+    """
+
+    def __init__(
+        self, submit: Callable[[Callable[[], State]], None], session: Session | None = None
+    ) -> None:
+        self._submit = submit
+        self._seen = NEW if session is None else _now(session)
+        self._frames = 0
+
+    def __call__(self, session: Session) -> None:
+        """See `Session.watch`."""
+        self._frames += 1
+        if self._frames % EVERY:
+            return
+        now = _now(session)
+        if now != self._seen:
+            self._seen = now
+            self._submit(lambda: _state(*now))
+
+
+def put_back(session: Session, state: State) -> None:
+    """Make a new session what was kept.
+
+    Raises:
+        ValueError: it cannot be read; then the session is as new as it was.
+    """
+    setup = from_data(state.get("setup"))
+    progress = read_progress(state.get("lessons"))
+    before = state.get("before")
+    session.lessons.resume(progress, from_data(before) if before else None, session)
+    running = session.running
+    restore(session, setup)
+    session.running = running
+
+
+def _now(session: Session) -> tuple[Setup, Progress, Setup | None]:
+    return capture(session), session.lessons.progress, session.lessons.before
+
+
+def _state(setup: Setup, progress: Progress, before: Setup | None) -> State:
+    return {
+        "setup": to_data(setup),
+        "lessons": msgspec.to_builtins(progress),
+        "before": None if before is None else to_data(before),
+    }
