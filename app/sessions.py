@@ -95,9 +95,9 @@ class Sessions:
                     self.simulation.remove(entry.lab)
                     del self._entries[entry.code]
                     raise ValueError("there is no lab with this code")
-        self.leave(client)
-        entry.client = client
-        return entry
+            self._abandon(client)
+            entry.client = client
+            return entry
 
     def _entry(self, codes: list[str]) -> Entry:
         """A session kept under one of some codes, or else a new one under a new code."""
@@ -128,12 +128,17 @@ class Sessions:
     def leave(self, client: int) -> Entry | None:
         """A client is gone; its session waits, paused, for it to come back."""
         with self._lock:
-            for entry in self._entries.values():
-                if entry.client == client:
-                    entry.client, entry.left = None, self.clock()
-                    entry.lab.view = None
-                    self._drop_old()
-                    return entry
+            entry = self._abandon(client)
+            if entry is not None:
+                self._drop_old()
+            return entry
+
+    def _abandon(self, client: int) -> Entry | None:
+        for entry in self._entries.values():
+            if entry.client == client:
+                entry.client, entry.left = None, self.clock()
+                entry.lab.view = None
+                return entry
         return None
 
     def remembered(self, code: str, known: str | None) -> str:
