@@ -233,12 +233,12 @@ def _(command: c.DrawPath, session: Session) -> None:
 
 @apply.register(c.Undo)
 def _(_: c.Undo, session: Session) -> None:
-    session.say("" if session.editor.undo() else "nothing to undo")
+    session.say("" if session.editor.undo() else session.lessons.words("say.nothing_to_undo"))
 
 
 @apply.register(c.Redo)
 def _(_: c.Redo, session: Session) -> None:
-    session.say("" if session.editor.redo() else "nothing to redo")
+    session.say("" if session.editor.redo() else session.lessons.words("say.nothing_to_redo"))
 
 
 @apply.register(c.Share)
@@ -266,8 +266,9 @@ def _finish(session: Session) -> None:
             session.note("path", session.editor.design.name)
         session.hush()
     elif session.editor.faults:
-        reasons = "; ".join(fault.reason for fault in session.editor.faults)
-        session.say(f"This path is refused: {reasons}. The previous one is kept.", "warning")
+        words = session.lessons.words
+        reasons = "; ".join(words.sentence(fault.reason) for fault in session.editor.faults)
+        session.say(words("say.refused", reasons=reasons), "warning")
 
 
 def _leave_past(session: Session) -> None:
@@ -277,7 +278,7 @@ def _leave_past(session: Session) -> None:
 
 def _selected(session: Session) -> int:
     if session.editor.selected is None:
-        raise ValueError("select a control point first: click one, or press N for the next")
+        raise ValueError(session.lessons.words("say.select_first"))
     return session.editor.selected
 
 

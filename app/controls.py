@@ -27,21 +27,6 @@ from lessons.schema import Scene as LessonScene
 from models.flexible_robot import FlexibleParameters
 from models.parameters import specs
 
-PLOTS = {
-    "speed": "speed along the path",
-    "torques": "torques",
-    "across": "ξ₁ across",
-    "across_rate": "ξ₂ rate across",
-    "place": "η₁ place along",
-    "rate": "η₂ rate along",
-    "force": "force",
-    "modes": "modes of the link",
-    "deflection": "deflection of the tip",
-    "energy": "internal energy",
-}
-"""A plot as lessons call it -> as it is called here."""
-
-
 ALL = (
     *("robot", "hold", "path", "flexible", "gains", "editor", "plots", "past", "keep"),
     "copy",
@@ -73,24 +58,13 @@ class Controls:
         desk: Desk,
     ) -> None:
         self._gui, self._session, self._post = gui, session, post
+        self._words = session.lessons.words
         self._exporter, self._scene, self._desk = exporter, scene, desk
 
     def everything(self) -> list[Part]:
         """All there is."""
-        names = [
-            "robot",
-            "hold",
-            "path",
-            "flexible",
-            "gains",
-            "editor",
-            "plots",
-            "past",
-            "keep",
-            "copy",
-        ]
-        parts = [part for name in names for part in self._add(name)]
-        helping = self._gui.add_button("Help and keys", icon=viser.Icon.HELP)
+        parts = [part for name in ALL for part in self._add(name)]
+        helping = self._gui.add_button(self._words("controls.help"), icon=viser.Icon.HELP)
         on_press(helping, self._help)
         return parts
 
@@ -104,8 +78,8 @@ class Controls:
         for name in scene.controls:
             if name not in known and name != "hold":
                 parts += self._add(name)
-        if scene.plot and PLOTS[scene.plot] in MORE:
-            plot = MORE[PLOTS[scene.plot]]
+        if scene.plot:
+            plot = MORE[scene.plot]
             if plot.field in dict(self._session.sample_layout.fields):
                 parts.append(LivePlot(self._gui, self._session, plot, height=200))
         return parts
@@ -123,7 +97,7 @@ class Controls:
             "robot": lambda: _silent(RobotPanel(gui, session, post)),
             "copy": self._copy,
             "flexible": self._flexible,
-            "identify": lambda: _silent(add_identify(gui, post)),
+            "identify": lambda: _silent(add_identify(gui, session, post)),
         }
         part = make[name]()
         return [] if part is None else [part]
@@ -135,7 +109,7 @@ class Controls:
         def shade(visible: bool) -> None:
             self._scene.show_singular_zone(0.0, 0.4, 0.02, visible)
 
-        with self._gui.add_folder("Path editor", expand_by_default=False):
+        with self._gui.add_folder(self._words("controls.editor"), expand_by_default=False):
             return PathPanel(self._gui, self._session, self._post, draw, shade)
 
     def _flexible(self) -> Part | None:
@@ -151,16 +125,18 @@ class Controls:
 
     def _copy(self) -> None:
         copy = self._gui.add_checkbox(
-            "Copy to both", self._session.copy, hint="Hand and hold act on both robots alike"
+            self._words("controls.copy"),
+            self._session.copy,
+            hint=self._words("controls.copy_hint"),
         )
         on_user_update(copy, lambda on: self._post(c.SetCopy(on)))
 
     def _help(self) -> None:
-        gui = self._gui
-        escape = gui.add_command("Close the help window", hotkey="escape")
-        with gui.add_modal("How to use the lab") as modal:
-            gui.add_markdown(help_text())
-            close = gui.add_button("Close")
+        gui, words = self._gui, self._words
+        escape = gui.add_command(words("help.escape"), hotkey="escape")
+        with gui.add_modal(words("help.title")) as modal:
+            gui.add_markdown(help_text(words))
+            close = gui.add_button(words("help.close"))
 
         async def shut(_: object) -> None:
             escape.remove()
@@ -172,9 +148,6 @@ class Controls:
 
 class _Numbers(ParameterWidgets):
     """Some parameters, as a part of the page."""
-
-    def __init__(self, gui: viser.GuiApi, session: Session, names: list[str], post: Post) -> None:
-        super().__init__(gui, session.parameters, names, post)
 
     def follow(self, session: Session) -> None:  # type: ignore[override]
         """Show the session's values."""

@@ -6,6 +6,7 @@ import io
 import logging
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from datetime import datetime
 from itertools import groupby
 
 import numpy as np
@@ -14,8 +15,11 @@ import viser
 from app.error_log import log_error
 from app.figures import draw_history
 from app.history import Stretch
+from app.lesson_run import LessonRun
 from app.recording import record_scene
+from app.report import report
 from app.session import Session
+from lessons.words import Words
 from models.loops import InterpretedLoop
 from models.robots import Robot
 from models.simulation import kernel_of
@@ -36,15 +40,36 @@ class Exporter:
 
     def csv(self) -> None:
         """Ask for the CSV of the last minute."""
-        self._ask("onpath.csv", lambda robot, history: csv_bytes(robot, history))
+        self._ask("onpath.csv", lambda robot, history, _: csv_bytes(robot, history))
 
     def picture(self) -> None:
         """Ask for a picture of the plots."""
-        self._ask("onpath.png", lambda robot, history: draw_history(replay(robot, history)))
+        self._ask(
+            "onpath.png", lambda robot, history, words: draw_history(replay(robot, history), words)
+        )
 
     def recording(self) -> None:
         """Ask for a standalone page with the scene of the last seconds."""
-        self._ask("onpath.html", lambda robot, history: record_scene(robot, _last(history, FILM)))
+        self._ask(
+            "onpath.html",
+            lambda robot, history, words: record_scene(robot, _last(history, FILM), words),
+        )
+
+    def report(self, code: str = "") -> None:
+        """Ask for the record of the lessons as a page.
+
+        Args:
+            code: of the session, for the page to bear; empty for none.
+        """
+
+        def start(session: Session) -> None:
+            run = LessonRun(session.lessons.course, session.lessons.progress)  # as it is now
+            made = datetime.now()
+            self._pool.submit(
+                self._deliver, "onpath-report.html", run.words, lambda: report(run, code, made)
+            )
+
+        self._wanted.append(start)
 
     def submit(self, work: Callable[[], None]) -> None:
         """Do something else in this thread."""
@@ -66,26 +91,30 @@ class Exporter:
         """Finish nothing more."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
-    def _ask(self, name: str, make: Callable[[Robot, list[Stretch]], bytes]) -> None:
+    def _ask(self, name: str, make: Callable[[Robot, list[Stretch], Words], bytes]) -> None:
         def start(session: Session) -> None:
-            robot, history = session.robot, session.history.all()
+            robot, history, words = session.robot, session.history.all(), session.lessons.words
             if not history:
-                session.say("There is nothing to export yet: let it run first.", "warning")
+                session.say(words("export.nothing"), "warning")
                 return
-            self._pool.submit(self._deliver, name, lambda: make(robot, history))
+            self._pool.submit(self._deliver, name, words, lambda: make(robot, history, words))
 
         self._wanted.append(start)
 
-    def _deliver(self, name: str, make: Callable[[], bytes]) -> None:
+    def _deliver(self, name: str, words: Words, make: Callable[[], bytes]) -> None:
         note = self._client.add_notification(
-            "Export", f"Making {name} …", loading=True, with_close_button=False
+            words("export.title"),
+            words("export.making", name=name),
+            loading=True,
+            with_close_button=False,
         )
         try:
             self._client.send_file_download(name, make(), save_immediately=True)
-            note.body, note.loading, note.auto_close_seconds = f"{name} is ready.", False, 3.0
+            note.body, note.loading = words("export.ready", name=name), False
+            note.auto_close_seconds = 3.0
         except Exception as error:  # the user is told, the lab goes on
             log_error(error)
-            note.body, note.loading = f"{name} could not be made.", False
+            note.body, note.loading = words("export.failed", name=name), False
         note.with_close_button = True
 
 

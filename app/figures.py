@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from app.palette import CONTROLLERS
-from app.stage import TITLES
+from lessons.words import ENGLISH, Words
 from models.curves import circle
 from models.experiments import Experiment
 from models.flexible_robot import FlexibleFiveBar
@@ -47,9 +47,9 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(path, metadata=_reproducible(path), dpi=110)
 
 
-def draw_history(runs: dict[str, Trajectory]) -> bytes:
+def draw_history(runs: dict[str, Trajectory], words: Words = ENGLISH) -> bytes:
     """The lab's plots over the last minute, as PNG."""
-    panels = _panels()
+    panels = _panels(words)
     figure = Figure(figsize=(11, 2.2 * len(panels)), layout="constrained")
     axes = figure.subplots(len(panels), 1, sharex=True)
     for axis, (_, label, column) in zip(axes, panels, strict=True):
@@ -58,7 +58,8 @@ def draw_history(runs: dict[str, Trajectory]) -> bytes:
         axis.set_ylabel(label)
         axis.grid(alpha=0.25)
     for name, run in runs.items():
-        axes[0].plot([], [], color=CONTROLLERS[run.controller].hex, label=TITLES[name][0])
+        title = words(f"controller.{name}.title")
+        axes[0].plot([], [], color=CONTROLLERS[run.controller].hex, label=title)
     axes[0].legend(loc="upper right")
     axes[-1].set_xlabel("t  [s]")
     file = io.BytesIO()
@@ -66,14 +67,14 @@ def draw_history(runs: dict[str, Trajectory]) -> bytes:
     return file.getvalue()
 
 
-def _panels():
+def _panels(words: Words = ENGLISH):
     """(axes name, label, run -> (values, lines' styles)) from top to bottom."""
     return [
-        ("distance", "distance to\nthe path  [mm]", lambda r: (1e3 * r.distance[:, None],)),
+        ("distance", words("figure.distance"), lambda r: (1e3 * r.distance[:, None],)),
         ("xi", r"$\xi_1$  [mm]", lambda r: (1e3 * r.fields["xi"],)),
         ("eta1", r"$\eta_2^1=\theta$  [rad]", lambda r: (_wrapped(r.fields["theta"]),)),
         ("eta2", r"$\eta_2^2=\dot\theta$  [rad/s]", lambda r: (r.fields["theta_rate"],)),
-        ("u", "torque $u$  [N m]", lambda r: (r.fields["u"],)),
+        ("u", words("figure.torque"), lambda r: (r.fields["u"],)),
     ]
 
 
@@ -115,7 +116,7 @@ def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> N
             *z.T,
             color=CONTROLLERS[run.controller].hex,
             linewidth=1.6,
-            label=TITLES[run.controller][0],
+            label=ENGLISH(f"controller.{run.controller}.title"),
         )
         axes.plot(*z[0], "o", color=CONTROLLERS[run.controller].hex, markersize=6)
         axes.plot(*z[-1], "s", color=CONTROLLERS[run.controller].hex, markersize=7)

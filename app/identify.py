@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.history import Drive, Stretch
+from lessons.words import Words
 from models.identification import (
     BALANCE,
     DRY,
@@ -46,10 +47,11 @@ def identify_model(session: Session) -> None:
     """
     robot, parameters = session.robot, session.parameters
     if not isinstance(robot, RigidFiveBar):
-        raise ValueError("Identification is for the five-bar linkage: choose that robot first.")
+        raise ValueError(session.lessons.words("identified.other_robot"))
     found, duration = _learned(robot, tuple(_same_robot(robot, session.history.all())))
     session.set_parameters(believing(robot, parameters, found))
-    session.say(_sentence(robot, parameters, session.parameters, found, duration))
+    words = session.lessons.words
+    session.say(_sentence(robot, parameters, session.parameters, found, duration, words))
 
 
 @lru_cache(maxsize=4)  # whoever keeps the button down learns nothing new
@@ -143,20 +145,24 @@ def _sentence(
     after: Parameters,
     found: Identified,
     duration: float,
+    words: Words,
 ) -> str:
     """What was found, believed, and left out."""
     believed = dict(zip(robot.system.parameter_names, robot.model(before), strict=True))
-    parts = [f"{_value(found, name)}, was believed {believed[name]:.4f}" for name in INERTIA]
-    text = f"From the follower's last {duration:.1f} s: {'; '.join(parts)}."
+    values = "; ".join(
+        words("identified.value", value=_value(found, name), before=f"{believed[name]:.4f}")
+        for name in INERTIA
+    )
+    text = words("identified.found", seconds=f"{duration:.1f}", values=values)
     limited = [name for name in INERTIA if _at_end(after, name)]
     if limited:
-        text += f" {' and '.join(limited)}: as far as the model can be set."
+        text += words("identified.limited", names=words("identified.and").join(limited))
     further = [name for name in (*DRY, *BALANCE) if _matters(found, name)]
     if further:
         values = ", ".join(_value(found, name) for name in further)
-        text += f" Also at work, and not in the controllers' model: {values}."
+        text += words("identified.also", values=values)
     if found.unexplained > POOR:
-        text += f" {100 * found.unexplained:.0f} % of the torque is not explained."
+        text += words("identified.unexplained", percent=f"{100 * found.unexplained:.0f}")
     return text
 
 

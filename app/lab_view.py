@@ -99,16 +99,17 @@ class LabView:
     def _build(self, session: Session) -> None:
         robot, post = session.robot, session.post
         self._built = self._page(session)
-        self._scene = Scene(self._client, _hooks(post), stage_of(robot))
+        words = session.lessons.words
+        self._scene = Scene(self._client, _hooks(post), stage_of(robot), words)
         self._scene.build(take_snapshot(session, 1.0))
         self._build_panels(session, post)
-        add_keys(self._client.gui, post)
+        add_keys(self._client.gui, words, post)
         self._robot = robot
 
     def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
         gui, run = self._client.gui, session.lessons
         self._progress = gui.add_progress_bar(0.0, visible=False, animated=True)
-        self._readout = Readout(gui)
+        self._readout = Readout(gui, session)
         if run.course.lessons:
             LessonMenu(gui, session, post)
         self._parts: list[Part] = [LivePlot(gui, session, DISTANCE, height=190)]

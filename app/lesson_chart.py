@@ -31,7 +31,7 @@ class PredictionChart:
         )
         self._handle = gui.add_uplot(
             self._data(None),
-            (uplot.Series(label="t [s]"), *lines),
+            (uplot.Series(label=words("plots.time")), *lines),
             title=f"{words(f'quantity.{sketch.quantity}')} [{unit}]",
             scales={
                 "x": uplot.Scale(time=False, auto=False, range=(0.0, sketch.seconds)),

@@ -11,6 +11,7 @@ from app.node_update import update_node
 from app.poses import Poses, trace_segments
 from app.snapshot import RobotView, TrackerName
 from app.stage import IDENTITY, Stage, add_copies, add_text
+from lessons.words import ENGLISH, Words
 
 if TYPE_CHECKING:
     import trimesh
@@ -116,6 +117,7 @@ class Machine:
         stage: where the robots stand.
         robots: as they are at first, in the same order.
         poses: of them.
+        words: for what is written beside them.
     """
 
     def __init__(
@@ -124,7 +126,9 @@ class Machine:
         stage: Stage,
         robots: list[RobotView],
         poses: Poses,
+        words: Words = ENGLISH,
     ) -> None:
+        self._words = words
         self._bases = bases = stage.bases
         self._force_scale = stage.force_scale
         self._drawn: Poses | None = None
@@ -199,7 +203,8 @@ class Machine:
         for robot, label in zip(robots, self._force_labels, strict=True):
             force = float(np.linalg.norm(robot.force))
             if force > FORCE_SHOWN:
-                label.text = f"force {force:.0f} N" if force >= 1.0 else f"force {force:.1f} N"
+                shown = f"{force:.0f}" if force >= 1.0 else f"{force:.1f}"
+                label.text = self._words("scene.force", force=shown)
             label.visible = force > FORCE_SHOWN
 
     def _add_force(self, scene: viser.SceneApi, stage: Stage) -> None:
@@ -213,7 +218,7 @@ class Machine:
             visible=False,
         )
         self._force_labels = [
-            add_text(scene, f"/force_labels/{name}", "force", base + stage.force)
+            add_text(scene, f"/force_labels/{name}", "", base + stage.force)
             for name, base in stage.bases.items()
         ]
         for label in self._force_labels:

@@ -12,12 +12,11 @@ from viser import uplot
 from app.node_update import update_plot
 from app.palette import CONTROLLERS
 from app.session import Session
-from app.snapshot import FollowerName, TrackerName
+from lessons.words import Words
 
 WINDOW = 10.0  # [s]
 POINTS = 160
 LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and third line
-SHORT = {TrackerName: "tracking", FollowerName: "following"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,12 +24,13 @@ class Plot:
     """What is drawn over time.
 
     Attributes:
+        name: in the catalogue and in lessons.
         field: of the session's samples.
         scale: from SI to what is shown.
         lines: names of the field's entries; one name for a single line.
     """
 
-    label: str
+    name: str
     field: str
     scale: float
     lines: Callable[[Session], list[str]]
@@ -39,23 +39,31 @@ class Plot:
 def _numbered(symbol: str, field: str) -> Callable[[Session], list[str]]:
     def names(session: Session) -> list[str]:
         size = dict(session.sample_layout.fields)[field]
-        return [f"{symbol}{i + 1}" if size > 1 else symbol for i in range(size)]
+        return [f"{symbol}{i + 1}" for i in range(size)] if size > 1 else [""]
 
     return names
 
 
-DISTANCE = Plot("distance to the path [mm]", "distance", 1e3, lambda _: ["distance"])
+def _alone(_: Session) -> list[str]:
+    """A single line is named after its robot."""
+    return [""]
+
+
+DISTANCE = Plot("distance", "distance", 1e3, _alone)
 MORE = {
-    "speed along the path": Plot("speed [m/s]", "speed", 1.0, lambda _: ["speed"]),
-    "torques": Plot("torque [N m]", "u", 1.0, _numbered("u", "u")),
-    "ξ₁ across": Plot("ξ₁ [mm]", "xi", 1e3, _numbered("ξ", "xi")),
-    "ξ₂ rate across": Plot("ξ₂ [mm/s]", "xi_rate", 1e3, _numbered("ξ'", "xi_rate")),
-    "η₁ place along": Plot("η₁ = θ [rad]", "theta", 1.0, lambda _: ["θ"]),
-    "η₂ rate along": Plot("η₂ = θ' [rad/s]", "theta_rate", 1.0, lambda _: ["θ'"]),
-    "modes of the link": Plot("each mode, at the tip [mm]", "modes", 1e3, _numbered("f", "modes")),
-    "deflection of the tip": Plot("deflection [mm]", "deflection", 1e3, lambda _: ["w"]),
-    "internal energy": Plot("energy in the link [mJ]", "internal_energy", 1e3, lambda _: ["E"]),
-    "force": Plot("force [N]", "force", 1.0, _numbered("F", "force")),
+    plot.name: plot
+    for plot in (
+        Plot("speed", "speed", 1.0, _alone),
+        Plot("torques", "u", 1.0, _numbered("u", "u")),
+        Plot("across", "xi", 1e3, _numbered("ξ", "xi")),
+        Plot("across_rate", "xi_rate", 1e3, _numbered("ξ'", "xi_rate")),
+        Plot("place", "theta", 1.0, _alone),
+        Plot("rate", "theta_rate", 1.0, _alone),
+        Plot("modes", "modes", 1e3, _numbered("f", "modes")),
+        Plot("deflection", "deflection", 1e3, _alone),
+        Plot("energy", "internal_energy", 1e3, _alone),
+        Plot("force", "force", 1.0, _numbered("F", "force")),
+    )
 }
 
 
@@ -65,11 +73,12 @@ class LivePlot:
     def __init__(self, gui: viser.GuiApi, session: Session, plot: Plot, height: int) -> None:
         self._plot = plot
         self._shown = -1.0
-        series = [uplot.Series(label="t [s]")]
+        words = session.lessons.words
+        series = [uplot.Series(label=words("plots.time"))]
         names = plot.lines(session)
         for robot in session.runs:
             for name, dash in zip(names, LINES, strict=False):
-                label = SHORT[robot] if len(names) == 1 else f"{SHORT[robot]} {name}"
+                label = f"{words(f'controller.{robot}.short')} {name}".rstrip()
                 line = uplot.Series(label=label, stroke=CONTROLLERS[robot].hex, width=2)
                 if dash is not None:
                     line["dash"] = dash
@@ -78,7 +87,7 @@ class LivePlot:
         self._handle = gui.add_uplot(
             tuple(np.zeros(2) for _ in series),
             tuple(series),
-            title=plot.label,
+            title=words(f"axis.{plot.name}"),
             scales={"x": uplot.Scale(time=False)},
             legend=uplot.Legend(live=False),
             height=height,
@@ -103,39 +112,38 @@ class LivePlot:
         self._handle.remove()
 
 
-def _shown(session: Session) -> list[str]:
-    """Names of the plots that this robot has something for."""
+def _shown(session: Session, words: Words) -> dict[str, Plot | None]:
+    """What this robot has something for, by name as shown; first of all none."""
     fields = dict(session.sample_layout.fields)
-    return [name for name, plot in MORE.items() if plot.field in fields]
+    some = {words(f"plot.{p.name}"): p for p in MORE.values() if p.field in fields}
+    return {words("plots.none"): None, **some}
 
 
 class MorePlots:
     """A plot to choose."""
 
-    NONE = "none"
-
     def __init__(self, gui: viser.GuiApi, session: Session) -> None:
         self._gui = gui
         self._plot: LivePlot | None = None
-        self._folder = gui.add_folder("More plots", expand_by_default=False)
+        words = session.lessons.words
+        self._plots = _shown(session, words)
+        self._folder = gui.add_folder(words("plots.more"), expand_by_default=False)
         with self._folder:
             self._choice = gui.add_dropdown(
-                "Show",
-                [self.NONE, *_shown(session)],
-                initial_value=self.NONE,
-                hint="Over the last 10 s",
+                words("plots.show"), list(self._plots), hint=words("plots.show_hint")
             )
-        self._drawn = self.NONE
+        self._drawn: Plot | None = None
 
     def follow(self, session: Session) -> None:
         """Draw the chosen plot."""
-        if self._choice.value != self._drawn:
-            self._drawn = self._choice.value
+        chosen = self._plots[self._choice.value]
+        if chosen is not self._drawn:
+            self._drawn = chosen
             if self._plot is not None:
                 self._plot.remove()
                 self._plot = None
-            if self._drawn in MORE:
+            if chosen is not None:
                 with self._folder:
-                    self._plot = LivePlot(self._gui, session, MORE[self._drawn], height=200)
+                    self._plot = LivePlot(self._gui, session, chosen, height=200)
         if self._plot is not None:
             self._plot.follow(session)

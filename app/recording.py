@@ -12,12 +12,13 @@ from app.snapshot import PathView, Snapshot
 from app.stage import set_initial_camera
 from app.stages import stage_of
 from app.take_snapshot import CURVE_POINTS, robot_views
+from lessons.words import ENGLISH, Words
 from models.robots import Robot
 
 RATE = 30.0  # [Hz]
 
 
-def record_scene(robot: Robot, history: list[Stretch]) -> bytes:
+def record_scene(robot: Robot, history: list[Stretch], words: Words = ENGLISH) -> bytes:
     """A standalone page that replays the history.
 
     The scene is built once more on a server of its own that nobody is told of.
@@ -26,7 +27,7 @@ def record_scene(robot: Robot, history: list[Stretch]) -> bytes:
     try:
         stage = stage_of(robot)
         set_initial_camera(server, stage)
-        scene = Scene(server, stage=stage)  # type: ignore[arg-type]  # has the scene and atomic() of a client
+        scene = Scene(server, stage=stage, words=words)  # type: ignore[arg-type]  # has scene, atomic()
         frames = _frames(history)
         serializer = None
         for number, stretch in enumerate(frames):

@@ -21,6 +21,7 @@ from app.poses import Layout
 from app.snapshot import PathView, RobotView, Snapshot
 from app.stage import FIELD_OF_VIEW, Insets, Stage, add_copies, add_text, build_stage, view_of
 from app.stages import RIGID
+from lessons.words import ENGLISH, Words
 
 if TYPE_CHECKING:
     import viser
@@ -63,16 +64,21 @@ class Scene:
         client: whose scene it is; nothing here touches another client or the server's scene.
         hooks: what the scene tells.
         stage: where the robots stand.
+        words: for what is written in it.
 
     Attributes:
         pull: name of the plane in which an end-point is pulled, one of the stage's.
     """
 
     def __init__(
-        self, client: viser.ClientHandle, hooks: Hooks | None = None, stage: Stage = RIGID
+        self,
+        client: viser.ClientHandle,
+        hooks: Hooks | None = None,
+        stage: Stage = RIGID,
+        words: Words = ENGLISH,
     ) -> None:
         self._client = client
-        self._stage = stage
+        self._stage, self._words = stage, words
         self._names = list(stage.bases)
         self._origins = stage.origins
         self._hooks = hooks or Hooks()
@@ -88,14 +94,15 @@ class Scene:
     def build(self, snapshot: Snapshot) -> None:
         """Creates every node, once, with as many bars, joints and points as the snapshot has."""
         robots = self._robots(snapshot)
-        build_stage(self._client.scene, self._stage)
+        build_stage(self._client.scene, self._stage, self._words)
         self._layout = Layout(self._stage, robots)
         poses = self._layout.poses(robots)
-        self._machine = Machine(self._client.scene, self._stage, robots, poses)
+        self._machine = Machine(self._client.scene, self._stage, robots, poses, self._words)
         self._machine.grips.on_drag("left")(self._tip_dragged)
         self._snapshot = snapshot
+        scale = self._words("scene.true_scale")
         self._notes = [
-            add_text(self._client.scene, f"/notes/{name}", "true scale", base + self._stage.note)
+            add_text(self._client.scene, f"/notes/{name}", scale, base + self._stage.note)
             for name, base in self._stage.bases.items()
         ]
         self.update_path(snapshot)

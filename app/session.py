@@ -129,7 +129,7 @@ class Session:
             try:
                 apply(command, self)
             except ValueError as error:
-                self.say(str(error), "warning")
+                self.say(self.lessons.words.sentence(str(error)), "warning")
         self._play()
         self.lessons.follow(self)
         if self.watch is not None:
@@ -142,7 +142,7 @@ class Session:
                 self.script = None
         except ValueError as error:
             self.script = None
-            self.say(str(error), "warning")
+            self.say(self.lessons.words.sentence(str(error)), "warning")
 
     def note(self, name: str, detail: str = "", controllers: tuple[str, ...] = NAMES) -> None:
         """Remember that something has happened."""
@@ -245,12 +245,14 @@ class Session:
         run = self.runs[name]
         assert run.diverged is not None
         self.note("diverged", controllers=(name,))
-        title = name.replace("_", " ").capitalize()
-        self.say(
-            f"{title} stopped at {run.diverged.time:.2f} s: {run.diverged.reason}."
-            " Reset brings it back.",
-            "error",
+        words = self.lessons.words
+        said = words(
+            "say.stopped",
+            robot=words(f"controller.{name}.title"),
+            time=f"{run.diverged.time:.2f}",
+            reason=words.sentence(run.diverged.reason),
         )
+        self.say(said, "error")
 
     # Forces
 

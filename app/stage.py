@@ -12,17 +12,15 @@ import trimesh
 
 from app import meshes, palette
 from app.drag import Plane
-from app.snapshot import FollowerName, TrackerName
+from lessons.words import ENGLISH, Words
 
 if TYPE_CHECKING:
     import viser
 
 FIELD_OF_VIEW = np.radians(15.0)
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
-TITLES = {
-    TrackerName: ("Trajectory tracking", "chases a moving point"),
-    FollowerName: ("Path following", "stays on the curve"),
-}
+TITLE = (("title", 0.0, 0.036), ("does", 0.047, 0.026))
+"""Words of a controller, how far below the title's place, and how high, [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,7 +127,7 @@ def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
     server.initial_camera.look_at = pose.look_at
 
 
-def build_stage(scene: viser.SceneApi, stage: Stage) -> None:
+def build_stage(scene: viser.SceneApi, stage: Stage, words: Words = ENGLISH) -> None:
     """Adds floor, lights, machine bases and labels to a client's scene."""
     middle = (stage.low[0] + stage.high[0]) / 2
     scene.configure_environment_map(None)
@@ -151,8 +149,9 @@ def build_stage(scene: viser.SceneApi, stage: Stage) -> None:
     for part, mesh, colour in stage.parts():
         add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
     for name, base in stage.bases.items():
-        for text, below, size in zip(TITLES[name], (0.0, 0.047), (0.036, 0.026), strict=True):
-            add_text(scene, f"/stage/{name}/label_{text}", text, base + stage.title, size, below)
+        for part, below, size in TITLE:
+            text = words(f"controller.{name}.{part}")
+            add_text(scene, f"/stage/{name}/{part}", text, base + stage.title, size, below)
 
 
 def add_text(

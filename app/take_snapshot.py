@@ -40,15 +40,15 @@ def take_snapshot(session: Session, achieved_speed: float, traces: bool = True) 
         grabbed=session.grabbed,
         message=session.message,
         message_level=session.message_level,
-        note=scale_note(session.robot, session.exaggeration),
+        note=scale_note(session),
     )
 
 
-def scale_note(robot: Robot, exaggeration: float) -> str:
+def scale_note(session: Session) -> str:
     """A drawing that is not true to scale says so."""
-    if exaggeration == 1.0 or not robot.extra_fields:
+    if session.exaggeration == 1.0 or not session.robot.extra_fields:
         return ""
-    return f"deflection drawn {exaggeration:g}×"
+    return session.lessons.words("scene.larger", factor=f"{session.exaggeration:g}")
 
 
 def _traces(session: Session, time: float) -> Array:

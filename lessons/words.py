@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from functools import lru_cache
 from typing import Any
@@ -9,6 +10,9 @@ from typing import Any
 from assets import asset_path
 
 DEFAULT = "en"
+SENTENCE = "sentence."
+ELSEWHERE = (SENTENCE, "parameter.", "machine.", "path.")
+"""Beginnings of keys whose English stands in models/, so that other languages alone have them."""
 
 
 def languages() -> list[str]:
@@ -21,6 +25,16 @@ def catalogue(language: str) -> dict[str, str]:
     """Dotted key -> words. What a language lacks is in English."""
     own = _flat(tomllib.loads((asset_path("words") / f"{language}.toml").read_text("utf-8")))
     return own if language == DEFAULT else catalogue(DEFAULT) | own
+
+
+@lru_cache
+def sentences(language: str) -> list[tuple[re.Pattern[str], str]]:
+    """Sentences of models/ as patterns, and what they are in a language."""
+    return [
+        (re.compile(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+?)", re.escape(key[len(SENTENCE) :]))), own)
+        for key, own in catalogue(language).items()
+        if key.startswith(SENTENCE)
+    ]
 
 
 class Words:
@@ -46,6 +60,13 @@ class Words:
         """The words for a key, or others."""
         return self._words.get(key, default)
 
+    def sentence(self, english: str) -> str:
+        """A sentence that models/ says; as it is where this language has nothing for it."""
+        for pattern, own in sentences(self.language):
+            if found := pattern.fullmatch(english):
+                return own.format(**{k: self.sentence(v) for k, v in found.groupdict().items()})
+        return english
+
 
 def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, str]:
     flat: dict[str, str] = {}
@@ -55,3 +76,6 @@ def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, str]:
         else:
             flat[prefix + key] = str(value)
     return flat
+
+
+ENGLISH = Words()

@@ -16,6 +16,7 @@ from app.recording import record_scene
 from app.session import Session
 from app.stages import FLEXIBLE as STAGE
 from app.take_snapshot import take_snapshot
+from lessons.words import ENGLISH
 from models.catalogue import FIVE_BAR, FLEXIBLE
 from models.flexible_robot import UNSTABLE, FlexibleFiveBar, FlexibleParameters
 from tests.lab import FOLLOWER, TRACKER, do, run, states, store
@@ -171,8 +172,8 @@ def test_it_can_be_taken_home() -> None:
 
 
 def test_the_bar_marks_alpha_and_says_when_it_is_too_high() -> None:
-    assert "unstable" in alpha_bar(0.9, 0.7, used=True)
-    assert "unstable" not in alpha_bar(0.5, 0.7, used=True)
-    assert "unstable" not in alpha_bar(0.9, 0.7, used=False)
-    assert "none" in alpha_bar(1.0, float("inf"), used=True)
-    assert "nan" not in alpha_bar(0.5, float("nan"), used=True)
+    assert "unstable" in alpha_bar(0.9, 0.7, True, ENGLISH)
+    assert "unstable" not in alpha_bar(0.5, 0.7, True, ENGLISH)
+    assert "unstable" not in alpha_bar(0.9, 0.7, False, ENGLISH)
+    assert "none" in alpha_bar(1.0, float("inf"), True, ENGLISH)
+    assert "nan" not in alpha_bar(0.5, float("nan"), True, ENGLISH)

@@ -14,6 +14,7 @@ from app.palette import WARNING
 from app.panels.widgets import ParameterWidgets, Post, on_user_update
 from app.session import Session
 from app.snapshot import FollowerName
+from lessons.words import Words
 from models.flexible_five_bar import RIGID
 from models.flexible_robot import FlexibleParameters, robot_for
 from models.zero_dynamics import flexible_zero_dynamics
@@ -67,7 +68,7 @@ class CriticalAlpha:
             self._busy = False
 
 
-def alpha_bar(alpha: float, critical: float, used: bool) -> str:
+def alpha_bar(alpha: float, critical: float, used: bool, words: Words) -> str:
     """A line from -1 to 1, red where the inside is unstable, with alpha marked.
 
     Args:
@@ -79,22 +80,23 @@ def alpha_bar(alpha: float, critical: float, used: bool) -> str:
 
     limit = percent(MOST if math.isinf(critical) else critical) if critical == critical else 100.0
     if math.isnan(critical):
-        words = "critical α: being computed"
+        said = words("flexible.computing")
     elif math.isinf(critical):
-        words = "critical α: none up to 1"
+        said = words("flexible.none")
     else:
-        words = f"critical α = {critical:.2f}, here and at rest"
+        said = words("flexible.critical", critical=f"{critical:.2f}")
     if not used:
-        words += "; composite control puts the tip itself on the path and needs no α"
+        said += f"; {words('flexible.unused')}"
     elif alpha > critical:
-        words += ": <b>unstable inside</b>"
+        said += f": <b>{words('flexible.unstable')}</b>"
+    said = words("flexible.alpha", alpha=f"{alpha:.2f}", limit=said)
     return (
         f'<div style="padding:0.2em 0.9em;font-size:0.8em;opacity:{1 if used else 0.55}">'
         f'<div style="position:relative;height:0.7em;border-radius:0.3em;background:'
         f'linear-gradient(90deg,{STABLE} {limit:.1f}%,{WARNING.hex} {limit:.1f}%)">'
         f'<div style="position:absolute;left:{percent(alpha):.1f}%;top:-0.2em;width:3px;'
         f'height:1.1em;background:#111"></div></div>'
-        f'<div style="color:#445">α = {alpha:.2f}; {words}</div></div>'
+        f'<div style="color:#445">{said}</div></div>'
     )
 
 
@@ -116,30 +118,32 @@ class FlexiblePanel:
         choose_pull: Callable[[str], None],
         submit: Callable[[Callable[[], None]], None],
     ) -> None:
-        own, self._post = _own(session), post
+        self._post, self._words = post, session.lessons.words
+        words = self._words
         self._critical = CriticalAlpha(submit)
         self._shown = ""
-        with gui.add_folder("Flexible link"):
-            self._widgets = [ParameterWidgets(gui, own, ["law", "alpha"], self._set)]
+        with gui.add_folder(words("flexible.title")):
+            self._widgets = [ParameterWidgets(gui, session, ["law", "alpha"], self._set)]
             self._bar = gui.add_html("")
             self._numbers = gui.add_markdown("")
+            planes = {words(f"pull.{plane}"): plane for plane in pulls}
             pull = gui.add_dropdown(
-                "Pull in", pulls, hint="The plane, through the tip, in which the mouse pulls it"
+                words("flexible.pull"), list(planes), hint=words("flexible.pull_hint")
             )
             self._larger = gui.add_slider(
-                "Drawn larger [×]",
+                words("flexible.larger"),
                 min=c.EXAGGERATIONS[0],
                 max=c.EXAGGERATIONS[-1],
                 step=1.0,
                 initial_value=session.exaggeration,
-                hint="The deflection in the drawing alone; 1 is true scale",
+                hint=words("flexible.larger_hint"),
             )
-            with gui.add_folder("Beam and plant", expand_by_default=False):
-                gui.add_markdown("Plant and modes start the robots anew. *Values illustrative.*")
-                self._widgets.append(ParameterWidgets(gui, own, BEAM, post))
-            with gui.add_folder("Composite control", expand_by_default=False):
-                self._widgets.append(ParameterWidgets(gui, own, COMPOSITE, post))
-        on_user_update(pull, choose_pull)
+            with gui.add_folder(words("flexible.beam"), expand_by_default=False):
+                gui.add_markdown(words("flexible.anew"))
+                self._widgets.append(ParameterWidgets(gui, session, BEAM, post))
+            with gui.add_folder(words("flexible.composite"), expand_by_default=False):
+                self._widgets.append(ParameterWidgets(gui, session, COMPOSITE, post))
+        on_user_update(pull, lambda shown: choose_pull(planes[shown]))
         on_user_update(self._larger, lambda factor: post(c.SetExaggeration(factor)))
 
     def follow(self, session: Session) -> None:
@@ -152,12 +156,12 @@ class FlexiblePanel:
         if self._larger.value != session.exaggeration:
             self._larger.value = session.exaggeration
         self._critical.follow(own, session.runs[FollowerName].shown()["q"])
-        bar = alpha_bar(own.alpha, self._critical.value, own.law == "redefined")
+        bar = alpha_bar(own.alpha, self._critical.value, own.law == "redefined", self._words)
         if bar != self._shown:
             self._shown = self._bar.content = bar
-        words = deflections(session)
-        if self._numbers.content != words:
-            self._numbers.content = words
+        numbers = deflections(session)
+        if self._numbers.content != numbers:
+            self._numbers.content = numbers
 
     def _set(self, command: c.Command) -> None:
         """Alpha belongs to output redefinition: who moves it wants that."""
@@ -171,11 +175,12 @@ def deflections(session: Session) -> str:
     layout = session.sample_layout
     past = None if session.viewing is None else session.history.at(session.viewing)
     samples = session.sample() if past is None else past.sample
-    values = layout.unpack(samples)["deflection"][:, 0] * 1e3
-    scale = "true scale" if session.exaggeration == 1 else f"drawn {session.exaggeration:g}×"
-    return f"Deflection: tracking **{values[0]:.1f} mm**, following **{values[1]:.1f} mm**; {scale}"
-
-
-def _own(session: Session) -> FlexibleParameters:
-    assert isinstance(session.parameters, FlexibleParameters)
-    return session.parameters
+    tracking, following = (f"{mm:.1f}" for mm in layout.unpack(samples)["deflection"][:, 0] * 1e3)
+    words, factor = session.lessons.words, session.exaggeration
+    scale = words("flexible.drawn", factor=f"{factor:g}") if factor != 1 else None
+    return words(
+        "flexible.deflections",
+        tracking=tracking,
+        following=following,
+        scale=scale or words("scene.true_scale"),
+    )

@@ -7,6 +7,7 @@ import viser
 from app.commands import Identify, ResetParameters
 from app.panels.widgets import ParameterWidgets, Post, SwitchedParameter, on_press
 from app.session import Session
+from lessons.words import Words
 from models.parameters import Parameters, specs
 from models.poles import Channel, channels
 
@@ -20,25 +21,25 @@ class GainsPanel:
     """The controls that a first-time user sees, and the rest in folders."""
 
     def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
-        parameters = session.parameters
+        self._words = words = session.lessons.words
         self._shown: Parameters | None = None
-        self._widgets = [ParameterWidgets(gui, parameters, BASIC, post)]
-        self._words = gui.add_markdown("")
-        with gui.add_folder("Advanced", expand_by_default=False):
-            self._widgets.append(ParameterWidgets(gui, parameters, ADVANCED, post))
-            reset = gui.add_button("Reset to defaults", icon=viser.Icon.RESTORE)
+        self._widgets = [ParameterWidgets(gui, session, BASIC, post)]
+        self._settling = gui.add_markdown("")
+        with gui.add_folder(words("gains.advanced"), expand_by_default=False):
+            self._widgets.append(ParameterWidgets(gui, session, ADVANCED, post))
+            reset = gui.add_button(words("gains.defaults"), icon=viser.Icon.RESTORE)
             on_press(reset, lambda: post(ResetParameters()))
-        with gui.add_folder("Realism", expand_by_default=False):
-            gui.add_markdown("All off: an ideal robot and an exact model. *Values illustrative.*")
-            for name, spec in specs(parameters).items():
+        with gui.add_folder(words("gains.realism"), expand_by_default=False):
+            gui.add_markdown(words("gains.ideal"))
+            for name, spec in specs(session.parameters).items():
                 if spec.group != "realism":
                     continue
                 if spec.on is None:
-                    self._widgets.append(ParameterWidgets(gui, parameters, [name], post))
+                    self._widgets.append(ParameterWidgets(gui, session, [name], post))
                 else:
-                    self._widgets.append(SwitchedParameter(gui, parameters, name, post))
+                    self._widgets.append(SwitchedParameter(gui, session, name, post))
                 if name == LAST_OF_MODEL:
-                    add_identify(gui, post)
+                    add_identify(gui, session, post)
 
     def follow(self, session: Session) -> None:
         """Show the session's values and what follows from them."""
@@ -47,20 +48,23 @@ class GainsPanel:
         self._shown = session.parameters
         for widgets in self._widgets:
             widgets.follow(session.parameters)
-        self._words.content = "\n\n".join(_line(ch) for ch in channels(session.parameters))
+        lines = [_line(channel, self._words) for channel in channels(session.parameters)]
+        self._settling.content = "\n\n".join(lines)
 
 
-def add_identify(gui: viser.GuiApi, post: Post) -> None:
+def add_identify(gui: viser.GuiApi, session: Session, post: Post) -> None:
     """The button that fits the controllers' model to what was measured."""
-    hint = "Estimates M and b from the follower's last 3 s, and lets both controllers believe it."
-    button = gui.add_button("Identify M and b", icon=viser.Icon.RULER_MEASURE, hint=hint)
+    words = session.lessons.words
+    label, hint = words("gains.identify"), words("gains.identify_hint")
+    button = gui.add_button(label, icon=viser.Icon.RULER_MEASURE, hint=hint)
     on_press(button, lambda: post(Identify()))
 
 
-def _line(channel: Channel) -> str:
-    poles = ", ".join(_pole(p) for p in channel.poles if p.imag >= -1e-9)
+def _line(channel: Channel, words: Words) -> str:
+    found = ", ".join(_pole(p) for p in channel.poles if p.imag >= -1e-9)
+    name, poles = words(f"gains.{channel.name}"), words("gains.poles", poles=found)
     mark = "" if channel.stable else "⚠️ "
-    return f"**{channel.name.capitalize()}:** {mark}{channel.words()} <br/>poles {poles} 1/s"
+    return f"**{name}:** {mark}{words.sentence(channel.words())} <br/>{poles}"
 
 
 def _pole(pole: complex) -> str:

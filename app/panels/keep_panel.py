@@ -36,7 +36,7 @@ class KeepPanel:
             report = gui.add_button(words("keep.report"), color="gray", icon=viser.Icon.REPORT)
         on_press(share, lambda: post(c.Share()))
         on_press(use, lambda: post(c.UseShared(pasted.value)))
-        on_press(report, exporter.report)
+        on_press(report, lambda: exporter.report())
 
     def follow(self, session: Session) -> None:
         """Show the share code that was asked for."""
@@ -49,7 +49,8 @@ class KeepPanel:
         try:
             self._desk.enter(self._typed.value)
         except (ValueError, OSError) as error:
-            self._said.content = f'<div class="op-text">{html.escape(str(error))}</div>'
+            said = html.escape(self._words.sentence(str(error)))
+            self._said.content = f'<div class="op-text">{said}</div>'
 
 
 def _code(label: str, code: str) -> str:

@@ -16,22 +16,23 @@ class PastPanel:
     """Rewind and export."""
 
     def __init__(self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter) -> None:
-        with gui.add_folder("Look back", expand_by_default=False):
+        words = session.lessons.words
+        with gui.add_folder(words("past.title"), expand_by_default=False):
             self._ago = gui.add_slider(
-                "Seconds ago",
+                words("past.ago"),
                 min=0.0,
                 max=REACH,
                 step=0.1,
                 initial_value=0.0,
-                hint="Pauses and shows the lab as it was",
+                hint=words("past.ago_hint"),
             )
             self._go_on = gui.add_button(
-                "Go on from here", icon=viser.Icon.PLAYER_TRACK_NEXT, disabled=True
+                words("past.go_on"), icon=viser.Icon.PLAYER_TRACK_NEXT, disabled=True
             )
-        with gui.add_folder("Export", expand_by_default=False):
-            table = gui.add_button("CSV, last 60 s", icon=viser.Icon.TABLE)
-            picture = gui.add_button("Picture of the plots", icon=viser.Icon.PHOTO)
-            film = gui.add_button("Recording (HTML), last 10 s", icon=viser.Icon.MOVIE)
+        with gui.add_folder(words("export.title"), expand_by_default=False):
+            table = gui.add_button(words("export.table"), icon=viser.Icon.TABLE)
+            picture = gui.add_button(words("export.picture"), icon=viser.Icon.PHOTO)
+            film = gui.add_button(words("export.film"), icon=viser.Icon.MOVIE)
         on_user_update(self._ago, lambda ago: post(c.View(ago)))
         on_press(self._go_on, lambda: post(c.GoOn()))
         on_press(table, exporter.csv)

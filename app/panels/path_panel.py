@@ -12,27 +12,28 @@ from app.panels.widgets import Post, on_press, on_user_update
 from app.session import Session
 from models.rank_test import rank_map
 
-EDITED = "(own)"
-
 
 class PathChoice:
     """The preset in use; one of the first controls a user sees."""
 
     def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
+        words = session.lessons.words
+        self._shown = {name: words.get(f"path.{name}", name) for name in session.presets}
+        self._own = words("design.own")
+        names = {shown: name for name, shown in self._shown.items()}
         self._choice = gui.add_dropdown(
-            "Path",
-            [*session.presets, EDITED],
-            initial_value="circle",
-            hint="Both robots follow it. Drag its points in the scene to bend it.",
+            words("design.path"),
+            [*names, self._own],
+            initial_value=self._shown.get(session.editor.design.name, self._own),
+            hint=words("design.path_hint"),
         )
         on_user_update(
-            self._choice, lambda name: post(c.ChoosePath(name)) if name != EDITED else None
+            self._choice, lambda shown: post(c.ChoosePath(names[shown])) if shown in names else None
         )
 
     def follow(self, session: Session) -> None:
         """Show which one it is."""
-        name = session.editor.design.name
-        shown = name if name in session.presets else EDITED
+        shown = self._shown.get(session.editor.design.name, self._own)
         if self._choice.value != shown:
             self._choice.value = shown
 
@@ -48,35 +49,41 @@ class PathPanel:
         draw: Callable[[], None],
         show_zone: Callable[[bool], None],
     ) -> None:
-        self._version = -1
-        planar = session.robot.frame.p == 2
-        first, second = ("y1", "y2") if planar else ("y2", "y3")
+        self._version, self._words = -1, session.lessons.words
+        words, planar = self._words, session.robot.frame.p == 2
         drawing = gui.add_button(
-            "Draw freehand",
-            icon=viser.Icon.PENCIL,
-            hint="Then draw one stroke around a robot with the mouse.",
+            words("design.draw"), icon=viser.Icon.PENCIL, hint=words("design.draw_hint")
         )
         on_press(drawing, draw)
-        edit = gui.add_button_group("Edit", ["Undo", "Redo"])
-        on_press(edit, lambda: post(c.Undo() if edit.value == "Undo" else c.Redo()))
-        points = gui.add_button_group("Point", ["Add", "Remove"])
-        on_press(points, lambda: post(c.AddPoint() if points.value == "Add" else c.RemovePoint()))
+        undoing = {words("design.undo"): c.Undo(), words("design.redo"): c.Redo()}
+        edit = gui.add_button_group(words("design.edit"), list(undoing))
+        on_press(edit, lambda: post(undoing[edit.value]))
+        adding = {words("design.add"): c.AddPoint(), words("design.remove"): c.RemovePoint()}
+        points = gui.add_button_group(words("design.point"), list(adding))
+        on_press(points, lambda: post(adding[points.value]))
+        self._add_coordinates(gui, post, ("y1", "y2") if planar else ("y2", "y3"))
+        gui.add_markdown(words("design.arrows"))
+        self._design: object = None
+        self._rank = gui.add_markdown("")
+        zone = gui.add_checkbox(words("design.zone"), False, hint=words("design.zone_hint"))
+        zone.visible = planar  # it is drawn about the base pivot, in the robot's own plane
+        on_user_update(zone, show_zone)
+
+    def _add_coordinates(self, gui: viser.GuiApi, post: Post, names: tuple[str, str]) -> None:
+        """The selected point, by number."""
+        words = self._words
         self._which = gui.add_number(
-            "Selected", 0.0, min=0, max=24, step=1, hint="Number of the control point; 0: none"
+            words("design.selected"), 0.0, min=0, max=24, step=1, hint=words("design.selected_hint")
         )
-        self._first = gui.add_number(f"{first} [mm]", 0.0, min=-200.0, max=200.0, step=0.5)
-        self._second = gui.add_number(f"{second} [mm]", 0.0, min=-200.0, max=200.0, step=0.5)
+        self._first, self._second = (
+            gui.add_number(
+                words("design.coordinate", name=name), 0.0, min=-200.0, max=200.0, step=0.5
+            )
+            for name in names
+        )
         on_user_update(self._which, lambda n: post(c.SelectPoint(int(n) - 1 if n else None)))
         on_user_update(self._first, lambda mm: post(c.PlacePoint(first=mm / 1e3)))
         on_user_update(self._second, lambda mm: post(c.PlacePoint(second=mm / 1e3)))
-        gui.add_markdown("Arrow keys move the selected point by 1 mm; N selects the next.")
-        self._design: object = None
-        self._rank = gui.add_markdown("")
-        zone = gui.add_checkbox(
-            "Show singular zone", False, hint="Where the arm is stretched or folded, eq. (14)"
-        )
-        zone.visible = planar  # it is drawn about the base pivot, in the robot's own plane
-        on_user_update(zone, show_zone)
 
     def follow(self, session: Session) -> None:
         """Show the selected point's coordinates."""
@@ -88,7 +95,7 @@ class PathPanel:
             self._design = editor.design
             z = editor.design.curve.at(editor.design.curve.sample(32))
             number = float(np.min(rank_map(session.robot, session.parameters, z)))
-            self._rank.content = f"Rank test (11) along the path: at least **{number:.2f}** of 1."
+            self._rank.content = self._words("design.rank", number=f"{number:.2f}")
         selected = editor.selected
         self._set(self._which, 0 if selected is None else selected + 1)
         if selected is not None and selected < len(editor.points()):

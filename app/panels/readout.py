@@ -7,8 +7,9 @@ import html
 import viser
 
 from app.palette import CONTROLLERS, WARNING
+from app.session import Session
 from app.snapshot import RobotView, Snapshot
-from app.stage import TITLES
+from lessons.words import Words
 
 LEVELS = {"info": "#33506b", "warning": "#8a5a00", "error": WARNING.hex}
 
@@ -16,19 +17,22 @@ LEVELS = {"info": "#33506b", "warning": "#8a5a00", "error": WARNING.hex}
 class Readout:
     """Two lines of numbers, a clock, and the message."""
 
-    def __init__(self, gui: viser.GuiApi) -> None:
+    def __init__(self, gui: viser.GuiApi, session: Session) -> None:
+        self._words = session.lessons.words
         self._table = gui.add_html("")
         self._shown = ""
 
     def follow(self, snapshot: Snapshot) -> None:
         """Show the snapshot's numbers."""
-        rows = "".join(_row(name, view) for name, view in snapshot.robots.items())
+        words = self._words
+        rows = "".join(_row(name, view, words) for name, view in snapshot.robots.items())
+        distance, now, most = (words(f"readout.{key}") for key in ("distance", "now", "most"))
         content = (
             '<div style="padding:0.5em 0.9em 0 0.9em;font-size:0.85em">'
             '<table style="width:100%;border-collapse:collapse">'
-            '<tr style="color:#667"><td>distance to the path</td><td align="right">now</td>'
-            f'<td align="right">most</td></tr>{rows}</table>'
-            f'<div style="color:#667;margin-top:0.3em">{_clock(snapshot)}</div>'
+            f'<tr style="color:#667"><td>{distance}</td><td align="right">{now}</td>'
+            f'<td align="right">{most}</td></tr>{rows}</table>'
+            f'<div style="color:#667;margin-top:0.3em">{_clock(snapshot, words)}</div>'
             f"{_message(snapshot)}</div>"
         )
         if content != self._shown:
@@ -36,19 +40,20 @@ class Readout:
             self._table.content = content
 
 
-def _row(name: str, view: RobotView) -> str:
-    colour = CONTROLLERS[name].hex
+def _row(name: str, view: RobotView, words: Words) -> str:
+    colour, title = CONTROLLERS[name].hex, words(f"controller.{name}.title")
     return (
-        f'<tr style="color:{colour};font-weight:600"><td>{TITLES[name][0]}</td>'
+        f'<tr style="color:{colour};font-weight:600"><td>{title}</td>'
         f'<td align="right">{view.distance * 1e3:.1f} mm</td>'
         f'<td align="right">{view.max_distance * 1e3:.1f} mm</td></tr>'
     )
 
 
-def _clock(snapshot: Snapshot) -> str:
+def _clock(snapshot: Snapshot, words: Words) -> str:
     if not snapshot.running:
-        return f"t = {snapshot.time:.2f} s, paused"
-    return f"t = {snapshot.time:.1f} s, running at {snapshot.achieved_speed:.2g}×"
+        return words("readout.paused", time=f"{snapshot.time:.2f}")
+    speed = f"{snapshot.achieved_speed:.2g}"
+    return words("readout.running", time=f"{snapshot.time:.1f}", speed=speed)
 
 
 def _message(snapshot: Snapshot) -> str:

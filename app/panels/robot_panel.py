@@ -13,6 +13,7 @@ from app.commands import ChooseRobot
 from app.panels.widgets import Post, on_press
 from app.session import Session
 from assets import asset_path
+from lessons.words import Words
 from models.catalogue import ROBOTS, Entry
 
 
@@ -20,24 +21,27 @@ class RobotPanel:
     """The button near the top, and its menu."""
 
     def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
-        self._gui = gui
+        self._gui, self._words = gui, session.lessons.words
         self._post = post
         self._chosen = session.entry
         button = gui.add_button(
-            "Robot…",
+            self._words("robots.button"),
             icon=viser.Icon.ROBOT,
             color="gray",
-            hint=f"Now: {session.entry.label}. Choose another; each keeps its path and settings.",
+            hint=self._words("robots.hint", robot=label_of(session.entry, self._words)),
         )
         on_press(button, self._open)
 
     def _open(self) -> None:
-        with self._gui.add_modal("Choose a robot") as modal:
+        words = self._words
+        with self._gui.add_modal(words("robots.choose")) as modal:
             for entry in ROBOTS.values():
-                self._gui.add_html(_card(entry))
+                label = label_of(entry, words)
+                text = words.get(f"machine.{entry.name}.text", entry.text)
+                self._gui.add_html(_card(entry.picture, label, text))
                 now = entry is self._chosen
                 choose = self._gui.add_button(
-                    f"{entry.label} (this one)" if now else entry.label,
+                    words("robots.this", robot=label) if now else label,
                     icon=viser.Icon.CHECK if now else viser.Icon.ROBOT,
                     color="gray" if now else None,
                 )
@@ -48,13 +52,17 @@ class RobotPanel:
         self._post(ChooseRobot(name))
 
 
+def label_of(entry: Entry, words: Words) -> str:
+    """A robot's name as shown."""
+    return words.get(f"machine.{entry.name}.label", entry.label)
+
+
 @lru_cache
-def _card(entry: Entry) -> str:
+def _card(asset: str, label: str, text: str) -> str:
     """Picture and a sentence."""
-    picture = base64.b64encode(asset_path(entry.picture).read_bytes()).decode()
-    label, text = html.escape(entry.label), html.escape(entry.text)
+    picture = base64.b64encode(asset_path(asset).read_bytes()).decode()
     return (
-        f'<div style="padding:0.6em 0 0.2em 0"><img alt="{label}" style="width:100%;'
+        f'<div style="padding:0.6em 0 0.2em 0"><img alt="{html.escape(label)}" style="width:100%;'
         f'border:1px solid #dde" src="data:image/png;base64,{picture}"/>'
-        f'<div style="font-size:0.9em;color:#445">{text}</div></div>'
+        f'<div style="font-size:0.9em;color:#445">{html.escape(text)}</div></div>'
     )

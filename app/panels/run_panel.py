@@ -18,46 +18,45 @@ class RunPanel:
     """Transport and hold."""
 
     def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
-        self._post = post
+        self._post, self._words = post, session.lessons.words
         self._pressed_at: float | None = None
+        words = self._words
         self._hold = gui.add_button(
-            "Hold both back",
+            words("run.hold_both"),
             icon=viser.Icon.HAND_STOP,
             color="orange",
-            hint="Holds the end-points back along the path until pressed again. Key: H",
+            hint=words("run.hold_hint"),
         )
         self._press = gui.add_button(
-            "Hold while pressed",
+            words("run.press"),
             icon=viser.Icon.HAND_CLICK,
             color="gray",
-            hint="Holds the end-points back as long as the mouse button is down.",
+            hint=words("run.press_hint"),
         )
         self._run = gui.add_button(
-            "Pause", icon=viser.Icon.PLAYER_PAUSE, hint="Simulated time stops. Key: space"
+            words("run.pause"), icon=viser.Icon.PLAYER_PAUSE, hint=words("run.run_hint")
         )
-        self._row = gui.add_button_group("", ["Step", "Reset"])
+        row = {words("run.step"): c.Step(), words("run.reset"): c.Reset()}
+        group = gui.add_button_group("", list(row))
         self._rate = gui.add_dropdown(
-            "Time runs at",
-            list(RATE_LABELS),
-            initial_value="1×",
-            hint="Simulated seconds per second",
+            words("run.rate"), list(RATE_LABELS), initial_value="1×", hint=words("run.rate_hint")
         )
         on_press(self._hold, lambda: post(c.Hold()))
         on_press(self._run, lambda: post(c.SetRunning()))
-        on_press(self._row, self._row_pressed)
+        on_press(group, lambda: post(row[group.value]))
         on_user_update(self._rate, lambda label: post(c.SetRate(RATE_LABELS[label])))
         self._press.on_hold(self._held_down)
 
     def follow(self, session: Session) -> None:
         """Show what is; ends a press that has been let go."""
         held = bool(session.held)
-        label = "Let both go" if held else "Hold both back"
+        label = self._words("run.let_both_go" if held else "run.hold_both")
         if not session.copy:
-            label = "Let go" if held else "Hold back"
+            label = self._words("run.let_go" if held else "run.hold")
         if self._hold.label != label:
             self._hold.label = label
             self._hold.color = "red" if held else "orange"
-        label = "Pause" if session.running else "Run"
+        label = self._words("run.pause" if session.running else "run.run")
         if self._run.label != label:
             self._run.label = label
             self._run.icon = viser.Icon.PLAYER_PAUSE if session.running else viser.Icon.PLAYER_PLAY
@@ -67,9 +66,6 @@ class RunPanel:
         if self._pressed_at is not None and time.monotonic() - self._pressed_at > PRESS_ENDS:
             self._pressed_at = None
             self._post(c.Hold(False))
-
-    def _row_pressed(self) -> None:
-        self._post(c.Step() if self._row.value == "Step" else c.Reset())
 
     async def _held_down(self, _: viser.GuiEvent[viser.GuiButtonHandle]) -> None:
         if self._pressed_at is None:

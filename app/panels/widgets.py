@@ -9,6 +9,8 @@ from typing import Any
 import viser
 
 from app.commands import Command, SetParameter
+from app.session import Session
+from lessons.words import Words
 from models.parameters import Parameters, Spec, specs
 
 Post = Callable[[Command], None]
@@ -33,73 +35,94 @@ def on_press(handle: Any, act: Callable[[], None]) -> None:
     handle.on_click(pressed)
 
 
+def label_of(words: Words, name: str, spec: Spec) -> str:
+    """A parameter's name on a widget."""
+    return words.get(f"parameter.{name}.label", spec.label)
+
+
+def help_of(words: Words, name: str, spec: Spec) -> str:
+    """A line about a parameter."""
+    return words.get(f"parameter.{name}.help", spec.help)
+
+
+def option_of(words: Words, name: str, option: Any) -> str:
+    """One of a parameter's options, as a list shows it."""
+    return words.get(f"parameter.{name}.option.{option}", str(option))
+
+
 class ParameterWidgets:
     """Widgets of some parameters: they post changes and follow the session's values.
 
     Args:
         gui: where to put them.
-        names: fields of `parameters`, in order.
+        names: fields of the session's parameters, in order.
         post: takes the commands.
     """
 
-    def __init__(
-        self, gui: viser.GuiApi, parameters: Parameters, names: list[str], post: Post
-    ) -> None:
+    def __init__(self, gui: viser.GuiApi, session: Session, names: list[str], post: Post) -> None:
         self._handles: dict[str, Any] = {}
-        self._post = post
-        self._specs = specs(parameters)
+        self._post, self._words = post, session.lessons.words
+        self._specs = specs(session.parameters)
         for name in names:
-            self._add(gui, name, self._specs[name], getattr(parameters, name))
+            shown = self._shown(name, session.parameters)
+            make = self._add_choice if self._specs[name].options else self._add_slider
+            self._handles[name] = make(gui, name, shown)
 
     def follow(self, parameters: Parameters) -> None:
         """Show the session's values where they differ."""
         for name, handle in self._handles.items():
-            value = getattr(parameters, name)
-            shown = _shown(self._specs[name], value)
+            shown = self._shown(name, parameters)
             if handle.value != shown:
                 handle.value = shown
 
-    def _add(self, gui: viser.GuiApi, name: str, spec: Spec, value: Any) -> None:
-        unit = f" [{spec.unit}]" if spec.unit else ""
-        if spec.options:
-            options = [str(option) for option in spec.options]
-            handle: Any = gui.add_dropdown(
-                spec.label, options, initial_value=_shown(spec, value), hint=spec.help
-            )
-        else:
-            handle = gui.add_slider(
-                spec.label + unit,
-                min=spec.low,
-                max=spec.high,
-                step=spec.step,
-                initial_value=_shown(spec, value),
-                hint=spec.help,
-            )
-        self._handles[name] = handle
+    def _add_choice(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
+        spec, words = self._specs[name], self._words
+        options = {option_of(words, name, option): option for option in spec.options}
+        handle = gui.add_dropdown(
+            label_of(words, name, spec),
+            list(options),
+            initial_value=shown,
+            hint=help_of(words, name, spec),
+        )
+        on_user_update(handle, lambda new: self._post(SetParameter(name, options[new])))
+        return handle
+
+    def _add_slider(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
+        spec, words = self._specs[name], self._words
+        unit = f" [{words.get(f'parameter.{name}.unit', spec.unit)}]" if spec.unit else ""
+        handle = gui.add_slider(
+            label_of(words, name, spec) + unit,
+            min=spec.low,
+            max=spec.high,
+            step=spec.step,
+            initial_value=shown,
+            hint=help_of(words, name, spec),
+        )
         on_user_update(handle, lambda new: self._post(SetParameter(name, new)))
+        return handle
 
-
-def _shown(spec: Spec, value: Any) -> Any:
-    """A value as its widget holds it: options as text, numbers to the slider's step or finer."""
-    if spec.options:
-        return str(value)
-    digits = max(0, 2 - math.floor(math.log10(spec.step) + 1e-9)) - 1
-    return round(float(value), digits)
+    def _shown(self, name: str, parameters: Parameters) -> Any:
+        """As the widget holds it: options in words, numbers to the slider's step or finer."""
+        spec, value = self._specs[name], getattr(parameters, name)
+        if spec.options:
+            return option_of(self._words, name, value)
+        digits = max(0, 2 - math.floor(math.log10(spec.step) + 1e-9)) - 1
+        return round(float(value), digits)
 
 
 class SwitchedParameter(ParameterWidgets):
     """A parameter that is off at 0: a checkbox that shows its slider while on."""
 
-    def __init__(self, gui: viser.GuiApi, parameters: Parameters, name: str, post: Post) -> None:
-        self._spec = specs(parameters)[name]
-        self._name = name
-        value = getattr(parameters, name)
+    def __init__(self, gui: viser.GuiApi, session: Session, name: str, post: Post) -> None:
+        words, spec = session.lessons.words, specs(session.parameters)[name]
+        self._name, self._on = name, spec.on
+        on = getattr(session.parameters, name) != 0
         self._switch = gui.add_checkbox(
-            self._spec.label, initial_value=value != 0, hint=self._spec.help
+            label_of(words, name, spec), initial_value=on, hint=help_of(words, name, spec)
         )
-        super().__init__(gui, parameters, [name], post)
+        super().__init__(gui, session, [name], post)
         self._slider = self._handles[name]
-        self._slider.visible = value != 0
+        self._slider.visible = on
         on_user_update(self._switch, self._turn)
 
     def follow(self, parameters: Parameters) -> None:
@@ -112,4 +135,4 @@ class SwitchedParameter(ParameterWidgets):
             self._slider.visible = on
 
     def _turn(self, on: bool) -> None:
-        self._post(SetParameter(self._name, self._spec.on if on else 0.0))
+        self._post(SetParameter(self._name, self._on if on else 0.0))
