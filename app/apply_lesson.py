@@ -62,6 +62,9 @@ def _(command: c.Act, session: Session) -> None:
 @apply.register(c.SetLanguage)
 def _(command: c.SetLanguage, session: Session) -> None:
     session.lessons.set_language(command.language)
+    if session.locked:
+        session.locked = session.lessons.words("lesson.locked")
+    session.hush()
 
 
 @apply.register(c.SetPresenting)

@@ -122,7 +122,9 @@ class LabView:
         self._parts.append(StepControls(gui, own, session, controls, self._exporter.submit))
         with tabs.add_tab(run.words("lesson.all_controls"), viser.Icon.ADJUSTMENTS):
             self._parts += controls.everything()
-        self._parts.append(LessonPanel(self._client, session, post, self._exporter.submit))
+        self._parts.append(
+            LessonPanel(self._client, session, post, self._scene, self._exporter.submit)
+        )
 
     def _show_progress(self) -> None:
         done, wanted = self._store.progress()

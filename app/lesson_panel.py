@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from app import lesson_html as page
 from app.lesson_chart import PredictionChart
 from app.lesson_run import LessonRun
 from app.panels.widgets import Post, on_press, on_user_update
+from app.scene import Scene
 from app.session import Session
 from app.sketch_board import SketchBoard
 from app.stages import stage_of
@@ -34,21 +35,28 @@ class LessonPanel:
         client: viser.ClientHandle,
         session: Session,
         post: Post,
+        scene: Scene,
         submit: Callable[[Callable[[], None]], None],
     ) -> None:
         self._client, self._gui, self._post, self._submit = client, client.gui, post, submit
+        self._scene = scene
         self._handles: list[Any] = []
         self._tasks: list[tuple[Task, viser.GuiHtmlHandle]] = []
         self._chart: PredictionChart | None = None
         self._board: SketchBoard | None = None
         self._draft = c.Predict()
-        self._busy = False
+        self._busy, self._version, self._reading = False, -1, -1
         self._panel = self._gui.add_panel(order=0)
         lesson = session.lessons.lesson
         assert lesson is not None
         self._tab = self._panel.add_tab(session.lessons.words("lesson.lessons"), viser.Icon.SCHOOL)
         self._panel.dock_left()
         self._width = 0
+        words = session.lessons.words
+        on = self._gui.add_command(words("lesson.next"), hotkey="pagedown")
+        on.on_trigger(_turns(post, 1))
+        back = self._gui.add_command(words("lesson.back"), hotkey="pageup")
+        back.on_trigger(_turns(post, -1))
         self._build(session)
 
     def remove(self) -> None:
@@ -87,6 +95,7 @@ class LessonPanel:
         if self._board is not None:
             self._board.remove()
             self._board = None
+            self._scene.show_titles(True)
 
     def _build(self, session: Session) -> None:
         run = session.lessons
@@ -99,11 +108,24 @@ class LessonPanel:
             self._panel.set_width(width)
         with self._tab:
             self._html(page.heading(lesson, step, run))
-            for number, block in enumerate(step.blocks):
-                self._add(number, block, session)
             if step.kind == "run":
                 self._add_run(session)
+            if step.kind != "run" or run.has_played() or self._reading == run.index:
+                for number, block in enumerate(step.blocks):
+                    self._add(number, block, session)
+            else:
+                self._add_reading(run)
             self._add_ways(step, run)
+
+    def _add_reading(self, run: LessonRun) -> None:
+        """The text tells what happens; who wants to read it first, may."""
+
+        def read() -> None:
+            self._reading, self._version = run.index, -1
+
+        button = self._gui.add_button(run.words("lesson.read"), color="gray", icon=viser.Icon.BOOK)
+        on_press(button, read)
+        self._handles.append(button)
 
     def _add(self, number: int, block: object, session: Session) -> None:
         run = session.lessons
@@ -177,6 +199,7 @@ class LessonPanel:
 
         title = f"{words(f'robot.{block.robot}')}: {words(f'quantity.{block.quantity}')}"
         stage = stage_of(session.robot)
+        self._scene.show_titles(False)
         self._board = SketchBoard(self._client.scene, stage, block, title, drawn)
         self._add_numbers(block, session.lessons, self._board, drawn)
 
@@ -265,3 +288,10 @@ class LessonPanel:
         on_press(button, lambda: self._post(command))
         self._handles.append(button)
         return button
+
+
+def _turns(post: Post, by: int) -> Callable[[Any], Coroutine[Any, Any, None]]:
+    async def turn(_: Any) -> None:
+        post(c.GoToStep(by))
+
+    return turn

@@ -104,6 +104,10 @@ class LessonRun:
         """Whether the lab does by itself what the step shows."""
         return self._playing
 
+    def has_played(self) -> bool:
+        """Whether the lab has done what the open step shows, now or earlier."""
+        return str(self.index) in self.notes.played
+
     # What is asked
 
     def open(self, name: str, session: Session) -> None:
@@ -274,11 +278,11 @@ class LessonRun:
             session.running = False
 
     def _note_truth(self, session: Session) -> None:
-        found = self.prediction()
+        found, truths = self.prediction(), self.notes.truths
         if found is not None:
-            truth = self._truth(session, found[1])
-            self._note(truths={**self.notes.truths, found[0]: truth})
-        self.version += 1
+            truths = {**truths, found[0]: self._truth(session, found[1])}
+        played = tuple(dict.fromkeys((*self.notes.played, str(self.index))))
+        self._note(truths=truths, played=played)
 
     def _truth(self, session: Session, prediction: Prediction) -> Truth:
         quantity = prediction.quantity if isinstance(prediction, Sketch) else "distance"

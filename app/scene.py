@@ -94,7 +94,7 @@ class Scene:
     def build(self, snapshot: Snapshot) -> None:
         """Creates every node, once, with as many bars, joints and points as the snapshot has."""
         robots = self._robots(snapshot)
-        build_stage(self._client.scene, self._stage, self._words)
+        self._titles = build_stage(self._client.scene, self._stage, self._words)
         self._layout = Layout(self._stage, robots)
         poses = self._layout.poses(robots)
         self._machine = Machine(self._client.scene, self._stage, robots, poses, self._words)
@@ -150,6 +150,11 @@ class Scene:
         self._zone = add_copies(
             self._client.scene, "/zone", zone, self._origins, palette.WARNING, opacity=0.16
         )
+
+    def show_titles(self, visible: bool) -> None:
+        """The robots' names; they would be seen through whatever is before them."""
+        for title in self._titles:
+            title.visible = visible
 
     def frame_camera(self, insets: Insets | None = None) -> None:
         """Points the client's camera so that both robots fill what panels leave of the canvas."""

@@ -6,10 +6,13 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
 
 from app import palette
 from app.drag import intersect_ray_plane
-from app.stage import Stage, add_text
+from app.stage import Stage
 from lessons.record import QUANTITIES
 from lessons.schema import Sketch
 
@@ -18,8 +21,7 @@ if TYPE_CHECKING:
 
 FORM = 0.62  # height to width
 MARGIN = 0.09  # between the board's edge and the axes, of its width
-GRID_COLOUR = palette.PATH.toward(palette.WHITE, 0.6)
-LINES = 4  # of the grid, each way
+PIXELS = 900  # of the picture's width
 CLOSEST = 0.002  # between two points of a curve, of the board's width
 
 
@@ -48,21 +50,19 @@ class SketchBoard:
         self._inner = 1 - 2 * MARGIN * np.array([1.0, 1.0 / FORM])
         self._points: list[np.ndarray] = []
         self._ink: viser.LineSegmentsHandle | None = None
-        self._parts: list[viser.SceneNodeHandle] = []
-        corners = self._world(np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) * 0.5)
-        board = scene.add_mesh_simple(
+        handle = scene.add_image(
             "/board/sheet",
-            corners,
-            np.array([[0, 1, 2], [0, 2, 3]]),
-            color=palette.WHITE.rgb,
-            side="double",
-            material="standard",
+            _picture(sketch, title),
+            float(self._size[0]),
+            float(self._size[1]),
+            format="png",
+            position=self._middle,
+            wxyz=_facing(self._right, self._up),
             cast_shadow=False,
             receive_shadow=False,
         )
-        board.on_drag("left")(self._dragged)
-        self._parts.append(board)
-        self._add_axes(title)
+        handle.on_drag("left")(self._dragged)
+        self._sheet = handle
 
     def show(self, times: np.ndarray, values: np.ndarray) -> None:
         """Draw a curve given by numbers, shape (n,) each."""
@@ -71,9 +71,10 @@ class SketchBoard:
 
     def remove(self) -> None:
         """Take it away."""
-        for part in (*self._parts, *([self._ink] if self._ink else [])):
-            part.remove()
-        self._parts, self._ink = [], None
+        self._sheet.remove()
+        if self._ink is not None:
+            self._ink.remove()
+            self._ink = None
 
     # Between the axes' units, places on the board (fractions from its middle) and the world.
 
@@ -94,32 +95,7 @@ class SketchBoard:
         toward = np.cross(self._right, self._up)
         return self._middle + x * self._right + y * self._up + above * toward
 
-    def _add_axes(self, title: str) -> None:
-        low, span = self._axes()
-        shares = np.linspace(0.0, 1.0, LINES + 1)
-        upright = [[[s, 0.0], [s, 1.0]] for s in shares]
-        level = [[[0.0, s], [1.0, s]] for s in shares]
-        ends = self._from_axes(low + span * np.array(upright + level).reshape(-1, 2))
-        grid = self._world(ends, 0.001).reshape(-1, 2, 3)
-        self._parts.append(
-            self._scene.add_line_segments(
-                "/board/grid", grid.astype(np.float32), GRID_COLOUR.rgb, thickness=0.0015
-            )
-        )
-        unit = QUANTITIES[self._sketch.quantity]
-        below, aside = np.array([0.0, 0.5 * MARGIN / FORM]), np.array([0.55 * MARGIN, 0.0])
-        texts = [(title, np.array([0.0, 0.5]) - below, 0.034)]
-        for share in shares[:: LINES // 2]:
-            t, v = low + span * share
-            bottom = self._from_axes(np.array([[t, low[1]]]))[0] - below
-            left = self._from_axes(np.array([[0.0, v]]))[0] - aside
-            texts += [(f"{t:g} s", bottom, 0.028), (f"{v:g} {unit}", left, 0.024)]
-        for number, (words, place, size) in enumerate(texts):
-            at = self._world(place[None], 0.002)[0]
-            high = size * float(self._size[0])
-            self._parts.append(add_text(self._scene, f"/board/text{number}", words, at, high))
-
-    async def _dragged(self, event: viser.SceneNodeDragEvent[viser.MeshHandle]) -> None:
+    async def _dragged(self, event: viser.SceneNodeDragEvent[viser.ImageHandle]) -> None:
         if event.phase == "start":
             self._points = []
         seen = [event.start_position] if event.phase == "start" else []
@@ -157,6 +133,29 @@ class SketchBoard:
             self._ink = self._scene.add_line_segments(
                 "/board/ink", segments, palette.SELECTED.rgb, thickness=0.006
             )
+
+
+def _picture(sketch: Sketch, title: str) -> np.ndarray:
+    """The empty axes, shape (rows, columns, 3), uint8."""
+    figure = Figure(figsize=(9.0, 9.0 * FORM), dpi=PIXELS / 9.0)
+    canvas = FigureCanvasAgg(figure)
+    high = MARGIN / FORM
+    axes = figure.add_axes((MARGIN, high, 1 - 2 * MARGIN, 1 - 2 * high))
+    axes.set(xlim=(0.0, sketch.seconds), ylim=(sketch.bottom, sketch.top))
+    axes.set_title(title, fontsize=21, pad=12)
+    axes.set_xlabel("t [s]", fontsize=16, labelpad=1)
+    axes.set_ylabel(f"[{QUANTITIES[sketch.quantity]}]", fontsize=16, labelpad=1)
+    axes.tick_params(labelsize=15)
+    axes.grid(color=palette.PATH.toward(palette.WHITE, 0.7).hex)
+    axes.spines[["top", "right"]].set_visible(False)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+
+
+def _facing(right: np.ndarray, up: np.ndarray) -> np.ndarray:
+    """Quaternion, w first, of a picture with these axes."""
+    turn = Rotation.from_matrix(np.stack([right, up, np.cross(right, up)], axis=1))
+    return turn.as_quat(scalar_first=True)
 
 
 def _placed(stage: Stage) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:

@@ -127,8 +127,10 @@ def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
     server.initial_camera.look_at = pose.look_at
 
 
-def build_stage(scene: viser.SceneApi, stage: Stage, words: Words = ENGLISH) -> None:
-    """Adds floor, lights, machine bases and labels to a client's scene."""
+def build_stage(
+    scene: viser.SceneApi, stage: Stage, words: Words = ENGLISH
+) -> list[viser.LabelHandle]:
+    """Adds floor, lights, machine bases and titles to a client's scene; returns the titles."""
     middle = (stage.low[0] + stage.high[0]) / 2
     scene.configure_environment_map(None)
     scene.add_light_ambient("/stage/ambient", intensity=1.9)
@@ -148,10 +150,18 @@ def build_stage(scene: viser.SceneApi, stage: Stage, words: Words = ENGLISH) -> 
     )
     for part, mesh, colour in stage.parts():
         add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
-    for name, base in stage.bases.items():
-        for part, below, size in TITLE:
-            text = words(f"controller.{name}.{part}")
-            add_text(scene, f"/stage/{name}/{part}", text, base + stage.title, size, below)
+    return [
+        add_text(
+            scene,
+            f"/stage/{name}/{part}",
+            words(f"controller.{name}.{part}"),
+            base + stage.title,
+            size,
+            below,
+        )
+        for name, base in stage.bases.items()
+        for part, below, size in TITLE
+    ]
 
 
 def add_text(

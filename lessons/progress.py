@@ -47,6 +47,7 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         step: the one that is open.
         seen: how many steps have been opened.
         answers, truths: of the predictions, by step.
+        played: steps that have been let happen.
         tasks: passed ones, with the best value of each that is worth one, or 0.
         hints: how many are shown, by task.
         quiz: chosen options, by step.
@@ -56,6 +57,7 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     seen: Index = 0
     answers: dict[Key, Answer] = {}
     truths: dict[Key, Truth] = {}
+    played: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
     tasks: dict[Key, float] = {}
     hints: dict[Key, Index] = {}
     quiz: dict[Key, Index] = {}

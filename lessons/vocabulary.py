@@ -31,6 +31,8 @@ CONTROLS = (
     *("hold", "path", "editor", "gains", "plots", "past", "robot", "copy", "flexible", "identify"),
 )
 EVENTS: tuple[str, ...] = get_args(EventName)
+HIGHEST = 1e6
+"""Of a sketch's axis."""
 LONGEST = 60.0
 """Of a script or a sketch [s]: the lab remembers a minute."""
 
@@ -82,8 +84,9 @@ def prediction_faults(prediction: Prediction) -> Iterator[str]:
         yield from _one_of(prediction.quantity, QUANTITIES, "quantity")
         if not 0 < prediction.seconds <= LONGEST:
             yield f"seconds = {prediction.seconds:g}: between 0 and {LONGEST:g}"
-        if not prediction.bottom < prediction.top:
-            yield f"top = {prediction.top:g} must be above bottom = {prediction.bottom:g}"
+        low, high = prediction.bottom, prediction.top
+        if not -HIGHEST <= low < high <= HIGHEST:
+            yield f"top = {high:g} must be above bottom = {low:g}, both within ±{HIGHEST:g}"
     else:
         yield from option_faults([option.right for option in prediction.options])
 

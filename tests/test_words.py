@@ -279,6 +279,8 @@ def test_a_german_lab_speaks_german() -> None:
     do(session, c.SetParameter("law", "redefined"), c.SetParameter("alpha", 0.95))
     run(session, 3.0)
     assert "regelung: stehen geblieben" in session.message and "Nulldynamik" in session.message
+    do(session, lc.SetLanguage("en"))
+    assert "stopped at" in session.message and UNSTABLE in session.message
 
 
 def test_a_parameter_without_words_has_those_of_its_declaration() -> None:

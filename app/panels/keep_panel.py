@@ -36,7 +36,7 @@ class KeepPanel:
             report = gui.add_button(words("keep.report"), color="gray", icon=viser.Icon.REPORT)
         on_press(share, lambda: post(c.Share()))
         on_press(use, lambda: post(c.UseShared(pasted.value)))
-        on_press(report, lambda: exporter.report())
+        on_press(report, lambda: exporter.report(desk.code if desk.keeps else ""))
 
     def follow(self, session: Session) -> None:
         """Show the share code that was asked for."""
