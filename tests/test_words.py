@@ -118,7 +118,7 @@ def sentences(tree: ast.AST) -> Iterator[str]:
         text = None if node in skipped else text_of(node)
         if text is not None:
             bare = re.sub(r"<style>.*?</style>|<[^>]*>?", "", text, flags=re.DOTALL)
-            if re.search(r"[^\W\d_]{2,} [^\W\d_]{2,}", bare) and ";" not in bare:
+            if re.search(r"[^\W\d_]{2,} [^\W\d_]{2,}", bare) and not re.search(r"\w:\S", bare):
                 yield text
 
 
