@@ -19,7 +19,7 @@ from app.panels.readout import Readout
 from app.plots import DISTANCE, LivePlot
 from app.scene import Hooks, Scene
 from app.session import Session
-from app.stage import Insets
+from app.stage import NARROW, Insets
 from app.stages import stage_of
 from app.step_controls import StepControls
 from app.take_snapshot import take_snapshot
@@ -27,7 +27,6 @@ from app.take_snapshot import take_snapshot
 DISPLAY = 2  # frames of simulation per frame of display: 30 Hz
 SLOW = 6  # frames per update of traces, plots and readouts: 10 Hz
 CONTROL_WIDTH = 330  # [px]
-NARROW = 0.6  # width to height: a telephone, where the panel lies over the lower part
 
 
 class LabView:

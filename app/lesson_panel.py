@@ -16,6 +16,7 @@ from app.panels.widgets import Post, on_press, on_user_update
 from app.scene import Scene
 from app.session import Session
 from app.sketch_board import SketchBoard
+from app.stage import NARROW
 from app.stages import stage_of
 from lessons.schema import Choice, Prediction, Quiz, Sketch, Step, Task, Text
 
@@ -50,7 +51,12 @@ class LessonPanel:
         lesson = session.lessons.lesson
         assert lesson is not None
         self._tab = self._panel.add_tab(session.lessons.words("lesson.lessons"), viser.Icon.SCHOOL)
-        self._panel.dock_left()
+        camera = client.camera
+        if camera.image_width < NARROW * camera.image_height:  # both would lie on each other
+            self._gui.main_panel.minimize()
+            self._panel.expand()
+        else:
+            self._panel.dock_left()
         self._width = 0
         words = session.lessons.words
         on = self._gui.add_command(words("lesson.next"), hotkey="pagedown")

@@ -136,7 +136,7 @@ class SketchBoard:
 
 
 def _picture(sketch: Sketch, title: str) -> np.ndarray:
-    """The empty axes, shape (rows, columns, 3), uint8."""
+    """The empty axes, shape (rows, columns, 3), uint8, its lowest row first."""
     figure = Figure(figsize=(9.0, 9.0 * FORM), dpi=PIXELS / 9.0)
     canvas = FigureCanvasAgg(figure)
     high = MARGIN / FORM
@@ -149,7 +149,7 @@ def _picture(sketch: Sketch, title: str) -> np.ndarray:
     axes.grid(color=palette.PATH.toward(palette.WHITE, 0.7).hex)
     axes.spines[["top", "right"]].set_visible(False)
     canvas.draw()
-    return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+    return np.asarray(canvas.buffer_rgba())[::-1, :, :3].copy()  # the scene's y goes up
 
 
 def _facing(right: np.ndarray, up: np.ndarray) -> np.ndarray:

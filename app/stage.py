@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import viser
 
 FIELD_OF_VIEW = np.radians(15.0)
+NARROW = 0.6  # width to height: a telephone, where the panel lies over the lower part
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 TITLE = (("title", 0.0, 0.036), ("does", 0.047, 0.026))
 """Words of a controller, how far below the title's place, and how high, [m]."""

@@ -62,7 +62,7 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
         return Verdict(False, words("check.nothing", **names, seconds=seconds))
     enough = record.seconds(chosen) >= check.least - TINY
     unit = QUANTITIES[check.quantity]
-    said = words("check.bound", **names, value=f"{value:.3g}", unit=unit) + seconds
+    said = words("check.bound", **names, value=_rounded(value), unit=unit) + seconds
     return Verdict(enough and _within(value, check.below, check.above), said)
 
 
@@ -150,6 +150,11 @@ def statistic(
     if stat == "final":
         return float(values[-1])
     return float({"max": np.max, "min": np.min, "mean": np.mean}[stat](values))
+
+
+def _rounded(value: float) -> str:
+    """Three digits, but nothing finer than a hundredth."""
+    return f"{value:.2f}" if abs(value) < 1 else f"{value:.3g}"
 
 
 def _within(value: float, below: float | None, above: float | None) -> bool:
