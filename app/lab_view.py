@@ -46,8 +46,9 @@ class LabView:
             show_logo=False, show_share_button=False, brand_color=(0, 114, 178)
         )
         client.gui.set_panel_label("OnPath")
-        client.gui.main_panel.dock_right()
-        client.gui.main_panel.set_width(CONTROL_WIDTH)
+        if not self._is_narrow():
+            client.gui.main_panel.dock_right()
+            client.gui.main_panel.set_width(CONTROL_WIDTH)
         self._build(session)
 
     def close(self) -> None:
@@ -93,7 +94,7 @@ class LabView:
     def _page(session: Session) -> tuple[object, ...]:
         """What the whole page depends on: when it is another, all is built anew."""
         run = session.lessons
-        return session.robot, run.lesson is not None, run.words.language
+        return session.robot, run.lesson is not None, run.words.language, run.progress.presenting
 
     def _build(self, session: Session) -> None:
         robot, post = session.robot, session.post
@@ -107,23 +108,42 @@ class LabView:
 
     def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
         gui, run = self._client.gui, session.lessons
-        self._progress = gui.add_progress_bar(0.0, visible=False, animated=True)
-        self._readout = Readout(gui, session)
-        if run.course.lessons:
-            LessonMenu(gui, session, post)
-        self._parts: list[Part] = [LivePlot(gui, session, DISTANCE, height=190)]
+        self._parts: list[Part] = []
         controls = Controls(gui, session, post, self._exporter, self._scene, self._desk)
         if run.lesson is None:
+            self._build_head(session, post)
             self._parts += controls.everything()
             return
-        tabs = gui.add_tab_group()
-        own = tabs.add_tab(run.words("lesson.this_step"), viser.Icon.SCHOOL)
-        self._parts.append(StepControls(gui, own, session, controls, self._exporter.submit))
-        with tabs.add_tab(run.words("lesson.all_controls"), viser.Icon.ADJUSTMENTS):
-            self._parts += controls.everything()
-        self._parts.append(
-            LessonPanel(self._client, session, post, self._scene, self._exporter.submit)
-        )
+        submit, words = self._exporter.submit, run.words
+        tab = None
+        if self._is_narrow():  # one panel for all: the lesson first, the lab behind its tab
+            tabs = gui.add_tab_group()
+            tab = tabs.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
+            own = tabs.add_tab(words("lesson.lab"), viser.Icon.ROBOT)
+            with own:
+                self._build_head(session, post)
+        else:
+            self._build_head(session, post)
+            tabs = gui.add_tab_group()
+            own = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
+        self._parts.append(StepControls(gui, own, session, controls, submit))
+        if not run.progress.presenting:
+            with tabs.add_tab(words("lesson.all_controls"), viser.Icon.ADJUSTMENTS_HORIZONTAL):
+                self._parts += controls.everything()
+        self._parts.append(LessonPanel(self._client, session, post, self._scene, submit, tab))
+
+    def _build_head(self, session: Session, post: Callable[[c.Command], None]) -> None:
+        """What is always there: progress, numbers, the way to the lessons, the distance."""
+        gui = self._client.gui
+        self._progress = gui.add_progress_bar(0.0, visible=False, animated=True)
+        self._readout = Readout(gui, session)
+        if session.lessons.course.lessons:
+            LessonMenu(gui, session, post)
+        self._parts.append(LivePlot(gui, session, DISTANCE, height=190))
+
+    def _is_narrow(self) -> bool:
+        camera = self._client.camera
+        return camera.image_width < NARROW * camera.image_height
 
     def _show_progress(self) -> None:
         done, wanted = self._store.progress()

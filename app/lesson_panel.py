@@ -16,7 +16,6 @@ from app.panels.widgets import Post, on_press, on_user_update
 from app.scene import Scene
 from app.session import Session
 from app.sketch_board import SketchBoard
-from app.stage import NARROW
 from app.stages import stage_of
 from lessons.schema import Choice, Prediction, Quiz, Sketch, Step, Task, Text
 
@@ -29,6 +28,7 @@ class LessonPanel:
 
     Args:
         submit: runs something in another thread.
+        tab: where to put it; a panel of its own on the left if there is none.
     """
 
     def __init__(
@@ -38,6 +38,7 @@ class LessonPanel:
         post: Post,
         scene: Scene,
         submit: Callable[[Callable[[], None]], None],
+        tab: viser.GuiTabHandle | None = None,
     ) -> None:
         self._client, self._gui, self._post, self._submit = client, client.gui, post, submit
         self._scene = scene
@@ -47,28 +48,19 @@ class LessonPanel:
         self._board: SketchBoard | None = None
         self._draft = c.Predict()
         self._busy, self._version, self._reading = False, -1, -1
-        self._panel = self._gui.add_panel(order=0)
-        lesson = session.lessons.lesson
-        assert lesson is not None
-        self._tab = self._panel.add_tab(session.lessons.words("lesson.lessons"), viser.Icon.SCHOOL)
-        camera = client.camera
-        if camera.image_width < NARROW * camera.image_height:  # both would lie on each other
-            self._gui.main_panel.minimize()
-            self._panel.expand()
-        else:
-            self._panel.dock_left()
-        self._width = 0
         words = session.lessons.words
+        self._panel = None
+        if tab is None:
+            self._panel = self._gui.add_panel(order=0)
+            tab = self._panel.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
+            self._panel.dock_left()
+        self._tab = tab
+        self._width = 0
         on = self._gui.add_command(words("lesson.next"), hotkey="pagedown")
         on.on_trigger(_turns(post, 1))
         back = self._gui.add_command(words("lesson.back"), hotkey="pageup")
         back.on_trigger(_turns(post, -1))
         self._build(session)
-
-    def remove(self) -> None:
-        """Take the page and the board away."""
-        self._clear()
-        self._panel.remove()
 
     def follow(self, session: Session) -> None:
         """Draw anew what has changed; what is measured, always."""
@@ -109,7 +101,7 @@ class LessonPanel:
         lesson, step = run.lesson, run.step
         assert lesson is not None and step is not None
         width = WIDE if run.progress.presenting else WIDTH
-        if width != self._width:
+        if self._panel is not None and width != self._width:
             self._width = width
             self._panel.set_width(width)
         with self._tab:
