@@ -154,7 +154,7 @@ def statistic(
 
 def _rounded(value: float) -> str:
     """Three digits, but nothing finer than a hundredth."""
-    return f"{value:.2f}" if abs(value) < 1 else f"{value:.3g}"
+    return f"{round(value, 2) + 0.0:.2f}" if abs(value) < 1 else f"{value:.3g}"
 
 
 def _within(value: float, below: float | None, above: float | None) -> bool:
