@@ -26,6 +26,7 @@ from app.take_snapshot import take_snapshot
 
 DISPLAY = 2  # frames of simulation per frame of display: 30 Hz
 SLOW = 6  # frames per update of traces, plots and readouts: 10 Hz
+SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
 
 
@@ -41,7 +42,7 @@ class LabView:
         self._store = store
         self._offset = client.client_id  # spreads the clients' slow updates over the frames
         self._exporter = Exporter(client)
-        self._framed = 0.0
+        self._framed, self._settling = 0.0, SETTLING
         client.gui.configure_theme(
             show_logo=False, show_share_button=False, brand_color=(0, 114, 178)
         )
@@ -87,7 +88,7 @@ class LabView:
     def _rebuild(self, session: Session) -> None:
         self._client.scene.reset()
         self._client.gui.reset()
-        self._framed = 0.0
+        self._framed, self._settling = 0.0, SETTLING
         self._build(session)
 
     @staticmethod
@@ -156,8 +157,13 @@ class LabView:
     def _frame_camera(self) -> None:
         """Both robots fill the view again whenever its shape has changed.
 
-        Not its size, in device pixels: a slow browser changes that all by itself.
+        Not its size, in device pixels: a slow browser changes that all by itself. While panels
+        settle, a browser may not tell its last shape before it is given a camera again.
         """
+        if self._settling:
+            self._settling -= 1
+            if self._settling % 10 == 0:
+                self._framed = 0.0
         camera = self._client.camera
         width, height = camera.image_width, camera.image_height
         shape = width / max(height, 1)

@@ -203,6 +203,8 @@ class _Reader:
         except FormulaError as error:
             self._complain(line, str(error))
             return
+        if links and not _has_prose(tokens):
+            html = ""  # the buttons say it all
         last = draft.blocks[-1] if draft.blocks else None
         if isinstance(last, Text) and not last.links:
             draft.blocks[-1] = Text(last.html + html, tuple(links))
@@ -275,6 +277,12 @@ class _Reader:
     def _complain_all(self, line: int, texts: Iterable[str]) -> None:
         for text in texts:
             self._complain(line, text)
+
+
+def _has_prose(tokens: list[Token]) -> bool:
+    """Whether there is anything but links."""
+    inline = [child for token in tokens for child in token.children or ()]
+    return any(child.level == 0 and child.content.strip(" \u00a0,.;:·|") for child in inline)
 
 
 def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
