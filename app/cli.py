@@ -17,7 +17,7 @@ from typing import Annotated, Literal
 
 import tyro
 
-COMMANDS = ("serve", "experiment", "zero-dynamics", "lessons", "bench")
+COMMANDS = ("serve", "experiment", "zero-dynamics", "lessons", "bench", "forget")
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,8 @@ class Serve:
     """A folder with lessons of your own, shown after the built-in ones."""
     database: str | None = None
     """URL of a database that keeps the labs; a file in your data folder if not given."""
+    classroom: bool = False
+    """Open a class: prints a code for the students and a key for the teacher."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     """How much to log."""
 
@@ -41,10 +43,30 @@ class Serve:
         """Serve until Ctrl-C."""
         from app.server import serve
 
+        classroom = _classroom() if self.classroom else None
         level = getattr(logging, self.log_level.upper())
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
         logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
-        serve(self.host, self.port, self.lessons, self.database, open_browser=self.open)
+        serve(
+            self.host,
+            self.port,
+            self.lessons,
+            self.database,
+            open_browser=self.open,
+            classroom=classroom,
+        )
+
+
+def _classroom():
+    """A new class; its code and key are printed, whatever is logged."""
+    from app.classroom import Classroom
+    from app.codes import shown
+
+    classroom = Classroom()
+    print(f"class code:    {classroom.code.upper()}     for the students, under Class")
+    print(f"teacher's key: {shown(classroom.key)}     under Class, Teacher; tell it nobody")
+    sys.stdout.flush()
+    return classroom
 
 
 @dataclass(frozen=True)
@@ -157,6 +179,21 @@ class Bench:
         bench(quick=self.quick)
 
 
+@dataclass(frozen=True)
+class Forget:
+    """Delete every lab that is kept. There is no way back."""
+
+    database: str | None = None
+    """URL of the database; the file in your data folder if not given."""
+
+    def run(self) -> None:
+        """Delete, and say how much."""
+        from app.forget import forget
+
+        gone = forget(self.database)
+        print(f"deleted: {gone.labs} labs, {len(gone.files)} files moved aside as broken")
+
+
 def main() -> None:
     """Entry point of `onpath`."""
     sys.exit(run_command(sys.argv[1:]))
@@ -186,7 +223,7 @@ def unknown_command(name: str) -> str:
     return f"unknown command {name!r}: there are {', '.join(COMMANDS)}"
 
 
-def _parse(arguments: list[str]) -> Serve | Experiment | ZeroDynamics | Lessons | Bench:
+def _parse(arguments: list[str]) -> Serve | Experiment | ZeroDynamics | Lessons | Bench | Forget:
     complaint = io.StringIO()
     try:
         with contextlib.redirect_stderr(complaint):
@@ -195,7 +232,8 @@ def _parse(arguments: list[str]) -> Serve | Experiment | ZeroDynamics | Lessons 
                 | Annotated[Experiment, tyro.conf.subcommand("experiment")]
                 | Annotated[ZeroDynamics, tyro.conf.subcommand("zero-dynamics")]
                 | Annotated[Lessons, tyro.conf.subcommand("lessons")]
-                | Annotated[Bench, tyro.conf.subcommand("bench")],
+                | Annotated[Bench, tyro.conf.subcommand("bench")]
+                | Annotated[Forget, tyro.conf.subcommand("forget")],
                 prog="onpath",
                 description=__doc__,
                 args=arguments,

@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from app.database import NotKept
+from app.database import HeldElsewhere, NotKept
 from app.error_log import log_error
 
 log = logging.getLogger(__name__)
@@ -36,7 +36,7 @@ class Keeper:
         self._records = records
         self._interval = interval
         self._pending: dict[str, Callable[[], dict[str, Any]]] = {}
-        self._lock = threading.Lock()
+        self._lock, self._writing = threading.Lock(), threading.Lock()
         self._wanted, self._closing = threading.Event(), threading.Event()
         self.warning = ""
         self._thread = threading.Thread(target=self._run, name="keeper", daemon=True)
@@ -53,6 +53,20 @@ class Keeper:
             self._pending[code] = make_state
         self._wanted.set()
 
+    def forget(self, delete: Callable[[], int]) -> int:
+        """Delete what is kept, and what was about to be; returns what `delete` returns."""
+        with self._writing:
+            with self._lock:
+                self._pending.clear()
+            return delete()
+
+    def flush(self, code: str) -> None:
+        """Write what is waiting of one lab, in the caller's thread."""
+        with self._lock:
+            make_state = self._pending.pop(code, None)
+        if make_state is not None and self._write(code, make_state):
+            self._wanted.set()
+
     def close(self) -> None:
         """Write what is waiting, and end."""
         self._closing.set()
@@ -63,25 +77,34 @@ class Keeper:
         while not self._closing.is_set():
             self._wanted.wait()
             self._wanted.clear()
-            self._write_all()
+            with self._writing:
+                self._write_all()
             self._closing.wait(self._interval)
-        self._write_all()
+        with self._writing:
+            self._write_all()
 
     def _write_all(self) -> None:
         with self._lock:
             pending, self._pending = self._pending, {}
         failed = ""
         for code, make_state in pending.items():
-            try:
-                self._records.save(code, make_state())
-            except NotKept as error:
-                failed = str(error)
-                with self._lock:  # unless a later one has come
-                    self._pending.setdefault(code, make_state)
-            except Exception as error:  # this lab's alone
-                log_error(error)
+            failed = self._write(code, make_state) or failed
         if failed:
             self._wanted.set()
         if pending and failed != self.warning:
             log.warning("%s", f"not kept: {failed}" if failed else "kept again")
             self.warning = failed
+
+    def _write(self, code: str, make_state: Callable[[], dict[str, Any]]) -> str:
+        """Why it is not kept but will be tried again; empty when it is."""
+        try:
+            self._records.save(code, make_state())
+        except NotKept as error:
+            with self._lock:  # unless a later one has come
+                self._pending.setdefault(code, make_state)
+            return str(error)
+        except HeldElsewhere:
+            log.info("a lab has gone to another process")
+        except Exception as error:  # this lab's alone
+            log_error(error)
+        return ""

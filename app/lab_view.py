@@ -14,6 +14,7 @@ from app.lesson_menu import LessonMenu
 from app.lesson_panel import LessonPanel
 from app.loop_store import LoopStore
 from app.node_update import Channel
+from app.panels.class_panel import ClassPanel
 from app.panels.keys import add_keys
 from app.panels.readout import Readout
 from app.plots import DISTANCE, LivePlot
@@ -91,14 +92,17 @@ class LabView:
         self._framed, self._settling = 0.0, SETTLING
         self._build(session)
 
-    @staticmethod
-    def _page(session: Session) -> tuple[object, ...]:
+    def _page(self, session: Session) -> tuple[object, ...]:
         """What the whole page depends on: when it is another, all is built anew."""
         run = session.lessons
         return session.robot, run.lesson is not None, run.words.language, run.progress.presenting
 
+    def _poster(self, session: Session) -> Callable[[c.Command], None]:
+        """What takes the commands of this page."""
+        return session.post
+
     def _build(self, session: Session) -> None:
-        robot, post = session.robot, session.post
+        robot, post = session.robot, self._poster(session)
         self._built = self._page(session)
         words = session.lessons.words
         self._scene = Scene(self._client, _hooks(post), stage_of(robot), words)
@@ -136,10 +140,16 @@ class LabView:
     def _build_head(self, session: Session, post: Callable[[c.Command], None]) -> None:
         """What is always there: progress, numbers, the way to the lessons, the distance."""
         gui = self._client.gui
-        self._progress = gui.add_progress_bar(0.0, visible=False, animated=True)
-        self._readout = Readout(gui, session)
+        self._build_numbers(session)
         if session.lessons.course.lessons:
             LessonMenu(gui, session, post)
+        if self._desk.seat is not None:
+            self._parts.append(ClassPanel(gui, session, self._desk.seat))
+
+    def _build_numbers(self, session: Session) -> None:
+        gui = self._client.gui
+        self._progress = gui.add_progress_bar(0.0, visible=False, animated=True)
+        self._readout = Readout(gui, session)
         self._parts.append(LivePlot(gui, session, DISTANCE, height=190))
 
     def _is_narrow(self) -> bool:

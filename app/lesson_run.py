@@ -123,6 +123,24 @@ class LessonRun:
         self.progress = replace(self.progress, lesson=name)
         self._go(self.index, session)
 
+    def open_at(self, name: str, index: int, session: Session) -> None:
+        """Open a step of a lesson, from anywhere, with the lab as that step expects to find it.
+
+        Raises:
+            ValueError: there is no such lesson or step.
+        """
+        if name not in self.course.lessons:
+            raise ValueError(f"no lesson {name!r}: there are {', '.join(self.course.lessons)}")
+        steps = self.course.lesson(name, self.progress.language).steps
+        if not 0 <= index < len(steps):
+            raise ValueError(f"no step {index + 1} in this lesson: it has {len(steps)}")
+        scenes = [i for i, s in enumerate(steps[: index + 1]) if s.scene and not s.scene.keep]
+        if self.lesson is None:
+            self.before = capture(session)
+        self.progress = replace(self.progress, lesson=name)
+        for each in sorted({scenes[-1] if scenes else 0, index}):
+            self._go(each, session)
+
     def resume(self, progress: Progress, before: Setup | None, session: Session) -> None:
         """Go on as it was kept."""
         self.progress, self.before = progress, before

@@ -64,7 +64,7 @@ class Lab:
             return  # nobody looks: simulated time waits
         before = session.time
         session.advance(session.rate * FRAME)
-        if session.running:
+        if session.running and not session.frozen:
             self._simulated += session.time - before - self._simulated * FADING
             self._passed += seconds - self._passed * FADING
         view.show(session, self.achieved, count)

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import viser
 
+from app.class_desk import ClassDesk
+from app.classroom import Classroom
 from app.codes import normalised
 from app.database import Records
 from app.desk import Desk
@@ -23,6 +25,7 @@ from app.session import Session
 from app.sessions import Entry, Sessions
 from app.stage import set_initial_camera
 from app.stages import RIGID
+from app.teacher_view import TeacherView
 from lessons.course import BUILT_IN, Course, read_course
 from lessons.parse import LessonError
 from models.catalogue import FIVE_BAR
@@ -40,6 +43,7 @@ class LabServer:
         store: where the loops come from.
         course: the lessons; the built-in ones if there is none.
         records: where labs are kept; nowhere if there is none.
+        classroom: the class that students may join; none if there is none.
 
     Raises:
         OSError: the address cannot be had; the message says why and the way out.
@@ -52,6 +56,7 @@ class LabServer:
         store: LoopStore,
         course: Course | None = None,
         records: Records | None = None,
+        classroom: Classroom | None = None,
     ) -> None:
         self._store = store
         lessons = course or read_course([BUILT_IN])[0]
@@ -62,6 +67,9 @@ class LabServer:
         self.sessions = Sessions(self.simulation, lambda: Session(store, FIVE_BAR, lessons))
         if records is not None:
             self.sessions.load, self.sessions.keeper = records.load, self._keeper
+        self._class: ClassDesk | None = None
+        if classroom is not None:
+            self._class = ClassDesk(classroom, self.sessions, records, self._keeper)
         self._views: dict[int, LabView] = {}
         set_initial_camera(self.server, RIGID)
         self.server.on_client_connect(self._connected)
@@ -77,6 +85,8 @@ class LabServer:
 
     def stop(self) -> None:
         """Stop everything."""
+        if self._class is not None:
+            self._class.stop()
         self.simulation.stop()
         self._store.close()
         self.server.stop()
@@ -89,16 +99,18 @@ class LabServer:
             known = client.local_storage.get_item(STORAGE_KEY, timeout=STORAGE_WAIT)
         except (RuntimeError, TimeoutError):
             known = None  # a browser that keeps nothing, or one that is gone again
+        if self._class is not None:
+            self._class.greet(client)
         if client.client_id not in self.server.get_clients():
+            self._disconnected(client)
             return
         self._show(client, self.sessions.join(client.client_id, known), known)
 
     def _show(self, client: viser.ClientHandle, entry: Entry, known: str | None) -> None:
         """A client's page is that of a session."""
-        desk = Desk(entry.code, self._records is not None, partial(self._enter, client))
         try:
             client.local_storage.set_item(STORAGE_KEY, self.sessions.remembered(entry.code, known))
-            view = LabView(client, entry.lab.session, self._store, desk)
+            view = self._view(client, entry)
         except Exception as error:
             log_error(error)
             self.sessions.leave(client.client_id)
@@ -108,13 +120,28 @@ class LabServer:
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
 
+    def _view(self, client: viser.ClientHandle, entry: Entry) -> LabView:
+        """The page of a lab, or the teacher's."""
+        reopen = partial(self._reopen, client, entry)
+        taught = self._class and self._class.teaching(client, reopen)
+        seat = self._class.seat(client, entry.code, reopen) if self._class else None
+        desk = Desk(entry.code, self._records is not None, partial(self._enter, client), seat)
+        session = entry.lab.session
+        if taught:
+            return TeacherView(client, session, self._store, desk, taught)
+        return LabView(client, session, self._store, desk)
+
     def _enter(self, client: viser.ClientHandle, text: str) -> None:
         """Another session for a client, by a code that was typed.
 
         Raises:
             ValueError: it is no code, there is no such session, or it is in use.
         """
-        entry = self.sessions.enter(client.client_id, normalised(text))
+        self._reopen(client, self.sessions.enter(client.client_id, normalised(text)))
+
+    def _reopen(self, client: viser.ClientHandle, entry: Entry) -> None:
+        """A client's page anew, with a session that is its own already."""
+        entry.lab.view = None
         view = self._views.pop(client.client_id, None)
         if view is not None:
             view.close()
@@ -124,6 +151,8 @@ class LabServer:
 
     def _disconnected(self, client: viser.ClientHandle) -> None:
         self.sessions.leave(client.client_id)
+        if self._class is not None:
+            self._class.gone(client.client_id)
         view = self._views.pop(client.client_id, None)
         if view is not None:
             view.close()
@@ -135,12 +164,14 @@ def serve(
     lessons: Path | None = None,
     database: str | None = None,
     open_browser: bool = False,
+    classroom: Classroom | None = None,
 ) -> None:
     """Serve the lab until Ctrl-C.
 
     Args:
         lessons: a folder of lessons of one's own.
         database: URL of the one that keeps the labs; a file of the user's if there is none.
+        classroom: the class that students may join; none if there is none.
 
     Raises:
         LessonError: one of those is not all right.
@@ -151,7 +182,7 @@ def serve(
     records = Records(database)
     if records.warning:
         log.warning("%s", records.warning)
-    lab = LabServer(host, port, LoopStore.with_system_compiler(), course, records)
+    lab = LabServer(host, port, LoopStore.with_system_compiler(), course, records, classroom)
     log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
     if open_browser:
         webbrowser.open(lab.address)

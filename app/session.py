@@ -13,7 +13,8 @@ from collections.abc import Callable
 import numpy as np
 
 from app import commands
-from app.apply_lesson import apply
+from app.apply_class import apply
+from app.class_commands import ClassCommand
 from app.history import History, Inputs, Instant
 from app.lesson_run import LessonRun
 from app.loop_store import LoopStore
@@ -60,13 +61,15 @@ class Session:
         watch: called at every frame, or None.
         shared: the share code asked for last.
         locked: why time must not run now; empty when it may.
+        frozen: whether the teacher has stopped this lab.
+        asked: how many commands the user has given.
     """
 
     def __init__(
         self, store: LoopStore, entry: Entry = FIVE_BAR, course: Course = NO_LESSONS
     ) -> None:
         self._store = store
-        self._inbox: deque[commands.Command] = deque(maxlen=MOST_COMMANDS)
+        self._inbox: deque[commands.Command | ClassCommand] = deque(maxlen=MOST_COMMANDS)
         self._benches: dict[str, tuple[Parameters, PathEditor]] = {}
         self.history = History()
         self.presets: dict[str, PathDesign] = presets()
@@ -80,6 +83,7 @@ class Session:
         self.run_number = 0
         self.script: ScriptPlayer | None = None
         self.locked = ""
+        self.frozen, self.asked = False, 0
         self.lessons = LessonRun(course)
         self.watch: Callable[[Session], None] | None = None
         self.shared = ""
@@ -115,7 +119,7 @@ class Session:
 
     # Commands
 
-    def post(self, command: commands.Command) -> None:
+    def post(self, command: commands.Command | ClassCommand) -> None:
         """Ask for something; from any thread."""
         self._inbox.append(command)
 
@@ -123,17 +127,26 @@ class Session:
         """Apply what has been asked for. A command that makes no sense is answered in words."""
         while self._inbox:
             command = self._inbox.popleft()
-            if self.locked and isinstance(command, commands.LETS_TIME_RUN):
-                self.say(self.locked, "warning")
-                continue
+            if not isinstance(command, ClassCommand):
+                self.asked += 1
+                if refusal := self._refusal(command):
+                    self.say(refusal, "warning")
+                    continue
             try:
                 apply(command, self)
             except ValueError as error:
                 self.say(self.lessons.words.sentence(str(error)), "warning")
-        self._play()
+        if not self.frozen:
+            self._play()
         self.lessons.follow(self)
         if self.watch is not None:
             self.watch(self)
+
+    def _refusal(self, command: commands.Command) -> str:
+        """Why a command of the user's is not applied now; empty when it is."""
+        if self.frozen:
+            return self.lessons.words("class.frozen")
+        return self.locked if isinstance(command, commands.LETS_TIME_RUN) else ""
 
     def _play(self) -> None:
         """What a script says."""
@@ -164,6 +177,8 @@ class Session:
 
     def advance(self, seconds: float) -> None:
         """Simulate `seconds` of simulated time, if running."""
+        if self.frozen:
+            return
         if not self.running:
             self._owed = 0.0
             if self.viewing is None:

@@ -125,6 +125,10 @@ class Sessions:
         self.simulation.add(entry.lab)
         return entry
 
+    def find(self, code: str) -> Entry | None:
+        """The session of a code, if it is here now."""
+        return self._entries.get(code)
+
     def leave(self, client: int) -> Entry | None:
         """A client is gone; its session waits, paused, for it to come back."""
         with self._lock:

@@ -1,0 +1,95 @@
+"""Between the class and the labs of this process: who stands where, and what the teacher wants.
+
+It looks several times a second; labs are asked by commands, and only immutable parts of them are
+read, so it may do so from a thread of its own.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+from app.class_commands import Freeze
+from app.classroom import Classroom
+from app.error_log import log_error
+from app.session import Session
+
+EVERY = 0.25  # [s]
+
+
+Find = Callable[[str], tuple[Session, bool] | None]
+"""The lab of a session code, and whether somebody looks at it; None when it is not here."""
+
+
+class Attendance:
+    """Keeps a class and its students' labs together.
+
+    Args:
+        find: labs of this process.
+    """
+
+    def __init__(self, classroom: Classroom, find: Find) -> None:
+        self._class, self._find = classroom, find
+        self._asked: dict[str, int] = {}
+        self._bound: dict[str, Session] = {}
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="class", daemon=True)
+
+    def start(self) -> None:
+        """Begin to look."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Look no more."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join(2.0)
+
+    def look(self) -> None:
+        """Once: take orders to the labs, and news of them to the class."""
+        members = self._class.members()
+        for code in [code for code in self._bound if code not in members]:
+            self._let_go(code)
+        for code in members:
+            self._follow(code)
+
+    def _run(self) -> None:
+        while not self._stop.wait(EVERY):
+            try:
+                self.look()
+            except Exception as error:  # the class must not lose its teacher
+                log_error(error)
+
+    def _let_go(self, code: str) -> None:
+        """Who has left is not held."""
+        lab = self._bound.pop(code)
+        self._asked.pop(code, None)
+        if lab.frozen:
+            lab.post(Freeze(False))
+
+    def _follow(self, code: str) -> None:
+        found, member = self._find(code), self._class.member(code)
+        if member is None:
+            return
+        if found is None:
+            if member.connected:
+                self._class.note(code, connected=False)
+            return
+        lab, connected = found
+        self._bound[code] = lab
+        changes: dict[str, object] = {}
+        if lab.lessons.progress is not member.progress:
+            changes["progress"] = lab.lessons.progress
+        if connected != member.connected:
+            changes["connected"] = connected
+        if lab.asked != self._asked.get(code):
+            self._asked[code], changes["active"] = lab.asked, self._class.clock()
+        orders = self._class.orders
+        if orders.pushes > member.taken:
+            changes["taken"] = orders.pushes
+            if orders.push is not None:
+                lab.post(orders.push)
+        if orders.frozen != lab.frozen:
+            lab.post(Freeze(orders.frozen))
+        if changes:
+            self._class.note(code, **changes)

@@ -1,0 +1,66 @@
+"""A student's way into the class, and a teacher's to the teacher's page."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable
+from typing import Any
+
+import viser
+
+from app.desk import Seat
+from app.session import Session
+
+
+class ClassPanel:
+    """A folder: class code and nickname, or who one is in the class."""
+
+    def __init__(self, gui: viser.GuiApi, session: Session, seat: Seat) -> None:
+        self._seat, self._words = seat, session.lessons.words
+        words = self._words
+        with gui.add_folder(words("class.title"), expand_by_default=not seat.name()):
+            self._member = gui.add_html("")
+            self._code = gui.add_text(words("class.code"), "", hint=words("class.code_hint"))
+            self._name = gui.add_text(
+                words("class.nickname"), "", hint=words("class.nickname_hint")
+            )
+            self._join = gui.add_button(words("class.join"), icon=viser.Icon.LOGIN)
+            self._leave = gui.add_button(words("class.leave"), color="gray", icon=viser.Icon.LOGOUT)
+            self._said = gui.add_html("")
+            with gui.add_folder(words("class.teacher"), expand_by_default=False):
+                key = gui.add_text(words("class.key"), "", hint=words("class.key_hint"))
+                teach = gui.add_button(words("class.teach"), color="gray", icon=viser.Icon.KEY)
+        self._join.on_click(self._trying(lambda: seat.join(self._code.value, self._name.value)))
+        self._leave.on_click(self._trying(seat.leave))
+        teach.on_click(self._trying(lambda: seat.teach(key.value)))
+        self._shown: str | None = None
+        self.follow(session)
+
+    def follow(self, session: Session) -> None:
+        """Show whether the student is in the class."""
+        name = self._seat.name()
+        if name == self._shown:
+            return
+        self._shown = name
+        said = self._words("class.member", name=f"<b><bdi>{html.escape(name)}</bdi></b>")
+        self._member.content = _text(said) if name else ""
+        for handle in (self._code, self._name, self._join):
+            handle.visible = not name
+        self._leave.visible = bool(name)
+
+    def _trying(self, act: Callable[[], object]) -> Callable[[Any], None]:
+        """In a thread of viser's, since the page may be built anew."""
+
+        def tried(_: Any) -> None:
+            try:
+                act()
+                said = ""
+            except ValueError as error:
+                said = self._words.sentence(str(error))
+            self._said.content = _text(html.escape(said)) if said else ""
+
+        return tried
+
+
+def _text(content: str) -> str:
+    return f'<div role="note" style="padding:0.3em 0.9em;font-size:0.9em">{content}</div>'

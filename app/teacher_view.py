@@ -1,0 +1,67 @@
+"""The teacher's tab: the class on the left, one's own lab or a student's in the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import viser
+
+from app import commands as c
+from app.controls import Controls
+from app.desk import Desk
+from app.lab_view import LabView
+from app.lesson_commands import CloseLesson
+from app.loop_store import LoopStore
+from app.panels.teacher_controls import Following, TeacherControls
+from app.panels.teacher_panel import TeacherPanel
+from app.session import Session
+from app.teaching import Teaching
+
+
+class TeacherView(LabView):
+    """What a teacher sees; a followed lab is shown and not touched."""
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        session: Session,
+        store: LoopStore,
+        desk: Desk,
+        teaching: Teaching,
+    ) -> None:
+        self._own, self._teaching = session, teaching
+        session.post(CloseLesson())
+        super().__init__(client, session, store, desk)
+
+    def show(self, session: Session, achieved: float, frame: int) -> None:
+        """See `app.loop.View`."""
+        lab = self._teaching.followed()
+        if lab is None:
+            super().show(session, achieved, frame)
+        else:
+            super().show(lab.session, lab.achieved, frame)
+
+    def _page(self, session: Session) -> tuple[object, ...]:
+        words = self._own.lessons.words
+        return id(session), session.robot, words.language
+
+    def _poster(self, session: Session) -> Callable[[c.Command], None]:
+        return session.post if session is self._own else _ignore
+
+    def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
+        gui, own = self._client.gui, self._own
+        self._parts = []
+        if session is own:
+            self._parts.append(TeacherControls(gui, own, self._teaching))
+            self._build_numbers(session)
+            controls = Controls(gui, own, post, self._exporter, self._scene, self._desk)
+            self._parts += controls.everything()
+        else:
+            self._parts.append(Following(gui, own, self._teaching))
+            self._build_numbers(session)
+        submit = self._exporter.submit
+        self._parts.append(TeacherPanel(self._client, own, self._teaching, submit))
+
+
+def _ignore(_: c.Command) -> None:
+    """Nobody's hands but the student's."""

@@ -1,0 +1,49 @@
+"""What the teacher's page must know of the class, and what is chosen on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from app.classroom import Classroom
+from app.loop import Lab
+
+
+@dataclass(slots=True)
+class Chosen:
+    """On one teacher's page; outlives its rebuilding.
+
+    Attributes:
+        lesson, step: whose prediction is shown.
+        revealed: with the truth.
+        followed: session code of the student whose lab is shown; empty for one's own.
+    """
+
+    lesson: str = ""
+    step: int = 0
+    revealed: bool = False
+    followed: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Teaching:
+    """For one teacher's page.
+
+    Attributes:
+        lab: of a session code, or None when it is not here.
+        forget: delete all that is kept, and end the class; returns how many labs there were.
+        stop: back to a lab's own page.
+    """
+
+    classroom: Classroom
+    chosen: Chosen
+    lab: Callable[[str], Lab | None]
+    forget: Callable[[], int]
+    stop: Callable[[], None]
+
+    def followed(self) -> Lab | None:
+        """The lab that the teacher looks at, if the student is still in the class."""
+        code = self.chosen.followed
+        if not code or self.classroom.member(code) is None:
+            return None
+        return self.lab(code)
