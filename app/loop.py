@@ -5,6 +5,7 @@ A frame that takes longer than its budget slows simulated time, visibly, and nev
 
 from __future__ import annotations
 
+import gc
 import logging
 import sys
 import threading
@@ -22,6 +23,7 @@ FRAME = 1 / 60  # [s]
 FADING = 1 / 60  # of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; further behind, the schedule starts anew
 PAUSE = 1e-3  # [s] at least between frames: when this thread is late, the network is later still
+SELDOM = (5_000, 20, 50)  # allocations before a collection: these stop all threads
 SWITCH_INTERVAL = 5e-4  # [s], so that the network thread does not keep this one waiting
 
 
@@ -95,6 +97,8 @@ class SimulationThread:
     def start(self) -> None:
         """Begin."""
         sys.setswitchinterval(SWITCH_INTERVAL)
+        gc.freeze()  # what is loaded by now stays: a full collection would take 0.2 s of it
+        gc.set_threshold(*SELDOM)
         self._thread.start()
 
     def stop(self) -> None:

@@ -120,11 +120,29 @@ def _write(frames: list[tuple[Channel, list[Message], bytes]]) -> None:
         channel.write(messages, data)
 
 
+def _wire(message: Message, arrays: list[memoryview]) -> dict[str, Any]:
+    """As viser does it, but quicker for what `update_node` makes: arrays only."""
+    if type(message) is not _messages.SceneNodeUpdateMessage:
+        return message.as_serializable_dict(arrays)
+    updates: dict[str, Any] = {}
+    for name, value in message.updates.items():
+        if type(value) is not np.ndarray or not value.flags.c_contiguous:
+            return message.as_serializable_dict(arrays)
+        updates[name] = {"__binary_index": len(arrays) + len(updates), "dtype": value.dtype.str}
+    arrays += [value.data for value in message.updates.values()]
+    return {
+        "type": "SceneNodeUpdateMessage",
+        "name": message.name,
+        "updates": updates,
+        "owner": message.owner,
+    }
+
+
 def packed(messages: list[Message], compressor: zstandard.ZstdCompressor) -> bytes:
     """Messages as viser sends them: lengths, compressed msgpack, then the arrays as they are."""
     arrays: list[memoryview] = []
     window = {
-        "messages": [message.as_serializable_dict(arrays) for message in messages],
+        "messages": [_wire(message, arrays) for message in messages],
         "timestampSec": time.perf_counter(),
         "binaryBufferLengths": [array.nbytes for array in arrays],
     }

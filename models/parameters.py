@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Any
 
-
 NOTHING = 1e-9  # of any parameter; what is smaller is taken as 0, so that its inverse is finite
 
 
