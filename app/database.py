@@ -43,10 +43,21 @@ _labs = sa.Table(
     sa.Column("updated", sa.Double, nullable=False),
     sa.Column("state", sa.Text, nullable=False),
 )
+leases = sa.Table(
+    "leases",
+    _tables,
+    sa.Column("code", sa.String(LONGEST_CODE), primary_key=True),
+    sa.Column("owner", sa.String(40), nullable=False),
+    sa.Column("expires", sa.Double, nullable=False),
+)
 
 
 class NotKept(OSError):
     """The database does not work now; the message says why, in words."""
+
+
+class HeldElsewhere(Exception):
+    """Another process has the lab now: what is known of it here is old."""
 
 
 class _Broken(Exception):
@@ -96,7 +107,7 @@ class Records:
             NotKept: the database cannot say; whoever gets this must not save under this code.
         """
         wanted = sa.select(_labs.c.state, _labs.c.version).where(_labs.c.code == code)
-        with self._transaction() as connection:
+        with self.transaction() as connection:
             row = connection.execute(wanted).first()
         if row is None:
             return None
@@ -107,19 +118,25 @@ class Records:
         except (ValueError, RecursionError):
             raise NotKept("what was kept of this lab cannot be read") from None
 
-    def save(self, code: str, state: dict[str, Any]) -> None:
+    def save(self, code: str, state: dict[str, Any], owner: str | None = None) -> None:
         """Keep a state instead of the one before.
+
+        Args:
+            owner: who saves; nothing is saved under a code that somebody else has leased.
 
         Raises:
             ValueError: too large, not what JSON can say, or no code.
             NotKept: it is not kept: the disk is full, the database away; the old one still is.
+            HeldElsewhere: another owner has it.
         """
         text = _text(code, state)
         values = {"version": VERSION, "updated": self._clock(), "state": text}
         ours = (_labs.c.code == code) & (_labs.c.version <= VERSION)
         for last in (False, True):
             try:
-                with self._transaction() as connection:
+                with self.transaction() as connection:
+                    if owner is not None and lease_owner(connection, code) not in (None, owner):
+                        raise HeldElsewhere
                     changed = connection.execute(sa.update(_labs).where(ours).values(values))
                     if not changed.rowcount:
                         connection.execute(sa.insert(_labs).values(code=code, **values))
@@ -134,7 +151,8 @@ class Records:
         Raises:
             NotKept: they could not be deleted.
         """
-        with self._transaction() as connection:
+        with self.transaction() as connection:
+            connection.execute(sa.delete(leases))
             return connection.execute(sa.delete(_labs)).rowcount
 
     def close(self) -> None:
@@ -142,7 +160,13 @@ class Records:
         self._engine.dispose()
 
     @contextmanager
-    def _transaction(self) -> Iterator[sa.Connection]:
+    def transaction(self) -> Iterator[sa.Connection]:
+        """All or nothing, alone in SQLite.
+
+        Raises:
+            NotKept: nothing.
+            sqlalchemy.exc.IntegrityError: nothing; another process was quicker.
+        """
         try:
             with self._lock, self._engine.begin() as connection:
                 yield connection
@@ -200,6 +224,12 @@ class Records:
             if part.exists():
                 part.rename(aside.with_name(aside.name + tail))
         log.warning("%s is broken (%s): moved to %s, a fresh one is begun", file, why, aside.name)
+
+
+def lease_owner(connection: sa.Connection, code: str) -> str | None:
+    """Who had a lab last; nobody else can take it before this transaction ends."""
+    wanted = sa.select(leases.c.owner).where(leases.c.code == code).with_for_update()
+    return connection.execute(wanted).scalar()
 
 
 def _text(code: str, state: dict[str, Any]) -> str:

@@ -17,6 +17,7 @@ from app.codes import new_code
 from app.database import NotKept
 from app.keeper import Keeper
 from app.kept import State, Watch, put_back
+from app.leases import Leases
 from app.loop import Lab, SimulationThread
 from app.session import Session
 
@@ -51,6 +52,7 @@ class Sessions:
         make: a new session.
         load: what was kept under a code, or None.
         keeper: keeps what changes, or None.
+        leases: says which labs other processes have, or None.
     """
 
     simulation: SimulationThread
@@ -58,6 +60,7 @@ class Sessions:
     clock: Callable[[], float] = time.monotonic
     load: Callable[[str], State | None] = lambda _: None
     keeper: Keeper | None = None
+    leases: Leases | None = None
     _entries: dict[str, Entry] = field(default_factory=dict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
@@ -68,13 +71,17 @@ class Sessions:
             known: the list of codes that its browser keeps, as `remembered` made it.
         """
         codes = CODE.findall(known[:200]) if known else []
+        if self.leases is not None and codes:
+            codes = self.leases.available(codes)
         with self._lock:
             self._drop_old()
             free = [self._entries[code] for code in codes if code in self._entries]
             free = [entry for entry in free if entry.client is None]
-            if free:
-                entry = max(free, key=lambda e: e.left)
-            else:
+            entry = max(free, key=lambda e: e.left, default=None)
+            if entry is not None and not self._is_up_to_date(entry):
+                self._remove(entry)
+                codes, entry = [entry.code, *codes], None
+            if entry is None:
                 entry = self._entry([code for code in codes if code not in self._entries])
             entry.client = client
             return entry
@@ -87,13 +94,16 @@ class Sessions:
         """
         with self._lock:
             entry = self._entries.get(code)
-            if entry is not None and entry.client is not None:
+            taken = entry is not None and entry.client is not None
+            if taken or (self.leases is not None and not self.leases.available([code])):
                 raise ValueError("this lab is open in another window: close that one first")
+            if entry is not None and not self._is_up_to_date(entry):
+                self._remove(entry)
+                entry = None
             if entry is None:
                 entry = self._entry([code])
                 if entry.code != code:
-                    self.simulation.remove(entry.lab)
-                    del self._entries[entry.code]
+                    self._remove(entry)
                     raise ValueError("there is no lab with this code")
             self._abandon(client)
             entry.client = client
@@ -104,7 +114,7 @@ class Sessions:
         session, code = self.make(), new_code()
         for known in codes:
             try:
-                state = self.load(known)
+                state = self._kept(known)
             except NotKept as error:
                 session.say(f"Your lab is kept, but cannot be read now: {error}", "warning")
                 break
@@ -130,12 +140,57 @@ class Sessions:
         return self._entries.get(code)
 
     def leave(self, client: int) -> Entry | None:
-        """A client is gone; its session waits, paused, for it to come back."""
+        """A client is gone; its session waits, paused, for it to come back, here or elsewhere."""
         with self._lock:
             entry = self._abandon(client)
             if entry is not None:
                 self._drop_old()
-            return entry
+        if entry is not None:
+            self._let_go(entry)
+        return entry
+
+    def held(self) -> list[str]:
+        """The labs that somebody looks at."""
+        with self._lock:
+            return [entry.code for entry in self._entries.values() if entry.client is not None]
+
+    def lose(self, code: str) -> int | None:
+        """Another process has a lab now. Returns the client that looked at it here."""
+        with self._lock:
+            entry = self._entries.get(code)
+            if entry is not None:
+                self._remove(entry)
+            return entry.client if entry is not None else None
+
+    def _kept(self, code: str) -> State | None:
+        """What is kept under a code that no other process has; now this one has it.
+
+        Raises:
+            NotKept: the database cannot say.
+        """
+        state = self.load(code)
+        if state is None or self.leases is None:
+            return state
+        return None if self.leases.claim(code) is None else self.load(code)
+
+    def _is_up_to_date(self, entry: Entry) -> bool:
+        """Whether nobody else had a lab that has waited here; then it is not theirs now."""
+        try:
+            return self.leases is None or self.leases.claim(entry.code) is True
+        except NotKept:
+            return True
+
+    def _let_go(self, entry: Entry) -> None:
+        """Other processes may have a lab, as it was left."""
+        if self.keeper is not None:
+            self.keeper.flush(entry.code)
+        with self._lock:
+            if self.leases is not None and entry.client is None:
+                self.leases.release(entry.code)
+
+    def _remove(self, entry: Entry) -> None:
+        self.simulation.remove(entry.lab)
+        del self._entries[entry.code]
 
     def _abandon(self, client: int) -> Entry | None:
         for entry in self._entries.values():
@@ -158,5 +213,4 @@ class Sessions:
         waiting.sort(key=lambda e: e.left, reverse=True)
         for rank, entry in enumerate(waiting):
             if rank >= MOST_ABANDONED or self.clock() - entry.left > KEPT:
-                self.simulation.remove(entry.lab)
-                del self._entries[entry.code]
+                self._remove(entry)
