@@ -143,7 +143,7 @@ class Classroom:
 
     def is_pass(self, shown: str | None) -> bool:
         """Whether a browser may teach."""
-        given = (shown or "")[:100].encode()
+        given = (shown or "")[:100].encode(errors="replace")
         with self._lock:
             return any([hmac.compare_digest(given, own.encode()) for own in self._passes])
 
@@ -155,7 +155,7 @@ class Classroom:
     def _check(self, typed: str, right: str, who: str, refusal: str) -> None:
         with self._lock:
             self._throttle.check(who)
-            if not hmac.compare_digest(typed.encode(), right.encode()):
+            if not hmac.compare_digest(typed.encode(errors="replace"), right.encode()):
                 self._throttle.count(who)
                 raise ValueError(refusal)
 

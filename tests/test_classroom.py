@@ -1,0 +1,351 @@
+"""A class without a browser: who may come in, what the teacher sees, what reaches the labs."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app import class_html as page
+from app import commands as c
+from app import lesson_commands as lc
+from app.attendance import Attendance
+from app.class_commands import Freeze, TakeSetup, TakeStep
+from app.class_record import HEADER, class_csv, distribution, prediction_at, truth_of
+from app.classroom import LONGEST_NAME, TRIES, WITHIN, Classroom, cleaned
+from app.codes import shown
+from app.database import Records, file_url
+from app.forget import forget
+from app.keeper import Keeper
+from app.session import Session
+from app.setups import capture
+from lessons.course import Course, read_course
+from lessons.progress import Answer, Notes, Progress, Truth
+from lessons.schema import Choice, Sketch
+from lessons.words import ENGLISH
+from models.catalogue import FIVE_BAR
+from tests.lab import do, run, store
+from tests.lesson_texts import write_lesson
+
+LESSON = "01-a"
+HOSTILE = '<img src=x onerror="alert(1)">'
+
+
+@pytest.fixture
+def course(tmp_path: Path) -> Course:
+    write_lesson(tmp_path / "course")
+    return read_course([tmp_path / "course"])[0]
+
+
+@dataclass
+class Watched:
+    """A class whose clock and labs are in the test's hands."""
+
+    course: Course
+    now: float = 1000.0
+    labs: dict[str, tuple[Session, bool]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.room = Classroom(lambda: self.now)
+        self.attendance = Attendance(self.room, self.labs.get)
+
+    def student(self, name: str) -> Session:
+        """One more, in the class."""
+        code = f"lab {len(self.labs)}"
+        session = Session(store(), FIVE_BAR, self.course)
+        self.labs[code] = session, True
+        self.room.join(code, self.room.code, name)
+        self.look()
+        return session
+
+    def look(self) -> None:
+        """As the class's thread does; then a frame of every lab."""
+        self.attendance.look()
+        for session, _ in self.labs.values():
+            session.drain()
+
+
+@pytest.fixture
+def klass(course: Course) -> Watched:
+    return Watched(course)
+
+
+# Who may come in.
+
+
+def test_students_join_with_the_code_and_a_nickname(klass: Watched) -> None:
+    room = klass.room
+    room.join("lab", f" {room.code.upper()} ", "  Ada\tLovelace ")
+    assert [member.name for member in room.members().values()] == ["Ada Lovelace"]
+    with pytest.raises(ValueError, match="class code"):
+        room.join("other", "nope", "Bob")
+    with pytest.raises(ValueError, match="nickname"):
+        room.join("other", room.code, " \u200b\n")
+    assert room.member("other") is None
+
+
+def test_two_of_a_name_are_told_apart(klass: Watched) -> None:
+    room = klass.room
+    names = [room.join(f"lab {i}", room.code, "x" * 40).name for i in range(12)]
+    assert len(set(names)) == 12 and all(len(name) <= LONGEST_NAME for name in names)
+    assert room.join("lab 3", room.code, "new").number == 4
+
+
+@given(st.text(max_size=300))
+def test_a_nickname_is_short_and_printable(text: str) -> None:
+    try:
+        name = cleaned(text)
+    except ValueError:
+        return
+    assert 0 < len(name) <= LONGEST_NAME and name.isprintable()
+    assert cleaned(name) == name
+
+
+@pytest.mark.parametrize("name", [HOSTILE, "</td><script>", "\u202egnp.exe", "{0.x}", "&lt;b&gt;"])
+def test_a_hostile_nickname_is_only_text(klass: Watched, name: str) -> None:
+    klass.student(name)
+    shown = page.table(klass.room.members().values(), klass.course, klass.now, ENGLISH)
+    assert "<img" not in shown and "<script" not in shown and "\u202e" not in shown
+    assert shown.count("<tr") == 2
+
+
+def test_the_teacher_comes_in_with_the_key_alone(klass: Watched) -> None:
+    room = klass.room
+    given_pass = room.admit(f" {shown(room.key).upper()}", "lab")
+    assert room.is_pass(given_pass) and not room.is_pass(room.key)
+    for wrong in (None, "", given_pass[:-1], given_pass + "x", "é", "\udcff"):
+        assert not room.is_pass(wrong)
+    for wrong in (room.code, "", "é" * 12, "\udcff", "2222-2222-2222"):
+        with pytest.raises(ValueError, match="key"):
+            room.admit(wrong, f"lab {wrong}")
+    room.revoke(given_pass)
+    assert not room.is_pass(given_pass)
+
+
+def test_guessing_is_slow_and_locks_out_nobody_else(klass: Watched) -> None:
+    room = klass.room
+    for _ in range(TRIES):
+        with pytest.raises(ValueError, match="not the teacher's key"):
+            room.admit("2222-2222-2222", "thief")
+    with pytest.raises(ValueError, match="too many"):
+        room.admit(shown(room.key), "thief")
+    with pytest.raises(ValueError, match="too many"):
+        room.join("thief", room.code, "x")
+    assert room.admit(shown(room.key), "teacher")
+    klass.now += WITHIN + 1
+    assert room.join("thief", room.code, "x")
+
+
+# What reaches the labs.
+
+
+def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -> None:
+    session = klass.student("Ada")
+    outside = Session(store(), FIVE_BAR, klass.course)
+    do(session, c.Tug(0.01, 0.0))
+    klass.room.freeze(True)
+    klass.look()
+    before = session.time
+    assert session.message == ENGLISH("class.frozen") and not session.hands
+    for command in (c.SetRunning(False), c.Step(), c.SetParameter("K1", 1.0), c.Tug(0.01, 0.0)):
+        session.say("")
+        do(session, command)
+        assert session.message == ENGLISH("class.frozen")
+    run(session, 0.5)
+    run(outside, 0.5)
+    assert session.time == before and outside.time > 0.4
+    assert session.running and session.parameters.K1 != 1.0 and not session.hands
+    klass.room.freeze(False)
+    klass.look()
+    run(session, 0.5)
+    assert session.time > before and session.message == ""
+
+
+def test_who_joins_is_frozen_too_and_who_leaves_is_let_go(klass: Watched) -> None:
+    klass.room.freeze(True)
+    first, second = klass.student("Ada"), klass.student("Bob")
+    assert first.frozen and second.frozen
+    klass.room.leave("lab 0")
+    klass.look()
+    assert not first.frozen and second.frozen
+    assert klass.room.end() == 1
+    klass.look()
+    assert not second.frozen and klass.room.members() == {} and not klass.room.orders.frozen
+
+
+def test_a_step_is_opened_for_all_as_if_they_had_come_there(klass: Watched) -> None:
+    first, second = klass.student("Ada"), klass.student("Bob")
+    do(second, lc.OpenLesson(LESSON), c.SetParameter("K1", 7.0))
+    klass.room.push(TakeStep(LESSON, 1))
+    klass.look()
+    for session in (first, second):
+        assert session.lessons.lesson is not None and session.lessons.index == 1
+        assert session.parameters.K1 == 300 and session.locked  # of the scene before
+        assert session.lessons.answer() is None
+        do(session, lc.CloseLesson())
+    klass.look()
+    assert first.lessons.lesson is None  # once, not again and again
+    late = klass.student("Cid")
+    assert late.lessons.lesson is None
+    for wrong in (TakeStep("nope", 0), TakeStep(LESSON, 99), TakeStep(LESSON, -1)):
+        klass.room.push(wrong)
+        klass.look()
+        assert first.lessons.lesson is None and first.message.startswith("no ")
+
+
+def test_a_setup_is_taken_by_all_even_when_frozen(klass: Watched) -> None:
+    own = Session(store(), FIVE_BAR, klass.course)
+    do(own, c.SetParameter("K2", 33), c.ChoosePath("clover"))
+    session = klass.student("Ada")
+    do(session, lc.OpenLesson(LESSON))
+    klass.room.freeze(True)
+    klass.look()
+    klass.room.push(TakeSetup(capture(own)))
+    klass.look()
+    assert capture(session) == capture(own) and session.lessons.lesson is None
+    assert session.frozen and session.message == ENGLISH("class.frozen")
+
+
+def test_only_a_teacher_thaws(klass: Watched) -> None:
+    session = klass.student("Ada")
+    do(session, Freeze(True))  # type: ignore[arg-type]
+    do(session, lc.SetLanguage("de"), c.Reset())
+    assert session.frozen and session.lessons.words.language == "en"
+
+
+def test_who_leaves_and_returns_keeps_its_place(klass: Watched) -> None:
+    session = klass.student("Ada")
+    klass.room.push(TakeStep(LESSON, 1))
+    klass.look()
+    klass.look()
+    klass.labs["lab 0"] = session, False
+    klass.look()
+    away = klass.room.member("lab 0")
+    assert away is not None and not away.connected and away.progress.lesson == LESSON
+    del klass.labs["lab 0"]  # dropped after a while; kept in the database
+    klass.room.freeze(True)
+    klass.look()
+    again = Session(store(), FIVE_BAR, klass.course)
+    again.lessons.resume(session.lessons.progress, None, again)
+    klass.labs["lab 0"] = again, True
+    klass.look()
+    member = klass.room.member("lab 0")
+    assert member is not None and member.connected and again.frozen
+    assert (member.number, member.name) == (1, "Ada") and again.lessons.index == 1
+
+
+def test_the_table_knows_who_is_idle_and_who_is_away(klass: Watched) -> None:
+    busy, _ = klass.student("Busy"), klass.student("Idle")
+    klass.student("Gone")
+    klass.now += 180.0
+    do(busy, c.SetRunning(False))
+    klass.labs["lab 2"] = klass.labs["lab 2"][0], False
+    klass.look()
+    rows = page.table(klass.room.members().values(), klass.course, klass.now, ENGLISH)
+    for name, state in (("Busy", "here"), ("Idle", "idle for 3 min"), ("Gone", "away")):
+        row = next(row for row in rows.split("<tr") if name in row)
+        assert state in row
+
+
+# What was predicted.
+
+
+def answered(*answers: Answer | None, step: int) -> list[Progress]:
+    """Students with these answers to one prediction."""
+    kept = [{} if answer is None else {str(step): answer} for answer in answers]
+    return [Progress(notes={LESSON: Notes(answers=own)}) for own in kept]
+
+
+def test_choices_are_counted(course: Course) -> None:
+    lesson = course.lesson(LESSON, "en")
+    found = prediction_at(lesson, 4)
+    assert found is not None and found[0] == 3 and isinstance(found[1], Choice)
+    ways = answered(Answer(1), Answer(1), Answer(0), Answer(), Answer(7), None, step=3)
+    counted = distribution(found[1], LESSON, 3, [*ways, Progress()])
+    assert (counted.counts, counted.skipped, counted.waiting) == ((1, 2), 1, 2)
+    hidden = page.prediction_view(found[1], counted, None, False, ENGLISH)
+    revealed = page.prediction_view(found[1], counted, None, True, ENGLISH)
+    assert "✓" not in hidden and revealed.count("✓") == 1
+    assert "width:85.0%" in hidden and "width:42.5%" in hidden
+
+
+def test_sketches_lie_over_the_truth(course: Course) -> None:
+    lesson = course.lesson(LESSON, "en")
+    found = prediction_at(lesson, 2)
+    assert found is not None and found[0] == 1 and isinstance(found[1], Sketch)
+    curve = Answer(times=(0.0, 1.0, 2.0), values=(0.0, 30.0, 1e9))
+    ways = answered(curve, curve, None, step=1)
+    truth = Truth("distance", (0.0, 2.0), (0.0, 50.0), (0.0, 1.0))
+    played = Progress(notes={LESSON: Notes(truths={"1": truth})})
+    assert truth_of(LESSON, 1, ways) is None and truth_of(LESSON, 1, [*ways, played]) == truth
+    counted = distribution(found[1], LESSON, 1, ways)
+    hidden = page.prediction_view(found[1], counted, truth, False, ENGLISH)
+    revealed = page.prediction_view(found[1], counted, truth, True, ENGLISH)
+    assert hidden.count("<polyline") == 2 and revealed.count("<polyline") == 4
+    assert "nan" not in revealed and "1000000000" not in revealed
+
+
+def test_a_step_without_prediction_has_none(course: Course) -> None:
+    lesson = course.lesson(LESSON, "en")
+    assert prediction_at(lesson, 0) is None and prediction_at(lesson, 5) is None
+
+
+# What is taken home, and what is forgotten.
+
+
+def rows_of(data: bytes) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(data.decode("utf-8-sig"))))
+
+
+def test_the_record_has_a_row_for_each_prediction_and_task(klass: Watched) -> None:
+    session = klass.student("Ada")
+    klass.student("Bob")
+    do(session, lc.OpenLesson(LESSON), lc.GoToStep(1))
+    do(session, lc.Predict(times=(0.0, 1.0), values=(1.0, 2.5)))
+    klass.look()
+    rows = rows_of(class_csv(klass.room.members().values(), klass.course, "en"))
+    assert {row["nickname"] for row in rows} == {"Ada"} and tuple(rows[0]) == HEADER
+    found = {(row["kind"], row["step"]): row for row in rows}
+    assert found["prediction", "2"]["result"] == "sketch"
+    assert found["prediction", "2"]["value"] == "0:1 1:2.5"
+    assert found["prediction", "4"]["result"] == "open"
+    task = next(row for row in rows if row["kind"] == "task")
+    assert (task["item"], task["result"], task["right"]) == ("hold", "open", "0")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ['=HYPERLINK("http://x")', "+1", "-1", "@SUM(A1)", " =1", "\t=1", "|calc", "%0", 'a","=1'],
+)
+def test_no_cell_is_a_formula(klass: Watched, name: str) -> None:
+    session = klass.student(name)
+    do(session, lc.OpenLesson(LESSON))
+    klass.look()
+    rows = rows_of(class_csv(klass.room.members().values(), klass.course, "en"))
+    assert rows
+    assert {row["nickname"].removeprefix("'") for row in rows} == {cleaned(name)}
+    for cell in (cell for row in rows for cell in row.values()):
+        assert not cell.lstrip().startswith(("=", "+", "-", "@", "|", "%"))
+
+
+def test_everything_that_is_kept_is_deleted(tmp_path: Path) -> None:
+    file = tmp_path / "labs.db"
+    records = Records(file_url(file))
+    keeper = Keeper(records, interval=60.0)
+    for code in ("a" * 12, "b" * 12):
+        records.save(code, {"secret": "Ada"})
+    keeper.submit("c" * 12, lambda: {"secret": "late"})
+    count = keeper.forget(records.delete_all)
+    keeper.close()
+    assert count in (2, 3) and records.delete_all() == 0
+    records.save("a" * 12, {"secret": "Ada"})
+    records.close()
+    (tmp_path / "labs.db.broken-1").write_text("Ada")
+    gone = forget(f"sqlite:///{file}")
+    assert gone.labs == 1 and [f.name for f in gone.files] == ["labs.db.broken-1"]
+    assert not any(b"Ada" in part.read_bytes() for part in tmp_path.iterdir())
