@@ -24,6 +24,7 @@ FADING = 1 / 60  # of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; further behind, the schedule starts anew
 PAUSE = 1e-3  # [s] at least between frames: when this thread is late, the network is later still
 SELDOM = (5_000, 20, 50)  # allocations before a collection: these stop all threads
+COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones are paid for by waiting
 SWITCH_INTERVAL = 5e-4  # [s], so that the network thread does not keep this one waiting
 
 
@@ -50,6 +51,7 @@ class Lab:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.view: View | None = None
+        self._credit = 0.0  # [s] of computing for commands
         self._simulated = self._passed = 1e-6  # lately, each fading over about a second
 
     @property
@@ -60,7 +62,8 @@ class Lab:
     def frame(self, seconds: float, count: int) -> None:
         """One frame: apply commands, simulate, show."""
         session = self.session
-        session.drain()
+        self._credit = min(self._credit, 0.0) + COMMANDS
+        self._credit -= session.drain(self._credit)
         view = self.view  # may go at any time
         if view is None:
             return  # nobody looks: simulated time waits

@@ -9,6 +9,8 @@ from __future__ import annotations
 import logging
 from collections import deque
 from collections.abc import Callable
+from math import inf
+from time import perf_counter
 
 import numpy as np
 
@@ -123,9 +125,17 @@ class Session:
         """Ask for something; from any thread."""
         self._inbox.append(command)
 
-    def drain(self) -> None:
-        """Apply what has been asked for. A command that makes no sense is answered in words."""
-        while self._inbox:
+    def drain(self, most: float = inf) -> float:
+        """Apply what has been asked for. A command that makes no sense is answered in words.
+
+        Args:
+            most: of computing, after which the rest waits, [s].
+
+        Returns:
+            How long the commands took, [s].
+        """
+        begun = perf_counter()
+        while self._inbox and perf_counter() - begun < most:
             command = self._inbox.popleft()
             if not isinstance(command, ClassCommand):
                 self.asked += 1
@@ -136,11 +146,13 @@ class Session:
                 apply(command, self)
             except ValueError as error:
                 self.say(self.lessons.words.sentence(str(error)), "warning")
+        taken = perf_counter() - begun
         if not self.frozen:
             self._play()
         self.lessons.follow(self)
         if self.watch is not None:
             self.watch(self)
+        return taken
 
     def _refusal(self, command: commands.Command) -> str:
         """Why a command of the user's is not applied now; empty when it is."""
