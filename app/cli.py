@@ -36,12 +36,26 @@ class Serve:
     """URL of a database that keeps the labs; a file in your data folder if not given."""
     classroom: bool = False
     """Open a class: prints a code for the students and a key for the teacher."""
+    origin: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """Address of the page behind a proxy, https://lab.example.org; repeat for more."""
+    socket: Path | None = None
+    """Listen on this Unix socket instead, for a proxy of your own such as Jupyter's."""
+    workers: int = 1
+    """So many processes, which share the port and the database."""
+    successive_ports: bool = False
+    """Each worker has a port of its own, from --port on, for a proxy in front."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     """How much to log."""
 
     def run(self) -> None:
         """Serve until Ctrl-C."""
+        if self.workers != 1:
+            from app.workers import supervise
+
+            supervise(self)
+            return
         from app.server import serve
+        from app.workers import is_worker
 
         classroom = _classroom() if self.classroom else None
         level = getattr(logging, self.log_level.upper())
@@ -54,6 +68,9 @@ class Serve:
             self.database,
             open_browser=self.open,
             classroom=classroom,
+            allowed_origins=self.origin,
+            unix_socket=self.socket,
+            share_port=is_worker(),
         )
 
 

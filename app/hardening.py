@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import asyncio
 import dataclasses
-import errno
 import logging
 import socket
 import threading
@@ -19,6 +18,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from http import HTTPStatus
+from pathlib import Path
 from typing import Any
 
 import viser
@@ -31,9 +32,12 @@ from websockets.frames import CloseCode, Frame, Opcode
 from websockets.http11 import Request, Response
 
 from app.error_log import log_error
+from app.listening import PortInUse, listen, listen_unix
 from app.origin import Door, is_loopback
 from app.widget_values import Refused, accepted_value
 from app.wire_form import fault
+
+__all__ = ["Limits", "PortInUse", "harden", "make_server"]
 
 _log = logging.getLogger(__name__)
 
@@ -59,10 +63,6 @@ _FROM_BROWSER: dict[str, type[Any]] = {
     )
 }
 _SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
-
-
-class PortInUse(OSError):
-    """The port is taken; the message says which, and the way out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +93,8 @@ def make_server(
     label: str | None = None,
     limits: Limits = Limits(),
     allowed_origins: tuple[str, ...] = (),
+    share_port: bool = False,
+    unix_socket: Path | None = None,
     verbose: bool = False,
 ) -> viser.ViserServer:
     """A hardened server that listens on exactly this address; port 0 takes a free one.
@@ -100,16 +102,20 @@ def make_server(
     Args:
         allowed_origins: pages of other sites that may connect, "https://lab.example:8443". The
             server's own page always may, and so may a client that is no browser.
+        share_port: other processes of this user may listen on the same port; each new connection
+            goes to one of them. Only Linux spreads them.
+        unix_socket: listen on this file alone, for a proxy of this user's that puts the page
+            into a folder of its own.
 
     Raises:
         PortInUse: where viser alone would move on to the next port without a word.
         OSError: the address cannot be bound.
     """
     _cache_icons()
-    listener = _listen(host, port)
-    door = Door(allowed_origins, local_only=is_loopback(host))
+    listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
+    door = Door(allowed_origins, local_only=is_loopback(host) and not unix_socket)
     with _guarded_serve(listener, door, limits):
-        bound_port = listener.getsockname()[1]
+        bound_port = 0 if unix_socket else listener.getsockname()[1]
         server = viser.ViserServer(host=host, port=bound_port, label=label, verbose=verbose)
     harden(server, limits=limits)
     door.open = True
@@ -142,17 +148,15 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
     websock.on_client_connect(guard)
 
 
-def _listen(host: str, port: int) -> socket.socket:
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    try:
-        return socket.create_server((host, port), family=family)
-    except OSError as error:
-        if error.errno != errno.EADDRINUSE:
-            raise
-        way_out = "stop the program that has it, or choose another port (0 takes any free one)"
-        raise PortInUse(error.errno, f"port {port} on {host} is in use: {way_out}") from None
+def _to_page(connection: ServerConnection, request: Request) -> Response:
+    """viser's page opens its websocket at its own address without the last slash: in a proxy's
+    folder that is not the lab's, but a file's address is."""
+    response = connection.respond(HTTPStatus.FOUND, "")
+    response.headers["Location"] = "index.html" + request.path[1:]
+    return response
 
 
+_INTERNET = (socket.AF_INET, socket.AF_INET6)
 _patching = threading.Lock()
 
 
@@ -164,8 +168,11 @@ def _guarded_serve(listener: socket.socket, door: Door, limits: Limits) -> Itera
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
         def knock(connection: ServerConnection, request: Request) -> Response | None:
-            refusal = door.refusal(request)
-            return connection.respond(*refusal) if refusal else process_request(connection, request)
+            if refusal := door.refusal(request):
+                return connection.respond(*refusal)
+            if listener.family not in _INTERNET and request.path.partition("?")[0] == "/":
+                return _to_page(connection, request)
+            return process_request(connection, request)
 
         options["max_size"] = limits.max_message_bytes
         options["create_connection"] = partial(_Connection, limits=limits)

@@ -8,6 +8,8 @@ from urllib.parse import unquote, urlsplit
 
 from websockets.http11 import Request
 
+HEALTH = "/health"  # answered while the network thread is alive, for those who restart servers
+
 
 class Door:
     """Decides on requests. Closed to websockets until `open` is set, lest one slip in early."""
@@ -24,7 +26,9 @@ class Door:
         self._local_only = local_only
 
     def refusal(self, request: Request) -> tuple[HTTPStatus, str] | None:
-        """Status and text to answer with, or None to let the request through."""
+        """Status and text to answer with at once, or None to let the request through."""
+        if request.path == HEALTH:
+            return HTTPStatus.OK, "well\n"
         path = unquote(request.path.partition("?")[0]).replace("\\", "/")
         if ".." in path.split("/") or ":" in path or "\0" in path:  # C:/ is absolute on Windows
             return HTTPStatus.NOT_FOUND, "Not found.\n"

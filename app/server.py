@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import logging
+import signal
 import threading
 import webbrowser
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import viser
 
@@ -19,6 +21,7 @@ from app.error_log import log_error
 from app.hardening import make_server
 from app.keeper import Keeper
 from app.lab_view import LabView
+from app.leases import Leases
 from app.loop import SimulationThread
 from app.loop_store import LoopStore
 from app.session import Session
@@ -44,6 +47,7 @@ class LabServer:
         course: the lessons; the built-in ones if there is none.
         records: where labs are kept; nowhere if there is none.
         classroom: the class that students may join; none if there is none.
+        listening: what else `make_server` takes.
 
     Raises:
         OSError: the address cannot be had; the message says why and the way out.
@@ -57,16 +61,19 @@ class LabServer:
         course: Course | None = None,
         records: Records | None = None,
         classroom: Classroom | None = None,
+        **listening: Any,
     ) -> None:
         self._store = store
         lessons = course or read_course([BUILT_IN])[0]
-        self.server = make_server(host, port, label="OnPath")
+        self.server = make_server(host, port, label="OnPath", **listening)
         self.simulation = SimulationThread()
         self._records = records
-        self._keeper = Keeper(records) if records else None
+        self._leases = Leases(records) if records else None
+        self._keeper = Keeper(self._leases) if self._leases else None
         self.sessions = Sessions(self.simulation, lambda: Session(store, FIVE_BAR, lessons))
         if records is not None:
             self.sessions.load, self.sessions.keeper = records.load, self._keeper
+            self.sessions.leases = self._leases
         self._class: ClassDesk | None = None
         if classroom is not None:
             self._class = ClassDesk(classroom, self.sessions, records, self._keeper)
@@ -75,6 +82,8 @@ class LabServer:
         self.server.on_client_connect(self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self.simulation.start()
+        if self._leases is not None:
+            self._leases.keep(self.sessions.held, self._lost)
 
     @property
     def address(self) -> str:
@@ -92,6 +101,8 @@ class LabServer:
         self.server.stop()
         if self._keeper is not None and self._records is not None:
             self._keeper.close()
+            if self._leases is not None:
+                self._leases.close()
             self._records.close()
 
     def _connected(self, client: viser.ClientHandle) -> None:
@@ -139,6 +150,13 @@ class LabServer:
         """
         self._reopen(client, self.sessions.enter(client.client_id, normalised(text)))
 
+    def _lost(self, code: str) -> None:
+        """Another process has taken a lab: this one must have slept, its student is there."""
+        number = self.sessions.lose(code)
+        client = self.server.get_clients().get(-1 if number is None else number)
+        if client is not None:
+            self._reopen(client, self.sessions.join(client.client_id, None))
+
     def _reopen(self, client: viser.ClientHandle, entry: Entry) -> None:
         """A client's page anew, with a session that is its own already."""
         entry.lab.view = None
@@ -165,13 +183,15 @@ def serve(
     database: str | None = None,
     open_browser: bool = False,
     classroom: Classroom | None = None,
+    **listening: Any,
 ) -> None:
-    """Serve the lab until Ctrl-C.
+    """Serve the lab until Ctrl-C or SIGTERM.
 
     Args:
         lessons: a folder of lessons of one's own.
         database: URL of the one that keeps the labs; a file of the user's if there is none.
         classroom: the class that students may join; none if there is none.
+        listening: what else `make_server` takes.
 
     Raises:
         LessonError: one of those is not all right.
@@ -182,7 +202,9 @@ def serve(
     records = Records(database)
     if records.warning:
         log.warning("%s", records.warning)
-    lab = LabServer(host, port, LoopStore.with_system_compiler(), course, records, classroom)
+    store = LoopStore.with_system_compiler()
+    lab = LabServer(host, port, store, course, records, classroom, **listening)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
     if open_browser:
         webbrowser.open(lab.address)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -26,7 +26,7 @@ class Clock:
 
     def __init__(self) -> None:
         self.now = 1.8e9
-        self.meanwhile = lambda: None
+        self.meanwhile: Callable[[], object] = lambda: None
 
     def sleep(self, seconds: float) -> None:
         self.now += seconds
@@ -99,7 +99,7 @@ def test_a_lab_is_waited_for_until_its_owner_is_known_dead_or_alive(
     assert two.available(CODES) == CODES and TERM <= clock.now - begun < TERM + 1
     one.renew(CODES[:2])
     begun = clock.now
-    clock.meanwhile = lambda: one.renew(CODES[:2]) and None if clock.now > begun + 1 else None
+    clock.meanwhile = lambda: clock.now > begun + 1 and one.renew(CODES[:2])
     assert two.available(CODES) == CODES[2:] and clock.now - begun < 1.5
     clock.meanwhile = lambda: one.release(CODES[1])
     one.renew(CODES[1:2])
@@ -190,7 +190,7 @@ def test_a_lab_that_is_open_elsewhere_is_not_opened_again(
     run(entry.lab.session, 1.1)
     workers[0].keeper.flush(entry.code)
     owners[0].renew(one.held())
-    clock.meanwhile = lambda: owners[0].renew(one.held()) and None
+    clock.meanwhile = lambda: owners[0].renew(one.held())
     assert two.join(1, entry.code).code != entry.code
     with pytest.raises(ValueError, match="another window"):
         two.enter(1, entry.code)

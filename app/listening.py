@@ -1,0 +1,70 @@
+"""Sockets to listen on: a port of one's own, a port of a few processes, a file."""
+
+from __future__ import annotations
+
+import errno
+import os
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+class PortInUse(OSError):
+    """The port is taken; the message says which, and the way out."""
+
+
+def listen(host: str, port: int, share_port: bool = False) -> socket.socket:
+    """Listen on exactly this address; port 0 takes a free one.
+
+    Raises:
+        PortInUse: somebody else does.
+        OSError: the address cannot be had.
+    """
+    with _in_use_said(host, port):
+        return socket.create_server((host, port), family=_family(host), reuse_port=share_port)
+
+
+def listen_unix(file: Path) -> socket.socket:
+    """Listen on a file that only this user can open."""
+    listener = socket.socket(socket.AF_UNIX)
+    before = os.umask(0o177)
+    try:
+        listener.bind(str(file))
+    finally:
+        os.umask(before)
+    listener.listen()
+    return listener
+
+
+def reserve(host: str, port: int) -> socket.socket:
+    """An address for processes that are to share it, held without listening.
+
+    Raises:
+        PortInUse: somebody else listens there, sharing or not.
+        OSError: the address cannot be had.
+    """
+    with _in_use_said(host, port):
+        if port:
+            socket.create_server((host, port), family=_family(host)).close()
+        place = socket.socket(_family(host))
+        place.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        if hasattr(socket, "SO_REUSEPORT"):
+            place.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+        place.bind((host, port))
+        return place
+
+
+def _family(host: str) -> socket.AddressFamily:
+    return socket.AF_INET6 if ":" in host else socket.AF_INET
+
+
+@contextmanager
+def _in_use_said(host: str, port: int) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        if error.errno != errno.EADDRINUSE:
+            raise
+        way_out = "stop the program that has it, or choose another port (0 takes any free one)"
+        raise PortInUse(error.errno, f"port {port} on {host} is in use: {way_out}") from None

@@ -1,0 +1,199 @@
+"""Several lab processes behind one address: starts them, restarts them, stops them.
+
+On Linux they listen on the same port, and the kernel gives each new connection to one of them:
+the page is the same from all, and a lab comes from the database that they share.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+from app.listening import reserve
+
+log = logging.getLogger(__name__)
+
+MOST = 64
+AGAIN = 1.0  # [s] before a worker that died is started again
+LAST_WORDS = 10.0  # [s] to stop before being killed
+MARK = "ONPATH_WORKER"  # in a worker's environment
+USAGE = 2  # exit code: what was asked for makes no sense, nor will it later
+ROOT = Path(__file__).resolve().parent.parent
+START = f"import sys; sys.path[0] = {str(ROOT)!r}; from app.cli import main; main()"
+
+
+class Options(Protocol):
+    """What was asked for on the command line; see `app.cli.Serve`."""
+
+    @property
+    def host(self) -> str: ...
+    @property
+    def port(self) -> int: ...
+    @property
+    def lessons(self) -> Path | None: ...
+    @property
+    def database(self) -> str | None: ...
+    @property
+    def origin(self) -> tuple[str, ...]: ...
+    @property
+    def workers(self) -> int: ...
+    @property
+    def successive_ports(self) -> bool: ...
+    @property
+    def classroom(self) -> bool: ...
+    @property
+    def socket(self) -> Path | None: ...
+    @property
+    def log_level(self) -> str: ...
+
+
+def supervise(options: Options) -> None:
+    """Run workers until Ctrl-C or SIGTERM.
+
+    Raises:
+        ValueError: they cannot be as asked for, or a worker says so.
+        OSError: a port cannot be had.
+    """
+    _check(options)
+    logging.basicConfig(level=options.log_level.upper(), format="%(levelname)s %(message)s")
+    apart = options.successive_ports or sys.platform != "linux"
+    places = options.workers if apart else 1
+    held = [reserve(options.host, options.port + i if options.port else 0) for i in range(places)]
+    ports = [place.getsockname()[1] for place in held]
+    workers = [
+        Worker(number + 1, _command(options, ports[number % places]))
+        for number in range(options.workers)
+    ]
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        for worker in workers:
+            worker.start()
+        _announce(options.host, ports, len(workers))
+        _watch(workers)
+    except KeyboardInterrupt:
+        log.info("stopping")
+    finally:
+        _stop(workers)
+        for place in held:
+            place.close()
+
+
+@dataclass(slots=True)
+class Worker:
+    """One process. Its lines come out of ours, with its number before them."""
+
+    number: int
+    command: list[str]
+    process: subprocess.Popen[bytes] | None = None
+    died: float | None = None
+    _reader: threading.Thread | None = field(default=None, repr=False)
+
+    def start(self) -> None:
+        """Start, or start again; in a session of its own, so that Ctrl-C is ours."""
+        pipe = subprocess.PIPE
+        self.process = subprocess.Popen(
+            self.command,
+            env={**os.environ, MARK: "1"},
+            stdin=pipe,
+            stdout=pipe,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+        self.died = None
+        self._reader = threading.Thread(target=self._repeat, args=(self.process,), daemon=True)
+        self._reader.start()
+
+    def look(self) -> None:
+        """Start it again if it died a while ago.
+
+        Raises:
+            ValueError: it said itself that this makes no sense.
+        """
+        code = self.process.poll() if self.process else None
+        if code is None:
+            return
+        if code == USAGE:
+            raise ValueError(f"worker {self.number} cannot start, see above")
+        if self.died is None:
+            self.died = time.monotonic()
+            log.warning("worker %d has ended (%d), it is started again", self.number, code)
+        elif time.monotonic() - self.died > AGAIN:
+            self.start()
+
+    def _repeat(self, process: subprocess.Popen[bytes]) -> None:
+        assert process.stdout is not None
+        for line in process.stdout:
+            text = line.decode(errors="replace").rstrip()
+            sys.stderr.write(f"[worker {self.number}] {text}\n")
+
+
+def is_worker() -> bool:
+    """Whether this process is one; then it ends when the one that started it is gone."""
+
+    def wait() -> None:
+        while os.read(0, 1024):
+            pass
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    if MARK not in os.environ:
+        return False
+    threading.Thread(target=wait, name="parent", daemon=True).start()
+    return True
+
+
+def _check(options: Options) -> None:
+    if not 1 < options.workers <= MOST:
+        raise ValueError(f"--workers {options.workers}: expected 1 to {MOST}")
+    if options.socket:
+        raise ValueError("--socket is for one process: leave out --workers")
+    if options.classroom:
+        raise ValueError("a class has one process: leave out --workers or --classroom")
+
+
+def _command(options: Options, port: int) -> list[str]:
+    """What starts a worker."""
+    command = [sys.executable, "-c", START, "serve"]
+    command += ["--host", options.host, "--port", str(port), "--log-level", options.log_level]
+    command += ["--lessons", str(options.lessons)] if options.lessons else []
+    command += ["--database", options.database] if options.database else []
+    return command + [word for origin in options.origin for word in ("--origin", origin)]
+
+
+def _announce(host: str, ports: list[int], workers: int) -> None:
+    shown = "localhost" if host in ("127.0.0.1", "0.0.0.0", "::") else host
+    if len(ports) == 1:
+        log.info("%d workers at http://%s:%d  (Ctrl-C stops them)", workers, shown, ports[0])
+        return
+    log.info("%d workers at the ports %s  (Ctrl-C stops them)", workers, ports)
+    log.info(
+        "for one address, put a proxy in front: see %s", ROOT / "assets" / "deploy" / "README.md"
+    )
+
+
+def _watch(workers: list[Worker]) -> None:
+    while True:
+        for worker in workers:
+            worker.look()
+        time.sleep(0.1)
+
+
+def _stop(workers: list[Worker]) -> None:
+    """All at once, and by force those that do not listen."""
+    running = [w.process for w in workers if w.process is not None]
+    for process in running:
+        process.terminate()
+    until = time.monotonic() + LAST_WORDS
+    for process in running:
+        try:
+            process.wait(max(until - time.monotonic(), 0.1))
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
