@@ -66,10 +66,13 @@ def test_the_tip_is_pulled_in_the_plane_that_was_chosen(tab: Tab, plane: str) ->
     tab.ask(*[c.Step()] * 50)
     tab.settle()
     before, start = tip(tab), tab.pixel(FOLLOWER, tip(tab))
+
+    def pulled() -> np.ndarray:
+        return session.robot.place(session.hands[FOLLOWER])
+
     with tab.dragging(start, (start[0] + 45, start[1] + 25)):
-        wait_for(lambda: session.hands)
-        moved = session.robot.place(session.hands[FOLLOWER]) - before
-        assert np.linalg.norm(moved) > 0.01
+        wait_for(lambda: session.hands and np.linalg.norm(pulled() - before) > 0.01)
+        moved = pulled() - before
         flat = moved[2] if plane == HORIZONTAL else moved @ [0.1, 1.0, 0.0]
         assert abs(flat) < 1e-6
         tab.ask(c.SetRunning(True))
@@ -77,6 +80,22 @@ def test_the_tip_is_pulled_in_the_plane_that_was_chosen(tab: Tab, plane: str) ->
     wait_for(lambda: not session.hands)
     wait_for(lambda: deflection(tab) < 1e-3)
     assert tab.said() == ""
+
+
+def test_the_path_is_dragged_in_its_slanted_plane(tab: Tab) -> None:
+    session = tab.session
+    tab.ask(c.ChoosePath("circle"), c.Reset(), c.SetRunning(False))
+    tab.settle()
+    old = session.editor.design.points[3].copy()
+    start, end = tab.placed(FOLLOWER, old), tab.placed(FOLLOWER, old + [0.015, 0.012])
+    with tab.dragging(start, end):
+        wait_for(lambda: session.editor.design.name == "edited" or session.editor.proposed)
+    wait_for(lambda: session.editor.design.name == "edited")
+    np.testing.assert_allclose(session.editor.design.points[3], old + [0.015, 0.012], atol=2e-3)
+    tab.ask(c.SetRunning(True))
+    wait_for(lambda: session.time > 1.5)
+    assert session.runs[FOLLOWER].distance < 2e-3 and tab.said() == ""
+    tab.ask(c.ChoosePath("circle"), c.Reset())
 
 
 def test_a_divergence_is_caught_said_and_reset(tab: Tab) -> None:
