@@ -1,12 +1,15 @@
-"""Logs errors that may come a thousand times: in full once, later only their number."""
+"""Logs what may come a thousand times: errors in full once, later their number; few warnings."""
 
 from __future__ import annotations
 
 import logging
-from collections import Counter
+import time
+from collections import Counter, deque
 from types import CodeType
 
 _log = logging.getLogger(__name__)
+_MINUTE, _MOST_WARNINGS = 60.0, 10
+_warned: deque[float] = deque(maxlen=_MOST_WARNINGS)
 _seen: Counter[tuple[type, CodeType | None, int]] = Counter()
 
 
@@ -22,3 +25,14 @@ def log_error(error: BaseException) -> None:
         _log.error("a callback failed: %r", error, exc_info=error)
     elif str(times).strip("0") == "1":
         _log.error("a callback failed %d times by now: %r", times, error)
+
+
+def log_warning(message: str, *arguments: object) -> None:
+    """A warning, unless many have been given in the last minute."""
+    now = time.monotonic()
+    if len(_warned) == _MOST_WARNINGS and now - _warned[0] < _MINUTE:
+        return
+    _warned.append(now)
+    _log.warning(message, *arguments)
+    if len(_warned) == _MOST_WARNINGS and now - _warned[0] < _MINUTE:
+        _log.warning("no more warnings of this kind for up to a minute")

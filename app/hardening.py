@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import asyncio
 import dataclasses
-import logging
 import socket
 import threading
 import time
@@ -31,7 +30,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode, Frame, Opcode
 from websockets.http11 import Request, Response
 
-from app.error_log import log_error
+from app.error_log import log_error, log_warning
 from app.listening import PortInUse, listen, listen_unix
 from app.origin import Door, is_loopback
 from app.widget_values import Refused, accepted_value
@@ -39,8 +38,7 @@ from app.wire_form import fault
 
 __all__ = ["Limits", "PortInUse", "harden", "make_server"]
 
-_log = logging.getLogger(__name__)
-
+_SUBPROTOCOL = f"viser-v{viser.__version__}"
 _FROM_BROWSER: dict[str, type[Any]] = {
     form.__name__: form
     for form in (
@@ -76,6 +74,10 @@ class Limits:
         max_text_length: of a text widget, [characters]; the rest is cut off.
         max_magnitude: of any number in a drag, pointer, gizmo or camera message.
         max_upload_bytes: of a file, one file at a time, [B]; 0 refuses all.
+        max_connections: of all browsers together, also those that wait or ask for a file.
+        silence: after which a browser is asked whether it is there, and how long it may take to
+            answer that, [s].
+        farewell: how long it may take to answer that it is being closed, [s].
     """
 
     max_message_bytes: int = 1_000_000
@@ -84,6 +86,9 @@ class Limits:
     max_text_length: int = 2000
     max_magnitude: float = 1e9
     max_upload_bytes: int = 0
+    max_connections: int = 1000
+    silence: float = 20.0
+    farewell: float = 2.0
 
 
 def make_server(
@@ -168,15 +173,26 @@ def _guarded_serve(listener: socket.socket, door: Door, limits: Limits) -> Itera
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
         def knock(connection: ServerConnection, request: Request) -> Response | None:
+            if len(connection.server.handlers) > limits.max_connections:
+                return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
             if refusal := door.refusal(request):
                 return connection.respond(*refusal)
             if listener.family not in _INTERNET and request.path.partition("?")[0] == "/":
                 return _to_page(connection, request)
             return process_request(connection, request)
 
+        async def admit(connection: ServerConnection) -> None:
+            if connection.subprotocol == _SUBPROTOCOL:
+                await handler(connection)
+            else:  # before viser, which would print what it was told
+                reason = "this page is of another version of the server: reload it"
+                await connection.close(CloseCode.PROTOCOL_ERROR, reason)
+
         options["max_size"] = limits.max_message_bytes
+        options["ping_interval"] = options["ping_timeout"] = limits.silence
+        options["close_timeout"] = limits.farewell
         options["create_connection"] = partial(_Connection, limits=limits)
-        return genuine(handler, sock=listener, process_request=knock, **options)
+        return genuine(admit, sock=listener, process_request=knock, **options)
 
     with _patching:
         library.serve = serve
@@ -306,9 +322,7 @@ def _warn_once(connection: ServerConnection | None, what: str) -> None:
     if connection is not None and connection not in _warned:
         _warned.add(connection)
         client = connection.remote_address
-        _log.warning(
-            "client %s: dropped %s; what else of it is dropped is not logged", client, what
-        )
+        log_warning("client %s: dropped %s; what else of it is not logged", client, what)
 
 
 def _log_outcome(done: Any) -> None:

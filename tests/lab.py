@@ -10,6 +10,11 @@ import numpy as np
 from app.commands import Command
 from app.loop_store import LoopStore
 from app.session import Session
+from app.snapshot import Snapshot
+from app.take_snapshot import take_snapshot
+from models.controllers import NAMES
+from models.curve_faults import curve_faults
+from models.parameters import checked, specs
 
 FRAME = 1 / 60
 FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
@@ -50,3 +55,30 @@ def states(session: Session) -> dict[str, np.ndarray]:
 def y(session: Session, name: str) -> np.ndarray:
     """Where an end-point is, (p,), [m]."""
     return session.robot.endpoint(session.runs[name].fields()["q"])
+
+
+def assert_sound(session: Session) -> None:
+    """Whatever was asked for: numbers are numbers, settings in range, the path one to follow."""
+    for run_ in session.runs.values():
+        assert np.isfinite(run_.state).all()
+        assert np.isfinite(run_.row).all()
+        assert run_.diverged is None or run_.diverged.reason
+    for name, spec in specs(session.parameters).items():
+        value = getattr(session.parameters, name)
+        assert checked(spec, name, value) == value
+    editor = session.editor
+    assert curve_faults(session.robot, editor.design.curve) == []
+    assert np.isfinite(editor.table).all() and np.isfinite(editor.points()).all()
+    assert editor.selected is None or 0 <= editor.selected < len(editor.design.points)
+    assert 0.125 <= session.rate <= 4
+    assert session.held <= set(NAMES) and set(session.hands) <= set(NAMES)
+    assert session.viewing is None or not session.running
+    assert_drawable(take_snapshot(session, 1.0))
+
+
+def assert_drawable(snapshot: Snapshot) -> None:
+    for view in snapshot.robots.values():
+        for part in (view.bars, view.joints, view.tip, view.marker, view.force, view.trace):
+            assert np.isfinite(part).all()
+        assert np.isfinite([view.distance, view.max_distance, view.speed, *view.torque]).all()
+    assert np.isfinite(snapshot.path.points).all() and np.isfinite(snapshot.time)

@@ -9,17 +9,26 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from lab import FOLLOWER, FRAME, TRACKER, do, new_session, run, states, y
+from lab import (
+    FOLLOWER,
+    FRAME,
+    TRACKER,
+    assert_drawable,
+    assert_sound,
+    do,
+    new_session,
+    run,
+    states,
+    y,
+)
 
 from app import commands as c
 from app import lesson_commands as lc
 from app.session import MOST_COMMANDS, Session
-from app.snapshot import Snapshot
 from app.take_snapshot import take_snapshot
 from lessons.schema import Action
 from models.controllers import NAMES
-from models.curve_faults import curve_faults
-from models.parameters import checked, specs
+from models.parameters import specs
 from models.simulation import kernel_of
 
 CONTROLLERS = st.sampled_from([*NAMES, "", "nobody"])
@@ -118,33 +127,6 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.Share: st.builds(c.Share),
     c.UseShared: st.builds(c.UseShared, st.sampled_from(["", "ONPATH1-aaaa", "x" * 10_000])),
 }
-
-
-def assert_sound(session: Session) -> None:
-    """Whatever was asked for: numbers are numbers, settings in range, the path one to follow."""
-    for run_ in session.runs.values():
-        assert np.isfinite(run_.state).all()
-        assert np.isfinite(run_.row).all()
-        assert run_.diverged is None or run_.diverged.reason
-    for name, spec in specs(session.parameters).items():
-        value = getattr(session.parameters, name)
-        assert checked(spec, name, value) == value
-    editor = session.editor
-    assert curve_faults(session.robot, editor.design.curve) == []
-    assert np.isfinite(editor.table).all() and np.isfinite(editor.points()).all()
-    assert editor.selected is None or 0 <= editor.selected < len(editor.design.points)
-    assert 0.125 <= session.rate <= 4
-    assert session.held <= set(NAMES) and set(session.hands) <= set(NAMES)
-    assert session.viewing is None or not session.running
-    assert_drawable(take_snapshot(session, 1.0))
-
-
-def assert_drawable(snapshot: Snapshot) -> None:
-    for view in snapshot.robots.values():
-        for part in (view.bars, view.joints, view.tip, view.marker, view.force, view.trace):
-            assert np.isfinite(part).all()
-        assert np.isfinite([view.distance, view.max_distance, view.speed, *view.torque]).all()
-    assert np.isfinite(snapshot.path.points).all() and np.isfinite(snapshot.time)
 
 
 def test_every_command_is_tried() -> None:

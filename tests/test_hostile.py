@@ -1,0 +1,426 @@
+"""A real lab under attack: the attacker alone is turned away, the others keep their display rate.
+
+`tests/test_hardening.py` has each gate by itself; here is the whole server, with somebody in it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+import os
+import select
+import socket
+import struct
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+import websockets.sync.client
+from lab import assert_sound
+from websockets.exceptions import ConnectionClosed
+from websockets.frames import Frame, Opcode
+from websockets.typing import Subprotocol
+
+from app.load import Browser
+from app.loop_store import LoopStore
+from app.node_update import MOST_UNSENT
+from app.protocol import CAMERA, SUBPROTOCOL, packed, unpacked
+from app.server import LabServer
+
+ROOT = Path(__file__).parents[1]
+WAIT = 10.0  # [s]
+KEPT = 0.6  # of the display rate that it had before; a busy machine is unsteady by itself
+LONGEST_GAP = 1.0  # [s]
+CALM = 0.7  # [s] of looking at it before, and at least during
+
+
+def wait_for(condition: Callable[[], Any], seconds: float = WAIT) -> Any:
+    deadline = time.monotonic() + seconds
+    while not (result := condition()):
+        assert time.monotonic() < deadline, "waited in vain"
+        time.sleep(0.005)
+    return result
+
+
+class Guest:
+    """A tab that answers what a tab must, reads everything, and sends what it is told."""
+
+    def __init__(self, server: LabServer) -> None:
+        self.told: list[dict[str, Any]] = []
+        before = set(server._views)
+        self.socket = websockets.sync.client.connect(
+            f"ws://127.0.0.1:{server.server.get_port()}",
+            subprotocols=[Subprotocol(SUBPROTOCOL)],
+            max_size=None,
+            compression=None,
+            close_timeout=0.5,
+        )
+        threading.Thread(target=self._read, daemon=True).start()
+        self.send("ViewerCameraMessage", **CAMERA)
+        (self.id,) = wait_for(lambda: set(server._views) - before)
+        self.client = server.server.get_clients()[self.id]
+        entries = server.sessions._entries.values()
+        self.lab = next(entry.lab for entry in entries if entry.client == self.id)
+
+    def send(self, kind: str, **fields: Any) -> None:
+        self.socket.send(packed(kind, **fields))
+
+    def update(self, uuid: str, value: Any) -> None:
+        self.send("GuiUpdateMessage", uuid=uuid, updates={"value": value})
+
+    @property
+    def handles(self) -> dict[str, Any]:
+        """All its widgets."""
+        return dict(self.client.gui._gui_input_handle_from_uuid)
+
+    def labelled(self, label: str) -> str:
+        """The widget of this label."""
+        found = [u for u, h in self.handles.items() if getattr(h, "label", "").startswith(label)]
+        return found[0]
+
+    def _read(self) -> None:
+        with suppress(ConnectionClosed):
+            for raw in self.socket:
+                assert isinstance(raw, bytes)
+                for message in unpacked(raw):
+                    if message["type"] == "LocalStorageGetItemRequestMessage":
+                        answer = {"request_uuid": message["request_uuid"], "value": None}
+                        self.send("LocalStorageGetItemResponseMessage", **answer, error=None)
+
+
+class Witness:
+    """An honest browser that uses its lab all the time, in a thread of its own."""
+
+    def __init__(self, port: int) -> None:
+        self._browser = Browser(port, 0)
+        threading.Thread(target=self._browse, daemon=True).start()
+        wait_for(lambda: len(self._browser.shown) > 30)
+
+    def _browse(self) -> None:
+        with suppress(ConnectionClosed, OSError):
+            asyncio.run(self._browser.browse(600.0))
+
+    @contextmanager
+    def served(self) -> Iterator[None]:
+        """What is done in here takes nothing away from it."""
+        begun = time.monotonic()
+        time.sleep(CALM)
+        calm = len(self._shown_since(begun)) / CALM
+        begun = time.monotonic()
+        yield
+        time.sleep(max(0.0, begun + CALM - time.monotonic()))
+        shown, ended = self._shown_since(begun), time.monotonic()
+        assert len(shown) / (ended - begun) > KEPT * calm > 0
+        assert max(b - a for a, b in pairwise([begun, *shown, ended])) < LONGEST_GAP
+
+    def _shown_since(self, begun: float) -> list[float]:
+        return [t for t in self._browser.shown[-2000:] if t > begun]
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler())
+    yield server
+    server.stop()
+
+
+@pytest.fixture(scope="module")
+def witness(server: LabServer) -> Witness:
+    return Witness(server.server.get_port())
+
+
+@pytest.fixture
+def attacker(server: LabServer) -> Iterator[Guest]:
+    guest = Guest(server)
+    yield guest
+    guest.socket.close()
+    wait_for(lambda: guest.id not in server._views)
+
+
+@pytest.fixture
+def quiet_log(
+    caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]
+) -> Iterator[None]:
+    """A warning for a client at most, and no traceback."""
+    caplog.set_level(logging.WARNING)
+    yield
+    records = caplog.get_records("call")
+    assert [each.getMessage() for each in records if each.levelno > logging.WARNING] == []
+    assert len(records) < 13
+    assert "Traceback" not in "".join(capfd.readouterr())
+
+
+# Widgets.
+
+NO_VALUES: list[Any] = [
+    *(math.nan, math.inf, -math.inf, 1e300, -1e300, 2**63, 0.5, -1),
+    *("", "nan", "x" * 20_000, "ONPATH1-" + "a" * 5000, b"\xff", None),
+    *([], [math.nan] * 3, [1e300, -1e300], [[[]]], {"value": 1}, {"__binary_index": 0}),
+]
+
+
+def test_no_widget_of_the_lab_takes_what_it_cannot_hold(
+    server: LabServer, attacker: Guest, witness: Witness
+) -> None:
+    session = attacker.lab.session
+    handles = attacker.handles
+    assert len(handles) > 50
+    with witness.served():
+        for uuid in handles:
+            for value in NO_VALUES:
+                attacker.update(uuid, value)
+                time.sleep(1 / 450)
+    wait_for(lambda: not session._inbox)
+    assert_sound(session)
+    for handle in handles.values():
+        value = getattr(handle, "value", 0.0)
+        if isinstance(value, (int, float)):
+            low, high = (getattr(handle, name, None) for name in ("min", "max"))
+            assert math.isfinite(value)
+            assert (low is None or low <= value) and (high is None or value <= high)
+        elif getattr(handle, "options", None):
+            assert value in handle.options
+    assert attacker.id in server._views  # it may go on
+
+
+def test_another_s_widgets_do_not_move(
+    server: LabServer, attacker: Guest, witness: Witness
+) -> None:
+    victim = Guest(server)
+    before = {uuid: handle.value for uuid, handle in victim.handles.items()}
+    parameters = victim.lab.session.parameters
+    with witness.served():
+        for uuid in before:
+            for value in (True, 1, 1.0, "ellipse"):
+                attacker.update(uuid, value)
+                time.sleep(1 / 450)
+        time.sleep(0.2)
+    assert victim.lab.session.parameters == parameters and victim.lab.session.asked == 0
+    assert victim.lab.session.editor.design.name == "circle"
+    moving = ("GuiProgressBarHandle",)
+    after = victim.handles
+    changed = [u for u in before if after[u].value != before[u]]
+    assert [type(after[u]).__name__ for u in changed if type(after[u]).__name__ not in moving] == []
+    victim.socket.close()
+
+
+# Floods.
+
+
+@pytest.mark.parametrize(
+    ("label", "values"),
+    [
+        ("Path", ["ellipse", "clover", "rounded square", "circle"]),
+        ("Identify", [True]),
+        ("Share this", [True]),
+        ("Recording", [True]),
+    ],
+)
+@pytest.mark.usefixtures("quiet_log")
+def test_long_work_asked_for_all_the_time_is_the_asker_s_to_wait_for(
+    attacker: Guest, witness: Witness, label: str, values: list[Any]
+) -> None:
+    """As fast as the limit on messages allows: the work, not the messages, is the burden."""
+    uuid = attacker.labelled(label)
+    with witness.served():
+        for k in range(600):
+            attacker.update(uuid, values[k % len(values)])
+            time.sleep(1 / 450)
+    assert len(attacker.lab.session._inbox) <= 500
+
+
+def frames(*payloads: bytes, opcode: Opcode = Opcode.BINARY) -> bytes:
+    """What a browser would write to its socket."""
+    return b"".join(Frame(opcode, payload).serialize(mask=True) for payload in payloads)
+
+
+def knock(
+    port: int, subprotocol: str | None = SUBPROTOCOL, room: int | None = None
+) -> socket.socket:
+    """A socket that has asked for a websocket, and read nothing.
+
+    Args:
+        room: for what has come and has not been read, [B].
+    """
+    lines = [
+        "GET / HTTP/1.1",
+        f"Host: 127.0.0.1:{port}",
+        "Upgrade: websocket",
+        "Connection: Upgrade",
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
+        "Sec-WebSocket-Version: 13",
+        *([f"Sec-WebSocket-Protocol: {subprotocol}"] if subprotocol is not None else []),
+    ]
+    raw = socket.socket()
+    raw.settimeout(WAIT)
+    if room is not None:
+        raw.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, room)
+    raw.connect(("127.0.0.1", port))
+    raw.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
+    return raw
+
+
+def is_closed(raw: socket.socket) -> bool:
+    """Whether the other end has closed; drops what came before."""
+    try:
+        while select.select([raw], [], [], 0)[0]:
+            if not raw.recv(1 << 16):
+                return True
+    except OSError:
+        return True
+    return False
+
+
+def test_5000_messages_a_second_close_the_sender(
+    server: LabServer, witness: Witness, quiet_log: None
+) -> None:
+    raw = knock(server.server.get_port())
+    camera = frames(packed("ViewerCameraMessage", **CAMERA)) * 50
+    sent, begun = 0, time.monotonic()
+    with witness.served():
+        with suppress(OSError):
+            while time.monotonic() < begun + WAIT and not is_closed(raw):
+                raw.sendall(camera)
+                sent += 50
+                time.sleep(max(0.0, begun + sent / 5000 - time.monotonic()))
+        raw.close()
+    assert sent > 500 and time.monotonic() < begun + 4.0
+
+
+# Frames and handshakes.
+
+
+VERSIONS = [None, "viser-v0.0.0", "viser-v1.1.0", "viser-v[/bold]", "viser-v" + "9" * 4000, "chat"]
+
+
+def test_a_wrong_version_is_told_so_and_closed(
+    server: LabServer, witness: Witness, quiet_log: None
+) -> None:
+    clients = set(server.server.get_clients())
+    with witness.served():
+        raws = [knock(server.server.get_port(), version) for version in VERSIONS * 5]
+        for raw in raws:
+            wait_for(lambda raw=raw: is_closed(raw))
+            raw.close()
+    assert set(server.server.get_clients()) == clients
+
+
+GARBAGE = {
+    "not HTTP": b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + bytes(200),
+    "no websocket key": b"GET / HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\n\r\n",
+    "an endless header": b"GET / HTTP/1.1\r\nX: " + b"x" * 100_000,
+    "many headers": b"GET / HTTP/1.1\r\n" + b"X: x\r\n" * 1000 + b"\r\n",
+    "another method": b"DELETE / HTTP/1.1\r\nHost: x\r\n\r\n",
+    "a body": b"POST / HTTP/1.1\r\nContent-Length: 1000000000\r\n\r\n" + bytes(1000),
+    "an old HTTP": b"GET / HTTP/0.9\r\n\r\n",
+    "nothing": b"",
+}
+
+
+def test_what_is_no_request_is_closed_and_not_logged_in_full(
+    server: LabServer, witness: Witness, quiet_log: None
+) -> None:
+    with witness.served():
+        for garbage in [*GARBAGE.values()] * 5:
+            with socket.create_connection(("127.0.0.1", server.server.get_port())) as raw:
+                with suppress(OSError):
+                    raw.sendall(garbage)
+                    raw.shutdown(socket.SHUT_WR)
+                wait_for(lambda raw=raw: is_closed(raw))
+
+
+BROKEN = {
+    "reserved bits": b"\xf2\x80" + bytes(4),
+    "unmasked": b"\x82\x05hello",
+    "no such opcode": b"\x83\x80" + bytes(4),
+    "a continuation of nothing": b"\x80\x80" + bytes(4),
+    "a long ping": b"\x89\xfe\xff\xff" + bytes(4 + 0xFFFF),
+    "a petabyte": b"\x82\xff" + (2**50).to_bytes(8, "big") + bytes(4),
+    "a length of its own": b"\x82\xff" + (2**63 + 5).to_bytes(8, "big") + bytes(4),
+    "no text": frames(b"\xff\xff", opcode=Opcode.TEXT),
+    "a strange close": frames(b"\x00\x00bye", opcode=Opcode.CLOSE),
+}
+
+
+def test_a_broken_frame_closes_its_sender(
+    server: LabServer, witness: Witness, quiet_log: None
+) -> None:
+    with witness.served():
+        for broken in BROKEN.values():
+            raws = [knock(server.server.get_port()) for _ in range(5)]
+            for raw in raws:
+                wait_for(lambda raw=raw: select.select([raw], [], [], 0)[0])
+                raw.sendall(frames(packed("ViewerCameraMessage", **CAMERA)) + broken)
+            for raw in raws:
+                wait_for(lambda raw=raw: is_closed(raw))
+                raw.close()
+
+
+# Connections.
+
+
+def memory() -> int:
+    """Of this process, [B]."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+def test_a_client_that_reads_nothing_costs_a_bounded_amount(
+    server: LabServer, witness: Witness, quiet_log: None
+) -> None:
+    before, sockets = set(server._views), server.server._websock_server._live_connections
+    known = set(sockets.values())
+    raw = knock(server.server.get_port(), room=4096)
+    wait_for(lambda: select.select([raw], [], [], 0)[0])
+    (connection,) = set(sockets.values()) - known
+    connection.transport.get_extra_info("socket").setsockopt(
+        socket.SOL_SOCKET, socket.SO_SNDBUF, 4096
+    )
+    raw.sendall(frames(packed("ViewerCameraMessage", **CAMERA)))
+    (deaf,) = wait_for(lambda: set(server._views) - before)
+    client = server.server.get_clients()[deaf]
+    buffer = client._websock_connection._state.message_buffer
+    wait_for(lambda: connection.transport.get_write_buffer_size() > 0)
+    waiting: list[int] = []
+    with witness.served():
+        for _ in range(30):
+            waiting.append(len(buffer.message_from_id))
+            assert connection.transport.get_write_buffer_size() < 16 * MOST_UNSENT
+            time.sleep(0.1)
+    assert max(waiting[-10:]) <= max(waiting[:20]) + 20  # what is late is merged
+    raw.close()
+    wait_for(lambda: deaf not in server._views)
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="reads /proc")
+def test_200_connections_a_second(server: LabServer, witness: Witness, quiet_log: None) -> None:
+    """Some leave at once, some during the handshake, some after it, politely or not."""
+    port = server.server.get_port()
+    camera = frames(packed("ViewerCameraMessage", **CAMERA))
+    labs, threads, used = len(server.simulation.labs), threading.active_count(), memory()
+    sockets, begun = 0, time.monotonic()
+    with witness.served():
+        while time.monotonic() < begun + 4.0:
+            way = sockets % 4
+            raw = knock(port) if way else socket.create_connection(("127.0.0.1", port))
+            if way > 1:
+                raw.recv(1 << 12)
+                raw.sendall(camera)
+            if way == 3:
+                raw.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            raw.close()
+            sockets += 1
+            time.sleep(max(0.0, begun + sockets / 200 - time.monotonic()))
+    assert sockets > 300  # a busy machine cannot do more
+    assert threading.active_count() < threads + 50
+    newcomer = Guest(server)
+    newcomer.socket.close()
+    wait_for(lambda: len(server.simulation.labs) <= labs + 3)
+    wait_for(lambda: len(server.server._websock_server._live_connections) <= 2)
+    assert memory() - used < 30e6
