@@ -201,6 +201,10 @@ class Tab:
         """A box with a number, a slider's too."""
         return self._row(label).locator("input[inputmode]")
 
+    def field(self, label: str) -> Locator:
+        """A box with a text."""
+        return self._row(label).locator("input:not([type=hidden])")
+
     def enter(self, label: str, text: str) -> None:
         """Type into a number's box."""
         box = self.number(label)
