@@ -8,6 +8,7 @@ from urllib.parse import unquote, urlsplit
 
 from websockets.http11 import Request
 
+LONGEST_PATH = 200  # [characters]; a file system would complain
 HEALTH = "/health"  # answered while the network thread is alive, for those who restart servers
 
 
@@ -30,6 +31,8 @@ class Door:
         if request.path == HEALTH:
             return HTTPStatus.OK, "well\n"
         path = unquote(request.path.partition("?")[0]).replace("\\", "/")
+        if len(path) > LONGEST_PATH:
+            return HTTPStatus.NOT_FOUND, "Not found.\n"
         if ".." in path.split("/") or ":" in path or "\0" in path:  # C:/ is absolute on Windows
             return HTTPStatus.NOT_FOUND, "Not found.\n"
         if not request.headers.get_all("Upgrade"):

@@ -1,0 +1,69 @@
+"""Several processes behind one address: a lab survives the one that has it, and all end as one."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.cli import run_command
+from app.listening import PortInUse, listen, reserve
+from app.workers import Worker
+from tests.student import Student
+from tests.supervisor import Supervisor
+
+linux_only = pytest.mark.skipif(sys.platform != "linux", reason="only Linux shares a port")
+
+
+@pytest.fixture
+def supervisor(tmp_path: Path) -> Iterator[Supervisor]:
+    made = Supervisor(tmp_path, "--workers", "2", "--port", "0")
+    yield made
+    made.process.kill()
+    made.process.wait()
+
+
+@linux_only
+def test_a_lab_survives_its_worker_on_a_shared_port(supervisor: Supervisor) -> None:
+    supervisor.wait_for(r"^\[worker [12]\] INFO .*OnPath is ready", times=2)
+    (port,) = supervisor.wait_for(r"2 workers at http://localhost:(\d+)")
+    before = supervisor.workers()
+    with Student(f"ws://127.0.0.1:{port}") as student:
+        student.open()
+        student.set("K2", 44.0)
+        student.set("Path", "clover")
+        time.sleep(3.5)  # what may be lost is within 5 s
+        (serving,) = [worker for worker in before if supervisor.sockets(worker)]
+        os.kill(serving, signal.SIGKILL)
+        code = student.code
+        student.cut_off()
+        student.reopen()
+        assert student.find("K2")["value"] == 44.0 and student.code == code
+        assert student.find("Path")["value"] == "clover"
+    supervisor.wait_for(r"worker . has ended")
+    while len(after := supervisor.workers()) < 2 or serving in after:
+        time.sleep(0.1)
+    supervisor.process.send_signal(signal.SIGINT)
+    assert supervisor.process.wait(15) == 0
+    assert not any(Path(f"/proc/{worker}").exists() for worker in after)
+
+
+def test_what_cannot_be_is_said_once() -> None:
+    with listen("127.0.0.1", 0, share_port=True) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(PortInUse, match="in use"):
+            reserve("127.0.0.1", port)
+        with listen("127.0.0.1", port, share_port=True):
+            pass
+    for options in (["0"], ["65"], ["2", "--classroom"], ["2", "--socket", "x"]):
+        assert run_command(["--workers", *options]) == 2
+    useless = Worker(1, [sys.executable, "-c", "raise SystemExit(2)"])
+    useless.start()
+    with pytest.raises(ValueError, match="worker 1 cannot start"):
+        while True:
+            useless.look()
