@@ -35,6 +35,9 @@ class _View:
     def show(self, session: object, achieved: float, frame: int) -> None:
         pass
 
+    def send(self) -> None:
+        pass
+
 
 @pytest.fixture
 def desk() -> Desk:
