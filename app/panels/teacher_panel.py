@@ -35,6 +35,7 @@ class TeacherPanel:
         self._teaching, self._class, self._chosen = teaching, teaching.classroom, teaching.chosen
         self._course, self._words, self._own = own.lessons.course, own.lessons.words, own
         self._next, self._busy = 0.0, False
+        self._codes: list[viser.GuiHtmlHandle] = []
         words = self._words
         panel = self._gui.add_panel(order=0)
         with panel.add_tab(words("class.title"), viser.Icon.USERS):
@@ -58,7 +59,8 @@ class TeacherPanel:
         try:
             members = self._class.members()
             now = self._class.clock()
-            _show(self._code, page.class_code(self._class.code, len(members), self._words))
+            for code in self._codes:
+                _show(code, page.class_code(self._class.code, len(members), self._words))
             _show(self._table, page.table(members.values(), self._course, now, self._words))
             self._show_names()
             if self._course.lessons:
@@ -69,7 +71,7 @@ class TeacherPanel:
     # Who is where
 
     def _build_class(self) -> None:
-        self._code = self._gui.add_html("")
+        self._codes.append(self._gui.add_html(""))
         self._table = self._gui.add_html("")
         self._names = self._gui.add_dropdown(
             self._words("class.follow"), [self._words("class.own_lab")]
@@ -102,6 +104,7 @@ class TeacherPanel:
             chosen.lesson, chosen.step = next(iter(self._course.lessons)), 0
         lessons, steps = self._lessons(), self._steps()
         own = next(label for label, name in lessons.items() if name == chosen.lesson)
+        self._codes.append(gui.add_html(""))
         lesson = gui.add_dropdown(words("class.lesson"), list(lessons), initial_value=own)
         self._step = gui.add_dropdown(
             words("class.step_head"), steps, initial_value=steps[chosen.step]
