@@ -88,9 +88,11 @@ def test_the_truth_comes_onto_the_same_axes(tab: Tab) -> None:
     truth = tab.session.lessons.notes.truths["1"]
     assert max(truth.tracker) > 40 > 3 > max(truth.follower)
     for name in ("Tracker", "Follower", "you"):
-        assert tab.page.get_by_role("cell", name=name, exact=True).or_(
-            tab.page.locator(".u-label", has_text=name)
-        ).first.is_visible()
+        assert (
+            tab.page.get_by_role("cell", name=name, exact=True)
+            .or_(tab.page.locator(".u-label", has_text=name))
+            .first.is_visible()
+        )
 
 
 def test_a_reload_in_the_middle_comes_back_to_the_step(tab: Tab) -> None:
