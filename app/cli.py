@@ -40,6 +40,8 @@ class Serve:
     """Address of the page behind a proxy, https://lab.example.org; repeat for more."""
     socket: Path | None = None
     """Listen on this Unix socket instead, for a proxy of your own such as Jupyter's."""
+    most_clients: int = 64
+    """So many browsers at once in each process; the next ones are told to wait."""
     workers: int = 1
     """So many processes, which share the port and the database."""
     successive_ports: bool = False
@@ -49,6 +51,8 @@ class Serve:
 
     def run(self) -> None:
         """Serve until Ctrl-C."""
+        if self.most_clients < 1:
+            raise ValueError(f"--most-clients {self.most_clients}: expected 1 or more")
         if self.workers != 1:
             from app.workers import supervise
 
@@ -68,6 +72,7 @@ class Serve:
             self.database,
             open_browser=self.open,
             classroom=classroom,
+            most_clients=self.most_clients,
             allowed_origins=self.origin,
             unix_socket=self.socket,
             share_port=is_worker(),

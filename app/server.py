@@ -29,6 +29,7 @@ from app.sessions import Entry, Sessions
 from app.stage import set_initial_camera
 from app.stages import RIGID
 from app.teacher_view import TeacherView
+from app.waiting_room import WaitingRoom
 from lessons.course import BUILT_IN, Course, read_course
 from lessons.parse import LessonError
 from models.catalogue import FIVE_BAR
@@ -36,6 +37,7 @@ from models.catalogue import FIVE_BAR
 log = logging.getLogger(__name__)
 STORAGE_KEY = "onpath_sessions"
 STORAGE_WAIT = 3.0  # [s]
+MOST_CLIENTS = 64
 
 
 class LabServer:
@@ -47,6 +49,7 @@ class LabServer:
         course: the lessons; the built-in ones if there is none.
         records: where labs are kept; nowhere if there is none.
         classroom: the class that students may join; none if there is none.
+        most_clients: so many at once; the next are told to wait. A teacher always gets in.
         listening: what else `make_server` takes.
 
     Raises:
@@ -61,9 +64,11 @@ class LabServer:
         course: Course | None = None,
         records: Records | None = None,
         classroom: Classroom | None = None,
+        most_clients: int = MOST_CLIENTS,
         **listening: Any,
     ) -> None:
         self._store = store
+        self._room = WaitingRoom(most_clients)
         lessons = course or read_course([BUILT_IN])[0]
         self.server = make_server(host, port, label="OnPath", **listening)
         self.simulation = SimulationThread()
@@ -112,10 +117,16 @@ class LabServer:
             known = None  # a browser that keeps nothing, or one that is gone again
         if self._class is not None:
             self._class.greet(client)
+        teaches = self._class and self._class.teaching(client, lambda: None)
+        enter = partial(self._entered, client, known)
+        self._room.admit(client, enter, always=bool(teaches))
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
-            return
-        self._show(client, self.sessions.join(client.client_id, known), known)
+
+    def _entered(self, client: viser.ClientHandle, known: str | None) -> None:
+        """There is a place for a client, if it is still there."""
+        if client.client_id in self.server.get_clients():
+            self._show(client, self.sessions.join(client.client_id, known), known)
 
     def _show(self, client: viser.ClientHandle, entry: Entry, known: str | None) -> None:
         """A client's page is that of a session."""
@@ -174,6 +185,7 @@ class LabServer:
         view = self._views.pop(client.client_id, None)
         if view is not None:
             view.close()
+        self._room.leave(client.client_id)
 
 
 def serve(
@@ -191,7 +203,7 @@ def serve(
         lessons: a folder of lessons of one's own.
         database: URL of the one that keeps the labs; a file of the user's if there is none.
         classroom: the class that students may join; none if there is none.
-        listening: what else `make_server` takes.
+        listening: what else `LabServer` takes.
 
     Raises:
         LessonError: one of those is not all right.

@@ -46,6 +46,8 @@ class Options(Protocol):
     @property
     def workers(self) -> int: ...
     @property
+    def most_clients(self) -> int: ...
+    @property
     def successive_ports(self) -> bool: ...
     @property
     def classroom(self) -> bool: ...
@@ -162,6 +164,7 @@ def _command(options: Options, port: int) -> list[str]:
     """What starts a worker."""
     command = [sys.executable, "-c", START, "serve"]
     command += ["--host", options.host, "--port", str(port), "--log-level", options.log_level]
+    command += ["--most-clients", str(options.most_clients)]
     command += ["--lessons", str(options.lessons)] if options.lessons else []
     command += ["--database", options.database] if options.database else []
     return command + [word for origin in options.origin for word in ("--origin", origin)]

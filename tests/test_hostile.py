@@ -51,7 +51,7 @@ def wait_for(condition: Callable[[], Any], seconds: float = WAIT) -> Any:
 class Guest:
     """A tab that answers what a tab must, reads everything, and sends what it is told."""
 
-    def __init__(self, server: LabServer) -> None:
+    def __init__(self, server: LabServer, inside: bool = True) -> None:
         self.told: list[dict[str, Any]] = []
         before = set(server._views)
         self.socket = websockets.sync.client.connect(
@@ -63,6 +63,8 @@ class Guest:
         )
         threading.Thread(target=self._read, daemon=True).start()
         self.send("ViewerCameraMessage", **CAMERA)
+        if not inside:
+            return
         (self.id,) = wait_for(lambda: set(server._views) - before)
         self.client = server.server.get_clients()[self.id]
         entries = server.sessions._entries.values()
@@ -89,6 +91,8 @@ class Guest:
             for raw in self.socket:
                 assert isinstance(raw, bytes)
                 for message in unpacked(raw):
+                    if "Modal" in message["type"] or "Markdown" in message["type"]:
+                        self.told.append(message)
                     if message["type"] == "LocalStorageGetItemRequestMessage":
                         answer = {"request_uuid": message["request_uuid"], "value": None}
                         self.send("LocalStorageGetItemResponseMessage", **answer, error=None)
@@ -424,3 +428,29 @@ def test_200_connections_a_second(server: LabServer, witness: Witness, quiet_log
     wait_for(lambda: len(server.simulation.labs) <= labs + 3)
     wait_for(lambda: len(server.server._websock_server._live_connections) <= 2)
     assert memory() - used < 30e6
+
+
+# Capacity.
+
+
+def test_beyond_capacity_a_newcomer_is_told_to_wait_and_gets_the_first_free_place() -> None:
+    server = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler(), most_clients=2)
+    try:
+        inside = Witness(server.server.get_port())
+        leaving = Guest(server)
+        with inside.served():
+            late = [Guest(server, inside=False) for _ in range(3)]
+            for guest in late:
+                said = wait_for(lambda guest=guest: [m for m in guest.told if "markdown" in str(m)])
+                assert "All 2 places are taken" in str(said)
+            assert len(server.simulation.labs) == 2
+        leaving.socket.close()
+        wait_for(lambda: len(server._views) == 2 and leaving.id not in server._views)
+        (entered,) = [number for number in server._views if number != 0]
+        late[1].socket.close()  # who waits and leaves frees nothing
+        time.sleep(0.3)
+        assert set(server._views) == {0, entered}
+        said = [m for guest in late for m in guest.told if m["type"] == "GuiCloseModalMessage"]
+        assert len(said) == 1
+    finally:
+        server.stop()
