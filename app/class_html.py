@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import html
 from collections.abc import Iterable
+from functools import lru_cache
 
 from app.class_record import LETTERS, Distribution, tasks_passed
 from app.classroom import Member
-from app.palette import FOLLOWER, SELECTED, TRACKER
+from app.palette import FOLLOWER, TRACKER
 from lessons.course import Course
 from lessons.progress import Progress, Truth
 from lessons.record import QUANTITIES
@@ -15,9 +16,9 @@ from lessons.schema import Choice, Prediction, Sketch
 from lessons.words import Words
 
 IDLE = 60.0  # [s] without a command
-GREEN, GREY, AMBER = "#1d7a4f", "#667085", "#8a5a00"
+GREEN, GREY, AMBER, INK = "#1d7a4f", "#667085", "#8a5a00", "#3f4a5a"
 WIDTH, HEIGHT, LEFT, BELOW = 640, 380, 50, 36  # of a plot, [px]
-MOST_POINTS = 60  # of a curve on it
+MOST_POINTS = 40  # of a curve on it
 
 
 def class_code(code: str, count: int, words: Words) -> str:
@@ -62,7 +63,7 @@ def _row(member: Member, course: Course, now: float, words: Words) -> str:
     inner = "".join(f'<td style="padding:0.25em 0.5em">{cell}</td>' for cell in cells)
     return (
         f'<tr style="border-top:1px solid #d5dae1">{inner}'
-        f'<td style="padding:0.25em 0.5em;color:{colour}">● {state}</td></tr>'
+        f'<td style="padding:0.25em 0.5em;white-space:nowrap;color:{colour}">● {state}</td></tr>'
     )
 
 
@@ -118,10 +119,9 @@ def _bars(block: Choice, found: Distribution, revealed: bool) -> str:
 def _sketches(block: Sketch, found: Distribution, truth: Truth | None, words: Words) -> str:
     """All curves on one plot."""
     lines = "".join(
-        _line(block, sketch.times, sketch.values, SELECTED.hex, 2, 0.45)
-        for sketch in found.sketches
+        _line(block, sketch.times, sketch.values, INK, 2, 0.5) for sketch in found.sketches
     )
-    names = [(SELECTED.hex, words("class.predicted"))]
+    names = [(INK, words("class.predicted"))]
     if truth is not None:
         lines += _line(block, truth.times, truth.tracker, TRACKER.hex, 4, 1.0)
         lines += _line(block, truth.times, truth.follower, FOLLOWER.hex, 4, 1.0)
@@ -152,6 +152,7 @@ def _axes(block: Sketch) -> str:
     return marks
 
 
+@lru_cache(maxsize=1024)  # a class looks at the same curves again every second
 def _line(
     block: Sketch,
     times: tuple[float, ...],

@@ -14,7 +14,7 @@ from app.panels.widgets import on_press, on_user_update
 from app.session import Session
 from app.teaching import Teaching
 
-WIDTH = 560  # [px]
+WIDTH = 480  # [px]
 EVERY = 1.0  # [s] between two looks at the class
 
 Submit = Callable[[Callable[[], None]], None]
