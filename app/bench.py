@@ -146,7 +146,10 @@ def _start_up() -> None:
             ("warm cache", {}),
             ("no compiler", {"CC": "none"}),
         ):
-            with _serving({"XDG_CACHE_HOME": cache, **extra}) as (port, begun):
+            with _serving({"XDG_CACHE_HOME": cache, "XDG_DATA_HOME": cache, **extra}) as (
+                port,
+                begun,
+            ):
                 asyncio.run(asyncio.wait_for(first_poses(port), 30.0))
                 print(f"start-up, {name}: {time.monotonic() - begun:.2f} s to the first picture")
                 time.sleep(2.0)  # lets the cache be filled

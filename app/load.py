@@ -11,10 +11,12 @@ import math
 import sys
 import time
 from dataclasses import dataclass, field
+from http import HTTPStatus
 from typing import Any
 
 import numpy as np
 from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 from websockets.typing import Subprotocol
 
 from app.protocol import CAMERA, SUBPROTOCOL, packed, unpacked
@@ -42,14 +44,27 @@ class Browser:
     _owner: str = ""
 
     async def browse(self, seconds: float) -> None:
-        """Use the lab for a while."""
+        """Use the lab for a while, or until it closes the connection.
+
+        Raises:
+            OSError, WebSocketException: no connection, or one that broke.
+        """
         address = f"ws://127.0.0.1:{self.port}"
         options: dict[str, Any] = {"max_size": None, "compression": None}
         async with connect(address, subprotocols=[Subprotocol(SUBPROTOCOL)], **options) as socket:
             await socket.send(packed("ViewerCameraMessage", **CAMERA))
-            reading = asyncio.create_task(self._read(socket))
-            await self._use(socket, time.monotonic() + seconds)
-            reading.cancel()
+            until = time.monotonic() + seconds
+            tasks = [
+                asyncio.create_task(do) for do in (self._read(socket), self._use(socket, until))
+            ]
+            try:
+                done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+                for task in done:
+                    task.result()
+            finally:
+                for task in tasks:
+                    task.cancel()
+                await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _read(self, socket: ClientConnection) -> None:
         async for raw in socket:
@@ -106,18 +121,28 @@ class Browser:
 
 
 async def first_poses(port: int) -> None:
-    """Return when a browser that comes now is shown a moving robot."""
+    """Return when a browser that comes now is shown a moving robot.
+
+    Raises:
+        WebSocketException: refused for another reason than that the server is not ready yet.
+    """
     browser = Browser(port, 0)
     while not browser.shown:
-        try:
-            browsing = asyncio.create_task(browser.browse(60.0))
-            while not browsing.done() and not browser.shown:
-                await asyncio.sleep(0.002)
-            if not browsing.done():
-                browsing.cancel()
-            await asyncio.gather(browsing, return_exceptions=not browsing.done())
-        except OSError:
-            await asyncio.sleep(0.01)  # not listening yet
+        browsing = asyncio.create_task(browser.browse(60.0))
+        while not browsing.done() and not browser.shown:
+            await asyncio.sleep(0.002)
+        browsing.cancel()
+        (error,) = await asyncio.gather(browsing, return_exceptions=True)
+        if not browser.shown and isinstance(error, Exception) and not _is_early(error):
+            raise error
+        await asyncio.sleep(0.01)
+
+
+def _is_early(error: Exception) -> bool:
+    """Whether a server that is starting answers in this way."""
+    if isinstance(error, InvalidStatus):
+        return error.response.status_code == HTTPStatus.SERVICE_UNAVAILABLE
+    return isinstance(error, OSError | EOFError | InvalidMessage | ConnectionClosed)
 
 
 async def crowd(port: int, clients: int, seconds: float, settled: float = 4.0) -> dict[str, float]:

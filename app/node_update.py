@@ -12,6 +12,7 @@ import asyncio
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from threading import get_ident
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -62,8 +63,8 @@ class Channel:
         self._compressor = zstandard.ZstdCompressor(level=1)
         self._collector: int | None = None
         self._messages: list[Message] = []
-        self._queue = connection.queue_message
-        connection.queue_message = self._take
+        self._queue = partial(type(connection).queue_message, connection)
+        connection.queue_message = self._take  # of an earlier channel too, if there was one
 
     @property
     def closed(self) -> bool:

@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from socket import create_server
 from threading import Event, Thread
 from time import sleep
 from typing import Any
@@ -13,13 +14,14 @@ from typing import Any
 import numpy as np
 import pytest
 import viser
+import websockets.exceptions
 import websockets.sync.client
 from lab import FOLLOWER
 from viser import uplot
 from websockets.typing import Subprotocol
 
 from app.hardening import make_server
-from app.load import crowd
+from app.load import crowd, first_poses
 from app.loop_store import LoopStore
 from app.node_update import Channel, update_node, update_plot
 from app.protocol import CAMERA, SUBPROTOCOL, packed, unpacked
@@ -115,7 +117,7 @@ def test_filling_in_a_push_is_the_same_as_packing_anew(name: str) -> None:
 
 def test_simulated_browsers_see_and_do_what_real_ones_do(tmp_path: Path) -> None:
     server = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path))
-    seen = asyncio.run(crowd(server.server.get_port(), 2, seconds=4.5, settled=2.0))
+    seen = asyncio.run(crowd(server.server.get_port(), 2, seconds=7.0, settled=4.0))
     labs = server.simulation.labs
     server.stop()
     assert seen["clients"] == 2
@@ -195,3 +197,45 @@ def test_nobody_is_told_anything_when_he_is_gone(
     done = Event()
     server.get_event_loop().call_soon_threadsafe(done.set)
     assert done.wait(5.0) and not recwarn.list
+
+
+REFUSED = b"HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
+
+
+@contextmanager
+def answering(*answers: bytes) -> Iterator[tuple[int, Thread]]:
+    """A port where each connection gets one of these answers in turn, then none is taken."""
+
+    def serve() -> None:
+        for answer in answers:
+            connection, _ = listener.accept()
+            with connection:
+                connection.recv(4096)
+                connection.sendall(answer)
+        listener.close()
+
+    with create_server(("127.0.0.1", 0)) as listener:
+        thread = Thread(target=serve, daemon=True)
+        thread.start()
+        yield int(listener.getsockname()[1]), thread
+
+
+def test_the_bench_waits_for_a_server_that_is_not_ready(tmp_path: Path) -> None:
+    async def wait(port: int, early: Thread) -> None:
+        waiting = asyncio.create_task(first_poses(port))
+        await asyncio.to_thread(early.join, 5.0)
+        assert not early.is_alive() and not waiting.done()
+        server = LabServer("127.0.0.1", port, LoopStore(None, tmp_path))
+        try:
+            await asyncio.wait_for(waiting, 20.0)
+        finally:
+            server.stop()
+
+    with answering(REFUSED, b"", b"HTTP/1.1 ") as (port, early):
+        asyncio.run(wait(port, early))
+
+
+def test_the_bench_does_not_wait_for_a_server_that_refuses() -> None:
+    forbidden = REFUSED.replace(b"503", b"403")
+    with answering(forbidden) as (port, _), pytest.raises(websockets.exceptions.InvalidStatus):
+        asyncio.run(asyncio.wait_for(first_poses(port), 5.0))
