@@ -25,6 +25,10 @@ from app.stages import stage_of
 from app.step_controls import StepControls
 from app.take_snapshot import take_snapshot
 
+WIDE_SHEET = """<style>@media (max-width:36em){
+.mantine-Paper-root[style*="bottom: 0"],
+.mantine-Paper-root[style*="bottom: 0"] [style*="width: 20em"]{width:100%!important}}</style>"""
+"""On a telephone viser's sheet is no wider than on a desk, and leaves a gap beside it."""
 DISPLAY = 2  # frames of simulation per frame of display: 30 Hz
 SLOW = 6  # frames per update of traces, plots and readouts: 10 Hz
 SETTLING = 30  # slow updates after the page is built
@@ -113,6 +117,7 @@ class LabView:
 
     def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
         gui, run = self._client.gui, session.lessons
+        self._client.gui.add_html(WIDE_SHEET)
         self._parts: list[Part] = []
         controls = Controls(gui, session, post, self._exporter, self._scene, self._desk)
         if run.lesson is None:
