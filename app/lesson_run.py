@@ -334,7 +334,10 @@ def sketched(prediction: Sketch, answer: Answer) -> Answer:
     """
     if answer.skipped:
         return answer
-    times, values = np.array(answer.times), np.array(answer.values)
+    try:
+        times, values = np.array(answer.times, dtype=float), np.array(answer.values, dtype=float)
+    except (OverflowError, TypeError) as error:
+        raise ValueError("a sketch needs points") from error
     if times.shape != values.shape or not np.isfinite(times).all() or not np.isfinite(values).all():
         raise ValueError("a sketch needs points")
     order = np.argsort(times, kind="stable")

@@ -10,8 +10,11 @@ import logging
 import math
 import os
 import select
+import signal
 import socket
 import struct
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -103,12 +106,20 @@ class Witness:
 
     def __init__(self, port: int) -> None:
         self._browser = Browser(port, 0)
-        threading.Thread(target=self._browse, daemon=True).start()
+        self._loop = asyncio.new_event_loop()
+        self._browsing = self._loop.create_task(self._browser.browse(600.0))
+        self._thread = threading.Thread(target=self._browse, daemon=True)
+        self._thread.start()
         wait_for(lambda: len(self._browser.shown) > 30)
 
     def _browse(self) -> None:
-        with suppress(ConnectionClosed, OSError):
-            asyncio.run(self._browser.browse(600.0))
+        with suppress(ConnectionClosed, OSError, asyncio.CancelledError):
+            self._loop.run_until_complete(self._browsing)
+
+    def close(self) -> None:
+        """It leaves, and its thread ends."""
+        self._loop.call_soon_threadsafe(self._browsing.cancel)
+        self._thread.join(WAIT)
 
     @contextmanager
     def served(self) -> Iterator[None]:
@@ -135,8 +146,10 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
 
 
 @pytest.fixture(scope="module")
-def witness(server: LabServer) -> Witness:
-    return Witness(server.server.get_port())
+def witness(server: LabServer) -> Iterator[Witness]:
+    witness = Witness(server.server.get_port())
+    yield witness
+    witness.close()
 
 
 @pytest.fixture
@@ -452,5 +465,74 @@ def test_beyond_capacity_a_newcomer_is_told_to_wait_and_gets_the_first_free_plac
         assert set(server._views) == {0, entered}
         said = [m for guest in late for m in guest.told if m["type"] == "GuiCloseModalMessage"]
         assert len(said) == 1
+        inside.close()
     finally:
         server.stop()
+
+
+# Misfortune.
+
+
+def test_a_clock_that_jumps_is_not_noticed(
+    server: LabServer, witness: Witness, quiet_log: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    genuine = time.time
+    labs = set(server.simulation.labs)
+    with witness.served():
+        for jump in (86400.0, -86400.0, 3e9, 0.0):
+            monkeypatch.setattr(time, "time", lambda jump=jump: genuine() + jump)
+            time.sleep(0.3)
+            newcomer = Guest(server)
+            begun = newcomer.lab.session.time
+            wait_for(lambda n=newcomer, b=begun: n.lab.session.time > b + 0.1)
+            newcomer.socket.close()
+    assert labs <= set(server.simulation.labs)
+
+
+SUSPENDED = """
+import sys
+from app.loop_store import LoopStore
+from app.server import LabServer
+server = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler())
+print("told", server.server.get_port(), flush=True)
+for _ in sys.stdin:
+    (lab,) = server.simulation.labs
+    print("told", lab.session.time, flush=True)
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="no way to suspend a process here")
+def test_a_suspended_process_goes_on_where_it_was_and_makes_nothing_up() -> None:
+    pipe = subprocess.PIPE
+    command = [sys.executable, "-c", SUSPENDED]
+    process = subprocess.Popen(
+        command, cwd=ROOT, stdin=pipe, stdout=pipe, stderr=pipe, text=True, bufsize=1
+    )
+    stdin, stdout = process.stdin, process.stdout
+    assert stdin is not None and stdout is not None
+
+    def told() -> float:
+        return next(float(line.split()[1]) for line in stdout if line.startswith("told"))
+
+    def simulated() -> float:
+        stdin.write("\n")
+        return told()
+
+    try:
+        witness = Witness(int(told()))
+        before = simulated()
+        process.send_signal(signal.SIGSTOP)
+        time.sleep(2.0)
+        process.send_signal(signal.SIGCONT)
+        woken = simulated()
+        assert woken - before < 1.0  # the sleep is not made up for
+        begun = time.monotonic()
+        with witness.served():
+            time.sleep(1.0)
+        passed = time.monotonic() - begun
+        assert 0.5 * passed < simulated() - woken < passed + 0.3
+        witness.close()
+    finally:
+        process.kill()
+        errors = process.communicate()[1]
+    assert "Traceback" not in errors

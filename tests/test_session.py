@@ -19,14 +19,19 @@ from lab import (
     new_session,
     run,
     states,
+    store,
     y,
 )
+from lesson_texts import write_lesson
 
 from app import commands as c
 from app import lesson_commands as lc
+from app.kept import _now, _state, put_back
 from app.session import MOST_COMMANDS, Session
 from app.take_snapshot import take_snapshot
+from lessons.course import Course, read_course
 from lessons.schema import Action
+from models.catalogue import FIVE_BAR
 from models.controllers import NAMES
 from models.parameters import specs
 from models.simulation import kernel_of
@@ -156,6 +161,59 @@ def test_no_sequence_of_commands_breaks_a_lab(steps: list[tuple[c.Command, int]]
     assert session.time == pytest.approx(0.8, abs=0.02) and session.message == ""
     for run_ in session.runs.values():
         assert run_.diverged is None and run_.distance < 0.005 and run_.max_distance < 0.005
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory: pytest.TempPathFactory) -> Course:
+    """Of one small lesson."""
+    folder = tmp_path_factory.mktemp("course")
+    write_lesson(folder)
+    return read_course([folder])[0]
+
+
+IN_A_LESSON: dict[type, st.SearchStrategy[Any]] = LESSON_COMMANDS | {
+    lc.OpenLesson: st.builds(lc.OpenLesson, st.sampled_from(["01-a", "01-a", ""])),
+    lc.GoToStep: st.builds(lc.GoToStep, st.sampled_from([1, 1, 1, 2, -1, 10**9])),
+    lc.ShowHint: st.builds(lc.ShowHint, st.sampled_from(["hold", ""])),
+}
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    robot=st.sampled_from(["five_bar"] * 4 + ["flexible"]),
+    steps=st.lists(
+        st.tuples(
+            st.one_of(*IN_A_LESSON.values(), *IN_A_LESSON.values(), *COMMANDS.values()),
+            st.sampled_from([0, 1, 4]),
+        ),
+        min_size=4,
+        max_size=16,
+    ),
+)
+def test_no_sequence_of_commands_breaks_a_lesson(
+    course: Course, robot: str, steps: list[tuple[c.Command, int]]
+) -> None:
+    session = Session(store(), FIVE_BAR, course)
+    do(session, c.ChooseRobot(robot))
+    assert session.entry.name == robot
+    if robot == "five_bar":
+        do(session, lc.OpenLesson("01-a"))
+    for command, frames in steps:
+        do(session, command)
+        for _ in range(frames):
+            session.drain()
+            session.advance(session.rate * FRAME)
+        assert_sound(session)
+    put_back(Session(store(), FIVE_BAR, course), _state(*_now(session)))  # it can be kept
+    do(session, lc.CloseLesson())
+    assert session.lessons.lesson is None and session.locked == ""
+    do(session, c.ChooseRobot("five_bar"), c.ResetParameters(), c.ChoosePath("circle"))
+    do(session, c.SetRate(1.0), c.SetRunning(True))
+    run(session, 0.4)  # the path has blended in
+    do(session, c.Reset())
+    run(session, 0.5)
+    assert session.time == pytest.approx(0.5, abs=0.02)
+    assert all(run_.diverged is None for run_ in session.runs.values())
 
 
 def test_commands_wait_for_the_next_frame_in_their_order_and_a_flood_is_dropped() -> None:
