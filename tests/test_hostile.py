@@ -30,6 +30,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.frames import Frame, Opcode
 from websockets.typing import Subprotocol
 
+from app.hardening import Limits, make_server
 from app.load import Browser
 from app.loop_store import LoopStore
 from app.node_update import MOST_UNSENT
@@ -413,6 +414,17 @@ def test_a_client_that_reads_nothing_costs_a_bounded_amount(
     assert max(waiting[-10:]) <= max(waiting[:20]) + 20  # what is late is merged
     raw.close()
     wait_for(lambda: deaf not in server._views)
+
+
+def test_a_client_that_answers_nothing_is_closed() -> None:
+    server = make_server(port=0, limits=Limits(silence=0.2, farewell=0.2))
+    raw = knock(server.get_port())
+    raw.sendall(frames(packed("ViewerCameraMessage", **CAMERA)))
+    wait_for(server.get_clients)
+    wait_for(lambda: is_closed(raw), seconds=3.0)
+    wait_for(lambda: not server.get_clients())
+    raw.close()
+    server.stop()
 
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="reads /proc")
