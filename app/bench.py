@@ -13,8 +13,9 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -120,18 +121,27 @@ def _modes(folder: Path, repeats: int) -> None:
     print()
 
 
+@contextmanager
+def _quiet_lab() -> Iterator[LabServer]:
+    """A server in this process, without viser's banner."""
+    with redirect_stdout(StringIO()):
+        lab = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler())
+    try:
+        yield lab
+    finally:
+        with redirect_stdout(StringIO()):
+            lab.stop()
+
+
 def _crowd(clients: int, seconds: float = 15.0) -> None:
     """Lateness of frames and display rate with some simulated browsers, in their own process."""
-    lab = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler())
-    try:
+    with _quiet_lab() as lab:
         port = lab.server.get_port()
         command = [sys.executable, "-m", "app.load", str(port), str(clients), str(seconds)]
         before = time.process_time()
         outcome = subprocess.run(command, capture_output=True, text=True, check=True)
         busy = (time.process_time() - before) / seconds
         frames = np.array(lab.simulation.lateness)[-round(60 * (seconds - SETTLED)) :] * 1e3
-    finally:
-        lab.stop()
     seen = json.loads(outcome.stdout)
     late = f"p50 {np.quantile(frames, 0.5):.2f} ms, p99 {np.quantile(frames, 0.99):.2f} ms"
     rate = f"slowest display {seen['slowest_hz']:.1f} Hz, {seen['bytes_per_s'] / 1e3:.0f} kB/s each"
@@ -177,9 +187,6 @@ def _mouse() -> None:
     if browser is None:
         print("mouse to picture: not measured, it needs Chromium and Playwright")
         return
-    lab = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler())
-    try:
+    with _quiet_lab() as lab:
         delays = mouse_latency(lab, browser, 20) * 1e3
-    finally:
-        lab.stop()
     print(f"mouse to picture: median {np.median(delays):.0f} ms, worst {delays.max():.0f} ms")

@@ -92,7 +92,7 @@ class Channel:
     def _take(self, message: Message) -> None:
         if self._collector == get_ident():
             self._messages.append(message)
-        else:
+        elif not self.closed:  # while a page is being built, say
             self._queue(message)
 
     def _packed(self) -> tuple[list[Message], bytes]:
