@@ -110,7 +110,8 @@ class Student:
 
     def sees(self, text: str) -> bool:
         """Whether the page says something."""
-        return any(text in str(widget.get("content")) for widget in self.widgets.values())
+        parts = ("content", "_markdown")
+        return any(text in str(w.get(part)) for w in self.widgets.values() for part in parts)
 
     def _labels(self) -> dict[str, dict[str, Any]]:
         shown = [w for w in self.widgets.values() if w["value"] is not None]

@@ -1,0 +1,109 @@
+"""What can be said of the container and the manifest without a container engine or a cluster."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import Any
+
+import pytest
+import yaml
+from sqlalchemy import make_url
+
+from app.cli import Serve
+from app.origin import HEALTH
+from tests.supervisor import ROOT
+
+DEPLOY = ROOT / "assets" / "deploy"
+CONTAINERFILE = (ROOT / "Containerfile").read_text()
+
+
+@pytest.fixture(scope="module")
+def manifest() -> dict[str, Any]:
+    documents = list(yaml.safe_load_all((DEPLOY / "onpath.yaml").read_text()))
+    found = {document["kind"]: document for document in documents}
+    assert len(found) == len(documents)
+    return found
+
+
+@pytest.fixture(scope="module")
+def container(manifest: dict[str, Any]) -> dict[str, Any]:
+    (container,) = manifest["Deployment"]["spec"]["template"]["spec"]["containers"]
+    return container
+
+
+def options() -> set[str]:
+    """Of the command line."""
+    return {"--" + name.replace("_", "-") for name in Serve.__dataclass_fields__}
+
+
+def test_the_parts_of_the_manifest_find_each_other(
+    manifest: dict[str, Any], container: dict[str, Any]
+) -> None:
+    deployment, service = manifest["Deployment"]["spec"], manifest["Service"]["spec"]
+    labels = deployment["template"]["metadata"]["labels"]
+    assert deployment["selector"]["matchLabels"] == service["selector"] == labels
+    (port,) = service["ports"]
+    assert port["targetPort"] in {each["name"] for each in container["ports"]}
+    (rule,) = manifest["Ingress"]["spec"]["rules"]
+    (path,) = rule["http"]["paths"]
+    backend = path["backend"]["service"]
+    assert backend["name"] == manifest["Service"]["metadata"]["name"]
+    assert backend["port"]["name"] == port["name"]
+    assert [rule["host"]] == manifest["Ingress"]["spec"]["tls"][0]["hosts"]
+    assert f"https://{rule['host']}" in container["args"]
+    mounted = {mount["name"] for mount in container["volumeMounts"]}
+    assert mounted == {v["name"] for v in deployment["template"]["spec"]["volumes"]}
+
+
+def test_the_pod_starts_what_there_is_and_may_do_little(
+    manifest: dict[str, Any], container: dict[str, Any]
+) -> None:
+    assert {word for word in container["args"] if word.startswith("--")} <= options()
+    (variable,) = container["env"]
+    assert f"$({variable['name']})" in container["args"] and "secretKeyRef" in variable["valueFrom"]
+    for probe in ("startupProbe", "readinessProbe", "livenessProbe"):
+        assert container[probe]["httpGet"]["path"] == HEALTH
+    pod = manifest["Deployment"]["spec"]["template"]["spec"]
+    assert pod["securityContext"]["runAsNonRoot"] is True
+    assert container["securityContext"]["readOnlyRootFilesystem"] is True
+    assert not container["securityContext"]["allowPrivilegeEscalation"]
+
+
+def test_browsers_stay_with_their_pod_and_websockets_stay_open(manifest: dict[str, Any]) -> None:
+    notes = manifest["Ingress"]["metadata"]["annotations"]
+    prefix = "nginx.ingress.kubernetes.io/"
+    assert all(isinstance(value, str) for value in notes.values())
+    assert notes[prefix + "affinity"] == "cookie"
+    assert all(int(notes[f"{prefix}proxy-{way}-timeout"]) > 60 for way in ("read", "send"))
+    assert manifest["Service"]["spec"]["sessionAffinity"] == "ClientIP"
+
+
+def test_the_container_is_no_root_answers_for_its_health_and_has_what_it_needs(
+    container: dict[str, Any], manifest: dict[str, Any]
+) -> None:
+    (user,) = re.findall(r"^USER (\d+)$", CONTAINERFILE, re.MULTILINE)
+    pod = manifest["Deployment"]["spec"]["template"]["spec"]
+    assert int(user) == pod["securityContext"]["runAsUser"] > 0
+    (port,) = re.findall(r"^EXPOSE (\d+)$", CONTAINERFILE, re.MULTILINE)
+    assert int(port) == container["ports"][0]["containerPort"]
+    assert f":{port}{HEALTH}" in CONTAINERFILE and f'"--port", "{port}"' in CONTAINERFILE
+    (entry,) = re.findall(r"^ENTRYPOINT \[(.*)\]$", CONTAINERFILE, re.MULTILINE)
+    assert set(re.findall(r"--[a-z-]+", entry)) <= options()
+    (base, again) = re.findall(r"^FROM \S+python:([\d.]+)-slim", CONTAINERFILE, re.MULTILINE)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert base == again and f">={base}" == project["requires-python"]
+    (extra,) = re.findall(r"/src\[(\w+)\]", CONTAINERFILE)
+    assert extra in project["optional-dependencies"]
+    for needed in ("pyproject.toml", "README.md", "LICENSE", "app", "models", "lessons", "assets"):
+        assert f"!{needed}" in (ROOT / ".containerignore").read_text().splitlines()
+
+
+def test_the_commands_of_the_administrators_page_exist() -> None:
+    text = (DEPLOY / "README.md").read_text()
+    commands = re.findall(r"onpath((?: --[a-z-]+(?: [\w./:]+)?)+)", text)
+    assert commands and {word for c in commands for word in re.findall("--[a-z-]+", c)} <= options()
+    (url,) = re.findall(r"--database (postgresql\S+?)`", text)
+    assert make_url(url).get_backend_name() == "postgresql"
+    for name in re.findall(r"\]\(([\w.]+)\)", text):
+        assert (DEPLOY / name).is_file()
