@@ -13,11 +13,9 @@ import numpy as np
 import viser
 
 from app.error_log import log_error
-from app.figures import draw_history
 from app.history import Stretch
 from app.lesson_run import LessonRun
 from app.recording import record_scene
-from app.report import report
 from app.session import Session
 from lessons.words import Words
 from models.loops import InterpretedLoop
@@ -44,9 +42,7 @@ class Exporter:
 
     def picture(self) -> None:
         """Ask for a picture of the plots."""
-        self._ask(
-            "onpath.png", lambda robot, history, words: draw_history(replay(robot, history), words)
-        )
+        self._ask("onpath.png", png_bytes)
 
     def recording(self) -> None:
         """Ask for a standalone page with the scene of the last seconds."""
@@ -66,7 +62,10 @@ class Exporter:
             run = LessonRun(session.lessons.course, session.lessons.progress)  # as it is now
             made = datetime.now()
             self._pool.submit(
-                self._deliver, "onpath-report.html", run.words, lambda: report(run, code, made)
+                self._deliver,
+                "onpath-report.html",
+                run.words,
+                lambda: report_bytes(run, code, made),
             )
 
         self._wanted.append(start)
@@ -123,6 +122,20 @@ def csv_bytes(robot: Robot, history: list[Stretch]) -> bytes:
     file = io.StringIO()
     write_csv(file, robot, replay(robot, history).values())
     return file.getvalue().encode()
+
+
+def png_bytes(robot: Robot, history: list[Stretch], words: Words) -> bytes:
+    """A picture of the plots of the history."""
+    from app.figures import draw_history  # see app/warm_up.py
+
+    return draw_history(replay(robot, history), words)
+
+
+def report_bytes(run: LessonRun, code: str, made: datetime) -> bytes:
+    """The record of the lessons as a page."""
+    from app.report import report  # see app/warm_up.py
+
+    return report(run, code, made)
 
 
 def replay(robot: Robot, history: list[Stretch]) -> dict[str, Trajectory]:

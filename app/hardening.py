@@ -63,6 +63,9 @@ _FROM_BROWSER: dict[str, type[Any]] = {
 _SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
 
 
+STARTING = 8.0  # [s] that a request waits at most for the guards; websockets gives up after 10
+
+
 @dataclass(frozen=True, slots=True)
 class Limits:
     """What one browser may send.
@@ -172,7 +175,10 @@ def _guarded_serve(listener: socket.socket, door: Door, limits: Limits) -> Itera
     genuine = library.serve
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
-        def knock(connection: ServerConnection, request: Request) -> Response | None:
+        async def knock(connection: ServerConnection, request: Request) -> Response | None:
+            until = time.monotonic() + STARTING
+            while not door.open and time.monotonic() < until:  # who asks is told when it is ready
+                await asyncio.sleep(0.02)
             if len(connection.server.handlers) > limits.max_connections:
                 return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
             if refusal := door.refusal(request):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import viser
@@ -15,9 +15,11 @@ from app.lesson_run import LessonRun
 from app.panels.widgets import Post, on_press, on_user_update
 from app.scene import Scene
 from app.session import Session
-from app.sketch_board import SketchBoard
 from app.stages import stage_of
 from lessons.schema import Choice, Prediction, Quiz, Sketch, Step, Task, Text
+
+if TYPE_CHECKING:
+    from app.sketch_board import SketchBoard
 
 WIDTH, WIDE = 400, 560  # [px]
 NUMBERS = 6  # sliders that draw a sketch
@@ -188,6 +190,8 @@ class LessonPanel:
         """The board, its keyboard twin, and the button that commits."""
         words = session.lessons.words
         said = self._html(page.text(f"<p>{words('lesson.draw_first')}</p>"))
+        from app.sketch_board import SketchBoard  # see app/warm_up.py
+
         commit = self._commit_button(session.lessons)
 
         def drawn(times: np.ndarray, values: np.ndarray) -> None:

@@ -30,6 +30,7 @@ from app.stage import set_initial_camera
 from app.stages import RIGID
 from app.teacher_view import TeacherView
 from app.waiting_room import WaitingRoom
+from app.warm_up import warm_up
 from lessons.course import BUILT_IN, Course, read_course
 from lessons.parse import LessonError
 from models.catalogue import FIVE_BAR
@@ -217,6 +218,7 @@ def serve(
     store = LoopStore.with_system_compiler()
     lab = LabServer(host, port, store, course, records, classroom, **listening)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
+    warm_up()
     log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
     if open_browser:
         webbrowser.open(lab.address)

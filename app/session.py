@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import inf
 from time import perf_counter
 
@@ -74,7 +74,7 @@ class Session:
         self._inbox: deque[commands.Command | ClassCommand] = deque(maxlen=MOST_COMMANDS)
         self._benches: dict[str, tuple[Parameters, PathEditor]] = {}
         self.history = History()
-        self.presets: dict[str, PathDesign] = presets()
+        self.presets: Mapping[str, PathDesign] = presets()
         self.running = True
         self.rate = 1.0
         self.copy = True

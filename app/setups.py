@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
@@ -32,7 +31,6 @@ TINY = 1e-9  # numbers nearer to 0 are 0: nobody means them, and they must not d
 EDITED, DRAWN = "edited", "drawn"  # the names of paths that are no presets
 DRAWN_POINTS = {True: 10, False: 6}  # control points of a closed and an open stroke, as in `drawn`
 
-_offered = lru_cache(maxsize=1)(presets)
 Word = Annotated[str, msgspec.Meta(max_length=40, pattern=r"^[A-Za-z0-9_ -]*$")]
 Length = Annotated[int, msgspec.Meta(ge=-1_000_000, le=1_000_000)]
 Lengths = Annotated[tuple[Length, ...], msgspec.Meta(max_length=2 * max(TERMS, MOST_POINTS))]
@@ -97,7 +95,7 @@ def from_data(data: Any) -> Setup:
         ValueError: it is no set-up of a lab that exists.
     """
     setup = msgspec.convert(data, Setup)
-    planned(setup, _offered())
+    planned(setup, presets())
     return setup
 
 

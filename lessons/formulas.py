@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +41,7 @@ def mathml(latex: str, options: dict[str, Any]) -> str:
         raise FormulaError(f"formula {latex!r}: {error or type(error).__name__}") from None
 
 
+@cache
 def reader() -> MarkdownIt:
     """CommonMark with tables and formulas, without HTML."""
     markdown = MarkdownIt("commonmark", {"html": False, "typographer": True}).enable(["table"])

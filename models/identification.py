@@ -18,7 +18,6 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.polynomial import Polynomial
 from scipy.linalg import lstsq
-from scipy.signal import savgol_filter
 
 from models.forces import DRY_VELOCITY
 from models.system import Array
@@ -95,6 +94,8 @@ def smooth_velocities(q: Array, dt: float) -> Array:
     Raises:
         ValueError: less data than the filter is long.
     """
+    from scipy.signal import savgol_filter  # takes long; see app/warm_up.py
+
     if len(q) < SMOOTHING:
         raise ValueError("there is hardly any data yet: let it run for a few seconds first")
     return np.asarray(savgol_filter(q, SMOOTHING, 2, deriv=1, delta=dt, axis=0), dtype=float)

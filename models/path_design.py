@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
 
 import numpy as np
 
@@ -123,16 +126,15 @@ def _figure_eight() -> Curve:
     return fourier(np.zeros(2), cosine, np.array([[0.0, 0.0], [0.0, 0.04]]))
 
 
-def presets(radius: float = 0.05) -> dict[str, PathDesign]:
+@cache
+def presets(radius: float = 0.05) -> Mapping[str, PathDesign]:
     """Paths to choose from, by name; the figure of eight is there to be refused."""
-    return {
-        design.name: design
-        for design in (
-            _designed("circle", circle(radius), 8),
-            _designed("ellipse", ellipse((1.4 * radius, 0.7 * radius)), 8),
-            _designed("rounded square", _rounded_square(radius), 12),
-            _designed("clover", _clover(), 16),
-            _designed("segment", segment((-0.06, -0.02), (0.06, 0.03)), 2),
-            _designed("figure of eight", _figure_eight(), 12),
-        )
-    }
+    designs = (
+        _designed("circle", circle(radius), 8),
+        _designed("ellipse", ellipse((1.4 * radius, 0.7 * radius)), 8),
+        _designed("rounded square", _rounded_square(radius), 12),
+        _designed("clover", _clover(), 16),
+        _designed("segment", segment((-0.06, -0.02), (0.06, 0.03)), 2),
+        _designed("figure of eight", _figure_eight(), 12),
+    )
+    return MappingProxyType({design.name: design for design in designs})

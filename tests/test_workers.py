@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import sys
+import threading
 import time
+import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import viser
 
+from app import hardening
 from app.cli import run_command
 from app.listening import PortInUse, listen, reserve
 from app.workers import Worker
@@ -67,3 +72,29 @@ def test_what_cannot_be_is_said_once() -> None:
     with pytest.raises(ValueError, match="worker 1 cannot start"):
         while True:
             useless.look()
+
+
+def test_who_comes_while_a_server_starts_waits_and_is_let_in(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = probe.getsockname()[1]
+    genuine = hardening.harden
+    page: list[int] = []
+
+    def ask() -> None:
+        with urllib.request.urlopen(f"http://127.0.0.1:{port}/health", timeout=9) as reply:
+            page.append(reply.status)
+
+    def slow(server: viser.ViserServer, *, limits: hardening.Limits) -> None:
+        asking.start()
+        time.sleep(0.5)
+        assert not page
+        genuine(server, limits=limits)
+
+    asking = threading.Thread(target=ask)
+    monkeypatch.setattr(hardening, "harden", slow)
+    server = hardening.make_server(port=port)
+    asking.join(9)
+    server.stop()
+    assert page == [200]
