@@ -13,7 +13,7 @@ import socket
 import threading
 import time
 import weakref
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache, partial
@@ -32,7 +32,7 @@ from websockets.http11 import Request, Response
 
 from app.error_log import log_error, log_warning
 from app.listening import PortInUse, listen, listen_unix
-from app.origin import Door, is_loopback
+from app.origin import Door, is_loopback, well
 from app.widget_values import Refused, accepted_value
 from app.wire_form import fault
 
@@ -103,6 +103,7 @@ def make_server(
     allowed_origins: tuple[str, ...] = (),
     share_port: bool = False,
     unix_socket: Path | None = None,
+    health: Callable[[str], str] = well,
     verbose: bool = False,
 ) -> viser.ViserServer:
     """A hardened server that listens on exactly this address; port 0 takes a free one.
@@ -114,6 +115,7 @@ def make_server(
             goes to one of them. Only Linux spreads them.
         unix_socket: listen on this file alone, for a proxy of this user's that puts the page
             into a folder of its own.
+        health: see `Door`.
 
     Raises:
         PortInUse: where viser alone would move on to the next port without a word.
@@ -121,7 +123,8 @@ def make_server(
     """
     _cache_icons()
     listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
-    door = Door(allowed_origins, local_only=is_loopback(host) and not unix_socket)
+    local_only = is_loopback(host) and not unix_socket
+    door = Door(allowed_origins, local_only=local_only, health=health)
     with _guarded_serve(listener, door, limits):
         bound_port = 0 if unix_socket else listener.getsockname()[1]
         server = viser.ViserServer(host=host, port=bound_port, label=label, verbose=verbose)

@@ -82,7 +82,7 @@ class SimulationThread:
         clock, sleep: passed in for tests.
 
     Attributes:
-        lateness: of the latest frames, [s].
+        frames: the latest: when each began, and how late, [s].
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class SimulationThread:
         self._lock = threading.Lock()
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self.run, name="simulation", daemon=True)
-        self.lateness: deque[float] = deque(maxlen=3600)
+        self.frames: deque[tuple[float, float]] = deque(maxlen=3600)
 
     def start(self) -> None:
         """Begin."""
@@ -125,6 +125,11 @@ class SimulationThread:
         """Those that run now."""
         return self._labs
 
+    @property
+    def lateness(self) -> list[float]:
+        """Of the latest frames, [s]."""
+        return [late for _, late in self.frames.copy()]
+
     def run(self) -> None:
         """Frame after frame, each at its deadline."""
         last = self._clock()
@@ -134,7 +139,7 @@ class SimulationThread:
             self._sleep(max(deadline - now, PAUSE))
             now = self._clock()
             late = now - deadline
-            self.lateness.append(late)
+            self.frames.append((now, late))
             deadline = now + FRAME if late > LATEST else deadline + FRAME
             for lab in self._labs:
                 try:

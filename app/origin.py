@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from http import HTTPStatus
 from ipaddress import ip_address
 from urllib.parse import unquote, urlsplit
@@ -12,25 +13,39 @@ LONGEST_PATH = 200  # [characters]; a file system would complain
 HEALTH = "/health"  # answered while the network thread is alive, for those who restart servers
 
 
+def well(_query: str) -> str:
+    """How a server is, when nothing else is known of it."""
+    return "well\n"
+
+
 class Door:
     """Decides on requests. Closed to websockets until `open` is set, lest one slip in early."""
 
-    def __init__(self, allowed_origins: tuple[str, ...], *, local_only: bool) -> None:
+    def __init__(
+        self,
+        allowed_origins: tuple[str, ...],
+        *,
+        local_only: bool,
+        health: Callable[[str], str] = well,
+    ) -> None:
         """
         Args:
             allowed_origins: pages of other sites that may connect, "https://lab.example:8443".
             local_only: the server listens to this machine alone. A page may then name itself only
                 by a local name: else any site could point its own name at 127.0.0.1 and get in.
+            health: what to tell those who ask for `HEALTH`, given what follows its "?".
         """
         self.open = False
+        self._health = health
         self._allowed = frozenset(origin.lower().rstrip("/") for origin in allowed_origins)
         self._local_only = local_only
 
     def refusal(self, request: Request) -> tuple[HTTPStatus, str] | None:
         """Status and text to answer with at once, or None to let the request through."""
-        if request.path == HEALTH:
-            return HTTPStatus.OK, "well\n"
-        path = unquote(request.path.partition("?")[0]).replace("\\", "/")
+        asked, _, query = request.path.partition("?")
+        if asked == HEALTH:
+            return HTTPStatus.OK, self._health(query)
+        path = unquote(asked).replace("\\", "/")
         if len(path) > LONGEST_PATH:
             return HTTPStatus.NOT_FOUND, "Not found.\n"
         if ".." in path.split("/") or ":" in path or "\0" in path:  # C:/ is absolute on Windows

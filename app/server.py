@@ -29,6 +29,7 @@ from app.sessions import Entry, Sessions
 from app.stage import set_initial_camera
 from app.stages import RIGID
 from app.teacher_view import TeacherView
+from app.vitals import asked_vitals
 from app.waiting_room import WaitingRoom
 from app.warm_up import warm_up
 from lessons.course import BUILT_IN, Course, read_course
@@ -71,8 +72,9 @@ class LabServer:
         self._store = store
         self._room = WaitingRoom(most_clients)
         lessons = course or read_course([BUILT_IN])[0]
-        self.server = make_server(host, port, label="OnPath", **listening)
         self.simulation = SimulationThread()
+        health = partial(asked_vitals, self.simulation, store)
+        self.server = make_server(host, port, label="OnPath", health=health, **listening)
         self._records = records
         self._leases = Leases(records) if records else None
         self._keeper = Keeper(self._leases) if self._leases else None
