@@ -19,7 +19,8 @@ run: $(STAMP)
 	$(BIN)/onpath $(ARGS)
 
 test: $(STAMP)
-	$(BIN)/pytest $(ARGS)
+	$(BIN)/pytest -m "not browser" -n 2 --dist loadfile $(ARGS)
+	$(BIN)/pytest -m browser $(ARGS)
 
 check: $(STAMP)
 	$(BIN)/ruff check .

@@ -29,8 +29,7 @@ WIDE_SHEET = """<style>@media (max-width:36em){
 .mantine-Paper-root[style*="bottom: 0"],
 .mantine-Paper-root[style*="bottom: 0"] [style*="width: 20em"]{width:100%!important}}</style>"""
 """On a telephone viser's sheet is no wider than on a desk, and leaves a gap beside it."""
-DISPLAY = 2  # frames of simulation per frame of display: 30 Hz
-SLOW = 6  # frames per update of traces, plots and readouts: 10 Hz
+SLOW = 3  # frames of display per update of traces, plots and readouts: 10 Hz
 SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
 
@@ -48,6 +47,7 @@ class LabView:
         self._offset = client.client_id  # spreads the clients' slow updates over the frames
         self._exporter = Exporter(client)
         self._framed, self._settling = 0.0, SETTLING
+        self._shown: tuple[object, ...] = ()
         client.gui.configure_theme(
             show_logo=False, show_share_button=False, brand_color=(0, 114, 178)
         )
@@ -61,23 +61,27 @@ class LabView:
         """The tab is gone."""
         self._exporter.close()
 
-    def show(self, session: Session, achieved: float, frame: int) -> None:
+    def show(self, session: Session, achieved: float, frame: int, stride: int) -> None:
         """See `app.loop.View`."""
         count = frame + self._offset
-        if count % DISPLAY or self._robot is None or self._channel.closed:
+        if count % stride or self._robot is None or self._channel.closed:
             return
         if self._page(session) != self._built:
             self._robot = None  # nothing is shown until the new one stands
             self._exporter.submit(lambda: self._rebuild(session))
             return
         with self._channel.frame():
-            self._show(session, achieved, slow=count % SLOW == 0)
+            self._show(session, achieved, slow=count % (SLOW * stride) == 0)
 
     def send(self) -> None:
         """See `app.loop.View`."""
         self._channel.send()
 
     def _show(self, session: Session, achieved: float, slow: bool) -> None:
+        shown = session.instant(), session.viewing, session.editor.version, session.exaggeration
+        if shown == self._shown and not slow:
+            return
+        self._shown = shown
         snapshot = take_snapshot(session, achieved, traces=slow)
         self._scene.update(snapshot)
         self._scene.update_path(snapshot)

@@ -15,6 +15,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from app.error_log import log_error
+from app.pace import Pace
 from app.session import Session
 
 log = logging.getLogger(__name__)
@@ -31,8 +32,8 @@ SWITCH_INTERVAL = 5e-4  # [s], so that the network thread does not keep this one
 class View(Protocol):
     """Whatever shows a session; called by the simulation thread only."""
 
-    def show(self, session: Session, achieved: float, frame: int) -> None:
-        """Show it; `frame` counts up, so that slow parts can be shown less often."""
+    def show(self, session: Session, achieved: float, frame: int, stride: int) -> None:
+        """Show it, in every `stride`-th frame at least; `frame` counts them all."""
         ...
 
     def send(self) -> None:
@@ -59,7 +60,7 @@ class Lab:
         """Simulated seconds per second, lately."""
         return self._simulated / self._passed
 
-    def frame(self, seconds: float, count: int) -> None:
+    def frame(self, seconds: float, count: int, stride: int) -> None:
         """One frame: apply commands, simulate, show."""
         session = self.session
         self._credit = min(self._credit, 0.0) + COMMANDS
@@ -72,7 +73,7 @@ class Lab:
         if session.running and not session.frozen:
             self._simulated += session.time - before - self._simulated * FADING
             self._passed += seconds - self._passed * FADING
-        view.show(session, self.achieved, count)
+        view.show(session, self.achieved, count, stride)
 
 
 class SimulationThread:
@@ -132,7 +133,7 @@ class SimulationThread:
 
     def run(self) -> None:
         """Frame after frame, each at its deadline."""
-        last = self._clock()
+        last, pace = self._clock(), Pace()
         count, deadline = 0, last + FRAME
         while not self._stop.is_set():
             now = self._clock()
@@ -143,10 +144,11 @@ class SimulationThread:
             deadline = now + FRAME if late > LATEST else deadline + FRAME
             for lab in self._labs:
                 try:
-                    lab.frame(now - last, count)
+                    lab.frame(now - last, count, pace.stride)
                 except Exception as error:  # one lab must not stop the others
                     log_error(error)
             for view in [lab.view for lab in self._labs]:
                 if view is not None:
                     view.send()
+            pace.note(self._clock() - now, now - last)
             last, count = now, count + 1

@@ -147,6 +147,7 @@ class PlantRun:
 
     def _fill_row(self, curve: Curve) -> None:
         """The log row of a robot that has not moved yet."""
+        self.row = self.row.copy()  # the session looks whether it is another
         row, state = self.shown(), self.fields()
         for name in ("q", "v", "theta", "theta_rate", "theta_ref", "u"):
             row[name][:] = state[name]

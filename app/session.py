@@ -9,7 +9,8 @@ from __future__ import annotations
 import logging
 from collections import deque
 from collections.abc import Callable, Mapping
-from math import inf
+from math import hypot, inf
+from operator import is_
 from time import perf_counter
 
 import numpy as np
@@ -251,6 +252,7 @@ class Session:
         self.run_number += 1
         self.time = 0.0
         self._owed = 0.0
+        self._now: Instant | None = None
         self.viewing: float | None = None
         self.held: set[str] = set()
         self.hands: dict[str, Array] = {}
@@ -376,19 +378,25 @@ class Session:
         return sample_layout(self.robot)
 
     def instant(self) -> Instant:
-        """Now."""
-        runs = self.runs.values()
-        states, most = [run.state for run in runs], [run.max_distance for run in runs]
-        return Instant(self.time, states, most, self.sample())
+        """Now; the same object until something changes."""
+        runs, now = self.runs.values(), self._now
+        made_of = [self.editor.curve, self.parameters, *[run.row for run in runs]]
+        same = now is not None and now.time == self.time
+        if not same or not all(map(is_, made_of, self._made_of)):
+            states, most = [run.state for run in runs], [run.max_distance for run in runs]
+            now = self._now = Instant(self.time, states, most, self.sample())
+            self._made_of = made_of
+        return now
 
     def sample(self) -> np.ndarray:
         """Now, shape (robots, sample_layout.size)."""
         runs, fields = self.runs.values(), self.sample_layout.slices
         samples = np.array([run.row for run in runs])[:, places(self.robot)]
+        per_radian = self.editor.curve.at(samples[:, fields["theta"].start], 1).tolist()
+        rates = samples[:, fields["theta_rate"].start].tolist()
+        speeds = [rate * hypot(*along) for rate, along in zip(rates, per_radian, strict=True)]
+        samples[:, fields["speed"].start] = speeds
         samples[:, fields["distance"].start] = [run.distance for run in runs]
-        per_radian = self.editor.curve.at(samples[:, fields["theta"].start], 1)
-        length = np.sqrt((per_radian * per_radian).sum(-1))
-        samples[:, fields["speed"].start] = length * samples[:, fields["theta_rate"].start]
         if self.robot.extra_fields:
             for sample, run in zip(samples, runs, strict=True):
                 row = run.shown()

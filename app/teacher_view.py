@@ -34,13 +34,13 @@ class TeacherView(LabView):
         session.post(CloseLesson())
         super().__init__(client, session, store, desk)
 
-    def show(self, session: Session, achieved: float, frame: int) -> None:
+    def show(self, session: Session, achieved: float, frame: int, stride: int) -> None:
         """See `app.loop.View`."""
         lab = self._teaching.followed()
         if lab is None:
-            super().show(session, achieved, frame)
+            super().show(session, achieved, frame, stride)
         else:
-            super().show(lab.session, lab.achieved, frame)
+            super().show(lab.session, lab.achieved, frame, stride)
 
     def _page(self, session: Session) -> tuple[object, ...]:
         words = self._own.lessons.words

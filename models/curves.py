@@ -141,10 +141,14 @@ def nearest(curve: Callable[[Array], Array], grid: Array, points: Array) -> tupl
 
 
 def _basis(theta: Array, closed: bool) -> Array:
-    values = np.ones((*theta.shape, TERMS))
+    values = np.empty((*theta.shape, TERMS))
     angle = (theta if closed else np.arccos(np.clip(theta / np.pi, -1, 1)))[..., None] * _ORDER
-    values[..., 1 : HARMONICS + 1] = np.cos(angle)
-    values[..., HARMONICS + 1 :] = np.sin(angle) if closed else 0.0
+    values[..., 0] = 1.0
+    np.cos(angle, out=values[..., 1 : HARMONICS + 1])
+    if closed:
+        np.sin(angle, out=values[..., HARMONICS + 1 :])
+    else:
+        values[..., HARMONICS + 1 :] = 0.0
     return values
 
 

@@ -25,7 +25,7 @@ ARGUMENTS = (
     "--no-first-run",
 )
 COARSE = "fixedDpr=0.5"  # viser's own switch: half the pixels each way, where a GPU is simulated
-WAIT = 30.0  # [s]; software rendering on a busy machine shows a few frames a second
+WAIT = 60.0  # [s]; software rendering on a busy machine shows a few frames a second
 
 THREE_FRAMES = """() => new Promise(done => {
     let left = 3
@@ -64,6 +64,7 @@ class Tab:
 
     def __init__(self, server: LabServer, context: BrowserContext) -> None:
         self.server = server
+        context.set_default_timeout(WAIT * 1e3)
         self.page: Page = context.new_page()
         self.errors: list[str] = []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))

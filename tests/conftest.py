@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from models.curves import HARMONICS, Curve, fourier
 from models.five_bar import FiveBarLinks, five_bar, inverse_kinematics, load_links
@@ -16,6 +17,9 @@ from models.frames import Plane
 from models.kernel import Kernel, Kind, build_kernel
 from models.loops import InterpretedLoop, Loop, compile_loop, find_compiler
 from models.system import Array, MechanicalSystem
+
+settings.register_profile("laws", deadline=None)  # how long it takes is not what is tested
+settings.load_profile("laws")
 
 FOLLOWING, TRACKING = Kind("path_following"), Kind("trajectory_tracking")
 DEFAULTS: dict[str, Any] = {

@@ -106,7 +106,7 @@ def test_a_divergence_is_caught_said_and_reset(tab: Tab) -> None:
     tab.enter("α", "0.95")
     wait_for(lambda: session.parameters.law == "redefined")  # type: ignore[attr-defined]
     wait_for(lambda: UNSTABLE in tab.said())
-    assert deflection(tab) > 0.05
+    assert deflection(tab) > 0.01  # the last instant before: seen at a glance
     bar = tab.page.get_by_text("unstable inside")
     bar.wait_for()
     tab.enter("α", "0.5")

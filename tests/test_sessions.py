@@ -32,7 +32,7 @@ class Desk:
 
 
 class _View:
-    def show(self, session: object, achieved: float, frame: int) -> None:
+    def show(self, session: object, achieved: float, frame: int, stride: int) -> None:
         pass
 
     def send(self) -> None:
