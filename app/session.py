@@ -381,8 +381,7 @@ class Session:
         """Now; the same object until something changes."""
         runs, now = self.runs.values(), self._now
         made_of = [self.editor.curve, self.parameters, *[run.row for run in runs]]
-        same = now is not None and now.time == self.time
-        if not same or not all(map(is_, made_of, self._made_of)):
+        if now is None or now.time != self.time or not all(map(is_, made_of, self._made_of)):
             states, most = [run.state for run in runs], [run.max_distance for run in runs]
             now = self._now = Instant(self.time, states, most, self.sample())
             self._made_of = made_of
