@@ -77,6 +77,11 @@ class LabView:
         """See `app.loop.View`."""
         self._channel.send()
 
+    @property
+    def told(self) -> int:
+        """See `app.onlooker.Telling`."""
+        return self._channel.frames
+
     def _show(self, session: Session, achieved: float, slow: bool) -> None:
         shown = session.instant(), session.viewing, session.editor.version, session.exaggeration
         if shown == self._shown and not slow:

@@ -19,7 +19,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 from websockets.typing import Subprotocol
 
-from app.protocol import CAMERA, SUBPROTOCOL, packed, unpacked
+from app.protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 
 EVERY = 0.05  # [s] between a hand's messages; no browser sends more often
 CYCLE = 4.0  # [s]: pull, rest, move a slider, rest
@@ -79,9 +79,8 @@ class Browser:
 
     async def _answer(self, socket: ClientConnection, message: dict[str, Any]) -> None:
         kind = message["type"]
-        if kind == "LocalStorageGetItemRequestMessage":
-            nothing = {"request_uuid": message["request_uuid"], "value": None, "error": None}
-            await socket.send(packed("LocalStorageGetItemResponseMessage", **nothing))
+        if reply := answer(message):
+            await socket.send(reply)
         elif kind == "GuiSliderMessage" and message["props"]["label"].startswith("K1"):
             self._slider = message["uuid"]
         elif kind == "BatchedMeshesMessage" and message["name"] == "/grips":

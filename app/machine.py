@@ -132,6 +132,7 @@ class Machine:
         self._bases = bases = stage.bases
         self._force_scale = stage.force_scale
         self._drawn: Poses | None = None
+        self._traced = np.zeros(0)
         self._bars = self._add_bars(scene, robots, poses)
         self._parts = self._add_parts(scene, robots, poses)
         self._turns = np.tile(IDENTITY, (len(poses.turns), 1))
@@ -192,13 +193,14 @@ class Machine:
             self._arrows.visible = acts
 
     def update_traces(self, robots: list[RobotView]) -> None:
-        """Redraws the traces and says how large each force is."""
+        """Redraws the traces if they are others, and says how large each force is."""
         lines = [
             trace_segments(robot.trace, TRACE_SEGMENTS) + TRACE_DEPTH + base
             for robot, base in zip(robots, self._bases.values(), strict=True)
         ]
         points = np.concatenate(lines)
-        if np.isfinite(points).all():
+        if np.isfinite(points).all() and not np.array_equal(points, self._traced):
+            self._traced = points
             update_node(self._traces, points=points)
         for robot, label in zip(robots, self._force_labels, strict=True):
             force = float(np.linalg.norm(robot.force))

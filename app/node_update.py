@@ -51,6 +51,9 @@ class Channel:
     """All that the simulation thread tells one browser during a frame, as one message.
 
     It goes past viser's queue when that is empty, and else through it, so that the order is kept.
+
+    Attributes:
+        frames: how many were not empty.
     """
 
     def __init__(self, client: viser.ClientHandle) -> None:
@@ -62,6 +65,7 @@ class Channel:
         self._recorders = connection._record_handles
         self._compressor = zstandard.ZstdCompressor(level=1)
         self._collector: int | None = None
+        self.frames = 0
         self._messages: list[Message] = []
         self._queue = partial(type(connection).queue_message, connection)
         connection.queue_message = self._take  # of an earlier channel too, if there was one
@@ -80,6 +84,7 @@ class Channel:
         finally:
             self._collector = None
             if self._messages:
+                self.frames += 1
                 _ready.setdefault(self._loop, []).append(self)
 
     def send(self) -> None:

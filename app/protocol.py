@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import msgspec
@@ -27,6 +28,22 @@ CAMERA = {
 def packed(kind: str, **fields: Any) -> bytes:
     """A message to the server."""
     return msgspec.msgpack.encode({"type": kind, **fields})
+
+
+def answer(message: dict[str, Any], stored: Mapping[str, str] | None = None) -> bytes | None:
+    """What a page that somebody sees answers at once, if anything.
+
+    Args:
+        stored: what the browser keeps.
+    """
+    match message:
+        case {"type": "LocalStorageGetItemRequestMessage", "request_uuid": number, "key": key}:
+            value = (stored or {}).get(key)
+            kind = "LocalStorageGetItemResponseMessage"
+            return packed(kind, request_uuid=number, value=value, error=None)
+        case {"type": "SetCameraUpDirectionMessage", "initial": False, "position": up}:
+            return packed("ViewerCameraMessage", **{**CAMERA, "up_direction": up})
+    return None
 
 
 def unpacked(raw: bytes) -> list[dict[str, Any]]:

@@ -24,6 +24,7 @@ from app.lab_view import LabView
 from app.leases import Leases
 from app.loop import SimulationThread
 from app.loop_store import LoopStore
+from app.onlooker import Onlookers
 from app.session import Session
 from app.sessions import Entry, Sessions
 from app.stage import set_initial_camera
@@ -86,6 +87,7 @@ class LabServer:
         if classroom is not None:
             self._class = ClassDesk(classroom, self.sessions, records, self._keeper)
         self._views: dict[int, LabView] = {}
+        self._onlookers = Onlookers(self.server)
         set_initial_camera(self.server, RIGID)
         self.server.on_client_connect(self._connected)
         self.server.on_client_disconnect(self._disconnected)
@@ -141,7 +143,7 @@ class LabServer:
             self.sessions.leave(client.client_id)
             return
         self._views[client.client_id] = view
-        entry.lab.view = view
+        self._onlookers.watch(client, entry.lab, view)
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
 
@@ -173,7 +175,7 @@ class LabServer:
 
     def _reopen(self, client: viser.ClientHandle, entry: Entry) -> None:
         """A client's page anew, with a session that is its own already."""
-        entry.lab.view = None
+        self._onlookers.leave(client.client_id)
         view = self._views.pop(client.client_id, None)
         if view is not None:
             view.close()
@@ -182,6 +184,7 @@ class LabServer:
         self._show(client, entry, None)
 
     def _disconnected(self, client: viser.ClientHandle) -> None:
+        self._onlookers.forget(client.client_id)
         self.sessions.leave(client.client_id)
         if self._class is not None:
             self._class.gone(client.client_id)

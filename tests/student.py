@@ -13,7 +13,7 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 from app.load import MOVING
-from app.protocol import CAMERA, SUBPROTOCOL, packed, unpacked
+from app.protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 
 PATIENCE = 15.0  # [s]
 
@@ -30,11 +30,12 @@ class Student:
         kept: the browser's local storage.
         widgets: what the page shows, by widget: the properties.
         moving: how often it was told new poses.
+        received: [B].
     """
 
     def __init__(self, address: str, through: int | None = None, **headers: str) -> None:
         self.address, self.headers = address, headers
-        self._through, self.moving = through, 0
+        self._through, self.moving, self.received = through, 0, 0
         self.kept: dict[str, str] = {}
         self.widgets: dict[str, dict[str, Any]] = {}
         self._socket: ClientConnection | None = None
@@ -87,6 +88,7 @@ class Student:
             except TimeoutError:
                 continue
             assert isinstance(raw, bytes)
+            self.received += len(raw)
             for message in unpacked(raw):
                 self._take(message)
 
@@ -121,11 +123,9 @@ class Student:
     def _take(self, message: dict[str, Any]) -> None:
         kind = message["type"]
         self.moving += message.get("name") == MOVING
-        if kind == "LocalStorageGetItemRequestMessage":
-            known = self.kept.get(message["key"])
-            reply = {"request_uuid": message["request_uuid"], "value": known, "error": None}
+        if reply := answer(message, self.kept):
             assert self._socket is not None
-            self._socket.send(packed("LocalStorageGetItemResponseMessage", **reply))
+            self._socket.send(reply)
         elif kind == "LocalStorageSetItemMessage":
             self.kept[message["key"]] = message["value"]
         elif "props" in message and "uuid" in message:

@@ -34,7 +34,7 @@ from app.hardening import Limits, make_server
 from app.load import Browser
 from app.loop_store import LoopStore
 from app.node_update import MOST_UNSENT
-from app.protocol import CAMERA, SUBPROTOCOL, packed, unpacked
+from app.protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from app.server import LabServer
 
 ROOT = Path(__file__).parents[1]
@@ -97,9 +97,8 @@ class Guest:
                 for message in unpacked(raw):
                     if "Modal" in message["type"] or "Markdown" in message["type"]:
                         self.told.append(message)
-                    if message["type"] == "LocalStorageGetItemRequestMessage":
-                        answer = {"request_uuid": message["request_uuid"], "value": None}
-                        self.send("LocalStorageGetItemResponseMessage", **answer, error=None)
+                    if reply := answer(message):
+                        self.socket.send(reply)
 
 
 class Witness:
