@@ -1,0 +1,125 @@
+"""A real browser with another tab in front of the lab: what it costs then, and what is seen after.
+
+Playwright keeps all its tabs visible; so the browser is started and told by its own protocol.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from urllib.request import Request, urlopen
+
+import pytest
+import websockets.sync.client
+
+pytest.importorskip("playwright")
+
+from app import commands as c
+from app.loop_store import LoopStore
+from app.onlooker import EVERY, PATIENCE, TICK
+from app.server import LabServer
+from models.loops import find_compiler
+from tests.browser import ARGUMENTS, COARSE, wait_for
+
+pytestmark = pytest.mark.browser
+CHROMIUM = "/usr/bin/chromium"
+VALUES = "[...document.querySelectorAll('input')].map(each => each.value)"
+HIDDEN = 200.0  # [B/s]
+
+
+class Window:
+    """A browser with the lab in its first tab."""
+
+    def __init__(self, folder: Path, address: str) -> None:
+        options = ["--headless=new", f"--user-data-dir={folder}", "--remote-debugging-port=0"]
+        self._process = subprocess.Popen(
+            [CHROMIUM, *options, "--remote-allow-origins=*", *ARGUMENTS, address],
+            stderr=subprocess.DEVNULL,
+        )
+        told = folder / "DevToolsActivePort"
+        self._port = wait_for(lambda: told.exists() and told.read_text().partition("\n")[0])
+        self._lab = wait_for(lambda: [t for t in self._ask("list") if t["type"] == "page"])[0]
+
+    def close(self) -> None:
+        self._process.terminate()
+        self._process.wait()
+
+    def cover(self) -> None:
+        """Another tab comes to the front."""
+        self._ask("new?about:blank", "PUT")
+        wait_for(lambda: self.evaluate("document.visibilityState") == "hidden")
+
+    def uncover(self) -> None:
+        """The lab's tab comes back to the front."""
+        self._ask(f"activate/{self._lab['id']}")
+        wait_for(lambda: self.evaluate("document.visibilityState") == "visible")
+
+    def evaluate(self, expression: str) -> Any:
+        """In the lab's page."""
+        ask = {"id": 1, "method": "Runtime.evaluate", "params": {"expression": expression}}
+        with websockets.sync.client.connect(self._lab["webSocketDebuggerUrl"]) as socket:
+            socket.send(json.dumps(ask))
+            return json.loads(socket.recv(timeout=10))["result"]["result"]["value"]
+
+    def _ask(self, what: str, method: str = "GET") -> Any:
+        with urlopen(Request(f"http://127.0.0.1:{self._port}/json/{what}", method=method)) as reply:
+            said = reply.read()
+        return json.loads(said) if said.startswith((b"{", b"[")) else said
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore(find_compiler(), tmp_path / "loops"))
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def window(server: LabServer, tmp_path: Path) -> Iterator[Window]:
+    window = Window(tmp_path / "browser", f"{server.address}/?{COARSE}")
+    yield window
+    window.close()
+
+
+class Meter:
+    """Counts what is written to the only browser."""
+
+    def __init__(self, server: LabServer) -> None:
+        (connection,) = server.server._websock_server._live_connections.values()
+        self._write, self._sent = connection.transport.write, 0
+        connection.transport.write = self._count
+
+    def _count(self, data: bytes | bytearray | memoryview) -> None:
+        self._sent += len(data)
+        self._write(data)
+
+    def rate(self, seconds: float) -> float:
+        """[B/s]"""
+        before = self._sent
+        time.sleep(seconds)
+        return (self._sent - before) / seconds
+
+
+def test_a_covered_tab_costs_nothing_and_then_shows_what_is(
+    server: LabServer, window: Window
+) -> None:
+    view = wait_for(lambda: [lab.view for lab in server.simulation.labs if lab.view is not None])[0]
+    (lab,), meter = server.simulation.labs, Meter(server)
+    wait_for(lambda: lab.session.time > 1.0)
+    visible = meter.rate(EVERY + PATIENCE + 2.0)
+    assert lab.view is view  # drawn in software, but seen
+    window.cover()
+    time.sleep(EVERY + PATIENCE + 2 * TICK)
+    simulated = lab.session.time
+    hidden = meter.rate(4.0)
+    assert hidden < min(HIDDEN, 0.02 * visible)
+    assert lab.view is None and lab.session.time == simulated
+    lab.session.post(c.ChoosePath("clover"))
+    window.uncover()
+    wait_for(lambda: lab.view is view)
+    wait_for(lambda: window.evaluate(f"{VALUES}.includes('clover')"))
+    assert meter.rate(2.0) > 0.3 * visible and lab.session.time > simulated
