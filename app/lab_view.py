@@ -14,6 +14,7 @@ from app.lesson_menu import LessonMenu
 from app.lesson_panel import LessonPanel
 from app.loop_store import LoopStore
 from app.node_update import Channel
+from app.pace import STRIDES
 from app.panels.class_panel import ClassPanel
 from app.panels.keys import add_keys
 from app.panels.readout import Readout
@@ -29,6 +30,7 @@ WIDE_SHEET = """<style>@media (max-width:36em){
 .mantine-Paper-root[style*="bottom: 0"],
 .mantine-Paper-root[style*="bottom: 0"] [style*="width: 20em"]{width:100%!important}}</style>"""
 """On a telephone viser's sheet is no wider than on a desk, and leaves a gap beside it."""
+AT_EASE = STRIDES[0]  # the stride of a thread that has time
 SLOW = 3  # frames of display per update of traces, plots and readouts: 10 Hz
 SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
@@ -64,6 +66,8 @@ class LabView:
     def show(self, session: Session, achieved: float, frame: int, stride: int) -> None:
         """See `app.loop.View`."""
         count = frame + self._offset
+        if session.grabbed and stride == AT_EASE:
+            stride = 1  # the hand feels every frame of delay
         if count % stride or self._robot is None or self._channel.closed:
             return
         if self._page(session) != self._built:
@@ -71,7 +75,7 @@ class LabView:
             self._exporter.submit(lambda: self._rebuild(session))
             return
         with self._channel.frame():
-            self._show(session, achieved, slow=count % (SLOW * stride) == 0)
+            self._show(session, achieved, slow=count % (SLOW * max(stride, AT_EASE)) == 0)
 
     def send(self) -> None:
         """See `app.loop.View`."""

@@ -22,6 +22,10 @@ ARGUMENTS = (
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
     "--no-first-run",
 )
+NO_TRIANGLES = """
+    for (const what of ["Elements", "Arrays", "ElementsInstanced", "ArraysInstanced"])
+        WebGL2RenderingContext.prototype["draw" + what] = () => {}
+"""
 WINDOW = {"width": 1000, "height": 700}
 ROBOT = "path_following"
 STEP = 30.0  # [px]
@@ -49,17 +53,23 @@ def seen_at(camera: viser.CameraHandle, box: dict[str, float], point: np.ndarray
     return middle + scale * np.array([way @ right, -(way @ np.cross(right, forward))])
 
 
-def mouse_latency(server: LabServer, browser: str, times: int) -> np.ndarray:
+def mouse_latency(server: LabServer, browser: str, times: int, draws: bool = True) -> np.ndarray:
     """Delays of `times` moves of an end-point that the mouse holds, [s].
 
     The robots stand still, with a position for a task, so that the first changed pose is the
     answer to the move. Measured from the order to move the mouse to the arrival of the frame.
+
+    Args:
+        draws: whether triangles are drawn; without a GPU that is most of the browser's work, and
+            a mouse event waits for it.
     """
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=browser, args=ARGUMENTS)
         page = chromium.new_page(viewport=WINDOW)  # type: ignore[arg-type]
+        if not draws:
+            page.add_init_script(NO_TRIANGLES)
         watch = _Watch()
         page.on("websocket", lambda socket: socket.on("framereceived", watch.frame))
         page.goto(server.address)
