@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import importlib.util
-import json
 import os
 import platform
-import socket
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -20,6 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
+from app.bench_crowd import HEAD, Crowd, folders, measured, rehearse
+from app.bench_server import serving
 from app.load import first_poses
 from app.loop_store import LoopStore
 from app.mouse_latency import find_browser, mouse_latency
@@ -34,25 +32,22 @@ from models.simulation import FREE, first_state, kernel_of, kind_of, settings_ve
 
 TICKS = 160  # per timed call
 REFERENCE = Path(__file__).parents[1] / "tests" / "reference.py"
-SETTLED = 4.0  # [s] of load that are not counted
 
 
 def bench(quick: bool = False) -> None:
     """Print all tables; `quick` leaves out what needs clients or a browser."""
-    load = os.getloadavg()[0]
-    print(f"{platform.platform()}, {os.cpu_count()} cores, load {load:.1f}; medians\n")
+    _print_machine()
     with tempfile.TemporaryDirectory() as folder:
         _loops(Path(folder), 20 if quick else 60)
         _modes(Path(folder), 10 if quick else 30)
     if not quick:
-        for clients in (1, 20):
-            _crowd(clients)
+        _crowds([Crowd(1), Crowd(20), Crowd(20, workers=2)])
         _start_up()
         _mouse()
 
 
 def _loops(folder: Path, repeats: int) -> None:
-    """Microseconds per simulated millisecond, tiers interleaved, and the ratio to C by hand."""
+    """Median microseconds per simulated millisecond, tiers interleaved, and the ratio to C by hand."""
     print(f"{'robot':10s} {'controller':20s} {'pushed':7s} {'tier':12s} {'µs/ms':>8s} {'/ C':>6s}")
     for entry in (FIVE_BAR, FLEXIBLE):
         for controller in NAMES:
@@ -133,19 +128,25 @@ def _quiet_lab() -> Iterator[LabServer]:
             lab.stop()
 
 
-def _crowd(clients: int, seconds: float = 15.0) -> None:
-    """Lateness of frames and display rate with some simulated browsers, in their own process."""
-    with _quiet_lab() as lab:
-        port = lab.server.get_port()
-        command = [sys.executable, "-m", "app.load", str(port), str(clients), str(seconds)]
-        before = time.process_time()
-        outcome = subprocess.run(command, capture_output=True, text=True, check=True)
-        busy = (time.process_time() - before) / seconds
-        frames = np.array(lab.simulation.lateness)[-round(60 * (seconds - SETTLED)) :] * 1e3
-    seen = json.loads(outcome.stdout)
-    late = f"p50 {np.quantile(frames, 0.5):.2f} ms, p99 {np.quantile(frames, 0.99):.2f} ms"
-    rate = f"slowest display {seen['slowest_hz']:.1f} Hz, {seen['bytes_per_s'] / 1e3:.0f} kB/s each"
-    print(f"{clients:3d} clients: frames late by {late}; {rate}; server {busy:.0%} of a core")
+def bench_crowds(crowds: list[Crowd]) -> None:
+    """Print the table of crowds: a row for each, or as many as it asks for."""
+    _print_machine()
+    _crowds(crowds)
+
+
+def _print_machine() -> None:
+    load = os.getloadavg()[0]
+    print(f"{platform.platform()}, {os.cpu_count()} cores, load {load:.1f}\n", flush=True)
+
+
+def _crowds(crowds: list[Crowd]) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        rehearse(folders(Path(folder), "rehearsal"))
+        print(HEAD, flush=True)
+        for number, crowd in enumerate(crowds):
+            for row in measured(crowd, folders(Path(folder), f"data{number}")):
+                print(row, flush=True)
+    print()
 
 
 def _start_up() -> None:
@@ -156,29 +157,12 @@ def _start_up() -> None:
             ("warm cache", {}),
             ("no compiler", {"CC": "none"}),
         ):
-            with _serving({"XDG_CACHE_HOME": cache, "XDG_DATA_HOME": cache, **extra}) as (
-                port,
-                begun,
-            ):
-                asyncio.run(asyncio.wait_for(first_poses(port), 30.0))
-                print(f"start-up, {name}: {time.monotonic() - begun:.2f} s to the first picture")
+            environment = {"XDG_CACHE_HOME": cache, "XDG_DATA_HOME": cache, **extra}
+            with serving(environment) as server:
+                asyncio.run(asyncio.wait_for(first_poses(server.port), 30.0))
+                took = time.monotonic() - server.begun
+                print(f"start-up, {name}: {took:.2f} s to the first picture")
                 time.sleep(2.0)  # lets the cache be filled
-
-
-@contextmanager
-def _serving(environment: dict[str, str]) -> Iterator[tuple[int, float]]:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = int(probe.getsockname()[1])
-    command = [sys.executable, "-m", "app.cli", "--port", str(port), "--log-level", "error"]
-    begun = time.monotonic()
-    quiet = subprocess.DEVNULL
-    process = subprocess.Popen(command, env={**os.environ, **environment}, stdout=quiet)
-    try:
-        yield port, begun
-    finally:
-        process.terminate()
-        process.wait(timeout=10)
 
 
 def _mouse() -> None:

@@ -193,12 +193,32 @@ class Bench:
 
     quick: bool = False
     """Fewer repetitions, no clients."""
+    clients: tuple[int, ...] = ()
+    """Only this: how a server bears so many simulated browsers; several numbers, one by one."""
+    workers: int = 1
+    """So many processes serve them."""
+    seconds: float = 15.0
+    """So long is measured, once all browsers are shown moving robots."""
+    minutes: int = 0
+    """A row every minute for so long, to see whether memory stays flat."""
 
     def run(self) -> None:
         """Print the table."""
-        from app.bench import bench
+        from app.bench import bench, bench_crowds
+        from app.bench_crowd import Crowd
 
-        bench(quick=self.quick)
+        if self.minutes < 0:
+            raise ValueError(f"--minutes {self.minutes}: expected 1 or more")
+        if not self.clients and (self.workers, self.seconds, self.minutes) != (1, 15.0, 0):
+            raise ValueError("--workers, --seconds and --minutes go with --clients")
+        if self.clients and self.quick:
+            raise ValueError("--quick leaves out what --clients asks for")
+        seconds, rows = (60.0, self.minutes) if self.minutes else (self.seconds, 1)
+        crowds = [Crowd(clients, self.workers, seconds, rows) for clients in self.clients]
+        if crowds:
+            bench_crowds(crowds)
+        else:
+            bench(quick=self.quick)
 
 
 @dataclass(frozen=True)

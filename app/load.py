@@ -1,29 +1,59 @@
 """Simulated browsers: they read everything that a lab sends, pull at it and move its sliders.
 
-`python -m app.load PORT CLIENTS SECONDS` prints, as JSON, what they have seen.
+`python -m app.load PORT CLIENTS SECONDS` writes what they see, a line of JSON at a time; see
+`crowd`.
 """
 
 from __future__ import annotations
 
 import asyncio
-import json
 import math
 import sys
 import time
+from collections.abc import AsyncGenerator
+from contextlib import aclosing
 from dataclasses import dataclass, field
 from http import HTTPStatus
+from statistics import median
 from typing import Any
 
-import numpy as np
+import msgspec
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 from websockets.typing import Subprotocol
 
-from app.protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
+from app.protocol import CAMERA, SUBPROTOCOL, answer, packed, told, unpacked
 
 EVERY = 0.05  # [s] between a hand's messages; no browser sends more often
 CYCLE = 4.0  # [s]: pull, rest, move a slider, rest
 MOVING = "/links"
+STEADY = 10  # poses shown to a browser that has settled
+ANSWERED = {"LocalStorageGetItemRequestMessage", "SetCameraUpDirectionMessage"}
+ANSWERED |= {"GuiSliderMessage", "BatchedMeshesMessage"}
+
+
+class Unserved(Exception):
+    """A server does not serve all of a crowd; the message says what happened."""
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What a crowd has seen during a while.
+
+    Attributes:
+        seconds: how long that was.
+        clients: that are still connected.
+        slowest_hz, median_hz: new poses per second of the slowest browser, of the median one.
+        bytes_per_s: that each received.
+        cpu: that the crowd itself needed, of a core.
+    """
+
+    seconds: float
+    clients: int
+    slowest_hz: float
+    median_hz: float
+    bytes_per_s: float
+    cpu: float
 
 
 @dataclass
@@ -51,6 +81,7 @@ class Browser:
         """
         address = f"ws://127.0.0.1:{self.port}"
         options: dict[str, Any] = {"max_size": None, "compression": None}
+        options |= {"open_timeout": None, "ping_interval": None}  # a browser waits
         async with connect(address, subprotocols=[Subprotocol(SUBPROTOCOL)], **options) as socket:
             await socket.send(packed("ViewerCameraMessage", **CAMERA))
             until = time.monotonic() + seconds
@@ -70,11 +101,11 @@ class Browser:
         async for raw in socket:
             assert isinstance(raw, bytes)
             self.received += len(raw)
-            names: set[str] = set()
-            for message in unpacked(raw):
-                names.add(message.get("name", ""))
-                await self._answer(socket, message)
-            if MOVING in names:
+            messages = told(raw)
+            if any(message.type in ANSWERED for message in messages):
+                for message in unpacked(raw):
+                    await self._answer(socket, message)
+            if any(m.name == MOVING and m.type == "SceneNodeUpdateMessage" for m in messages):
                 self.shown.append(time.monotonic())
 
     async def _answer(self, socket: ClientConnection, message: dict[str, Any]) -> None:
@@ -144,26 +175,70 @@ def _is_early(error: Exception) -> bool:
     return isinstance(error, OSError | EOFError | InvalidMessage | ConnectionClosed)
 
 
-async def crowd(port: int, clients: int, seconds: float, settled: float = 4.0) -> dict[str, float]:
-    """What some browsers see, at once, after they have settled [s]."""
+async def crowd(
+    port: int, clients: int, seconds: float, patience: float | None = None
+) -> AsyncGenerator[Seen]:
+    """What some browsers see, at once: first until each is shown moving robots, then again and
+    again for some seconds.
+
+    Args:
+        patience: with the first of these, [s].
+
+    Raises:
+        Unserved: some are not shown any.
+    """
     browsers = [Browser(port, number) for number in range(clients)]
-    begun = time.monotonic()
-    await asyncio.gather(*(browser.browse(seconds) for browser in browsers))
-    rates: list[float] = []
-    gaps: list[float] = []
+    tasks = [asyncio.create_task(browser.browse(math.inf)) for browser in browsers]
+    begun, cpu = time.monotonic(), time.process_time()
+    try:
+        await _settle(browsers, tasks, patience or 30.0 + 3.0 * clients)
+        while True:
+            now, spent = time.monotonic(), time.process_time()
+            there = sum(not task.done() for task in tasks)
+            yield _seen(browsers, there, now - begun, spent - cpu)
+            begun, cpu = now, spent
+            await asyncio.sleep(seconds)
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+
+async def _settle(
+    browsers: list[Browser], tasks: list[asyncio.Task[None]], patience: float
+) -> None:
+    until, clients = time.monotonic() + patience, len(browsers)
+    while (ready := sum(len(browser.shown) >= STEADY for browser in browsers)) < clients:
+        for task in tasks:
+            if task.done():
+                error = task.exception() or "the server has closed the connection"
+                raise Unserved(f"one of {clients} clients was turned away: {error}")
+        if time.monotonic() > until:
+            raise Unserved(
+                f"only {ready} of {clients} clients were shown moving robots in {patience:g} s"
+            )
+        await asyncio.sleep(0.02)
+
+
+def _seen(browsers: list[Browser], there: int, seconds: float, cpu: float) -> Seen:
+    """What they have seen since they were asked last."""
+    rates = [len(browser.shown) / seconds for browser in browsers]
+    received = sum(browser.received for browser in browsers) / len(browsers)
     for browser in browsers:
-        shown = np.array([t for t in browser.shown if t > begun + settled])
-        if len(shown) > 2:
-            rates.append((len(shown) - 1) / float(shown[-1] - shown[0]))
-            gaps.extend(np.diff(shown).tolist())
-    return {
-        "clients": float(len(rates)),
-        "slowest_hz": min(rates, default=0.0),
-        "gap_p99_s": float(np.quantile(gaps, 0.99)) if gaps else float("inf"),
-        "bytes_per_s": sum(browser.received for browser in browsers) / seconds / clients,
-    }
+        browser.shown.clear()
+        browser.received = 0
+    return Seen(seconds, there, min(rates), median(rates), received / seconds, cpu / seconds)
+
+
+async def _report(port: int, clients: int, seconds: float) -> None:
+    async with aclosing(crowd(port, clients, seconds)) as seen:
+        async for each in seen:
+            sys.stdout.write(msgspec.json.encode(each).decode() + "\n")
+            sys.stdout.flush()
 
 
 if __name__ == "__main__":
-    seen = asyncio.run(crowd(int(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])))
-    sys.stdout.write(json.dumps(seen) + "\n")
+    try:
+        asyncio.run(_report(int(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])))
+    except Unserved as unserved:
+        sys.exit(str(unserved))

@@ -46,6 +46,26 @@ def answer(message: dict[str, Any], stored: Mapping[str, str] | None = None) -> 
     return None
 
 
+class Told(msgspec.Struct):
+    """What a message is and of which node, if of any."""
+
+    type: str
+    name: Any = ""
+
+
+class _Window(msgspec.Struct):
+    messages: list[Told]
+
+
+_window = msgspec.msgpack.Decoder(_Window)
+
+
+def told(raw: bytes) -> list[Told]:
+    """Of the messages of one frame from the server only that, which takes less than `unpacked`."""
+    end = 16 + int.from_bytes(raw[8:16], "little")
+    return _window.decode(zstandard.decompress(raw[16:end])).messages
+
+
 def unpacked(raw: bytes) -> list[dict[str, Any]]:
     """The messages of one frame from the server, with their arrays.
 

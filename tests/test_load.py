@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import aclosing, contextmanager
 from pathlib import Path
 from socket import create_server
 from threading import Event, Thread
@@ -21,7 +21,7 @@ from viser import uplot
 from websockets.typing import Subprotocol
 
 from app.hardening import make_server
-from app.load import crowd, first_poses
+from app.load import Seen, Unserved, crowd, first_poses
 from app.loop_store import LoopStore
 from app.node_update import Channel, update_node, update_plot
 from app.protocol import CAMERA, SUBPROTOCOL, packed, unpacked
@@ -116,15 +116,41 @@ def test_filling_in_a_push_is_the_same_as_packing_anew(name: str) -> None:
 
 
 def test_simulated_browsers_see_and_do_what_real_ones_do(tmp_path: Path) -> None:
+    async def look(port: int) -> list[Seen]:
+        async with aclosing(crowd(port, 2, seconds=4.5)) as seen:
+            return [await anext(seen) for _ in range(2)]
+
     server = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path))
-    seen = asyncio.run(crowd(server.server.get_port(), 2, seconds=7.0, settled=4.0))
-    labs = server.simulation.labs
-    server.stop()
-    assert seen["clients"] == 2
-    assert 10 < seen["slowest_hz"] < 35
+    try:
+        first, then = asyncio.run(look(server.server.get_port()))
+        labs = server.simulation.labs
+    finally:
+        server.stop()
+    assert first.clients == then.clients == 2
+    assert then.seconds == pytest.approx(4.5, abs=0.5)
+    assert 10 < then.slowest_hz <= then.median_hz < 35
+    assert then.bytes_per_s > 0 and 0 < then.cpu < 1.5
     assert all(lab.session.time > 1.0 for lab in labs)
     assert max(run.max_distance for lab in labs for run in lab.session.runs.values()) > 0.004
     assert any(lab.session.parameters.K1 != 400.0 for lab in labs)
+
+
+def test_a_crowd_that_is_not_served_says_so(tmp_path: Path) -> None:
+    async def settle(port: int, patience: float) -> None:
+        async with aclosing(crowd(port, 2, 1.0, patience)) as seen:
+            await anext(seen)
+
+    server = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path), most_clients=1)
+    try:
+        with pytest.raises(Unserved, match=r"only 1 of 2 clients .* moving robots in 3 s"):
+            asyncio.run(settle(server.server.get_port(), 3.0))
+    finally:
+        server.stop()
+    with (
+        answering(REFUSED, REFUSED) as (port, _),
+        pytest.raises(Unserved, match=r"turned away: .*503"),
+    ):
+        asyncio.run(settle(port, 5.0))
 
 
 @contextmanager
