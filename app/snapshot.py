@@ -56,7 +56,7 @@ class PathView:
         refused: places where the last refused edit was wrong, shape (n, 3); usually empty.
     """
 
-    version: int
+    version: object
     points: np.ndarray
     control_points: np.ndarray
     selected: int | None

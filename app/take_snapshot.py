@@ -23,6 +23,7 @@ AIMS = {TrackerName: "theta_ref", FollowerName: "theta"}
 def take_snapshot(session: Session, achieved_speed: float, traces: bool = True) -> Snapshot:
     """The session now, or at the past instant it looks at."""
     past = None if session.viewing is None else session.history.at(session.viewing)
+    curve = session.editor.curve if past is None else past.curve
     time = session.time if session.viewing is None else session.viewing
     return Snapshot(
         time=time,
@@ -30,12 +31,12 @@ def take_snapshot(session: Session, achieved_speed: float, traces: bool = True) 
         achieved_speed=achieved_speed,
         robots=robot_views(
             session.robot,
-            session.editor.curve,
+            curve,
             session.instant() if past is None else past.instant(),
             _traces(session, time) if traces else None,
             session.exaggeration,
         ),
-        path=_path_view(session),
+        path=_path_view(session, curve),
         held=bool(session.held),
         grabbed=session.grabbed,
         message=session.message,
@@ -101,20 +102,23 @@ def robot_views(
     return views
 
 
-def _path_view(session: Session) -> PathView:
+def _path_view(session: Session, curve: Curve) -> PathView:
+    """The path as it is now, or without its control points as it was when it was `curve`."""
     editor, robot = session.editor, session.robot
-    if session.path_view is not None and session.path_view.version == editor.version:
+    is_present = curve is editor.curve
+    version = editor.version if is_present else curve
+    if session.path_view is not None and session.path_view.version == version:
         return session.path_view
 
     def placed(z: Array) -> Array:
         return robot.place(robot.frame.lift(z))
 
-    wrong = [fault.points for fault in editor.faults]
+    wrong = [fault.points for fault in editor.faults] if is_present else []
     session.path_view = PathView(
-        version=editor.version,
-        points=placed(editor.curve.at(np.linspace(-np.pi, np.pi, CURVE_POINTS))),
-        control_points=placed(editor.points()),
-        selected=editor.selected,
+        version=version,
+        points=placed(curve.at(np.linspace(-np.pi, np.pi, CURVE_POINTS))),
+        control_points=placed(editor.points() if is_present else np.zeros((0, 2))),
+        selected=editor.selected if is_present else None,
         refused=placed(np.concatenate(wrong) if wrong else np.zeros((0, 2))),
     )
     return session.path_view
