@@ -15,6 +15,7 @@ from app.lesson_panel import LessonPanel
 from app.loop_store import LoopStore
 from app.node_update import Channel
 from app.pace import STRIDES
+from app.page_builds import one_at_a_time
 from app.panels.class_panel import ClassPanel
 from app.panels.keys import add_keys
 from app.panels.readout import Readout
@@ -57,7 +58,8 @@ class LabView:
         if not self._is_narrow():
             client.gui.main_panel.dock_right()
             client.gui.main_panel.set_width(CONTROL_WIDTH)
-        self._build(session)
+        with one_at_a_time:
+            self._build(session)
 
     def close(self) -> None:
         """The tab is gone."""
@@ -104,10 +106,11 @@ class LabView:
             self._exporter.serve(session)
 
     def _rebuild(self, session: Session) -> None:
-        self._client.scene.reset()
-        self._client.gui.reset()
-        self._framed, self._settling = 0.0, SETTLING
-        self._build(session)
+        with one_at_a_time:
+            self._client.scene.reset()
+            self._client.gui.reset()
+            self._framed, self._settling = 0.0, SETTLING
+            self._build(session)
 
     def _page(self, session: Session) -> tuple[object, ...]:
         """What the whole page depends on: when it is another, all is built anew."""

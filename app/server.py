@@ -25,6 +25,7 @@ from app.leases import Leases
 from app.loop import SimulationThread
 from app.loop_store import LoopStore
 from app.onlooker import Onlookers
+from app.page_builds import Newcomers
 from app.session import Session
 from app.sessions import Entry, Sessions
 from app.stage import set_initial_camera
@@ -87,7 +88,7 @@ class LabServer:
         if classroom is not None:
             self._class = ClassDesk(classroom, self.sessions, records, self._keeper)
         self._views: dict[int, LabView] = {}
-        self._onlookers = Onlookers(self.server)
+        self._newcomers, self._onlookers = Newcomers(self.server), Onlookers(self.server)
         set_initial_camera(self.server, RIGID)
         self.server.on_client_connect(self._connected)
         self.server.on_client_disconnect(self._disconnected)
@@ -104,6 +105,7 @@ class LabServer:
 
     def stop(self) -> None:
         """Stop everything."""
+        self._newcomers.stop()
         if self._class is not None:
             self._class.stop()
         self.simulation.stop()
@@ -131,10 +133,16 @@ class LabServer:
     def _entered(self, client: viser.ClientHandle, known: str | None) -> None:
         """There is a place for a client, if it is still there."""
         if client.client_id in self.server.get_clients():
-            self._show(client, self.sessions.join(client.client_id, known), known)
+            entry = self.sessions.join(client.client_id, known)
+            self._newcomers.submit(client, partial(self._show, client, entry, known))
 
     def _show(self, client: viser.ClientHandle, entry: Entry, known: str | None) -> None:
-        """A client's page is that of a session."""
+        """A client's page is that of a session, if both are still there."""
+        if client.client_id not in self.server.get_clients():
+            self._disconnected(client)
+            return
+        if self.sessions.find(entry.code) is not entry or entry.client != client.client_id:
+            return  # lost to another process meanwhile
         try:
             client.local_storage.set_item(STORAGE_KEY, self.sessions.remembered(entry.code, known))
             view = self._view(client, entry)

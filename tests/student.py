@@ -62,6 +62,7 @@ class Student:
             additional_headers=self.headers,
             compression=None,
             max_size=None,
+            close_timeout=1.0,
             sock=way,
         )
         self._socket.send(packed("ViewerCameraMessage", **CAMERA))
