@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from models.curves import Curve
-from models.kernel import Kind
+from models.loop_kind import Kind
 
 SECONDS = 60.0
 LONGEST = 17  # ticks in a stretch at most

@@ -22,7 +22,7 @@ from models.identification import (
     simplest,
     smooth_velocities,
 )
-from models.kernel import Kind
+from models.loop_kind import Kind
 from models.loops import InterpretedLoop
 from models.parameters import Parameters, specs
 from models.robots import RigidFiveBar, Robot

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import platformdirs
 
-from models.kernel import Kind
+from models.loop_kind import Kind
 from models.loops import CompiledLoop, InterpretedLoop, Loop, compile_loop, find_compiler
 from models.robots import Robot
 from models.simulation import kernel_of

@@ -10,8 +10,8 @@ from app.history import Drive, Input
 from app.loop_store import LoopStore
 from models.curves import Curve
 from models.distance import near_distance
-from models.kernel import Kind
 from models.layout import Layout
+from models.loop_kind import Kind
 from models.parameters import Parameters
 from models.robots import Robot
 from models.simulation import Push, first_state, kernel_of, kind_of, pushed, settings_vector

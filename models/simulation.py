@@ -9,7 +9,8 @@ import numpy as np
 
 from models import composite_control
 from models.curves import Curve
-from models.kernel import Kernel, Kind, build_kernel
+from models.kernel import Kernel, build_kernel
+from models.loop_kind import Kind
 from models.loop_vectors import GAINS
 from models.parameters import Parameters
 from models.robots import Robot

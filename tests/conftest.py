@@ -14,7 +14,8 @@ from hypothesis import settings
 from models.curves import HARMONICS, Curve, fourier
 from models.five_bar import FiveBarLinks, five_bar, inverse_kinematics, load_links
 from models.frames import Plane
-from models.kernel import Kernel, Kind, build_kernel
+from models.kernel import Kernel, build_kernel
+from models.loop_kind import Kind
 from models.loops import InterpretedLoop, Loop, compile_loop, find_compiler
 from models.system import Array, MechanicalSystem
 

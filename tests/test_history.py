@@ -18,7 +18,7 @@ from app.session import Session
 from app.take_snapshot import take_snapshot
 from models.controllers import NAMES
 from models.curves import Curve, circle
-from models.kernel import Kind
+from models.loop_kind import Kind
 
 CURVE, SETTINGS = circle(0.05), np.zeros(3)
 

@@ -16,7 +16,8 @@ from reference import reference_loop
 from models.curves import Curve, chebyshev_curve, circle, ellipse, segment
 from models.five_bar import end_point, inverse_kinematics
 from models.frames import Plane
-from models.kernel import Kind, build_kernel
+from models.kernel import build_kernel
+from models.loop_kind import Kind
 from models.loops import InterpretedLoop, find_compiler
 from models.system import Array
 

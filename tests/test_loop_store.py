@@ -14,7 +14,7 @@ from lab import FRAME, new_session, states
 from app.loop_store import LoopStore
 from app.session import Session
 from models.controllers import NAMES
-from models.kernel import Kind
+from models.loop_kind import Kind
 from models.loops import CompiledLoop, InterpretedLoop, find_compiler
 from models.robots import rigid_five_bar
 

@@ -16,7 +16,7 @@ from conftest import FOLLOWING, Rig
 
 from models.controllers import NAMES
 from models.curves import Curve, chebyshev_curve, circle
-from models.kernel import Kind
+from models.loop_kind import Kind
 from models.loops import BLOCK, InterpretedLoop, compile_loop, find_compiler, generate_source
 
 KINDS = [
@@ -127,7 +127,8 @@ def test_without_a_compiler_the_interpreted_loop_runs() -> None:
     script = """
 from models.five_bar import five_bar, load_links
 from models.frames import Plane
-from models.kernel import Kind, build_kernel
+from models.kernel import build_kernel
+from models.loop_kind import Kind
 from models.loops import InterpretedLoop, find_compiler
 import numpy as np
 assert find_compiler() is None
