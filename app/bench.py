@@ -47,7 +47,7 @@ def bench(quick: bool = False) -> None:
 
 
 def _loops(folder: Path, repeats: int) -> None:
-    """Median microseconds per simulated millisecond, tiers interleaved, and the ratio to C by hand."""
+    """Microseconds per simulated millisecond, medians, tiers interleaved; ratio to C by hand."""
     print(f"{'robot':10s} {'controller':20s} {'pushed':7s} {'tier':12s} {'µs/ms':>8s} {'/ C':>6s}")
     for entry in (FIVE_BAR, FLEXIBLE):
         for controller in NAMES:
