@@ -1,8 +1,9 @@
-"""Pages are built one at a time: sixty at once would take the processor from those inside."""
+"""Pages are built one at a time, with rests: sixty at once would stop those who are inside."""
 
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -14,6 +15,7 @@ from lessons.words import Words
 
 one_at_a_time = threading.Lock()
 """Held while a page is built, or built anew; never while a browser is waited for."""
+MOST_REST = 0.5  # [s] after a newcomer's page; else as long as that took
 FEW = 2  # so many pages are built while a newcomer looks at nothing
 
 
@@ -49,15 +51,16 @@ class Newcomers:
     def _build(
         self, client: int, told: Callable[[], None] | None, build: Callable[[], None]
     ) -> None:
+        begun = time.monotonic()
         try:
             if told is not None and client in self._server.get_clients():
                 told()
             build()
         except Exception as error:
             log_error(error)
-        finally:
-            with self._lock:
-                self._ahead -= 1
+        time.sleep(min(time.monotonic() - begun, MOST_REST))
+        with self._lock:
+            self._ahead -= 1
 
 
 def _tell(client: viser.ClientHandle) -> Callable[[], None]:
