@@ -171,6 +171,8 @@ def _mouse() -> None:
     if browser is None:
         print("mouse to picture: not measured, it needs Chromium and Playwright")
         return
-    with _quiet_lab() as lab:
-        delays = mouse_latency(lab, browser, 20) * 1e3
-    print(f"mouse to picture: median {np.median(delays):.0f} ms, worst {delays.max():.0f} ms")
+    for draws, how in ((False, "drawing no triangles, as if there were a GPU"), (True, "drawing")):
+        with _quiet_lab() as lab:
+            delays = mouse_latency(lab, browser, 20, draws) * 1e3
+        shown = f"median {np.median(delays):.0f} ms, worst {delays.max():.0f} ms"
+        print(f"mouse to changed pose, {how}: {shown}")
