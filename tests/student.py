@@ -93,6 +93,11 @@ class Student:
             for message in unpacked(raw):
                 self._take(message)
 
+    def stay(self, seconds: float) -> None:
+        """Take in what comes, for a while."""
+        end = time.monotonic() + seconds
+        self.read(lambda: time.monotonic() > end)
+
     def cut_off(self) -> None:
         """Wait until the server is gone."""
         try:
@@ -102,7 +107,7 @@ class Student:
 
     def find(self, label: str) -> dict[str, Any]:
         """A widget by the beginning of its label or by an option, once it is there."""
-        self.read(lambda: any(text.startswith(label) for text in self._labels()))
+        self.read(lambda: self.may(label))
         return next(w for text, w in self._labels().items() if text.startswith(label))
 
     def set(self, label: str, value: Any) -> None:
@@ -110,6 +115,10 @@ class Student:
         widget = self.find(label)
         assert self._socket is not None
         self._socket.send(packed("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value}))
+
+    def may(self, label: str) -> bool:
+        """Whether there is a widget now whose label or option begins so."""
+        return any(text.startswith(label) for text in self._labels())
 
     def sees(self, text: str) -> bool:
         """Whether the page says something."""

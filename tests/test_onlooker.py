@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -131,8 +130,8 @@ class Tab(Student):
 
     def rate(self, seconds: float) -> float:
         """What comes, [B/s]."""
-        before, end = self.received, time.monotonic() + seconds
-        self.read(lambda: time.monotonic() > end)
+        before = self.received
+        self.stay(seconds)
         return (self.received - before) / seconds
 
 

@@ -150,7 +150,10 @@ def test_a_student_whose_worker_is_killed_goes_on_with_another(site: Site) -> No
         student.set("Open", True)
         student.set("Next", True)
         student.read(lambda: student.sees("Step 2 of"))
-        time.sleep(4.0)  # what may be lost is within 5 s
+        student.set("B", "B")
+        student.set("Commit to this prediction: B", True)
+        student.read(lambda: student.may("Next") and not student.may("Commit"))
+        student.stay(4.0)  # what may be lost is within 5 s
         serving, code = worker_of(site, student), student.code
         os.kill(serving, signal.SIGKILL)
         begun = time.monotonic()
@@ -159,6 +162,8 @@ def test_a_student_whose_worker_is_killed_goes_on_with_another(site: Site) -> No
         student.read(lambda: student.sees("Step 2 of"))
         assert time.monotonic() - begun < 12
         assert worker_of(site, student) != serving and student.code == code
+        student.read(lambda: student.may("Next"))
+        assert not student.may("Commit") and not student.may("Skip")  # it stays predicted
         student.set("Free lab", "Free lab")
         student.read(lambda: not student.sees("Step 2 of"))
         assert student.find("Path")["value"] == "clover" and student.find("K2")["value"] == 44.0
