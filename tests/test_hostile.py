@@ -39,6 +39,7 @@ from app.server import LabServer
 
 ROOT = Path(__file__).parents[1]
 WAIT = 10.0  # [s]
+RESTING = 30.0  # [Hz]; it is shown more while it pulls
 KEPT = 0.6  # of the display rate that it had before; a busy machine is unsteady by itself
 LONGEST_GAP = 1.0  # [s]
 CALM = 0.7  # [s] of looking at it before, and at least during
@@ -126,7 +127,7 @@ class Witness:
         """What is done in here takes nothing away from it."""
         begun = time.monotonic()
         time.sleep(CALM)
-        calm = len(self._shown_since(begun)) / CALM
+        calm = min(len(self._shown_since(begun)) / CALM, RESTING)
         begun = time.monotonic()
         yield
         time.sleep(max(0.0, begun + CALM - time.monotonic()))
