@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 from urllib.request import Request, urlopen
 
+import numpy as np
 import pytest
 import websockets.sync.client
 
@@ -28,7 +29,7 @@ from tests.browser import ARGUMENTS, COARSE, wait_for
 pytestmark = pytest.mark.browser
 CHROMIUM = "/usr/bin/chromium"
 VALUES = "[...document.querySelectorAll('input')].map(each => each.value)"
-HIDDEN = 200.0  # [B/s]
+HIDDEN, PAUSED = 200.0, 1000.0  # [B/s]
 
 
 class Window:
@@ -110,16 +111,22 @@ def test_a_covered_tab_costs_nothing_and_then_shows_what_is(
     view = wait_for(lambda: [lab.view for lab in server.simulation.labs if lab.view is not None])[0]
     (lab,), meter = server.simulation.labs, Meter(server)
     wait_for(lambda: lab.session.time > 1.0)
-    visible = meter.rate(EVERY + PATIENCE + 2.0)
+    visible = meter.rate(EVERY + PATIENCE + TICK)
     assert lab.view is view  # drawn in software, but seen
+    (client,) = server.server.get_clients().values()
+    camera = client.camera.position
     window.cover()
-    time.sleep(EVERY + PATIENCE + 2 * TICK)
+    wait_for(lambda: lab.view is None, EVERY + PATIENCE + 2 * TICK)
     simulated = lab.session.time
-    hidden = meter.rate(4.0)
+    hidden = meter.rate(3.0)
     assert hidden < min(HIDDEN, 0.02 * visible)
     assert lab.view is None and lab.session.time == simulated
     lab.session.post(c.ChoosePath("clover"))
     window.uncover()
     wait_for(lambda: lab.view is view)
     wait_for(lambda: window.evaluate(f"{VALUES}.includes('clover')"))
-    assert meter.rate(2.0) > 0.3 * visible and lab.session.time > simulated
+    assert meter.rate(1.0) > 0.3 * visible and lab.session.time > simulated
+    assert np.allclose(client.camera.position, camera, atol=1e-9)  # for all that it was asked
+    lab.session.post(c.SetRunning(False))
+    time.sleep(EVERY + TICK)
+    assert meter.rate(2.0) < PAUSED and lab.view is view
