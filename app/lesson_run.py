@@ -132,7 +132,7 @@ class LessonRun:
         if name not in self.course.lessons:
             raise ValueError(f"no lesson {name!r}: there are {', '.join(self.course.lessons)}")
         steps = self.course.lesson(name, self.progress.language).steps
-        if not 0 <= index < len(steps):
+        if index not in range(len(steps)):
             raise ValueError(f"no step {index + 1} in this lesson: it has {len(steps)}")
         scenes = [i for i, s in enumerate(steps[: index + 1]) if s.scene and not s.scene.keep]
         if self.lesson is None:
@@ -223,8 +223,8 @@ class LessonRun:
             ValueError: there is no such quiz or option.
         """
         step = self.step
-        quiz = step.blocks[block] if step and 0 <= block < len(step.blocks) else None
-        if not isinstance(quiz, Quiz) or not 0 <= option < len(quiz.options):
+        quiz = step.blocks[block] if step and block in range(len(step.blocks)) else None
+        if not isinstance(quiz, Quiz) or option not in range(len(quiz.options)):
             raise ValueError(self.words("lesson.no_such_option"))
         self._note(quiz={**self.notes.quiz, f"{self.index}.{block}": option})
 

@@ -77,7 +77,7 @@ class PathDesign:
         return PathDesign("edited", fit(points), points)
 
     def _check(self, index: int) -> None:
-        if not 0 <= index < len(self.points):
+        if index not in range(len(self.points)):
             raise ValueError(f"control point {index}: there are {len(self.points)}")
 
 

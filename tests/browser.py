@@ -24,6 +24,12 @@ ARGUMENTS = (
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
     "--no-first-run",
 )
+NO_TRIANGLES = """
+    for (const what of ["Elements", "Arrays", "ElementsInstanced", "ArraysInstanced"])
+        WebGL2RenderingContext.prototype["draw" + what] = () => {}
+    requestAnimationFrame = act => setTimeout(() => act(performance.now()), 50)
+"""
+"""Drawing in software takes most of a browser's time; where a mouse points is found without it."""
 COARSE = "fixedDpr=0.5"  # viser's own switch: half the pixels each way, where a GPU is simulated
 WAIT = 60.0  # [s]; software rendering on a busy machine shows a few frames a second
 
@@ -60,10 +66,13 @@ class Tab:
 
     Args:
         context: a browser context of its own is another browser; a shared one another tab.
+        draws: whether triangles are drawn.
     """
 
-    def __init__(self, server: LabServer, context: BrowserContext) -> None:
+    def __init__(self, server: LabServer, context: BrowserContext, draws: bool = True) -> None:
         self.server = server
+        if not draws:
+            context.add_init_script(NO_TRIANGLES)
         context.set_default_timeout(WAIT * 1e3)
         self.page: Page = context.new_page()
         self.errors: list[str] = []

@@ -77,7 +77,7 @@ def tab(shared: Tab) -> Iterator[Tab]:
 def other(browser: Browser, server: LabServer) -> Iterator[Tab]:
     """A tab in a browser of its own."""
     context = fresh(browser)
-    yield Tab(server, context)
+    yield Tab(server, context, draws=False)
     context.close()
 
 
@@ -422,7 +422,7 @@ def test_another_tab_is_another_lab_that_ends_with_it(tab: Tab) -> None:
     tab.press("Pause")
     wait_for(lambda: not tab.session.running)
     clients, threads = len(tab.server.server.get_clients()), export_threads()
-    second = Tab(tab.server, tab.page.context)
+    second = Tab(tab.server, tab.page.context, draws=False)
     assert second.session is not tab.session
     assert second.session.running and not tab.session.running
     second.press("Help and keys")
@@ -475,7 +475,7 @@ def test_hostile_text_is_not_rendered(tab: Tab) -> None:
 def test_the_lab_needs_no_compiler(browser: Browser, tmp_path: Path) -> None:
     server = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path))
     context = fresh(browser)
-    tab = Tab(server, context)
+    tab = Tab(server, context, draws=False)
     begun = tab.session.time
     tab.page.keyboard.press("h")
     wait_for(lambda: len(tab.session.held) == 2 and tab.session.time > begun + 2.0)

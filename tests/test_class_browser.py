@@ -25,12 +25,6 @@ from tests.browser import ARGUMENTS, Tab, wait_for
 pytestmark = pytest.mark.browser
 HOSTILE = "<img src=x onerror=1>"
 WINDOWS = ((1100, 600), (800, 400), (800, 400))
-NO_DRAWING = """
-    for (const what of ["Elements", "Arrays", "ElementsInstanced", "ArraysInstanced"])
-        WebGL2RenderingContext.prototype["draw" + what] = () => {}
-    requestAnimationFrame = act => setTimeout(() => act(performance.now()), 100)
-"""
-"""Three tabs that draw in software leave nothing of the processor."""
 
 
 @dataclass
@@ -54,8 +48,7 @@ def tabs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Class]:
         made: list[Tab] = []
         for width, height in WINDOWS:
             context = browser.new_context(viewport={"width": width, "height": height})
-            context.add_init_script(NO_DRAWING)
-            made.append(Tab(server, context))
+            made.append(Tab(server, context, draws=False))
             made[-1].ask(c.SetRunning(False))
         yield Class(room, made[0], made[1:])
         assert [tab.errors for tab in made] == [[], [], []]

@@ -31,7 +31,7 @@ def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
     server = LabServer("127.0.0.1", 0, store)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=ARGUMENTS)
-        tab = Tab(server, browser.new_context(viewport={"width": 1000, "height": 700}))
+        tab = Tab(server, browser.new_context(viewport={"width": 1000, "height": 700}), draws=False)
         tab.press("Robot…")
         for entry in (FIVE_BAR, FLEXIBLE):
             tab.page.get_by_alt_text(entry.label).wait_for()

@@ -28,7 +28,7 @@ def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
     server = LabServer("127.0.0.1", 0, store)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=ARGUMENTS)
-        tab = Tab(server, browser.new_context(viewport={"width": 1280, "height": 800}))
+        tab = Tab(server, browser.new_context(viewport={"width": 1280, "height": 800}), draws=False)
         tab.press("Lessons")
         tab.page.get_by_role("button", name="Open", exact=True).first.click()
         heading(tab, "Two robots, one circle")
