@@ -27,7 +27,7 @@ ARGUMENTS = (
 NO_TRIANGLES = """
     for (const what of ["Elements", "Arrays", "ElementsInstanced", "ArraysInstanced"])
         WebGL2RenderingContext.prototype["draw" + what] = () => {}
-    requestAnimationFrame = act => setTimeout(() => act(performance.now()), 50)
+    requestAnimationFrame = act => setTimeout(() => act(performance.now()), 100)
 """
 """Drawing in software takes most of a browser's time; where a mouse points is found without it."""
 COARSE = "fixedDpr=0.5"  # viser's own switch: half the pixels each way, where a GPU is simulated

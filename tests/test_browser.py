@@ -54,7 +54,7 @@ def fresh(browser: Browser, **options: Any) -> BrowserContext:
 @pytest.fixture(scope="module")
 def shared(browser: Browser, server: LabServer) -> Iterator[Tab]:
     context = fresh(browser)
-    yield Tab(server, context)
+    yield Tab(server, context, draws=False)
     context.close()
 
 

@@ -46,10 +46,12 @@ def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
 
 
 def deflection(tab: Tab) -> float:
-    """Of the follower's tip, [m]."""
-    robot = tab.session.robot
+    """Of the follower's tip, or of those that stand still, [m]."""
+    robot, runs = tab.session.robot, tab.session.runs
     assert isinstance(robot, FlexibleFiveBar)
-    return abs(float(robot.deflection(tab.session.runs[FOLLOWER].shown()["q"])))
+    still = [run for run in runs.values() if run.diverged is not None]
+    bent = [robot.deflection(run.shown()["q"]) for run in still or [runs[FOLLOWER]]]
+    return float(np.abs(bent).max())
 
 
 def tip(tab: Tab) -> np.ndarray:
