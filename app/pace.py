@@ -6,7 +6,7 @@ Simulated time is what must not suffer, so the display gives way first: from 30 
 from __future__ import annotations
 
 STRIDES = (2, 3, 4)  # frames of simulation per frame of display
-BUSY, IDLE = 0.85, 0.45  # shares of the time: draw less often above, more often below
+BUSY, ENOUGH = 0.9, 0.82  # shares of the time: too much, and what drawing more may come to
 FADING = 1 / 30  # of the measured share, per frame
 PATIENCE = 60  # frames from one change to the next
 
@@ -36,5 +36,5 @@ class Pace:
             return
         if self._share > BUSY and self._at < len(STRIDES) - 1:
             self._at, self._since = self._at + 1, 0
-        elif self._share < IDLE and self._at > 0:
-            self._at, self._since = self._at - 1, 0
+        elif self._at > 0 and self._share * self.stride / STRIDES[self._at - 1] < ENOUGH:
+            self._at, self._since = self._at - 1, 0  # even if drawing were all that is done
