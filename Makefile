@@ -19,7 +19,7 @@ run: $(STAMP)
 	$(BIN)/onpath $(ARGS)
 
 test: $(STAMP)
-	$(BIN)/pytest -m "not browser" -n 3 --dist loadfile $(ARGS)
+	$(BIN)/pytest -m "not browser" -n 2 --dist loadfile $(ARGS)
 	$(BIN)/pytest -m browser $(ARGS)
 
 check: $(STAMP)

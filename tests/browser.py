@@ -31,6 +31,7 @@ NO_TRIANGLES = """
 """
 """Drawing in software takes most of a browser's time; where a mouse points is found without it."""
 COARSE = "fixedDpr=0.5"  # viser's own switch: half the pixels each way, where a GPU is simulated
+COARSER = "fixedDpr=0.1"  # for those who do not look
 WAIT = 60.0  # [s]; software rendering on a busy machine shows a few frames a second
 
 THREE_FRAMES = """() => new Promise(done => {
@@ -77,7 +78,7 @@ class Tab:
         self.page: Page = context.new_page()
         self.errors: list[str] = []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self._join(lambda: self.page.goto(f"{server.address}/?{COARSE}"))
+        self._join(lambda: self.page.goto(f"{server.address}/?{COARSE if draws else COARSER}"))
 
     def reload(self) -> None:
         """As a user does who presses F5."""

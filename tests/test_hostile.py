@@ -396,7 +396,7 @@ def test_a_client_that_reads_nothing_costs_a_bounded_amount(
     known = set(sockets.values())
     raw = knock(server.server.get_port(), room=4096)
     wait_for(lambda: select.select([raw], [], [], 0)[0])
-    (connection,) = set(sockets.values()) - known
+    (connection,) = wait_for(lambda: set(sockets.values()) - known)
     connection.transport.get_extra_info("socket").setsockopt(
         socket.SOL_SOCKET, socket.SO_SNDBUF, 4096
     )
