@@ -40,7 +40,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
-    folder = tmp_path_factory.mktemp("loops")
+    folder = tmp_path_factory.getbasetemp() / "loops"
     server = LabServer("127.0.0.1", 0, LoopStore(find_compiler(), folder))
     yield server
     server.stop()

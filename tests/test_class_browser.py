@@ -39,7 +39,7 @@ class Class:
 @pytest.fixture(scope="module")
 def tabs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Class]:
     room = Classroom()
-    store = LoopStore(find_compiler(), tmp_path_factory.mktemp("loops"))
+    store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
     server = LabServer("127.0.0.1", 0, store, classroom=room)
     with sync_playwright() as playwright:
         browser: Browser = playwright.chromium.launch(

@@ -27,7 +27,7 @@ FOLLOWER = "path_following"
 @pytest.fixture(scope="module")
 def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
     """A tab in which the flexible link has been chosen from the menu."""
-    store = LoopStore(find_compiler(), tmp_path_factory.mktemp("loops"))
+    store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
     server = LabServer("127.0.0.1", 0, store)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=ARGUMENTS)

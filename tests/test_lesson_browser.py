@@ -24,7 +24,7 @@ LESSON = "01-path-or-timetable"
 @pytest.fixture(scope="module")
 def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
     """A tab in which lesson 1 has been opened from the overview."""
-    store = LoopStore(find_compiler(), tmp_path_factory.mktemp("loops"))
+    store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
     server = LabServer("127.0.0.1", 0, store)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=ARGUMENTS)
