@@ -5,16 +5,12 @@ Periodic resampling at equal arc length, then FFT, low-passed (closed), or a Che
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
-
 import numpy as np
 from numpy.polynomial import chebyshev
+from scipy.interpolate import CubicSpline
 
 from models.curves import HARMONICS, Curve, chebyshev_curve, fourier
 from models.system import Array
-
-if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline
 
 SAMPLES = 256
 SHORTEST = 0.02  # [m], total length below which a stroke is no path
@@ -31,7 +27,8 @@ def closed_through(points: Array) -> Curve:
     """
     points = _distinct(points, least=3)
     ring = np.vstack([points, points[:1]])
-    samples = _equal_arc(_spline(ring, "periodic"), endpoint=False)
+    spline = CubicSpline(_chords(ring), ring, bc_type="periodic")
+    samples = _equal_arc(spline, endpoint=False)
     spectrum = np.fft.rfft(samples, axis=0) / SAMPLES
     harmonics = spectrum[1 : HARMONICS + 1] * _half_turns()[:, None]
     return fourier(spectrum[0].real, 2 * harmonics.real, -2 * harmonics.imag)
@@ -46,7 +43,8 @@ def open_through(points: Array) -> Curve:
     points = _distinct(points, least=2)
     if len(points) == 2:
         return chebyshev_curve(np.stack([points.mean(0), (points[1] - points[0]) / 2]))
-    samples = _equal_arc(_spline(points, "natural"), endpoint=True)
+    spline = CubicSpline(_chords(points), points, bc_type="natural")
+    samples = _equal_arc(spline, endpoint=True)
     x = _even(-1, 1, SAMPLES)
     coefficients: Array = chebyshev.chebfit(x, samples, HARMONICS).astype(np.float64)
     return chebyshev_curve(coefficients)
@@ -121,12 +119,6 @@ def _chords(points: Array) -> Array:
     """Centripetal knots: no loops between unevenly spaced points."""
     gaps = np.sqrt(np.linalg.norm(np.diff(points, axis=0), axis=1))
     return np.concatenate([[0.0], np.cumsum(gaps)])
-
-
-def _spline(points: Array, ends: Literal["periodic", "natural"]) -> CubicSpline:
-    from scipy.interpolate import CubicSpline  # takes long; see app/warm_up.py
-
-    return CubicSpline(_chords(points), points, bc_type=ends)
 
 
 def _equal_arc(spline: CubicSpline, endpoint: bool) -> Array:
