@@ -166,11 +166,15 @@ class LabView:
             LessonMenu(gui, session, post)
         if self._desk.seat is not None:
             self._parts.append(ClassPanel(gui, session, self._desk.seat))
-        self._parts.append(LivePlot(gui, session, DISTANCE, height=190))
+        self._build_distance(session)
 
     def _build_numbers(self, session: Session) -> None:
         self._progress = self._client.gui.add_progress_bar(0.0, visible=False, animated=True)
         self._readout = Readout(self._client.gui, session)
+
+    def _build_distance(self, session: Session) -> None:
+        """The plot that tells the story."""
+        self._parts.append(LivePlot(self._client.gui, session, DISTANCE, height=190))
 
     def _is_narrow(self) -> bool:
         camera = self._client.camera

@@ -11,6 +11,7 @@ from contextlib import suppress
 import viser
 
 from app.error_log import log_error
+from app.notice import show_notice
 from lessons.words import Words
 
 one_at_a_time = threading.Lock()
@@ -66,8 +67,4 @@ class Newcomers:
 def _tell(client: viser.ClientHandle) -> Callable[[], None]:
     """Returns what takes it away again."""
     words = Words()
-    client.gui.set_panel_label("OnPath")
-    window = client.gui.add_modal(words("coming.title"))
-    with window:
-        client.gui.add_markdown(words("coming.text"))
-    return window.close
+    return show_notice(client, words("coming.title"), words("coming.text"))

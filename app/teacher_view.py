@@ -14,7 +14,6 @@ from app.lesson_commands import CloseLesson
 from app.loop_store import LoopStore
 from app.panels.teacher_controls import Following, TeacherControls
 from app.panels.teacher_panel import TeacherPanel
-from app.plots import DISTANCE, LivePlot
 from app.session import Session
 from app.teaching import Teaching
 
@@ -55,13 +54,13 @@ class TeacherView(LabView):
         if session is own:
             self._parts.append(TeacherControls(gui, own, self._teaching))
             self._build_numbers(session)
-            self._parts.append(LivePlot(gui, session, DISTANCE, height=190))
+            self._build_distance(session)
             controls = Controls(gui, own, post, self._exporter, self._scene, self._desk)
             self._parts += controls.everything()
         else:
             self._parts.append(Following(gui, own, self._teaching))
             self._build_numbers(session)
-            self._parts.append(LivePlot(gui, session, DISTANCE, height=190))
+            self._build_distance(session)
         submit = self._exporter.submit
         self._parts.append(TeacherPanel(self._client, own, self._teaching, submit))
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import viser
 
+from app.notice import show_notice
 from lessons.words import Words
 
 
@@ -54,13 +55,11 @@ class WaitingRoom:
     def _tell(self, client: viser.ClientHandle, enter: Callable[[], None]) -> Callable[[], None]:
         """Show that the lab is full; returns what takes that away again and enters."""
         words = Words()
-        client.gui.set_panel_label("OnPath")
-        window = client.gui.add_modal(words("full.title"))
-        with window:
-            client.gui.add_markdown(words("full.text", places=self._places))
+        text = words("full.text", places=self._places)
+        close = show_notice(client, words("full.title"), text)
 
         def open_up() -> None:
-            window.close()
+            close()
             enter()
 
         return open_up

@@ -9,7 +9,7 @@ import time
 from importlib import import_module
 from threading import Thread
 
-LATER = ("app.figures", "app.report", "app.sketch_board", "scipy.interpolate", "scipy.signal")
+LATER = ("app.figures", "app.report", "app.sketch_board", "scipy.signal")
 REST = 3.0  # [s] for the first browser to open its lab
 
 

@@ -26,14 +26,13 @@ from dataclasses import dataclass
 import casadi as ca
 
 from models.beam import beam_modes
-from models.layout import Layout
+from models.layout import Fields, Layout
 from models.system import MechanicalSystem
 from models.virtual_output import VirtualOutput
 
 MEMORY = Layout((("speed_chain", 3), ("bend_chain", 3), ("absorber", 2)))
 GAINS = {"tip_damping": 0.3, "tip_prediction": 1.2, "tip_shaping": 0.25, "tip_yielding": 100.0}
 TINY = 1e-9
-Fields = dict[str, ca.SX]
 
 
 @dataclass(frozen=True, slots=True)

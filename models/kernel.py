@@ -17,9 +17,9 @@ from models import controllers, forces
 from models.controllers import Gains, Task
 from models.curves import TABLE_SHAPE
 from models.frames import Frame
-from models.layout import Layout
+from models.layout import Fields, Layout
 from models.loop_kind import Kind
-from models.loop_vectors import GAINS, Fields, log_layout, settings_layout, state_layout
+from models.loop_vectors import GAINS, log_layout, settings_layout, state_layout
 from models.plant_tick import held_torque, integrate, push
 from models.projection import LocalCurve, basis
 from models.sensing import logged, look_ahead, measure, remembered

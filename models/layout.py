@@ -12,6 +12,9 @@ from numpy.typing import ArrayLike
 
 from models.system import Array
 
+Fields = dict[str, ca.SX]
+"""A symbolic vector's fields by name, each (size, 1)."""
+
 
 @dataclass(frozen=True, slots=True)
 class Layout:
@@ -33,7 +36,7 @@ class Layout:
         object.__setattr__(self, "slices", {name: slice(i, j) for (name, _), i, j in named})
         object.__setattr__(self, "size", starts[-1])
 
-    def symbols(self, name: str) -> tuple[ca.SX, dict[str, ca.SX]]:
+    def symbols(self, name: str) -> tuple[ca.SX, Fields]:
         """A symbolic vector and its fields, each (size, 1)."""
         vector = ca.SX.sym(name, self.size)
         return vector, {field: vector[where] for field, where in self.slices.items()}

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import casadi as ca
-
 from models import composite_control as composite
 from models.layout import Layout
 from models.system import MechanicalSystem
 
-Fields = dict[str, ca.SX]
-"""A flat vector's fields by name, each (size, 1)."""
 GAINS = ("K1", "K2", "K3", "K4", "K5")
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import casadi as ca
 
 from models import forces
+from models.layout import Fields
 from models.loop_kind import Kind
-from models.loop_vectors import Fields
 from models.system import MechanicalSystem
 
 

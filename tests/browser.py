@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,39 +15,24 @@ from viser import ClientHandle
 from app.apply import apply
 from app.commands import Command
 from app.loop import Lab
+from app.mouse_latency import NO_TRIANGLES
 from app.server import LabServer
 from app.session import Session
 from app.stages import stage_of
+from tests import waiting
 
-ARGUMENTS = (
-    *("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
-    *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
-    "--no-first-run",
-)
-NO_TRIANGLES = """
-    for (const what of ["Elements", "Arrays", "ElementsInstanced", "ArraysInstanced"])
-        WebGL2RenderingContext.prototype["draw" + what] = () => {}
-    requestAnimationFrame = act => setTimeout(() => act(performance.now()), 100)
-"""
+SELDOM = "requestAnimationFrame = act => setTimeout(() => act(performance.now()), 100)"
 """Drawing in software takes most of a browser's time; where a mouse points is found without it."""
 COARSE = "fixedDpr=0.5"  # viser's own switch: half the pixels each way, where a GPU is simulated
 COARSER = "fixedDpr=0.1"  # for those who do not look
 WAIT = 60.0  # [s]; software rendering on a busy machine shows a few frames a second
 
+wait_for = partial(waiting.wait_for, seconds=WAIT)
 THREE_FRAMES = """() => new Promise(done => {
     let left = 3
     const frame = () => left-- ? requestAnimationFrame(frame) : done()
     frame()
 })"""
-
-
-def wait_for(condition: Callable[[], Any], seconds: float = WAIT) -> Any:
-    """Return what `condition` gives as soon as it holds; fail when it never does."""
-    deadline = time.monotonic() + seconds
-    while not (result := condition()):
-        assert time.monotonic() < deadline, "waited in vain"
-        time.sleep(0.01)
-    return result
 
 
 class Note:
@@ -73,7 +58,7 @@ class Tab:
     def __init__(self, server: LabServer, context: BrowserContext, draws: bool = True) -> None:
         self.server = server
         if not draws:
-            context.add_init_script(NO_TRIANGLES)
+            context.add_init_script(NO_TRIANGLES + SELDOM)
         context.set_default_timeout(WAIT * 1e3)
         self.page: Page = context.new_page()
         self.errors: list[str] = []

@@ -19,10 +19,11 @@ from playwright.sync_api import Browser, BrowserContext, Download, Page, sync_pl
 
 from app import commands as c
 from app.loop_store import LoopStore
+from app.mouse_latency import ARGUMENTS
 from app.server import LabServer
 from models.loops import find_compiler
 from models.trajectory import read_csv
-from tests.browser import ARGUMENTS, Tab, wait_for
+from tests.browser import Tab, wait_for
 
 pytestmark = pytest.mark.browser
 TRACKER, FOLLOWER = "trajectory_tracking", "path_following"

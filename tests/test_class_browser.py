@@ -17,10 +17,11 @@ from app import lesson_commands as lc
 from app.classroom import Classroom
 from app.codes import shown
 from app.loop_store import LoopStore
+from app.mouse_latency import ARGUMENTS
 from app.server import LabServer
 from app.teacher_view import TeacherView
 from models.loops import find_compiler
-from tests.browser import ARGUMENTS, Tab, wait_for
+from tests.browser import Tab, wait_for
 
 pytestmark = pytest.mark.browser
 HOSTILE = "<img src=x onerror=1>"

@@ -13,12 +13,13 @@ from playwright.sync_api import sync_playwright
 
 from app import commands as c
 from app.loop_store import LoopStore
+from app.mouse_latency import ARGUMENTS
 from app.server import LabServer
 from app.stages import HORIZONTAL, IN_PATH_PLANE
 from models.catalogue import FIVE_BAR, FLEXIBLE
 from models.flexible_robot import UNSTABLE, FlexibleFiveBar
 from models.loops import find_compiler
-from tests.browser import ARGUMENTS, Tab, wait_for
+from tests.browser import Tab, wait_for
 
 pytestmark = pytest.mark.browser
 FOLLOWER = "path_following"

@@ -10,6 +10,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import msgspec
@@ -26,6 +27,7 @@ from websockets.typing import Origin, Subprotocol
 
 from app import error_log
 from app.hardening import Limits, PortInUse, make_server
+from tests import waiting
 
 WAIT = 5.0
 CAMERA = {
@@ -166,11 +168,7 @@ class Browser:
         return self.told.get(uuid)
 
 
-def wait_for(condition: Callable[[], Any]) -> None:
-    deadline = time.monotonic() + WAIT
-    while not condition():
-        assert time.monotonic() < deadline, "waited in vain"
-        time.sleep(0.002)
+wait_for = partial(waiting.wait_for, seconds=WAIT)
 
 
 def closing(browser: Browser) -> ConnectionClosed:

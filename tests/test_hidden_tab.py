@@ -21,10 +21,11 @@ pytest.importorskip("playwright")
 
 from app import commands as c
 from app.loop_store import LoopStore
+from app.mouse_latency import ARGUMENTS
 from app.onlooker import EVERY, PATIENCE, TICK
 from app.server import LabServer
 from models.loops import find_compiler
-from tests.browser import ARGUMENTS, COARSE, wait_for
+from tests.browser import COARSE, wait_for
 
 pytestmark = pytest.mark.browser
 CHROMIUM = "/usr/bin/chromium"
