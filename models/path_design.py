@@ -41,7 +41,7 @@ class PathDesign:
         if not np.all(np.isfinite(z)):
             raise ValueError("a control point needs finite coordinates")
         points = self.points.copy()
-        points[index] = np.clip(z, -REACH, REACH)
+        points[index] = z
         return self._through(points)
 
     def added(self, index: int) -> PathDesign:
@@ -74,7 +74,8 @@ class PathDesign:
 
     def _through(self, points: Array) -> PathDesign:
         fit = closed_through if self.curve.closed else open_through
-        return PathDesign("edited", fit(points), points)
+        within = np.clip(points, -REACH, REACH)  # between its points a curve may swing beyond
+        return PathDesign("edited", fit(within), within)
 
     def _check(self, index: int) -> None:
         if index not in range(len(self.points)):

@@ -174,6 +174,14 @@ def test_added_point_lies_on_the_path_and_hardly_changes_it(name: str) -> None:
         assert np.array_equal(less.points, design.points)
 
 
+def test_no_edit_puts_a_point_where_no_path_may_be_kept() -> None:
+    stroke = np.array([[-0.2, 0.1875], [-0.0625, 0.2], [0.1, 0.2], [0.2, -0.1]])
+    design = drawn(stroke)
+    assert np.abs(design.points).max() > REACH
+    points = design.added(len(design.points) - 1).points
+    assert np.abs(points).max() <= REACH
+
+
 def test_there_is_a_least_and_a_greatest_number_of_points() -> None:
     for name, least in (("circle", 3), ("segment", 2)):
         design = presets()[name]
