@@ -60,20 +60,33 @@ class Lab:
         """Simulated seconds per second, lately."""
         return self._simulated / self._passed
 
-    def frame(self, seconds: float, count: int, stride: int) -> None:
-        """One frame: apply commands, simulate, show."""
-        session = self.session
+    def drain(self) -> None:
+        """Apply commands; most of a frame's worth at a time."""
         self._credit = min(self._credit, 0.0) + COMMANDS
-        self._credit -= session.drain(self._credit)
-        view = self.view  # may go at any time
-        if view is None:
-            return  # nobody looks: simulated time waits
+        self._credit -= self.session.drain(self._credit)
+
+    def advance(self, seconds: float) -> None:
+        """Simulate a frame, which has taken so long. While nobody looks, simulated time waits."""
+        session = self.session
+        if self.view is None:
+            return
         before = session.time
         session.advance(session.rate * FRAME)
         if session.running and not session.frozen:
             self._simulated += session.time - before - self._simulated * FADING
             self._passed += seconds - self._passed * FADING
-        view.show(session, self.achieved, count, stride)
+
+    def show(self, count: int, stride: int) -> None:
+        """Show it to who looks."""
+        view = self.view  # may go at any time
+        if view is not None:
+            view.show(self.session, self.achieved, count, stride)
+
+    def send(self) -> None:
+        """Let out what has been shown."""
+        view = self.view
+        if view is not None:
+            view.send()
 
 
 class SimulationThread:
@@ -142,13 +155,21 @@ class SimulationThread:
             late = now - deadline
             self.frames.append((now, late))
             deadline = now + FRAME if late > LATEST else deadline + FRAME
-            for lab in self._labs:
-                try:
-                    lab.frame(now - last, count, pace.stride)
-                except Exception as error:  # one lab must not stop the others
-                    log_error(error)
-            for view in [lab.view for lab in self._labs]:
-                if view is not None:
-                    view.send()
+            self._frame(now - last, count, pace.stride)
             pace.note(self._clock() - now, now - last)
             last, count = now, count + 1
+
+    def _frame(self, seconds: float, count: int, stride: int) -> None:
+        """Step by step for all labs, and not lab by lab: what a step needs stays in the cache."""
+        labs = self._labs
+        for step in (
+            Lab.drain,
+            lambda lab: lab.advance(seconds),
+            lambda lab: lab.show(count, stride),
+            Lab.send,
+        ):
+            for lab in labs:
+                try:
+                    step(lab)
+                except Exception as error:  # one lab must not stop the others
+                    log_error(error)

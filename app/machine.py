@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import hypot
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -189,8 +190,8 @@ class Machine:
             tails = poses.tips - [0.0, 0.01, 0.0]
             arrows = np.stack([tails, tails + self._force_scale * poses.forces], axis=1)
             update_node(self._arrows, points=arrows)
-        if self._arrows.visible != acts:
-            self._arrows.visible = acts
+        if self._acts != acts:
+            self._acts = self._arrows.visible = acts
 
     def update_traces(self, robots: list[RobotView]) -> None:
         """Redraws the traces if they are others, and says how large each force is."""
@@ -202,12 +203,14 @@ class Machine:
         if np.isfinite(points).all() and not np.array_equal(points, self._traced):
             self._traced = points
             update_node(self._traces, points=points)
-        for robot, label in zip(robots, self._force_labels, strict=True):
-            force = float(np.linalg.norm(robot.force))
-            if force > FORCE_SHOWN:
-                shown = f"{force:.0f}" if force >= 1.0 else f"{force:.1f}"
-                label.text = self._words("scene.force", force=shown)
-            label.visible = force > FORCE_SHOWN
+        for i, (robot, label) in enumerate(zip(robots, self._force_labels, strict=True)):
+            force = hypot(*robot.force.tolist())
+            shown = f"{force:.{int(force < 1.0)}f}" if force > FORCE_SHOWN else ""
+            if shown != self._forces_told[i]:
+                self._forces_told[i] = shown
+                label.visible = bool(shown)
+                if shown:
+                    label.text = self._words("scene.force", force=shown)
 
     def _add_force(self, scene: viser.SceneApi, stage: Stage) -> None:
         self._arrows = scene.add_arrows(
@@ -219,9 +222,11 @@ class Machine:
             head_length=0.018,
             visible=False,
         )
+        self._acts = False
         self._force_labels = [
             add_text(scene, f"/force_labels/{name}", "", base + stage.force)
             for name, base in stage.bases.items()
         ]
+        self._forces_told = [""] * len(self._force_labels)
         for label in self._force_labels:
             label.visible = False

@@ -1,53 +1,60 @@
-"""Where every moving part of both machines goes: a snapshot as arrays of poses. Pure geometry."""
+"""Where every moving part of both machines goes: a snapshot as arrays of poses. Pure geometry.
+
+The geometry is a function of CasADi, made once for a stage: numpy would take ten times as long for
+as few numbers as these. Points are columns in it, and rows of the arrays around it.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan2, hypot
+from functools import lru_cache
+from itertools import pairwise
 
+import casadi as ca
 import numpy as np
 
 from app.snapshot import RobotView
 from app.stage import Stage
+from models.buffered import Buffered
 
 UNSEEN = 1e-5
 MARKER_DEPTHS = (-0.008, -0.0095)
 """y of a marker's two discs [m]: before the path and its control points."""
 
 
-def waist_angle(bars: np.ndarray, away: tuple[float, float] = (0.0, 1.0)) -> float:
+def waist_angle(bars: ca.SX, away: tuple[float, float] = (0.0, 1.0)) -> ca.SX:
     """Angle of the linkage's plane, which is vertical, about the vertical, [rad].
 
     Args:
-        bars: link 1, link 2 and others, shape (n, 2, 3), [m].
+        bars: begins and ends of link 1, link 2 and others as columns, shape (3, 2 n), [m].
         away: to which side of it the plane's normal (-sin, cos) shall look.
     """
-    (ax, ay, az), (bx, by, bz) = (bars[:2, 1] - bars[:2, 0]).tolist()
-    x, y = by * az - bz * ay, bz * ax - bx * az  # normal of the plane
-    if hypot(x, y) < 1e-9:
-        x, y = away
-    return atan2(-x, y) if x * away[0] + y * away[1] >= 0.0 else atan2(x, -y)
+    a, b = bars[:, 1] - bars[:, 0], bars[:, 3] - bars[:, 2]
+    x, y = b[1] * a[2] - b[2] * a[1], b[2] * a[0] - b[0] * a[2]  # normal of the plane
+    stretched = ca.hypot(x, y) < 1e-9
+    x, y = ca.if_else(stretched, away[0], x), ca.if_else(stretched, away[1], y)
+    return ca.if_else(x * away[0] + y * away[1] >= 0, ca.atan2(-x, y), ca.atan2(x, -y))
 
 
-def bar_quaternions(along: np.ndarray, waist: np.ndarray) -> np.ndarray:
+def bar_quaternions(along: ca.SX, waist: ca.SX) -> ca.SX:
     """Turns the x axis along each bar and keeps the y axis as near as can be to the plane's normal.
 
     Args:
-        along: vectors, shape (n, 3).
-        waist: angle of the linkage's plane at each bar, shape (n,), [rad].
+        along: vectors, shape (3, n).
+        waist: angle of the linkage's plane, [rad].
 
     Returns:
-        Unit quaternions, scalar first, shape (n, 4).
+        Unit quaternions, scalar first, shape (4, n).
     """
-    c, s = np.cos(waist), np.sin(waist)
-    outward = along[:, 0] * c + along[:, 1] * s
-    across = along[:, 1] * c - along[:, 0] * s
-    pitch = np.arctan2(along[:, 2], outward) / 2
-    bend = np.arctan2(across, np.hypot(outward, along[:, 2])) / 2
-    cw, sw, cp, sp = np.cos(waist / 2), np.sin(waist / 2), np.cos(pitch), np.sin(pitch)
-    cb, sb = np.cos(bend), np.sin(bend)
+    c, s = ca.cos(waist), ca.sin(waist)
+    outward = along[0, :] * c + along[1, :] * s
+    across = along[1, :] * c - along[0, :] * s
+    pitch = ca.atan2(along[2, :], outward) / 2
+    bend = ca.atan2(across, ca.hypot(outward, along[2, :])) / 2
+    cw, sw, cp, sp = ca.cos(waist / 2), ca.sin(waist / 2), ca.cos(pitch), ca.sin(pitch)
+    cb, sb = ca.cos(bend), ca.sin(bend)
     w, x, y, z = cw * cp, sw * sp, -cw * sp, sw * cp  # about z by the waist, about -y by the pitch
-    return np.column_stack([w * cb - z * sb, x * cb + y * sb, y * cb - x * sb, z * cb + w * sb])
+    return ca.vertcat(w * cb - z * sb, x * cb + y * sb, y * cb - x * sb, z * cb + w * sb)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +62,7 @@ class Poses:
     """Everything that moves, for all robots, in the world.
 
     Attributes:
+        whole: all that follows in one, flat.
         bars: where the link meshes begin, shape (n, 3), [m].
         quaternions: how they are turned, scalar first, shape (n, 4).
         lengths: of the bars, shape (n,), [m].
@@ -64,6 +72,7 @@ class Poses:
         forces: on the end-points, shape (k, 3), [N].
     """
 
+    whole: np.ndarray
     bars: np.ndarray
     quaternions: np.ndarray
     lengths: np.ndarray
@@ -74,82 +83,109 @@ class Poses:
 
     def same(self, other: Poses) -> bool:
         """Whether nobody could see a difference: 10 µm, 10 µN."""
-        pairs = ((self.parts, other.parts), (self.bars, other.bars), (self.forces, other.forces))
-        return all(float(np.abs(one - two).max()) < UNSEEN for one, two in pairs)
+        return float(np.abs(self.whole - other.whole).max()) < UNSEEN
 
     def is_finite(self) -> bool:
         """Whether all of it can be drawn."""
-        sums = (self.bars, self.quaternions, self.parts, self.tips, self.forces)
-        return bool(np.isfinite(sum(float(array.sum()) for array in sums)))
+        return bool(np.isfinite(self.whole).all())
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """How many parts each robot has."""
+
+    bars: int
+    joints: int
+    marks: int
+
+    @property
+    def parts(self) -> int:
+        """Bearings, pen, two discs of a marker, further points."""
+        return self.joints + 3 + self.marks
 
 
 class Layout:
-    """Turns snapshots of robots with a constant number of parts into poses.
+    """Turns snapshots of robots with a constant number of parts into poses. One thread at a time.
 
     Links 1 and 3 lie in the back layer, link 2 and the pieces of link 4 in the front one, so that
     none runs through another; bearings span both.
 
     Args:
         stage: where k robots stand.
-        robots: as they are at first.
+        robots: as they are at first, all alike.
     """
 
     def __init__(self, stage: Stage, robots: list[RobotView]) -> None:
-        self._bases = stage.origins
-        self._away = float(stage.away[0]), float(stage.away[1])
-        n_bars = [len(robot.bars) for robot in robots]
-        n_parts = [len(robot.joints) + 3 + len(robot.extra_points) for robot in robots]
-        self._bar_robot = np.repeat(np.arange(len(robots)), n_bars)
-        self._part_robot = np.repeat(np.arange(len(robots)), n_parts)
-        back, front, boss, pen = stage.depths
-        self._bar_depth = np.concatenate([[back, front, back] + [front] * (n - 3) for n in n_bars])
-        across, before = list[float](), list[float]()
-        for robot in robots:
-            extras = len(robot.extra_points)
-            across += [*[boss] * len(robot.joints), pen, *[0.0] * (2 + extras)]
-            before += [*[0.0] * (len(robot.joints) + 1), *MARKER_DEPTHS]
-            before += [MARKER_DEPTHS[0]] * extras
-        self._part_depth, depth = np.array(across), np.array(before)
-        self._marks = depth < 0.0  # these face the viewer, however the linkage is turned
-        self._before = np.column_stack([np.zeros_like(depth), depth, np.zeros_like(depth)])
-        self._turn([0.0] * len(robots))
+        first = robots[0]
+        counts = Counts(len(first.bars), len(first.joints), len(first.extra_points))
+        bases = tuple(map(tuple, stage.origins.tolist()))
+        away = float(stage.away[0]), float(stage.away[1])
+        self._poses = Buffered(_layout(bases, away, stage.depths, counts))
+        bars, parts, k = counts.bars * len(robots), counts.parts * len(robots), len(robots)
+        self._shapes = ((bars, 3), (bars, 4), (bars,), (parts, 3), (parts, 4), (k, 3), (k, 3))
+        ends = np.cumsum([0, *(int(np.prod(shape)) for shape in self._shapes)]).tolist()
+        self._places = [slice(*ends) for ends in pairwise(ends)]
 
     def poses(self, robots: list[RobotView]) -> Poses:
         """The poses at one instant."""
-        waists = [waist_angle(robot.bars, self._away) for robot in robots]
-        if waists != self._waists:
-            self._turn(waists)
-        bars = np.concatenate([robot.bars for robot in robots])
-        begins = bars[:, 0]
-        along = bars[:, 1] - begins
-        parts: list[np.ndarray] = []
-        for robot in robots:
-            marker = robot.marker[None]
-            parts += [robot.joints, robot.tip[None], marker, marker, robot.extra_points]
-        return Poses(
-            bars=begins + self._bar_offsets,
-            quaternions=bar_quaternions(along, self._bar_waists),
-            lengths=np.sqrt((along * along).sum(axis=1)),
-            parts=np.concatenate(parts) + self._part_offsets,
-            turns=self._turns,
-            tips=np.array([robot.tip for robot in robots]) + self._bases,
-            forces=np.array([robot.force for robot in robots]),
-        )
+        points = [
+            array.ravel()
+            for r in robots
+            for array in (r.bars, r.joints, r.tip, r.marker, r.extra_points, r.force)
+        ]
+        whole = self._poses(np.concatenate(points))[0].copy()
+        named = zip(self._places, self._shapes, strict=True)
+        return Poses(whole, *[whole[place].reshape(shape) for place, shape in named])
 
-    def _turn(self, waists: list[float]) -> None:
-        """Find what depends on the angles of the linkages' planes alone, [rad]."""
-        self._waists, angles = waists, np.array(waists)
-        normals = np.stack([-np.sin(angles), np.cos(angles), np.zeros_like(angles)], axis=1)
-        self._bar_waists = angles[self._bar_robot]
-        half = np.where(self._marks, 0.0, angles[self._part_robot]) / 2
-        still = np.zeros_like(half)
-        self._turns = np.column_stack([np.cos(half), still, still, np.sin(half)])
-        self._bar_offsets = self._offsets(self._bar_robot, self._bar_depth, normals)
-        aside = self._offsets(self._part_robot, self._part_depth, normals)
-        self._part_offsets = aside + self._before
 
-    def _offsets(self, robot: np.ndarray, depth: np.ndarray, normals: np.ndarray) -> np.ndarray:
-        return self._bases[robot] + depth[:, None] * normals[robot]
+@lru_cache(maxsize=16)
+def _layout(
+    bases: tuple[tuple[float, ...], ...],
+    away: tuple[float, float],
+    depths: tuple[float, float, float, float],
+    counts: Counts,
+) -> ca.Function:
+    """All points and the force of each robot as columns -> the fields of `Poses`, flat."""
+    width = 2 * counts.bars + counts.joints + 2 + counts.marks + 1
+    given = ca.SX.sym("points", 3, width * len(bases))
+    each = [
+        _robot(points, ca.DM(base), away, depths, counts)
+        for points, base in zip(ca.horzsplit(given, width), bases, strict=True)
+    ]
+    fields = [ca.horzcat(*columns) for columns in zip(*each, strict=True)]
+    flat = ca.vertcat(*[ca.vec(ca.densify(field)) for field in fields])
+    return ca.Function("layout", [given], ca.cse([flat]))
+
+
+def _robot(
+    points: ca.SX,
+    base: ca.DM,
+    away: tuple[float, float],
+    depths: tuple[float, float, float, float],
+    counts: Counts,
+) -> tuple[ca.SX, ...]:
+    """One robot's share of the fields of `Poses`, as columns."""
+    back, front, boss, pen = depths
+    at = np.cumsum([0, 2 * counts.bars, counts.joints, 1, 1, counts.marks, 1]).tolist()
+    ends, joints, tip, marker, marks, force = (points[:, i:j] for i, j in pairwise(at))
+    waist = waist_angle(ends, away)
+    normal = ca.vertcat(-ca.sin(waist), ca.cos(waist), 0)
+    begins, along = ends[:, ::2], ends[:, 1::2] - ends[:, ::2]
+    layers = ca.DM([back, front, back] + [front] * (counts.bars - 3)).T
+    turned = ca.vertcat(ca.cos(waist / 2), 0, 0, ca.sin(waist / 2))
+    still = ca.DM([1, 0, 0, 0])  # these face the viewer, however the linkage is turned
+    discs = [marker + ca.DM([0, depth, 0]) for depth in MARKER_DEPTHS]
+    further = marks + ca.DM([0, MARKER_DEPTHS[0], 0]) @ ca.DM.ones(1, counts.marks)
+    machined = ca.horzcat(joints + boss * normal, tip + pen * normal)
+    return (
+        base + begins + normal @ layers,
+        bar_quaternions(along, waist),
+        ca.sqrt(ca.sum1(along**2)),
+        base + ca.horzcat(machined, *discs, further),
+        ca.horzcat(*[turned] * (counts.joints + 1), *[still] * (2 + counts.marks)),
+        base + tip,
+        force,
+    )
 
 
 def trace_segments(trace: np.ndarray, count: int) -> np.ndarray:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Sequence
+from functools import lru_cache
+
+import casadi as ca
 import numpy as np
 
 from app.history import Instant
 from app.samples import sample_layout
 from app.session import Session
 from app.snapshot import FollowerName, PathView, RobotView, Snapshot, TrackerName
+from models.buffered import Buffered
 from models.controllers import NAMES
 from models.curves import Curve
 from models.robots import Robot
@@ -80,26 +86,60 @@ def robot_views(
     tips, markers, forces, origins = robot.place(
         np.array([fields["y"], markers, fields["force"], none])
     )
-    views: dict[str, RobotView] = {}
-    for i, name in enumerate(NAMES):
-        q, tip = instant.states[i][: robot.system.n], tips[i]
-        bars, joints = robot.skeleton(q, exaggeration)
-        before = np.zeros((0, 3)) if traces is None else robot.place(traces[:, i])
-        views[name] = RobotView(
-            bars=bars,
-            joints=joints,
-            tip=tip if exaggeration == 1.0 else bars[-1, 1],
+    bars, joints, marks = _drawn(robot, instant.states, exaggeration)
+    trails = tips[None] if traces is None else np.concatenate([robot.place(traces), tips[None]])
+    bent, (speeds, distances) = fields.get("deflection"), (fields["speed"], fields["distance"])
+    return {
+        name: RobotView(
+            bars=bars[i],
+            joints=joints[i],
+            tip=tips[i] if exaggeration == 1.0 else bars[i, -1, 1],
             marker=markers[i],
             force=forces[i] - origins[i],
-            trace=np.concatenate([before, tips[i : i + 1]]),
-            distance=float(fields["distance"][i, 0]),
+            trace=trails[:, i],
+            distance=float(distances[i, 0]),
             max_distance=instant.max_distances[i],
-            speed=float(fields["speed"][i, 0]),
+            speed=float(speeds[i, 0]),
             torque=fields["u"][i],
-            extra_points=robot.marks(q),
-            deflection=float(fields["deflection"][i, 0]) if "deflection" in fields else np.nan,
+            extra_points=marks[i],
+            deflection=np.nan if bent is None else float(bent[i, 0]),
         )
-    return views
+        for i, name in enumerate(NAMES)
+    }
+
+
+class _Figures(threading.local):
+    """Each thread's own."""
+
+    def __init__(self) -> None:
+        self.of: dict[Robot, Buffered] = {}
+
+
+_figures = _Figures()
+
+
+@lru_cache(maxsize=16)
+def _figure(robot: Robot) -> ca.Function:
+    """(q of both robots as columns, exaggeration) -> bars, joints and marks of both."""
+    q, exaggeration = ca.SX.sym("q", robot.system.n, len(NAMES)), ca.SX.sym("exaggeration")
+    each = ca.horzsplit(q)
+    skeletons = [robot.skeleton(one, exaggeration) for one in each]
+    bars, joints = (ca.horzcat(*parts) for parts in zip(*skeletons, strict=True))
+    marks = ca.horzcat(*map(robot.marks, each))
+    results = [ca.densify(points) for points in (bars, joints, marks)]
+    return ca.Function("figure", [q, exaggeration], ca.cse(results))
+
+
+def _drawn(robot: Robot, states: Sequence[Array], exaggeration: float) -> tuple[Array, ...]:
+    """Bars (robots, n, 2, 3), joints (robots, m, 3) and marks (robots, k, 3), [m]."""
+    figure = _figures.of.get(robot)
+    if figure is None:
+        figure = _figures.of[robot] = Buffered(_figure(robot))
+    q = np.concatenate([state[: robot.system.n] for state in states])
+    bars, joints, marks = figure(q, np.array([exaggeration]))
+    both = len(states)
+    shaped = bars.reshape(both, -1, 2, 3), joints.reshape(both, -1, 3), marks.reshape(both, -1, 3)
+    return tuple(array.copy() for array in shaped)
 
 
 def _path_view(session: Session, curve: Curve) -> PathView:

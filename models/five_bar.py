@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -183,24 +182,17 @@ def singularity_margin(q: Array) -> Array:
     return np.abs(np.sin(q[..., 0] - q[..., 1]))
 
 
-def skeleton(q: Array, l1: float, l2: float, l4: float) -> tuple[Array, Array]:
+def skeleton(q: ca.SX, l1: float, l2: float, l4: float) -> tuple[ca.SX, ca.SX]:
     """Links and bearings in the robot's frame (x right, y away, z up, base pivot at the origin).
 
     Args:
-        q: joint angles, shape (2,), [rad].
+        q: joint angles, at least 2, symbols or numbers of CasADi, [rad].
 
     Returns:
-        bars, shape (4, 2, 3), links 1 to 4 as end to end segments; joints, shape (4, 3): base,
-        link 1-4, link 2-3, link 3-4, [m].
+        bars, shape (3, 8), links 1 to 4 as end to end segments, begin and end as columns; joints,
+        shape (3, 4): base, link 1-4, link 2-3, link 3-4, [m].
     """
-    directions = np.zeros((2, 3))
-    directions[:, 0], directions[:, 2] = np.cos(q[:2]), np.sin(q[:2])
-    points = _reaches(l1, l2, l4) @ directions
-    return points[:8].reshape(4, 2, 3), points[8:]
-
-
-@lru_cache(maxsize=16)
-def _reaches(l1: float, l2: float, l4: float) -> Array:
-    """How far both ends of each bar, then the joints, are along links 1 and 2, (12, 2), [m]."""
-    base, a, b, c, tip = (0.0, 0.0), (l1, 0.0), (0.0, l2), (l1, l2), (l1, -l4)
-    return np.array([base, a, base, b, b, c, c, tip, base, a, b, c])
+    one, two = (ca.vertcat(ca.cos(q[i]), 0, ca.sin(q[i])) for i in range(2))
+    base, a, b, tip = 0 * one, l1 * one, l2 * two, l1 * one - l4 * two
+    c = a + b
+    return ca.horzcat(base, a, base, b, b, c, c, tip), ca.horzcat(base, a, b, c)

@@ -301,9 +301,9 @@ class FlexibleFiveBar:
         """See `Robot.unplace`."""
         return np.stack([-point[..., 1], point[..., 0], point[..., 2] - self.links.link1], axis=-1)
 
-    def marks(self, q: Array) -> Array:
+    def marks(self, q: ca.SX) -> ca.SX:
         """See `Robot.marks`: where the tip would be if the link were straight."""
-        return self.place(self.rigid_endpoint(q))[None]
+        return self.skeleton(q, ca.SX(0))[0][:, -1]
 
     @property
     def extra_fields(self) -> tuple[tuple[str, int], ...]:
@@ -316,26 +316,26 @@ class FlexibleFiveBar:
         energy = self.internal_energy(q, v, parameters)[None]
         return {"deflection": modes.sum()[None], "modes": modes, "internal_energy": energy}
 
-    def skeleton(self, q: Array, exaggeration: float = 1.0) -> tuple[Array, Array]:
+    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
         """See `Robot.skeleton`: links 1 to 3, then link 4 in pieces from its joint with link 3.
 
         Returns:
-            bars, (4 + PIECES, 2, 3): link 1, 2, 3, link 4 behind its joint with link 1, the beam's
-            pieces; joints, (4, 3): base, link 1-4, link 2-3, link 3-4, [m].
+            bars, (3, 8 + 2 PIECES): link 1, 2, 3, link 4 behind its joint with link 1, the beam's
+            pieces; joints, (3, 4): base, link 1-4, link 2-3, link 3-4, [m].
         """
-        bars, joints = five_bar.skeleton(q[:2], self.links.link1, self.links.link2, 0.0)
-        along = -np.array([np.cos(q[1]), 0.0, np.sin(q[1])])
-        line = joints[1] + self.links.beam * _SHARES[:, None] * along
-        line[:, 1] = exaggeration * (self.shapes @ q[RIGID:])
-        pieces = np.stack([line[:-1], line[1:]], axis=1)
-        return self._turned(np.concatenate([bars, pieces]), q[2]), self._turned(joints, q[2])
+        bars, joints = five_bar.skeleton(q, self.links.link1, self.links.link2, 0.0)
+        along = -ca.vertcat(ca.cos(q[1]), 0, ca.sin(q[1]))
+        bent = exaggeration * (ca.DM(self.shapes) @ q[RIGID:])
+        line = joints[:, 1] + self.links.beam * along @ ca.DM(_SHARES).T
+        line += ca.vertcat(0, 1, 0) @ bent.T
+        ends = [end for i in range(PIECES) for end in (line[:, i], line[:, i + 1])]
+        return self._turned(ca.horzcat(bars, *ends), q[2]), self._turned(joints, q[2])
 
-    def _turned(self, points: Array, waist: float) -> Array:
+    def _turned(self, points: ca.SX, waist: ca.SX) -> ca.SX:
         """From (radius, w, height) to the frame for drawing."""
-        radius, w, height = points[..., 0], points[..., 1], points[..., 2]
-        c, s = np.cos(waist), np.sin(waist)
-        y = np.stack([radius * c - w * s, radius * s + w * c, height - self.links.link1], axis=-1)
-        return self.place(y)
+        radius, w, height = points[0, :], points[1, :], points[2, :]
+        c, s = ca.cos(waist), ca.sin(waist)
+        return ca.vertcat(radius * s + w * c, w * s - radius * c, height)
 
 
 def flexible_five_bar_robot(modes: int = 3, plant: str = "lagrangian") -> FlexibleFiveBar:

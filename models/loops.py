@@ -13,11 +13,12 @@ import shutil
 import subprocess
 import tempfile
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 import casadi as ca
 import numpy as np
 
+from models.buffered import Buffered
 from models.kernel import Kernel
 from models.system import Array
 
@@ -71,7 +72,7 @@ class InterpretedLoop:
 
     def __init__(self, kernel: Kernel) -> None:
         self.kernel = kernel
-        self._blocks = {size: _Block(kernel, size) for size in (BLOCK, 1)}
+        self._blocks = {size: Buffered(kernel.block(size)) for size in (BLOCK, 1)}
 
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """See `Loop.run`."""
@@ -79,33 +80,10 @@ class InterpretedLoop:
         done = 0
         while done < ticks:
             size = BLOCK if ticks - done >= BLOCK else 1
-            block = self._blocks[size]
-            state = block.run(state, settings, table, rows[done : done + size])
+            state, row = self._blocks[size](state, settings, table)
+            rows[done : done + size] = row.reshape(size, -1)
             done += size
-        return state, rows
-
-
-class _Block:
-    """A fixed number of ticks as one function with buffers of its own."""
-
-    def __init__(self, kernel: Kernel, ticks: int) -> None:
-        block = kernel.block(ticks)
-        self._arguments = [np.zeros(block.nnz_in(i)) for i in range(3)]
-        self._results = [np.zeros(block.nnz_out(i)) for i in range(2)]
-        buffer: Any
-        buffer, self._evaluate = block.buffer()
-        for i, argument in enumerate(self._arguments):
-            buffer.set_arg(i, argument.data)
-        for i, result in enumerate(self._results):
-            buffer.set_res(i, result.data)
-        self._buffer = buffer  # keeps the memory alive
-
-    def run(self, state: Array, settings: Array, table: Array, rows: Array) -> Array:
-        for own, given in zip(self._arguments, (state, settings, table), strict=True):
-            own[:] = given
-        self._evaluate()
-        rows[:] = self._results[1].reshape(rows.shape)
-        return self._results[0].copy()
+        return state.copy(), rows
 
 
 class CompiledLoop:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Protocol
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
@@ -96,15 +97,15 @@ class Robot(Protocol):
         """The inverse of `place`, (..., 3) -> (..., p)."""
         ...
 
-    def skeleton(self, q: Array, exaggeration: float = 1.0) -> tuple[Array, Array]:
-        """Bars (n, 2, 3) and joints (m, 3) in the robot's frame, [m].
+    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Bars (3, 2 n), begin and end as columns, and joints (3, m) in the robot's frame, [m].
 
         The last bar ends at the end-point. A deflection is drawn so many times larger than it is.
         """
         ...
 
-    def marks(self, q: Array) -> Array:
-        """Further points worth a mark, (n,) -> (k, 3) in the robot's frame, [m]."""
+    def marks(self, q: ca.SX) -> ca.SX:
+        """Further points worth a mark, (n,) -> (3, k) in the robot's frame, [m]."""
         ...
 
     @property
@@ -180,14 +181,14 @@ class RigidFiveBar:
         l1, l4 = self._lengths
         return np.stack([point[..., 0] - l4, point[..., 2] - l1], axis=-1)
 
-    def skeleton(self, q: Array, exaggeration: float = 1.0) -> tuple[Array, Array]:
+    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
         """See `Robot.skeleton`: nothing bends."""
         l1, l4 = self._lengths
         return five_bar.skeleton(q, l1, self.links.link2.length, l4)
 
-    def marks(self, q: Array) -> Array:
+    def marks(self, q: ca.SX) -> ca.SX:
         """See `Robot.marks`: none."""
-        return np.zeros((0, 3))
+        return ca.SX(3, 0)
 
     def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
         """See `Robot.extras`: none."""

@@ -73,7 +73,7 @@ def settings_vector(
 ) -> Array:
     """Everything but state and curve, as the loop takes it."""
     p, dt = robot.system.p, time_step(parameters)
-    centre, weights, constant = curve.conic() or (np.zeros(2), np.ones(2), 1.0)
+    centre, weights, constant = _conic(curve) or (np.zeros(2), np.ones(2), 1.0)
     counts = parameters.encoder_counts
     return kernel.settings.pack(
         {name: getattr(parameters, name) for name in GAINS}
@@ -96,6 +96,9 @@ def settings_vector(
             "model": robot.model(parameters),
         }
     )
+
+
+_conic = lru_cache(maxsize=64)(Curve.conic)
 
 
 def pushed(kernel: Kernel, settings: Array, push: Push) -> Array:

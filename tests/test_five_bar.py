@@ -18,6 +18,7 @@ from models.five_bar import (
     skeleton,
 )
 from models.system import Array, conditioning, decoupling_matrix, lagrange_bias
+from tests.drawing import drawn
 
 SEEDS = range(20)
 
@@ -29,7 +30,8 @@ def poses(seed: int) -> tuple[Array, Array]:
 
 def centres(links: FiveBarLinks, q: Array) -> tuple[Array, Array]:
     """Centres of mass of links 1 to 4, (4, 2), from where the joints are, and the links' angles."""
-    bars, _ = skeleton(q, links.link1.length, links.link2.length, links.link4.length)
+    lengths = links.link1.length, links.link2.length, links.link4.length
+    bars, _ = drawn(skeleton, q, *lengths)
     feet, heads = bars[:, 0, ::2], bars[:, 1, ::2]
     feet[3] = bars[0, 1, ::2]  # link 4's centre is measured from its joint with link 1
     directions = (heads - feet) / np.linalg.norm(heads - feet, axis=1)[:, None]
@@ -218,7 +220,7 @@ def test_one_bad_point_among_good_ones_is_refused() -> None:
 def test_links_of_the_drawing_are_joined_and_parallel() -> None:
     for seed in SEEDS:
         q, _ = poses(seed)
-        bars, joints = skeleton(q, 0.2, 0.1, 0.2)
+        bars, joints = drawn(skeleton, q, 0.2, 0.1, 0.2)
         link1, link2, link3, link4 = bars
         assert np.array_equal(joints[0], link1[0]) and np.array_equal(joints[0], link2[0])
         assert np.allclose(link2[1], link3[0]) and np.allclose(link3[1], link4[0])

@@ -22,6 +22,7 @@ from models.loops import InterpretedLoop, compile_loop, find_compiler
 from models.parameters import FiveBarParameters
 from models.simulation import FREE, Push, first_state, kernel_of, kind_of, settings_vector
 from models.system import Array
+from tests.drawing import drawn
 
 ROBOT, DEFAULTS = flexible_five_bar_robot(), FlexibleParameters()
 SEEDS = range(6)
@@ -78,7 +79,7 @@ def test_drawing_is_a_rigid_motion_that_keeps_up_and_turns_the_path_to_the_viewe
 def test_bars_hang_together_from_the_base_to_the_tip() -> None:
     for seed in SEEDS:
         q = pose(seed)
-        bars, joints = ROBOT.skeleton(q)
+        bars, joints = drawn(ROBOT.skeleton, q, 1.0)
         assert bars[0, 0] == pytest.approx(joints[0]) and bars[1, 0] == pytest.approx(joints[0])
         assert bars[0, 1] == pytest.approx(joints[1]) and bars[1, 1] == pytest.approx(joints[2])
         assert np.array_equal(bars[2], joints[[2, 3]]) and np.array_equal(bars[3], joints[[3, 1]])
@@ -90,7 +91,7 @@ def test_bars_hang_together_from_the_base_to_the_tip() -> None:
 
 def test_exaggeration_stretches_the_deflection_and_nothing_else() -> None:
     q = pose(3)
-    straight, bent, more = (ROBOT.skeleton(q, k)[0] for k in (0.0, 1.0, 5.0))
+    straight, bent, more = (drawn(ROBOT.skeleton, q, k)[0] for k in (0.0, 1.0, 5.0))
     assert more - straight == pytest.approx(5 * (bent - straight), abs=1e-12)
     assert straight[-1, 1] == pytest.approx(ROBOT.place(ROBOT.rigid_endpoint(q)), abs=1e-12)
     gap = np.linalg.norm(bent[-1, 1] - straight[-1, 1])

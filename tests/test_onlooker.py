@@ -59,7 +59,9 @@ class Browser:
         for _ in range(round(seconds / TICK)):
             self.now += TICK
             if tells and self.lab.view is not None:
-                self.lab.frame(TICK, 0, 1)
+                self.lab.drain()
+                self.lab.advance(TICK)
+                self.lab.show(0, 1)
             before = self.asked
             self.onlooker.look()
             if answers and self.asked > before:

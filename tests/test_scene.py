@@ -20,6 +20,7 @@ from app.scene import Hooks, Scene
 from app.snapshot import FollowerName, PathView, RobotView, Snapshot, TrackerName
 from app.stage import FIELD_OF_VIEW, Insets, Stage, view_of
 from app.stages import FLEXIBLE, RIGID
+from tests.drawing import evaluated
 
 NAMES = (TrackerName, FollowerName)
 
@@ -215,8 +216,9 @@ def test_bars_point_along_their_links_whatever_the_waist(waist):
     bars = turn.apply(robot(1.3, 2.8).bars.reshape(-1, 3)).reshape(-1, 2, 3)
     along = bars[:, 1] - bars[:, 0]
     along[3] += turn.apply([0.0, 0.02, 0.0])  # a bent beam leaves the plane
-    assert waist_angle(bars) == pytest.approx(waist)
-    turned = Rotation.from_quat(bar_quaternions(along, np.full(4, waist)), scalar_first=True)
+    assert evaluated(waist_angle, bars.reshape(-1, 3).T)[0] == pytest.approx(waist)
+    quaternions = evaluated(bar_quaternions, along.T, waist)[0]
+    turned = Rotation.from_quat(quaternions.T, scalar_first=True)
     unit = along / np.linalg.norm(along, axis=1)[:, None]
     np.testing.assert_allclose(turned.apply([1.0, 0.0, 0.0]), unit, atol=1e-12)
     normal = turn.apply([0.0, 1.0, 0.0])
