@@ -167,7 +167,10 @@ class RigidFiveBar:
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
         """See `Robot.fault`."""
-        return None if is_calm(q, v) else first_fault(q, v, collapse(q))
+        if is_calm(q, v):
+            return None
+        with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
+            return first_fault(q, v, collapse(q))
 
     def place(self, y: Array) -> Array:
         """See `Robot.place`."""

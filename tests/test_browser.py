@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import io
+import math
 import threading
 import weakref
 from collections.abc import Iterator
@@ -21,6 +22,7 @@ from app import commands as c
 from app.loop_store import LoopStore
 from app.mouse_latency import ARGUMENTS
 from app.server import LabServer
+from app.session import Session
 from models.loops import find_compiler
 from models.trajectory import read_csv
 from tests.browser import Tab, wait_for
@@ -104,19 +106,24 @@ def test_pulling_an_end_point_pulls_both(tab: Tab, name: str) -> None:
     stop_between_control_points(tab)
     before = {each: tab.tip(each) for each in session.runs}
     start = tab.placed(name, before[name])
-    with tab.dragging(start, (start[0] - 40, start[1] + 30)):
+    goal = start[0] - 40, start[1] + 30
+    with tab.dragging(start, goal):
         wait_for(lambda: session.grabbed == name and len(session.hands) == 2)
-        pulled = {each: session.robot.frame.planar(hand) for each, hand in session.hands.items()}
+        wait_for(lambda: math.dist(tab.placed(name, hands(session)[name]), goal) < 12)
+        pulled = hands(session)
         moved = {each: pulled[each] - before[each] for each in pulled}
         np.testing.assert_allclose(moved[TRACKER], moved[FOLLOWER], atol=1e-9)
-        there = tab.placed(name, pulled[name])
-        assert np.hypot(there[0] - start[0] + 40, there[1] - start[1] - 30) < 12
         tab.ask(c.SetParameter("speed", 0.0), c.SetRunning(True))
         wait_for(lambda: session.time > 0.8)
         for each, run in session.runs.items():
             assert (tab.tip(each) - before[each]) @ moved[each] > 0, each
             assert np.linalg.norm(run.shown()["force"]) > 0.1
     wait_for(lambda: session.grabbed is None and not session.hands)
+
+
+def hands(session: Session) -> dict[str, np.ndarray]:
+    """Where they pull, in the path's plane, shape (2,) each, [m]."""
+    return {name: session.robot.frame.planar(hand) for name, hand in session.hands.items()}
 
 
 def test_without_copy_only_the_robot_in_hand_is_pulled(tab: Tab) -> None:
