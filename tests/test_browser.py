@@ -20,12 +20,12 @@ from playwright.sync_api import Browser, BrowserContext, Download, Page, sync_pl
 
 from app import commands as c
 from app.loop_store import LoopStore
-from app.mouse_latency import ARGUMENTS
+from app.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from app.server import LabServer
 from app.session import Session
 from models.loops import find_compiler
 from models.trajectory import read_csv
-from tests.browser import Tab, wait_for
+from tests.browser import SELDOM, Tab, wait_for
 
 pytestmark = pytest.mark.browser
 TRACKER, FOLLOWER = "trajectory_tracking", "path_following"
@@ -391,6 +391,7 @@ def test_exports(tab: Tab, browser: Browser, tmp_path: Path) -> None:
     film = tmp_path / "film.html"
     download(tab, "Recording (HTML), last 10 s").save_as(film)
     context = fresh(browser)
+    context.add_init_script(NO_TRIANGLES + SELDOM)
     plays_without_complaint(context.new_page(), film)
     context.close()
 
@@ -457,7 +458,7 @@ def test_a_narrow_screen_shows_both_robots_and_the_buttons(
     browser: Browser, server: LabServer
 ) -> None:
     context = fresh(browser, viewport={"width": 390, "height": 844}, has_touch=True)
-    tab = Tab(server, context)
+    tab = Tab(server, context, draws=False)
     for name in (TRACKER, FOLLOWER):
         for point in tab.session.editor.points():
             x, y = tab.placed(name, point)
