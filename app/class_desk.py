@@ -7,11 +7,11 @@ from collections.abc import Callable
 import viser
 
 from app.attendance import Attendance
-from app.classroom import Classroom
 from app.database import Records
 from app.desk import Seat
 from app.keeper import Keeper
 from app.loop import Lab
+from app.room import Room
 from app.session import Session
 from app.sessions import Sessions
 from app.teaching import Chosen, Teaching
@@ -29,7 +29,7 @@ class ClassDesk:
 
     def __init__(
         self,
-        classroom: Classroom,
+        classroom: Room,
         sessions: Sessions,
         records: Records | None = None,
         keeper: Keeper | None = None,

@@ -16,8 +16,9 @@ from uuid import uuid4
 import sqlalchemy as sa
 from sqlalchemy import exc
 
-from app.database import NotKept, Records, lease_owner, leases
+from app.database import NotKept, Records, lease_owner
 from app.error_log import log_error
+from app.tables import leases
 
 log = logging.getLogger(__name__)
 

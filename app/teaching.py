@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.classroom import Classroom
 from app.loop import Lab
+from app.room import Room
 
 
 @dataclass(slots=True)
@@ -35,7 +35,7 @@ class Teaching:
         stop: back to a lab's own page.
     """
 
-    classroom: Classroom
+    classroom: Room
     chosen: Chosen
     lab: Callable[[str], Lab | None]
     forget: Callable[[], int]

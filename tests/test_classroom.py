@@ -16,8 +16,9 @@ from app import commands as c
 from app import lesson_commands as lc
 from app.attendance import Attendance
 from app.class_commands import Freeze, TakeSetup, TakeStep
+from app.class_door import LONGEST_NAME, TRIES, WITHIN, cleaned
 from app.class_record import HEADER, class_csv, distribution, prediction_at, truth_of
-from app.classroom import LONGEST_NAME, TRIES, WITHIN, Classroom, cleaned
+from app.classroom import Classroom
 from app.codes import shown
 from app.database import Records, file_url
 from app.forget import forget
