@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import msgspec
 import platformdirs
@@ -61,6 +62,7 @@ class Records:
         clock: seconds since 1970.
 
     Attributes:
+        owner: a name for these records' process among those that share the database.
         warning: why nothing outlives this process, in words; empty when all is well.
 
     Raises:
@@ -72,7 +74,7 @@ class Records:
     def __init__(
         self, url: str | sa.URL | None = None, clock: Callable[[], float] = time.time
     ) -> None:
-        self._clock = clock
+        self._clock, self.owner = clock, uuid4().hex
         self._lock = threading.Lock()
         self._url = _parsed(url) if url else file_url(default_file())
         self.warning = ""

@@ -11,7 +11,6 @@ import threading
 import time
 from collections.abc import Callable, Iterable
 from typing import Any
-from uuid import uuid4
 
 import sqlalchemy as sa
 from sqlalchemy import exc
@@ -44,7 +43,7 @@ class Leases:
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self._records, self._clock, self._sleep = records, clock, sleep
-        self._owner = owner or uuid4().hex
+        self._owner = owner or records.owner
         self._stop = threading.Event()
 
     def save(self, code: str, state: dict[str, Any]) -> None:
