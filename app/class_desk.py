@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import viser
 
@@ -11,10 +12,13 @@ from app.database import Records
 from app.desk import Seat
 from app.keeper import Keeper
 from app.loop import Lab
+from app.relay import Relay
 from app.room import Room
 from app.session import Session
 from app.sessions import Sessions
+from app.shared_classroom import SharedClassroom
 from app.teaching import Chosen, Teaching
+from app.watches import Watches
 
 STORAGE_KEY = "onpath_teacher"
 STORAGE_WAIT = 3.0  # [s]
@@ -39,10 +43,17 @@ class ClassDesk:
         self._teachers: dict[int, tuple[str, Chosen]] = {}
         self._attendance = Attendance(classroom, self._student)
         self._attendance.start()
+        self._relay: Relay | None = None
+        if isinstance(classroom, SharedClassroom) and records is not None:
+            watches = Watches(records, classroom.id)
+            self._relay = Relay(watches, self._here, self._wanted, sessions.make)
+            self._relay.start()
 
     def stop(self) -> None:
         """The server ends."""
         self._attendance.stop()
+        if self._relay is not None:
+            self._relay.stop()
 
     def greet(self, client: viser.ClientHandle) -> None:
         """A browser that was a teacher's is one again."""
@@ -96,15 +107,30 @@ class ClassDesk:
             client.local_storage.remove_item(STORAGE_KEY)
             reopen()
 
-        return Teaching(self._class, chosen, self._lab, self._forget, stop)
+        lab = partial(self._lab, client.client_id)
+        return Teaching(self._class, chosen, lab, self._forget, stop)
 
     def _student(self, code: str) -> tuple[Session, bool] | None:
         entry = self._sessions.find(code)
         return None if entry is None else (entry.lab.session, entry.client is not None)
 
-    def _lab(self, code: str) -> Lab | None:
+    def _lab(self, client: int, code: str) -> Lab | None:
+        """For a teacher's page."""
+        here = self._here(code)
+        if here is None and self._relay is not None:
+            return self._relay.mirror(client, code)
+        return here
+
+    def _here(self, code: str) -> Lab | None:
+        """A lab that lives in this process."""
         entry = self._sessions.find(code)
-        return None if entry is None else entry.lab
+        return None if entry is None or self._class.is_elsewhere(code) else entry.lab
+
+    def _wanted(self) -> dict[int, str]:
+        """The labs of others that the teachers in this process look at, by client."""
+        chosen = {client: chosen.followed for client, (_, chosen) in [*self._teachers.items()]}
+        there = self._class.members()
+        return {c: code for c, code in chosen.items() if code in there and not self._here(code)}
 
     def _forget(self) -> int:
         self._class.end()

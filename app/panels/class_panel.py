@@ -55,7 +55,7 @@ class ClassPanel:
             try:
                 act()
                 said = ""
-            except ValueError as error:
+            except (ValueError, OSError) as error:
                 said = self._words.sentence(str(error))
             self._said.content = _text(html.escape(said)) if said else ""
 
