@@ -65,12 +65,30 @@ class Mirror(Lab):
 
     def keep_up(self) -> None:
         """One frame; on the simulation thread, by the page that shows it."""
+        self._take_over_due()
+        self._owed += self._step()
+        while self._coming and self._runs():
+            if not self._run_towards(self._coming[0]):
+                return
+            self._take_over_due()
+        self._owed = 0.0
+
+    def _runs(self) -> bool:
+        return self._taken is not None and self._taken.moves
+
+    def _take_over_due(self) -> None:
         while self._coming and self._is_due(self._coming[0]):
             new = self._coming.popleft()
             take_over(self.session, new, self._taken)
             self._taken = new
-        if self._taken is not None and self._taken.moves and self._coming:
-            self._run_towards(self._coming[0])
+
+    def _step(self) -> float:
+        """How far to go in this frame: faster the further behind, [s]."""
+        if not self._coming:
+            return 0.0
+        rate = self.session.rate
+        behind = (self._coming[-1].time - self.session.time) / (BEHIND * rate)
+        return FRAME * rate * float(np.clip(1 + GAIN * (behind - 1), 0.5, 2.0))
 
     def _is_due(self, new: Moment) -> bool:
         old = self._taken
@@ -83,23 +101,26 @@ class Mirror(Lab):
             or self._coming[-1].time - self.session.time > FURTHEST * new.rate
         )
 
-    def _run_towards(self, new: Moment) -> None:
-        session, old = self.session, self._taken
-        assert old is not None
-        behind = (self._coming[-1].time - session.time) / (BEHIND * session.rate)
-        dt = time_step(session.parameters)
-        self._owed += FRAME * session.rate * float(np.clip(1 + GAIN * (behind - 1), 0.5, 2.0))
-        there = round((new.time - session.time) / dt)
-        ticks = min(int(self._owed / dt), there, MOST_TICKS)
-        self._owed = min(self._owed - ticks * dt, FRAME * session.rate)
+    def _run_towards(self, new: Moment) -> bool:
+        """As far as this frame goes; returns whether that is all the way to a moment."""
+        session, dt = self.session, time_step(self.session.parameters)
+        there = max(1, round((new.time - session.time) / dt))
+        ticks = min(int(self._owed / dt + 1e-9), there, MOST_TICKS)
         if ticks < 1:
-            return
-        passed = (session.time + ticks * dt - old.time) / (new.time - old.time)
-        for number, name in enumerate(NAMES):
-            here, next_ = old.robots[number].hand, new.robots[number].hand
-            if here and here != next_ and next_:  # a hand moves more often than it is told
-                at = (1 - passed) * np.array(here) + passed * np.array(next_)
-                session.set_push(name, Push(at, session.push(name).hold))
+            return False
+        self._owed = min(self._owed - ticks * dt, FRAME * session.rate)
+        self._move_hands(new, session.time + ticks * dt)
         session.simulate(ticks)
-        if there - ticks == 0:
+        if ticks == there:
             session.time = new.time
+        return ticks == there
+
+    def _move_hands(self, new: Moment, time: float) -> None:
+        """A hand moves more often than it is told."""
+        old = self._taken
+        assert old is not None
+        passed = (time - old.time) / (new.time - old.time)
+        for name, this, that in zip(NAMES, old.robots, new.robots, strict=True):
+            if this.hand and that.hand and this.hand != that.hand:
+                at = (1 - passed) * np.array(this.hand) + passed * np.array(that.hand)
+                self.session.set_push(name, Push(at, self.session.push(name).hold))

@@ -124,7 +124,7 @@ def tell(lab: Lab) -> Moment:
         robot=session.entry.name,
         parameters={n: value for n, value in values.items() if value != getattr(base, n)},
         run=session.run_number,
-        time=instant.time,
+        time=instant.time if session.viewing is None else session.viewing,
         running=session.running,
         moves=session.running and not session.frozen,
         rate=session.rate,
