@@ -59,10 +59,10 @@ class ClassDesk:
         """A browser that was a teacher's is one again."""
         try:
             shown = client.local_storage.get_item(STORAGE_KEY, timeout=STORAGE_WAIT)
-        except (RuntimeError, TimeoutError):
-            return
-        if shown is not None and self._class.is_pass(shown):
-            self._teachers[client.client_id] = (shown, Chosen())
+            if shown is not None and self._class.is_pass(shown):
+                self._teachers[client.client_id] = (shown, Chosen())
+        except (RuntimeError, TimeoutError, OSError):
+            return  # a student's page is open to everybody
 
     def gone(self, client: int) -> None:
         """A browser has left."""
@@ -102,10 +102,10 @@ class ClassDesk:
         shown, chosen = teacher
 
         def stop() -> None:
-            self._class.revoke(shown)
             self._teachers.pop(client.client_id, None)
             client.local_storage.remove_item(STORAGE_KEY)
             reopen()
+            self._class.revoke(shown)
 
         lab = partial(self._lab, client.client_id)
         return Teaching(self._class, chosen, lab, self._forget, stop)

@@ -44,7 +44,9 @@ def read_all(tabs: list[Student], until: Callable[[Student], bool]) -> float:
 
 
 def test_students_of_all_workers_are_one_class(tmp_path: Path) -> None:
-    supervisor = Supervisor(tmp_path, "--workers", "2", "--classroom", "--successive-ports", "--port", "0")
+    supervisor = Supervisor(
+        tmp_path, "--workers", "2", "--classroom", "--successive-ports", "--port", "0"
+    )
     try:
         _run_class(supervisor)
     finally:

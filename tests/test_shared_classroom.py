@@ -30,8 +30,10 @@ from app.session import Session
 from app.setups import capture
 from app.shared_classroom import LIVELY, SharedClassroom
 from app.tables import OF_A_CLASS, classes
+from app.teaching import Chosen, Teaching
 from app.watches import GONE, LASTS, NONSENSE, Watches
 from lessons.progress import Answer, Notes, Progress
+from lessons.words import ENGLISH
 from tests.lab import FOLLOWER, do, new_session, run, store, y
 from tests.waiting import wait_for
 
@@ -483,6 +485,34 @@ def test_a_lab_elsewhere_is_mirrored_as_long_as_a_teacher_looks(two: Two) -> Non
     posted = len(student._inbox)
     pass_time(8)
     assert len(student._inbox) == posted == 0
+
+
+def test_the_teacher_reads_why_a_lab_stands_still(two: Two) -> None:
+    one, other = two.both
+    one.student("a", "Ada")
+    other.student("b", "Bob")
+    two.look()
+    lab = Lab(new_session())
+    shown_lab: list[Lab | None] = [lab]
+    teaching = Teaching(
+        one.room, Chosen(), lambda _: shown_lab[0], forget=lambda: 0, stop=lambda: None
+    )
+    assert teaching.why_still(ENGLISH) == ""
+    for code in ("a", "b"):
+        teaching.chosen.followed = code
+        lab.view = None
+        assert teaching.why_still(ENGLISH) == ENGLISH("class.hidden")
+        lab.view = object()  # type: ignore[assignment]
+        assert teaching.why_still(ENGLISH) == ""
+    shown_lab[0] = None
+    assert teaching.why_still(ENGLISH) == ENGLISH("class.fetching")
+    other.clients.clear()
+    other.leases.release("b")
+    two.look()
+    assert teaching.why_still(ENGLISH) == ENGLISH("class.absent")
+    other.room.leave("b")
+    two.look()
+    assert teaching.why_still(ENGLISH) == "" and teaching.followed() is None
 
 
 def test_a_relay_that_is_told_nonsense_shows_nothing(two: Two) -> None:
