@@ -8,9 +8,11 @@ from functools import partial
 import viser
 
 from app.attendance import Attendance
+from app.class_commands import Tell
 from app.database import Records
 from app.desk import Seat
 from app.keeper import Keeper
+from app.kept import keep
 from app.loop import Lab
 from app.relay import Relay
 from app.room import Room
@@ -87,9 +89,16 @@ class ClassDesk:
             client.local_storage.set_item(STORAGE_KEY, shown)
             reopen()
 
+        def join(typed: str, nickname: str) -> None:
+            self._class.join(code, typed, nickname)
+            entry, keeper = self._sessions.find(code), self._keeper
+            if entry is not None and keeper is not None:  # to be found again by another process
+                submit = partial(keeper.submit, code)
+                entry.lab.session.post(Tell(lambda session: keep(session, submit)))
+
         return Seat(
             name=name,
-            join=lambda typed, nickname: self._class.join(code, typed, nickname),
+            join=join,
             leave=lambda: self._class.leave(code),
             teach=teach,
         )

@@ -18,8 +18,8 @@ class Supervisor:
     """`onpath --workers`, and what it says."""
 
     def __init__(self, folder: Path, *options: str) -> None:
-        database = f"sqlite:///{folder / 'labs.db'}"
-        command = [sys.executable, "-m", "app.cli", "--database", database, *options]
+        self.database = f"sqlite:///{folder / 'labs.db'}"
+        command = [sys.executable, "-m", "app.cli", "--database", self.database, *options]
         environment = {**os.environ, "CC": "none"}
         self.process = subprocess.Popen(
             command,
