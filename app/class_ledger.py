@@ -74,9 +74,7 @@ class Ledger:
             orders = Orders(bool(row.frozen), row.pushes, read_push(row.push))
             there = self._newer(connection, seen, now)
         present, elsewhere = self._leased(connection, now.wall)
-        for code, member in there.items():
-            if member.connected != (code in present):
-                there = {**there, code: replace(member, connected=code in present)}
+        there = {code: _connected(member, code in present) for code, member in there.items()}
         return Seen(row.code, row.changes, orders, there, elsewhere)
 
     def change(self, connection: sa.Connection, now: Now, **values: object) -> int:
@@ -89,7 +87,7 @@ class Ledger:
 
     def enter(
         self, connection: sa.Connection, session: str, name: str, seen: Seen, now: Now
-    ) -> None:
+    ) -> Member:
         """A student joins, or takes another name.
 
         Raises:
@@ -103,12 +101,13 @@ class Ledger:
         values = {"changed": changed, "name": member.name}
         if session in seen.members:
             connection.execute(sa.update(members).where(self._one(session)).values(values))
-            return
+            return member
         connection.execute(sa.update(classes).where(self._own).values(joined=number))
         values |= {"class_id": self._id, "session": session, "number": number, "active": now.wall}
         values |= {"taken": member.taken, "progress": self._ways.text(session, member.progress)}
         connection.execute(sa.delete(members).where(self._one(session)))  # one that was unreadable
         connection.execute(sa.insert(members).values(values))
+        return member
 
     def write(self, connection: sa.Connection, session: str, changed: int, **values: Any) -> None:
         """What is known anew of a student."""
@@ -194,6 +193,10 @@ class Ledger:
 
     def _pass(self, hashed: str) -> sa.ColumnElement[bool]:
         return (passes.c.class_id == self._id) & (passes.c.hash == hashed)
+
+
+def _connected(member: Member, connected: bool) -> Member:
+    return member if member.connected == connected else replace(member, connected=connected)
 
 
 def _forget(connection: sa.Connection, which: sa.ColumnElement[bool]) -> None:

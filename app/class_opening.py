@@ -64,9 +64,11 @@ def class_of_workers(database: str | None) -> Iterator[tuple[SharedClassroom, bo
     try:
         room = open_class(records, given or new_code())
         assert isinstance(room, SharedClassroom)
-        yield room, given is None
-        if given is None:
-            _dissolve(room)
+        try:
+            yield room, given is None
+        finally:
+            if given is None:
+                _dissolve(room)
     finally:
         records.close()
 

@@ -140,8 +140,11 @@ class SharedClassroom:
     def join(self, session: str, typed: str, name: str) -> Member:
         """See `Room.join`."""
         self._door.check_code(typed, self.code, session)
-        self._transact(lambda c: self._ledger.enter(c, session, name, self._seen, self._now()))
-        return self._seen.members[session]
+        return self._transact(
+            lambda connection: self._ledger.enter(
+                connection, session, name, self._seen, self._now()
+            )
+        )
 
     def leave(self, session: str) -> None:
         """See `Room.leave`."""
@@ -172,9 +175,8 @@ class SharedClassroom:
                 result, seen = self._written(notes, wanted, act)
             except BaseException:
                 with self._lock:
-                    self._notes = {
-                        c: notes.get(c, {}) | self._notes.get(c, {}) for c in {*notes, *self._notes}
-                    }
+                    for session, changes in notes.items():
+                        self._notes[session] = changes | self._notes.get(session, {})
                     self._wanted = [*wanted, *self._wanted]
                 raise
             with self._lock:
