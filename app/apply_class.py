@@ -45,6 +45,11 @@ def _(command: c.TakeStep, session: Session) -> None:
     _tell(session)
 
 
+@apply.register(c.Tell)
+def _(command: c.Tell, session: Session) -> None:
+    command.to(session)
+
+
 def _tell(session: Session) -> None:
     """Whoever finds the lab standing still reads why."""
     if session.frozen:

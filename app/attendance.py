@@ -10,8 +10,8 @@ import threading
 from collections.abc import Callable
 
 from app.class_commands import Freeze
-from app.classroom import Classroom
 from app.error_log import log_error
+from app.room import Room
 from app.session import Session
 
 EVERY = 0.25  # [s]
@@ -28,7 +28,7 @@ class Attendance:
         find: labs of this process.
     """
 
-    def __init__(self, classroom: Classroom, find: Find) -> None:
+    def __init__(self, classroom: Room, find: Find) -> None:
         self._class, self._find = classroom, find
         self._asked: dict[str, int] = {}
         self._bound: dict[str, Session] = {}
@@ -47,6 +47,7 @@ class Attendance:
 
     def look(self) -> None:
         """Once: take orders to the labs, and news of them to the class."""
+        self._class.look()
         members = self._class.members()
         for code in [code for code in self._bound if code not in members]:
             self._let_go(code)
@@ -68,7 +69,8 @@ class Attendance:
             lab.post(Freeze(False))
 
     def _follow(self, code: str) -> None:
-        found, member = self._find(code), self._class.member(code)
+        member = self._class.member(code)
+        found = None if self._class.is_elsewhere(code) else self._find(code)
         if member is None:
             return
         if found is None:

@@ -5,9 +5,14 @@ No widget of a student's page makes these.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from app.setups import Setup
+
+if TYPE_CHECKING:
+    from app.session import Session
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,4 +37,11 @@ class TakeStep:
     step: int
 
 
-ClassCommand = Freeze | TakeSetup | TakeStep
+@dataclass(frozen=True, slots=True)
+class Tell:
+    """How the lab is now, to somebody who must not keep it waiting."""
+
+    to: Callable[[Session], None]
+
+
+ClassCommand = Freeze | TakeSetup | TakeStep | Tell

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import viser
 
 from app.attendance import Attendance
-from app.classroom import Classroom
+from app.class_commands import Tell
 from app.database import Records
 from app.desk import Seat
 from app.keeper import Keeper
+from app.kept import keep
 from app.loop import Lab
+from app.relay import Relay
+from app.room import Room
 from app.session import Session
 from app.sessions import Sessions
+from app.shared_classroom import SharedClassroom
 from app.teaching import Chosen, Teaching
+from app.watches import Watches
 
 STORAGE_KEY = "onpath_teacher"
 STORAGE_WAIT = 3.0  # [s]
@@ -29,7 +35,7 @@ class ClassDesk:
 
     def __init__(
         self,
-        classroom: Classroom,
+        classroom: Room,
         sessions: Sessions,
         records: Records | None = None,
         keeper: Keeper | None = None,
@@ -39,19 +45,26 @@ class ClassDesk:
         self._teachers: dict[int, tuple[str, Chosen]] = {}
         self._attendance = Attendance(classroom, self._student)
         self._attendance.start()
+        self._relay: Relay | None = None
+        if isinstance(classroom, SharedClassroom) and records is not None:
+            watches = Watches(records, classroom.id)
+            self._relay = Relay(watches, self._here, self._wanted, sessions.make)
+            self._relay.start()
 
     def stop(self) -> None:
         """The server ends."""
         self._attendance.stop()
+        if self._relay is not None:
+            self._relay.stop()
 
     def greet(self, client: viser.ClientHandle) -> None:
         """A browser that was a teacher's is one again."""
         try:
             shown = client.local_storage.get_item(STORAGE_KEY, timeout=STORAGE_WAIT)
-        except (RuntimeError, TimeoutError):
-            return
-        if shown is not None and self._class.is_pass(shown):
-            self._teachers[client.client_id] = (shown, Chosen())
+            if shown is not None and self._class.is_pass(shown):
+                self._teachers[client.client_id] = (shown, Chosen())
+        except (RuntimeError, TimeoutError, OSError):
+            return  # a student's page is open to everybody
 
     def gone(self, client: int) -> None:
         """A browser has left."""
@@ -76,9 +89,16 @@ class ClassDesk:
             client.local_storage.set_item(STORAGE_KEY, shown)
             reopen()
 
+        def join(typed: str, nickname: str) -> None:
+            self._class.join(code, typed, nickname)
+            entry, keeper = self._sessions.find(code), self._keeper
+            if entry is not None and keeper is not None:  # to be found again by another process
+                submit = partial(keeper.submit, code)
+                entry.lab.session.post(Tell(lambda session: keep(session, submit)))
+
         return Seat(
             name=name,
-            join=lambda typed, nickname: self._class.join(code, typed, nickname),
+            join=join,
             leave=lambda: self._class.leave(code),
             teach=teach,
         )
@@ -91,20 +111,35 @@ class ClassDesk:
         shown, chosen = teacher
 
         def stop() -> None:
-            self._class.revoke(shown)
             self._teachers.pop(client.client_id, None)
             client.local_storage.remove_item(STORAGE_KEY)
             reopen()
+            self._class.revoke(shown)
 
-        return Teaching(self._class, chosen, self._lab, self._forget, stop)
+        lab = partial(self._lab, client.client_id)
+        return Teaching(self._class, chosen, lab, self._forget, stop)
 
     def _student(self, code: str) -> tuple[Session, bool] | None:
         entry = self._sessions.find(code)
         return None if entry is None else (entry.lab.session, entry.client is not None)
 
-    def _lab(self, code: str) -> Lab | None:
+    def _lab(self, client: int, code: str) -> Lab | None:
+        """For a teacher's page."""
+        here = self._here(code)
+        if here is None and self._relay is not None:
+            return self._relay.mirror(client, code)
+        return here
+
+    def _here(self, code: str) -> Lab | None:
+        """A lab that lives in this process."""
         entry = self._sessions.find(code)
-        return None if entry is None else entry.lab
+        return None if entry is None or self._class.is_elsewhere(code) else entry.lab
+
+    def _wanted(self) -> dict[int, str]:
+        """The labs of others that the teachers in this process look at, by client."""
+        chosen = {client: chosen.followed for client, (_, chosen) in [*self._teachers.items()]}
+        there = self._class.members()
+        return {c: code for c, code in chosen.items() if code in there and not self._here(code)}
 
     def _forget(self) -> int:
         self._class.end()

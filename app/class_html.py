@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 from app.class_record import LETTERS, Distribution, tasks_passed
-from app.classroom import Member
 from app.palette import FOLLOWER, TRACKER
+from app.room import Member
 from lessons.course import Course
 from lessons.progress import Progress, Truth
 from lessons.record import QUANTITIES

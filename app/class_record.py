@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from app.classroom import Member
+from app.room import Member
 from lessons.course import Course
 from lessons.progress import Answer, Notes, Progress, Truth
 from lessons.schema import Choice, Lesson, Prediction, Quiz, Sketch

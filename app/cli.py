@@ -13,9 +13,13 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
+
+if TYPE_CHECKING:
+    from app.database import Records
+    from app.room import Room
 
 COMMANDS = ("serve", "experiment", "zero-dynamics", "lessons", "bench", "forget")
 
@@ -53,15 +57,14 @@ class Serve:
         """Serve until Ctrl-C."""
         if self.most_clients < 1:
             raise ValueError(f"--most-clients {self.most_clients}: expected 1 or more")
-        if self.workers != 1:
-            from app.workers import supervise
-
-            supervise(self)
-            return
-        from app.server import serve
         from app.workers import is_worker
 
-        classroom = _classroom() if self.classroom else None
+        if self.workers != 1:
+            self._supervise()
+            return
+        from app.server import serve
+
+        worker = is_worker()
         level = getattr(logging, self.log_level.upper())
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
         logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
@@ -71,24 +74,50 @@ class Serve:
             self.lessons,
             self.database,
             open_browser=self.open,
-            classroom=classroom,
+            open_class=_opener(silent=worker) if self.classroom else None,
             most_clients=self.most_clients,
             allowed_origins=self.origin,
             unix_socket=self.socket,
-            share_port=is_worker(),
+            share_port=worker,
         )
 
+    def _supervise(self) -> None:
+        from app.workers import check, supervise
 
-def _classroom():
-    """A new class; its code and key are printed, whatever is logged."""
-    from app.classroom import Classroom
+        check(self)
+        if not self.classroom:
+            supervise(self)
+            return
+        from app.class_opening import KEY, class_of_workers
+
+        with class_of_workers(self.database) as (room, is_new):
+            _print_class(room.code, room.key if is_new else None)
+            supervise(self, {KEY: room.key})
+
+
+def _opener(silent: bool) -> Callable[[Records], Room]:
+    """What opens a class in a database; it prints code and key unless somebody else does."""
+    from app.class_opening import given_key, open_class
+
+    key = given_key()
+
+    def opened(records: Records) -> Room:
+        room = open_class(records, key)
+        if not silent:
+            _print_class(room.code, room.key if key is None else None)
+        return room
+
+    return opened
+
+
+def _print_class(code: str, key: str | None) -> None:
+    """What to tell students and teacher, whatever is logged; a key that was given is known."""
     from app.codes import shown
 
-    classroom = Classroom()
-    print(f"class code:    {classroom.code.upper()}     for the students, under Class")
-    print(f"teacher's key: {shown(classroom.key)}     under Class, Teacher; tell it nobody")
+    print(f"class code:    {code.upper()}     for the students, under Class")
+    if key is not None:
+        print(f"teacher's key: {shown(key)}     under Class, Teacher; tell it nobody")
     sys.stdout.flush()
-    return classroom
 
 
 @dataclass(frozen=True)

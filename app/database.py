@@ -14,42 +14,21 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import msgspec
 import platformdirs
 import sqlalchemy as sa
 from sqlalchemy import event, exc, pool
 
+from app.tables import LONGEST_CODE, labs, leases, meta, metadata
+
 log = logging.getLogger(__name__)
 
 VERSION = 1  # of the tables and of what `state` holds
 LARGEST = 1_000_000  # [B], of one state
-LONGEST_CODE = 64  # [characters]
 PATIENCE = 10.0  # [s] to wait for another process that writes
 _BROKEN = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
-
-_tables = sa.MetaData()
-_meta = sa.Table(
-    "meta",
-    _tables,
-    sa.Column("name", sa.String(40), primary_key=True),
-    sa.Column("number", sa.Integer, nullable=False),
-)
-_labs = sa.Table(
-    "labs",
-    _tables,
-    sa.Column("code", sa.String(LONGEST_CODE), primary_key=True),
-    sa.Column("version", sa.Integer, nullable=False),
-    sa.Column("updated", sa.Double, nullable=False),
-    sa.Column("state", sa.Text, nullable=False),
-)
-leases = sa.Table(
-    "leases",
-    _tables,
-    sa.Column("code", sa.String(LONGEST_CODE), primary_key=True),
-    sa.Column("owner", sa.String(40), nullable=False),
-    sa.Column("expires", sa.Double, nullable=False),
-)
 
 
 class NotKept(OSError):
@@ -83,6 +62,7 @@ class Records:
         clock: seconds since 1970.
 
     Attributes:
+        owner: a name for these records' process among those that share the database.
         warning: why nothing outlives this process, in words; empty when all is well.
 
     Raises:
@@ -94,7 +74,7 @@ class Records:
     def __init__(
         self, url: str | sa.URL | None = None, clock: Callable[[], float] = time.time
     ) -> None:
-        self._clock = clock
+        self._clock, self.owner = clock, uuid4().hex
         self._lock = threading.Lock()
         self._url = _parsed(url) if url else file_url(default_file())
         self.warning = ""
@@ -106,7 +86,7 @@ class Records:
         Raises:
             NotKept: the database cannot say; whoever gets this must not save under this code.
         """
-        wanted = sa.select(_labs.c.state, _labs.c.version).where(_labs.c.code == code)
+        wanted = sa.select(labs.c.state, labs.c.version).where(labs.c.code == code)
         with self.transaction() as connection:
             row = connection.execute(wanted).first()
         if row is None:
@@ -131,29 +111,36 @@ class Records:
         """
         text = _text(code, state)
         values = {"version": VERSION, "updated": self._clock(), "state": text}
-        ours = (_labs.c.code == code) & (_labs.c.version <= VERSION)
+        ours = (labs.c.code == code) & (labs.c.version <= VERSION)
         for last in (False, True):
             try:
                 with self.transaction() as connection:
                     if owner is not None and lease_owner(connection, code) not in (None, owner):
                         raise HeldElsewhere
-                    changed = connection.execute(sa.update(_labs).where(ours).values(values))
+                    changed = connection.execute(sa.update(labs).where(ours).values(values))
                     if not changed.rowcount:
-                        connection.execute(sa.insert(_labs).values(code=code, **values))
+                        connection.execute(sa.insert(labs).values(code=code, **values))
                 return
             except exc.IntegrityError:  # another process was quicker, or is newer
                 if last:
                     raise NotKept("this lab was kept by a newer OnPath") from None
 
     def delete_all(self) -> int:
-        """Forget every lab. Returns how many there were.
+        """Forget every lab and every class. Returns how many labs there were.
 
         Raises:
             NotKept: they could not be deleted.
         """
         with self.transaction() as connection:
-            connection.execute(sa.delete(leases))
-            return connection.execute(sa.delete(_labs)).rowcount
+            for table in metadata.tables.values():
+                if table not in (meta, labs):
+                    connection.execute(sa.delete(table))
+            return connection.execute(sa.delete(labs)).rowcount
+
+    @property
+    def is_shared(self) -> bool:
+        """Whether other processes with the same URL have the same."""
+        return not self.warning and self._url.database not in (None, "", ":memory:")
 
     def close(self) -> None:
         """Let the database go."""
@@ -313,17 +300,15 @@ def _prepared(url: sa.URL) -> sa.Engine:
 def _check_tables(connection: sa.Connection) -> None:
     inspector = sa.inspect(connection)
     there = set(inspector.get_table_names())
-    for table in _tables.tables.values():
+    for table in metadata.tables.values():
         if table.name in there:
             columns = {column["name"] for column in inspector.get_columns(table.name)}
             if columns != set(table.columns.keys()):
                 raise NotKept(f"its table {table.name} is not OnPath's")
-    _tables.create_all(connection)
-    version = connection.execute(
-        sa.select(_meta.c.number).where(_meta.c.name == "version")
-    ).scalar()
+    metadata.create_all(connection)
+    version = connection.execute(sa.select(meta.c.number).where(meta.c.name == "version")).scalar()
     if version is None:
-        connection.execute(sa.insert(_meta).values(name="version", number=VERSION))
+        connection.execute(sa.insert(meta).values(name="version", number=VERSION))
     elif version > VERSION:
         raise NotKept(f"it is of version {version}, made by a newer OnPath, which is needed here")
 

@@ -42,6 +42,12 @@ class Watch:
             self._submit(lambda: _state(*now))
 
 
+def keep(session: Session, submit: Callable[[Callable[[], State]], None]) -> None:
+    """Keep a lab even if nothing in it has changed; on the simulation thread. See `Watch`."""
+    now = _now(session)
+    submit(lambda: _state(*now))
+
+
 def put_back(session: Session, state: State) -> None:
     """Make a new session what was kept.
 

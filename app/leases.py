@@ -11,13 +11,13 @@ import threading
 import time
 from collections.abc import Callable, Iterable
 from typing import Any
-from uuid import uuid4
 
 import sqlalchemy as sa
 from sqlalchemy import exc
 
-from app.database import NotKept, Records, lease_owner, leases
+from app.database import NotKept, Records, lease_owner
 from app.error_log import log_error
+from app.tables import leases
 
 log = logging.getLogger(__name__)
 
@@ -43,7 +43,7 @@ class Leases:
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self._records, self._clock, self._sleep = records, clock, sleep
-        self._owner = owner or uuid4().hex
+        self._owner = owner or records.owner
         self._stop = threading.Event()
 
     def save(self, code: str, state: dict[str, Any]) -> None:

@@ -56,6 +56,11 @@ class Lab:
         self._simulated = self._passed = 1e-6  # lately, each fading over about a second
 
     @property
+    def is_seen(self) -> bool:
+        """Whether somebody's browser draws it; otherwise simulated time waits."""
+        return self.view is not None
+
+    @property
     def achieved(self) -> float:
         """Simulated seconds per second, lately."""
         return self._simulated / self._passed

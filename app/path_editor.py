@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from models.curve_faults import Fault, curve_faults
@@ -11,6 +13,19 @@ from models.robots import Robot
 
 BLEND = 0.3  # [s]
 DEPTH = 100
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Blend:
+    """What is followed: `target`, or something between it and `before` while an edit blends in.
+
+    Attributes:
+        progress: from 0, `before`, to 1, `target`.
+    """
+
+    target: Curve
+    before: Curve | None = None
+    progress: float = 1.0
 
 
 class PathEditor:
@@ -110,6 +125,20 @@ class PathEditor:
         """Follow the last valid path at once, without a blend."""
         self._from, self.proposed, self.faults = None, None, []
         self._follow(self.design.curve)
+
+    @property
+    def blend(self) -> Blend:
+        """What is followed now."""
+        return Blend(self._target, self._from, self._progress)
+
+    def show(self, shown: PathDesign, followed: Blend, faults: list[Fault]) -> None:
+        """As another editor is: its points and marks, and what is followed there."""
+        self.design, self.proposed, self.faults = shown, None, faults
+        self._from, self._target = followed.before, followed.target
+        self._progress = followed.progress
+        before = followed.before or followed.target
+        between = before.closed == followed.target.closed
+        self._follow(blend(before, followed.target, followed.progress) if between else before)
 
     def points(self) -> np.ndarray:
         """Control points as shown, shape (k, 2), [m]."""

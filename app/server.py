@@ -6,6 +6,7 @@ import logging
 import signal
 import threading
 import webbrowser
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,6 @@ from typing import Any
 import viser
 
 from app.class_desk import ClassDesk
-from app.classroom import Classroom
 from app.codes import normalised
 from app.database import Records
 from app.desk import Desk
@@ -26,6 +26,7 @@ from app.loop import SimulationThread
 from app.loop_store import LoopStore
 from app.onlooker import Onlookers
 from app.page_builds import Newcomers
+from app.room import Room
 from app.session import Session
 from app.sessions import Entry, Sessions
 from app.stage import set_initial_camera
@@ -67,7 +68,7 @@ class LabServer:
         store: LoopStore,
         course: Course | None = None,
         records: Records | None = None,
-        classroom: Classroom | None = None,
+        classroom: Room | None = None,
         most_clients: int = MOST_CLIENTS,
         **listening: Any,
     ) -> None:
@@ -208,7 +209,7 @@ def serve(
     lessons: Path | None = None,
     database: str | None = None,
     open_browser: bool = False,
-    classroom: Classroom | None = None,
+    open_class: Callable[[Records], Room] | None = None,
     **listening: Any,
 ) -> None:
     """Serve the lab until Ctrl-C or SIGTERM.
@@ -216,7 +217,7 @@ def serve(
     Args:
         lessons: a folder of lessons of one's own.
         database: URL of the one that keeps the labs; a file of the user's if there is none.
-        classroom: the class that students may join; none if there is none.
+        open_class: opens the class that students may join; none if there is none.
         listening: what else `LabServer` takes.
 
     Raises:
@@ -229,6 +230,7 @@ def serve(
     if records.warning:
         log.warning("%s", records.warning)
     store = LoopStore.with_system_compiler()
+    classroom = open_class(records) if open_class else None
     lab = LabServer(host, port, store, course, records, classroom, **listening)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     warm_up()

@@ -289,6 +289,10 @@ class Session:
         """What acts on a robot from outside; the same object while nothing changes."""
         return self._pushes[name]
 
+    def set_push(self, name: str, push: Push) -> None:
+        """Let something act on a robot that is known from elsewhere."""
+        self._pushes[name] = push
+
     def targets(self, controller: str) -> list[str]:
         """Which robots a gesture at `controller` acts on."""
         return list(NAMES) if self.copy else [controller]

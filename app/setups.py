@@ -18,7 +18,7 @@ from app.path_editor import BLEND
 from models.catalogue import FIVE_BAR, ROBOTS, Entry
 from models.curve_faults import curve_faults
 from models.curve_fit import closed_through, control_points, open_through
-from models.curves import HARMONICS, TERMS, chebyshev_curve, fourier
+from models.curves import TERMS, from_terms, terms_of
 from models.parameters import Parameters, Spec, changed, specs, unknown_name
 from models.path_design import MOST_POINTS, REACH, PathDesign, presets
 
@@ -197,7 +197,7 @@ def capture_path(design: PathDesign, paths: Mapping[str, PathDesign]) -> Path:
     closed = design.curve.closed
     if design.name == EDITED:
         return Path(EDITED, closed, _lengths(design.points))
-    return Path(DRAWN, closed, _lengths(design.curve.series[0, : _terms(closed)]))
+    return Path(DRAWN, closed, _lengths(design.curve.terms()))
 
 
 def _design(path: Path, paths: Mapping[str, PathDesign]) -> PathDesign:
@@ -214,15 +214,10 @@ def _design(path: Path, paths: Mapping[str, PathDesign]) -> PathDesign:
         if not 2 <= len(z) <= MOST_POINTS or np.abs(z).max(initial=0.0) > REACH + UNIT / 2:
             raise ValueError(f"2 to {MOST_POINTS} points, within {REACH:g} m of the middle")
         return PathDesign(EDITED, (closed_through if path.closed else open_through)(z), z)
-    if len(z) != _terms(path.closed):
-        raise ValueError(f"a drawn path has {_terms(path.closed)} coefficients, not {len(z)}")
-    first, last = z[1 : HARMONICS + 1], z[HARMONICS + 1 :]
-    curve = fourier(z[0], first, last) if path.closed else chebyshev_curve(z)
+    if len(z) != terms_of(path.closed):
+        raise ValueError(f"a drawn path has {terms_of(path.closed)} coefficients, not {len(z)}")
+    curve = from_terms(path.closed, z)
     return PathDesign(DRAWN, curve, control_points(curve, DRAWN_POINTS[path.closed]))
-
-
-def _terms(closed: bool) -> int:
-    return TERMS if closed else HARMONICS + 1
 
 
 def _lengths(z: np.ndarray) -> tuple[int, ...]:

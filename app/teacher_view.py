@@ -12,6 +12,7 @@ from app.desk import Desk
 from app.lab_view import LabView
 from app.lesson_commands import CloseLesson
 from app.loop_store import LoopStore
+from app.mirror import Mirror
 from app.panels.teacher_controls import Following, TeacherControls
 from app.panels.teacher_panel import TeacherPanel
 from app.session import Session
@@ -39,6 +40,8 @@ class TeacherView(LabView):
         if lab is None:
             super().show(session, achieved, frame, stride)
         else:
+            if isinstance(lab, Mirror):
+                lab.keep_up()
             super().show(lab.session, lab.achieved, frame, stride)
 
     def _page(self, session: Session) -> tuple[object, ...]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.classroom import Classroom
 from app.loop import Lab
+from app.room import Room
+from lessons.words import Words
 
 
 @dataclass(slots=True)
@@ -30,12 +31,12 @@ class Teaching:
     """For one teacher's page.
 
     Attributes:
-        lab: of a session code, or None when it is not here.
+        lab: of a session code, here or mirrored; None when there is nothing to show.
         forget: delete all that is kept, and end the class; returns how many labs there were.
         stop: back to a lab's own page.
     """
 
-    classroom: Classroom
+    classroom: Room
     chosen: Chosen
     lab: Callable[[str], Lab | None]
     forget: Callable[[], int]
@@ -47,3 +48,15 @@ class Teaching:
         if not code or self.classroom.member(code) is None:
             return None
         return self.lab(code)
+
+    def why_still(self, words: Words) -> str:
+        """Why the lab that the teacher looks at is not there or stands still; empty if it runs."""
+        member = self.classroom.member(self.chosen.followed)
+        if member is None:
+            return ""
+        if not member.connected:
+            return words("class.absent")
+        lab = self.followed()
+        if lab is None:
+            return words("class.fetching")
+        return "" if lab.is_seen else words("class.hidden")

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -57,21 +58,24 @@ class Options(Protocol):
     def log_level(self) -> str: ...
 
 
-def supervise(options: Options) -> None:
+def supervise(options: Options, secrets: Mapping[str, str] | None = None) -> None:
     """Run workers until Ctrl-C or SIGTERM.
 
+    Args:
+        options: as `check` wants them.
+        secrets: for the workers' environment.
+
     Raises:
-        ValueError: they cannot be as asked for, or a worker says so.
+        ValueError: a worker says that it cannot be as asked for.
         OSError: a port cannot be had.
     """
-    _check(options)
     logging.basicConfig(level=options.log_level.upper(), format="%(levelname)s %(message)s")
     apart = options.successive_ports or sys.platform != "linux"
     places = options.workers if apart else 1
     held = [reserve(options.host, options.port + i if options.port else 0) for i in range(places)]
     ports = [place.getsockname()[1] for place in held]
     workers = [
-        Worker(number + 1, _command(options, ports[number % places]))
+        Worker(number + 1, _command(options, ports[number % places]), dict(secrets or {}))
         for number in range(options.workers)
     ]
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -90,10 +94,15 @@ def supervise(options: Options) -> None:
 
 @dataclass(slots=True)
 class Worker:
-    """One process. Its lines come out of ours, with its number before them."""
+    """One process. Its lines come out of ours, with its number before them.
+
+    Attributes:
+        secrets: for its environment.
+    """
 
     number: int
     command: list[str]
+    secrets: dict[str, str] = field(default_factory=dict, repr=False)
     process: subprocess.Popen[bytes] | None = None
     died: float | None = None
     _reader: threading.Thread | None = field(default=None, repr=False)
@@ -103,7 +112,7 @@ class Worker:
         pipe = subprocess.PIPE
         self.process = subprocess.Popen(
             self.command,
-            env={**os.environ, MARK: "1"},
+            env={**os.environ, MARK: "1", **self.secrets},
             stdin=pipe,
             stdout=pipe,
             stderr=subprocess.STDOUT,
@@ -151,13 +160,16 @@ def is_worker() -> bool:
     return True
 
 
-def _check(options: Options) -> None:
+def check(options: Options) -> None:
+    """Refuse what makes no sense.
+
+    Raises:
+        ValueError: several workers cannot be as asked for.
+    """
     if not 1 < options.workers <= MOST:
         raise ValueError(f"--workers {options.workers}: expected 1 to {MOST}")
     if options.socket:
         raise ValueError("--socket is for one process: leave out --workers")
-    if options.classroom:
-        raise ValueError("a class has one process: leave out --workers or --classroom")
 
 
 def _command(options: Options, port: int) -> list[str]:
@@ -167,6 +179,7 @@ def _command(options: Options, port: int) -> list[str]:
     command += ["--most-clients", str(options.most_clients)]
     command += ["--lessons", str(options.lessons)] if options.lessons else []
     command += ["--database", options.database] if options.database else []
+    command += ["--classroom"] if options.classroom else []
     return command + [word for origin in options.origin for word in ("--origin", origin)]
 
 

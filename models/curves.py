@@ -67,6 +67,10 @@ class Curve:
         """
         return np.ascontiguousarray(self.series.transpose(1, 0, 2)).ravel()
 
+    def terms(self) -> Array:
+        """The coefficients that tell it, see `from_terms`; shape (TERMS or HARMONICS + 1, 2)."""
+        return self.series[0, : terms_of(self.closed)]
+
     def sample(self, count: int = 256) -> Array:
         """Evenly spaced theta over the curve, shape (count,); a closed one's end is left out."""
         return np.linspace(-np.pi, np.pi, count, endpoint=not self.closed)
@@ -178,6 +182,18 @@ def chebyshev_curve(coefficients: Array) -> Curve:
         table[: len(derived)] = derived / np.pi**order
         orders.append(table)
     return Curve(False, np.stack(orders))
+
+
+def terms_of(closed: bool) -> int:
+    """How many coefficients tell a curve."""
+    return TERMS if closed else HARMONICS + 1
+
+
+def from_terms(closed: bool, terms: Array) -> Curve:
+    """The inverse of `Curve.terms`."""
+    if not closed:
+        return chebyshev_curve(terms)
+    return fourier(terms[0], terms[1 : HARMONICS + 1], terms[HARMONICS + 1 :])
 
 
 def ellipse(half_axes: tuple[float, float], centre: tuple[float, float] = (0.0, 0.0)) -> Curve:

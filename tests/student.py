@@ -44,6 +44,10 @@ class Student:
         return self
 
     def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """The tab."""
         if self._socket is not None:
             self._socket.close()
 

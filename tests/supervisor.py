@@ -18,18 +18,23 @@ class Supervisor:
     """`onpath --workers`, and what it says."""
 
     def __init__(self, folder: Path, *options: str) -> None:
-        database = f"sqlite:///{folder / 'labs.db'}"
-        command = [sys.executable, "-m", "app.cli", "--database", database, *options]
+        self.database = f"sqlite:///{folder / 'labs.db'}"
+        command = [sys.executable, "-m", "app.cli", "--database", self.database, *options]
         environment = {**os.environ, "CC": "none"}
         self.process = subprocess.Popen(
-            command, cwd=ROOT, env=environment, stderr=subprocess.PIPE, text=True
+            command,
+            cwd=ROOT,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
         )
         self.said = ""
         threading.Thread(target=self._listen, daemon=True).start()
 
     def _listen(self) -> None:
-        assert self.process.stderr is not None
-        for line in self.process.stderr:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
             self.said += line
 
     def wait_for(self, pattern: str, times: int = 1) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,14 +17,17 @@ from app import commands as c
 from app import lesson_commands as lc
 from app.attendance import Attendance
 from app.class_commands import Freeze, TakeSetup, TakeStep
+from app.class_door import LONGEST_NAME, TRIES, WITHIN, cleaned
 from app.class_record import HEADER, class_csv, distribution, prediction_at, truth_of
-from app.classroom import LONGEST_NAME, TRIES, WITHIN, Classroom, cleaned
-from app.codes import shown
+from app.classroom import Classroom
+from app.codes import new_code, shown
 from app.database import Records, file_url
 from app.forget import forget
 from app.keeper import Keeper
+from app.leases import Leases
 from app.session import Session
 from app.setups import capture
+from app.shared_classroom import SharedClassroom
 from lessons.course import Course, read_course
 from lessons.progress import Answer, Notes, Progress, Truth
 from lessons.schema import Choice, Sketch
@@ -44,14 +48,23 @@ def course(tmp_path: Path) -> Course:
 
 @dataclass
 class Watched:
-    """A class whose clock and labs are in the test's hands."""
+    """A class whose clock and labs are in the test's hands.
+
+    Attributes:
+        records: where the class is shared; None for the class of one process.
+    """
 
     course: Course
+    records: Records | None = None
     now: float = 1000.0
     labs: dict[str, tuple[Session, bool]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.room = Classroom(lambda: self.now)
+        self.room: Classroom | SharedClassroom = Classroom(lambda: self.now)
+        if self.records is not None:
+            wall = lambda: 1.8e9 + self.now  # noqa: E731
+            self.room = SharedClassroom(self.records, new_code(), lambda: self.now, wall)
+            self.leases = Leases(self.records, clock=wall)
         self.attendance = Attendance(self.room, self.labs.get)
 
     def student(self, name: str) -> Session:
@@ -65,14 +78,22 @@ class Watched:
 
     def look(self) -> None:
         """As the class's thread does; then a frame of every lab."""
+        if self.records is not None:
+            self.leases.release()
+            self.leases.renew([code for code, (_, connected) in self.labs.items() if connected])
         self.attendance.look()
         for session, _ in self.labs.values():
             session.drain()
 
 
-@pytest.fixture
-def klass(course: Course) -> Watched:
-    return Watched(course)
+@pytest.fixture(params=["one process", "several"])
+def klass(request: pytest.FixtureRequest, course: Course, tmp_path: Path) -> Iterator[Watched]:
+    if request.param == "one process":
+        yield Watched(course)
+        return
+    records = Records(file_url(tmp_path / "class.db"))
+    yield Watched(course, records)
+    records.close()
 
 
 # Who may come in.

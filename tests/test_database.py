@@ -27,6 +27,7 @@ from app import database
 from app.database import LARGEST, NotKept, Records, default_file, file_url
 from app.keeper import Keeper
 from app.setups import capture, from_data, restore, to_data
+from app.tables import labs, metadata
 from tests.lab import new_session
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -443,12 +444,10 @@ def test_statements_are_everybody_s_sql() -> None:
     from sqlalchemy.dialects import postgresql
     from sqlalchemy.schema import CreateTable
 
-    for table in database._tables.sorted_tables:
+    for table in metadata.sorted_tables:
         made = str(CreateTable(table).compile(dialect=postgresql.dialect()))
         assert "CREATE TABLE" in made
-    assert "DOUBLE PRECISION" in str(
-        CreateTable(database._labs).compile(dialect=postgresql.dialect())
-    )
+    assert "DOUBLE PRECISION" in str(CreateTable(labs).compile(dialect=postgresql.dialect()))
 
 
 # The keeper

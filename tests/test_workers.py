@@ -65,7 +65,12 @@ def test_what_cannot_be_is_said_once() -> None:
             reserve("127.0.0.1", port)
         with listen("127.0.0.1", port, share_port=True):
             pass
-    for options in (["0"], ["65"], ["2", "--classroom"], ["2", "--socket", "x"]):
+    for options in (
+        ["0"],
+        ["65"],
+        ["2", "--classroom", "--database", "sqlite://"],
+        ["2", "--socket", "x"],
+    ):
         assert run_command(["--workers", *options]) == 2
     useless = Worker(1, [sys.executable, "-c", "raise SystemExit(2)"])
     useless.start()

@@ -52,12 +52,11 @@ class ClassPanel:
         """In a thread of viser's, since the page may be built anew."""
 
         def tried(_: Any) -> None:
+            self._said.content = ""
             try:
-                act()
-                said = ""
-            except ValueError as error:
-                said = self._words.sentence(str(error))
-            self._said.content = _text(html.escape(said)) if said else ""
+                act()  # may build the page anew, without this panel
+            except (ValueError, OSError) as error:
+                self._said.content = _text(html.escape(self._words.sentence(str(error))))
 
         return tried
 

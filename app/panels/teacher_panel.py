@@ -63,6 +63,8 @@ class TeacherPanel:
                 _show(code, page.class_code(self._class.code, len(members), self._words))
             _show(self._table, page.table(members.values(), self._course, now, self._words))
             self._show_names()
+            still = self._teaching.why_still(self._words)
+            _show(self._still, _text(still) if still else "")
             if self._course.lessons:
                 _show(self._prediction, self._prediction_view())
         finally:
@@ -77,6 +79,7 @@ class TeacherPanel:
             self._words("class.follow"), [self._words("class.own_lab")]
         )
         on_user_update(self._names, self._choose_followed)
+        self._still = self._gui.add_html("")
         self._show_names()
 
     def _followable(self) -> dict[str, str]:
@@ -95,6 +98,7 @@ class TeacherPanel:
 
     def _choose_followed(self, name: str) -> None:
         self._chosen.followed = self._followable().get(name, "")
+        self._look_again()
 
     # What was predicted
 
@@ -191,7 +195,11 @@ class TeacherPanel:
         self._client.send_file_download("onpath-class.csv", data, save_immediately=True)
 
     def _end(self) -> None:
-        self._told.content = _text(self._words("class.ended", count=self._class.end()))
+        try:
+            said = self._words("class.ended", count=self._class.end())
+        except OSError as error:
+            said = str(error)
+        self._told.content = _text(said)
         self._look_again()
 
     def _forget(self) -> None:

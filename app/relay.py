@@ -1,0 +1,113 @@
+"""Between a teacher's page in one process and a student's lab in another; a thread of its own."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from functools import partial
+
+import msgspec
+
+from app.class_commands import Tell
+from app.database import NotKept
+from app.error_log import log_error, log_warning
+from app.loop import Lab
+from app.mirror import Mirror
+from app.moment import Moment, tell
+from app.session import Session
+from app.watches import Watches
+
+EVERY = 0.125  # [s]
+SELDOM = 4  # looks until labs are asked for again, or it is looked whether any are
+
+
+class Relay:
+    """Tells of the labs here that others ask for, and mirrors those elsewhere that are asked for.
+
+    Args:
+        find: the lab of a session code, if it lives in this process.
+        wanted: which labs that live elsewhere the teachers look at: session codes by client.
+        make: a new session, for a mirror.
+    """
+
+    def __init__(
+        self,
+        watches: Watches,
+        find: Callable[[str], Lab | None],
+        wanted: Callable[[], dict[int, str]],
+        make: Callable[[], Session],
+    ) -> None:
+        self._watches, self._find, self._wanted, self._make = watches, find, wanted, make
+        self._asked: set[str] = set()
+        self._heard: dict[str, Moment] = {}
+        self._told: dict[str, Moment] = {}
+        self._mirrors: dict[int, tuple[str, Mirror]] = {}
+        self._looks = 0
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="relay", daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join(2.0)
+
+    def mirror(self, client: int, session: str) -> Mirror | None:
+        """What a teacher's page shows of a lab that lives elsewhere, once there is anything."""
+        code, mirror = self._mirrors.get(client, ("", None))
+        return mirror if code == session else None
+
+    def look(self) -> None:
+        """Once: tell, and be told."""
+        if self._looks % SELDOM == 0:
+            self._asked = self._watches.asked()
+        self._tell()
+        self._be_told()
+        self._looks += 1
+
+    def _run(self) -> None:
+        while not self._stop.wait(EVERY):
+            try:
+                self.look()
+            except NotKept as error:
+                log_warning("labs cannot be followed: %s", error)
+            except Exception as error:
+                log_error(error)
+
+    def _tell(self) -> None:
+        """What the labs said after the last look; they are asked again."""
+        heard, self._heard = self._heard, {}
+        new = {code: now for code, now in heard.items() if now != self._told.get(code)}
+        if new:
+            texts = {code: msgspec.json.encode(now).decode() for code, now in new.items()}
+            self._watches.tell(texts)
+        self._told = {c: now for c, now in {**self._told, **new}.items() if c in self._asked}
+        for code in self._asked:
+            if (lab := self._find(code)) is not None:
+                lab.session.post(Tell(partial(self._hear, code, lab)))
+
+    def _hear(self, code: str, lab: Lab, _: Session) -> None:
+        self._heard[code] = tell(lab)
+
+    def _be_told(self) -> None:
+        wanted = self._wanted()
+        codes = set(wanted.values())
+        if codes and self._looks % SELDOM == 0:
+            self._watches.ask(codes)
+        told = self._watches.told(codes) if codes else {}
+        mirrors = {c: mine for c, mine in self._mirrors.items() if wanted.get(c) == mine[0]}
+        for client, code in wanted.items():
+            if code not in told:
+                continue
+            if client in mirrors:
+                mirrors[client][1].tell(told[code])
+                continue
+            try:
+                mirrors[client] = code, Mirror(self._make(), told[code])
+            except ValueError as error:
+                log_warning("a student's lab cannot be shown: %s", error)
+        self._mirrors = mirrors
