@@ -15,12 +15,14 @@ from viser import ClientHandle
 from app.apply import apply
 from app.commands import Command
 from app.loop import Lab
-from app.mouse_latency import NO_TRIANGLES
+from app.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from app.server import LabServer
 from app.session import Session
 from app.stages import stage_of
 from tests import waiting
 
+PLAIN = (*ARGUMENTS, "--disable-gpu-rasterization", "--disable-gpu-compositing")
+"""Where a GPU is simulated, a page is put together faster without it."""
 SELDOM = "requestAnimationFrame = act => setTimeout(() => act(performance.now()), 100)"
 """Drawing in software takes most of a browser's time; where a mouse points is found without it."""
 COARSE = "fixedDpr=0.5"  # viser's own switch: half the pixels each way, where a GPU is simulated

@@ -20,12 +20,12 @@ from playwright.sync_api import Browser, BrowserContext, Download, Page, sync_pl
 
 from app import commands as c
 from app.loop_store import LoopStore
-from app.mouse_latency import ARGUMENTS, NO_TRIANGLES
+from app.mouse_latency import NO_TRIANGLES
 from app.server import LabServer
 from app.session import Session
 from models.loops import find_compiler
 from models.trajectory import read_csv
-from tests.browser import SELDOM, Tab, wait_for
+from tests.browser import PLAIN, SELDOM, Tab, wait_for
 
 pytestmark = pytest.mark.browser
 TRACKER, FOLLOWER = "trajectory_tracking", "path_following"
@@ -36,7 +36,7 @@ WINDOW = {"width": 1000, "height": 700}
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
         yield browser
         browser.close()
 

@@ -17,11 +17,10 @@ from app import lesson_commands as lc
 from app.classroom import Classroom
 from app.codes import shown
 from app.loop_store import LoopStore
-from app.mouse_latency import ARGUMENTS
 from app.server import LabServer
 from app.teacher_view import TeacherView
 from models.loops import find_compiler
-from tests.browser import Tab, wait_for
+from tests.browser import PLAIN, Tab, wait_for
 
 pytestmark = pytest.mark.browser
 HOSTILE = "<img src=x onerror=1>"
@@ -44,7 +43,7 @@ def tabs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Class]:
     server = LabServer("127.0.0.1", 0, store, classroom=room)
     with sync_playwright() as playwright:
         browser: Browser = playwright.chromium.launch(
-            executable_path="/usr/bin/chromium", args=ARGUMENTS
+            executable_path="/usr/bin/chromium", args=PLAIN
         )
         made: list[Tab] = []
         for width, height in WINDOWS:

@@ -13,13 +13,12 @@ from playwright.sync_api import sync_playwright
 
 from app import commands as c
 from app.loop_store import LoopStore
-from app.mouse_latency import ARGUMENTS
 from app.server import LabServer
 from app.stages import HORIZONTAL, IN_PATH_PLANE
 from models.catalogue import FIVE_BAR, FLEXIBLE
 from models.flexible_robot import UNSTABLE, FlexibleFiveBar
 from models.loops import find_compiler
-from tests.browser import Tab, wait_for
+from tests.browser import PLAIN, Tab, wait_for
 
 pytestmark = pytest.mark.browser
 FOLLOWER = "path_following"
@@ -31,7 +30,7 @@ def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
     store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
     server = LabServer("127.0.0.1", 0, store)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=PLAIN)
         tab = Tab(server, browser.new_context(viewport={"width": 1000, "height": 700}), draws=False)
         tab.press("Robot…")
         for entry in (FIVE_BAR, FLEXIBLE):

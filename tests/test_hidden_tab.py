@@ -21,11 +21,10 @@ pytest.importorskip("playwright")
 
 from app import commands as c
 from app.loop_store import LoopStore
-from app.mouse_latency import ARGUMENTS
 from app.onlooker import EVERY, PATIENCE, TICK
 from app.server import LabServer
 from models.loops import find_compiler
-from tests.browser import COARSE, wait_for
+from tests.browser import COARSE, PLAIN, wait_for
 
 pytestmark = pytest.mark.browser
 CHROMIUM = "/usr/bin/chromium"
@@ -39,7 +38,7 @@ class Window:
     def __init__(self, folder: Path, address: str) -> None:
         options = ["--headless=new", f"--user-data-dir={folder}", "--remote-debugging-port=0"]
         self._process = subprocess.Popen(
-            [CHROMIUM, *options, "--remote-allow-origins=*", *ARGUMENTS, address],
+            [CHROMIUM, *options, "--remote-allow-origins=*", *PLAIN, address],
             stderr=subprocess.DEVNULL,
         )
         told = folder / "DevToolsActivePort"
