@@ -161,7 +161,8 @@ class Tab:
         mouse.down()
         for place in way[1:]:
             mouse.move(*place, steps=2)
-            self.page.wait_for_timeout(60)  # viser passes on twenty places a second
+            self.page.wait_for_timeout(60)  # viser passes on twenty places a second,
+        mouse.move(*way[-1])  # and drops those between
         yield
         mouse.up()
 
