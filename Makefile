@@ -19,8 +19,8 @@ run: $(STAMP)
 	$(BIN)/onpath $(ARGS)
 
 test: $(STAMP)
-	$(BIN)/pytest -m "not browser" -n 2 --dist loadfile $(ARGS)
-	$(BIN)/pytest -m browser $(ARGS)
+	$(BIN)/pytest -n 2 --dist loadfile --ignore-glob='*browser.py' $(ARGS)
+	$(BIN)/pytest -n 2 --dist loadfile tests/test_*browser.py $(ARGS)
 
 check: $(STAMP)
 	$(BIN)/ruff check .

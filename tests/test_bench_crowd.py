@@ -11,7 +11,7 @@ from app.bench_crowd import HEAD, Crowd, folders, measured
 from app.bench_server import serving
 from app.cli import run_command
 
-CLIENTS, SECONDS = 3, 2.0
+CLIENTS, SECONDS = 3, 1.0
 WORKERS = 2 if sys.platform == "linux" else 1
 
 

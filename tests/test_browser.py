@@ -27,7 +27,6 @@ from models.loops import find_compiler
 from models.trajectory import read_csv
 from tests.browser import PLAIN, SELDOM, Tab, wait_for
 
-pytestmark = pytest.mark.browser
 TRACKER, FOLLOWER = "trajectory_tracking", "path_following"
 CHROMIUM = "/usr/bin/chromium"
 WINDOW = {"width": 1000, "height": 700}

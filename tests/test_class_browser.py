@@ -22,7 +22,6 @@ from app.teacher_view import TeacherView
 from models.loops import find_compiler
 from tests.browser import PLAIN, Tab, wait_for
 
-pytestmark = pytest.mark.browser
 HOSTILE = "<img src=x onerror=1>"
 WINDOWS = ((1100, 600), (800, 400), (800, 400))
 

@@ -102,7 +102,7 @@ JSON = st.recursive(
 )
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(st.dictionaries(st.text(min_size=1, max_size=64), st.dictionaries(st.text(), JSON)))
 def test_any_states_under_any_codes(labs: dict[str, dict[str, Any]]) -> None:
     records = Records("sqlite://")

@@ -20,7 +20,6 @@ from models.flexible_robot import UNSTABLE, FlexibleFiveBar
 from models.loops import find_compiler
 from tests.browser import PLAIN, Tab, wait_for
 
-pytestmark = pytest.mark.browser
 FOLLOWER = "path_following"
 
 

@@ -17,7 +17,6 @@ from app.server import LabServer
 from models.loops import find_compiler
 from tests.browser import PLAIN, Tab, wait_for
 
-pytestmark = pytest.mark.browser
 LESSON = "01-path-or-timetable"
 
 
@@ -108,7 +107,7 @@ def test_a_task_is_failed_then_passed(tab: Tab) -> None:
         tab.page.keyboard.press("PageDown")
         tab.page.wait_for_timeout(300)
     heading(tab, "Hold it yourself")
-    tab.ask(c.SetRate(1.0), c.SetParameter("K1", 40), c.SetParameter("K2", 12))
+    tab.ask(c.SetRate(2.0), c.SetParameter("K1", 40), c.SetParameter("K2", 12))
     tab.ask(c.SetRunning(False), c.Reset())  # how far it gives way depends on where it is held
     hold_for(tab, 2.6)
     tab.page.get_by_text("wanted: below 3 mm (2.0 of 2 s)").wait_for()

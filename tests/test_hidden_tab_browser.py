@@ -26,7 +26,6 @@ from app.server import LabServer
 from models.loops import find_compiler
 from tests.browser import COARSE, PLAIN, wait_for
 
-pytestmark = pytest.mark.browser
 CHROMIUM = "/usr/bin/chromium"
 VALUES = "[...document.querySelectorAll('input')].map(each => each.value)"
 HIDDEN, PAUSED = 200.0, 1000.0  # [B/s]
