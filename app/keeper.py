@@ -61,11 +61,12 @@ class Keeper:
             return delete()
 
     def flush(self, code: str) -> None:
-        """Write what is waiting of one lab, in the caller's thread."""
-        with self._lock:
-            make_state = self._pending.pop(code, None)
-        if make_state is not None and self._write(code, make_state):
-            self._wanted.set()
+        """Write what is waiting of one lab, in the caller's thread; when it returns, it is kept."""
+        with self._writing:  # this lab's turn may be under way
+            with self._lock:
+                make_state = self._pending.pop(code, None)
+            if make_state is not None and self._write(code, make_state):
+                self._wanted.set()
 
     def close(self) -> None:
         """Write what is waiting, and end."""

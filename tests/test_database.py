@@ -521,6 +521,23 @@ def test_a_database_that_hangs_keeps_nobody_waiting() -> None:
     assert {code for code, _ in store.saved} == {f"code{i}" for i in range(60)}
 
 
+def test_a_lab_is_kept_when_it_is_let_go_though_its_turn_was_under_way() -> None:
+    store = Memory()
+    store.gate.clear()
+    keeper = Keeper(store, interval=0.0)
+    keeper.submit("a", number(1))
+    until(lambda: not keeper._pending)  # it is being written
+    kept: list[list[Any]] = []
+    flushing = threading.Thread(target=lambda: (keeper.flush("a"), kept.append(store.saved[:])))
+    flushing.start()
+    flushing.join(0.1)
+    assert flushing.is_alive() and not kept
+    store.gate.set()
+    flushing.join(5.0)
+    assert kept == [[("a", 1)]]
+    keeper.close()
+
+
 def test_what_could_not_be_kept_is_tried_again_and_told_once(caplog: Any) -> None:
     caplog.set_level(logging.WARNING)
     store = Memory()

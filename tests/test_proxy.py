@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.client
 import os
+import random
 import re
 import shutil
 import signal
@@ -11,6 +12,7 @@ import socket
 import subprocess
 import time
 from collections.abc import Iterator
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,12 +29,14 @@ needs_nginx = pytest.mark.skipif(NGINX is None, reason="nginx is not installed (
 
 
 def free_ports(count: int) -> list[int]:
-    """Successive ones, the first for the workers."""
+    """Successive ones, of those that no system gives to whoever asks for any."""
     while True:
-        with socket.create_server(("127.0.0.1", 0)) as probe:
-            first = probe.getsockname()[1]
-        if all(not _answers(first + i) for i in range(count)) and first + count < 65536:
-            return [first + i for i in range(count)]
+        ports = [random.randrange(20000, 32000)]
+        ports += [ports[0] + i for i in range(1, count)]
+        with ExitStack() as probes, suppress(OSError):
+            for port in ports:
+                probes.enter_context(socket.create_server(("127.0.0.1", port)))
+            return ports
 
 
 def _answers(port: int) -> bool:
