@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,18 @@ class Blend:
     before: Curve | None = None
     progress: float = 1.0
 
+    @property
+    def curve(self) -> Curve:
+        """What is followed; between a closed and an open one there is nothing."""
+        if self.before is None:
+            return self.target
+        return blend(self.before, self.target, self.progress) if self.mixes else self.before
+
+    @property
+    def mixes(self) -> bool:
+        """Whether there is something between the two."""
+        return self.before is not None and self.before.closed == self.target.closed
+
 
 class PathEditor:
     """The path as edited, and as followed while an edit blends in.
@@ -38,6 +50,7 @@ class PathEditor:
         faults: what is wrong with the last refused edit.
         selected: index of the selected control point.
         version: changes with everything that is drawn.
+        blend: what is followed and how it comes about.
         curve: what the robots follow now.
         table: its coefficients for the loop.
     """
@@ -46,15 +59,12 @@ class PathEditor:
         self.robot = robot
         self._past: list[PathDesign] = []
         self._future: list[PathDesign] = []
-        self._from: Curve | None = None
-        self._progress = 1.0
         self.design = design
         self.proposed: PathDesign | None = None
         self.faults: list[Fault] = []
         self.selected: int | None = None
         self.version = 0
-        self._target = design.curve
-        self._follow(design.curve)
+        self._follow(Blend(design.curve))
 
     def select(self, index: int | None) -> None:
         """Select a control point; one that does not exist selects none."""
@@ -107,38 +117,23 @@ class PathEditor:
 
     def advance(self, seconds: float) -> bool:
         """Let an edit blend in; True if the followed curve jumped to another kind."""
-        if self._from is None:
+        now = self.blend
+        if now.before is None:
             return False
-        if self._from.closed != self._target.closed:
-            self._from = None
-            self._follow(self._target)
-            return True
-        self._progress = min(1.0, self._progress + seconds / BLEND)
-        if self._progress >= 1.0:
-            self._from = None
-            self._follow(self._target)
-        else:
-            self._follow(blend(self._from, self._target, self._progress))
-        return False
+        progress = now.progress + seconds / BLEND
+        ends = progress >= 1.0 or not now.mixes
+        self._follow(Blend(now.target) if ends else replace(now, progress=progress))
+        return not now.mixes
 
     def settle(self) -> None:
         """Follow the last valid path at once, without a blend."""
-        self._from, self.proposed, self.faults = None, None, []
-        self._follow(self.design.curve)
-
-    @property
-    def blend(self) -> Blend:
-        """What is followed now."""
-        return Blend(self._target, self._from, self._progress)
+        self.proposed, self.faults = None, []
+        self._follow(Blend(self.design.curve))
 
     def show(self, shown: PathDesign, followed: Blend, faults: list[Fault]) -> None:
         """As another editor is: its points and marks, and what is followed there."""
         self.design, self.proposed, self.faults = shown, None, faults
-        self._from, self._target = followed.before, followed.target
-        self._progress = followed.progress
-        before = followed.before or followed.target
-        between = before.closed == followed.target.closed
-        self._follow(blend(before, followed.target, followed.progress) if between else before)
+        self._follow(followed)
 
     def points(self) -> np.ndarray:
         """Control points as shown, shape (k, 2), [m]."""
@@ -162,9 +157,9 @@ class PathEditor:
         self.version += 1
 
     def _blend_to(self, target: Curve) -> None:
-        self._from, self._target, self._progress = self.curve, target, 0.0
+        self.blend = Blend(target, self.curve, 0.0)
 
-    def _follow(self, curve: Curve) -> None:
-        self.curve = curve
-        self.table = curve.table()
+    def _follow(self, followed: Blend) -> None:
+        self.blend, self.curve = followed, followed.curve
+        self.table = self.curve.table()
         self.version += 1

@@ -302,6 +302,16 @@ def test_change_of_kind_is_told_once_as_a_jump() -> None:
     assert not editor.curve.closed
 
 
+def test_settling_lets_go_of_what_was_proposed() -> None:
+    editor = PathEditor(ROBOT, presets()["circle"])
+    assert editor.propose(presets()["ellipse"])
+    editor.advance(BLEND / 2)
+    editor.settle()
+    assert editor.curve is editor.blend.target is editor.design.curve
+    assert editor.blend.before is None and not editor.advance(BLEND)
+    assert editor.curve is editor.design.curve
+
+
 def test_refused_edit_leaves_the_path_and_marks_the_places() -> None:
     editor = PathEditor(ROBOT, presets()["circle"])
     design = editor.design
