@@ -6,12 +6,11 @@ read, so it may do so from a thread of its own.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 
 from app.class_commands import Freeze
-from app.error_log import log_error
 from app.room import Room
+from app.rounds import Rounds
 from app.session import Session
 
 EVERY = 0.25  # [s]
@@ -26,24 +25,16 @@ class Attendance:
 
     Args:
         find: labs of this process.
+
+    Attributes:
+        rounds: looks, from their start to their stop.
     """
 
     def __init__(self, classroom: Room, find: Find) -> None:
         self._class, self._find = classroom, find
         self._asked: dict[str, int] = {}
         self._bound: dict[str, Session] = {}
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="class", daemon=True)
-
-    def start(self) -> None:
-        """Begin to look."""
-        self._thread.start()
-
-    def stop(self) -> None:
-        """Look no more."""
-        self._stop.set()
-        if self._thread.is_alive():
-            self._thread.join(2.0)
+        self.rounds = Rounds("class", EVERY, self.look)
 
     def look(self) -> None:
         """Once: take orders to the labs, and news of them to the class."""
@@ -53,13 +44,6 @@ class Attendance:
             self._let_go(code)
         for code in members:
             self._follow(code)
-
-    def _run(self) -> None:
-        while not self._stop.wait(EVERY):
-            try:
-                self.look()
-            except Exception as error:  # the class must not lose its teacher
-                log_error(error)
 
     def _let_go(self, code: str) -> None:
         """Who has left is not held."""

@@ -44,18 +44,18 @@ class ClassDesk:
         self._records, self._keeper = records, keeper
         self._teachers: dict[int, tuple[str, Chosen]] = {}
         self._attendance = Attendance(classroom, self._student)
-        self._attendance.start()
+        self._attendance.rounds.start()
         self._relay: Relay | None = None
         if isinstance(classroom, SharedClassroom) and records is not None:
             watches = Watches(records, classroom.id)
             self._relay = Relay(watches, self._here, self._wanted, sessions.make)
-            self._relay.start()
+            self._relay.rounds.start()
 
     def stop(self) -> None:
         """The server ends."""
-        self._attendance.stop()
+        self._attendance.rounds.stop()
         if self._relay is not None:
-            self._relay.stop()
+            self._relay.rounds.stop()
 
     def greet(self, client: viser.ClientHandle) -> None:
         """A browser that was a teacher's is one again."""

@@ -7,7 +7,6 @@ name, so that the owner knows whether somebody else has had the lab meanwhile.
 from __future__ import annotations
 
 import logging
-import threading
 import time
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -16,7 +15,7 @@ import sqlalchemy as sa
 from sqlalchemy import exc
 
 from app.database import NotKept, Records, lease_owner
-from app.error_log import log_error
+from app.rounds import Rounds
 from app.tables import leases
 
 log = logging.getLogger(__name__)
@@ -44,7 +43,7 @@ class Leases:
     ) -> None:
         self._records, self._clock, self._sleep = records, clock, sleep
         self._owner = owner or records.owner
-        self._stop = threading.Event()
+        self._rounds: Rounds | None = None
 
     def save(self, code: str, state: dict[str, Any]) -> None:
         """See `Records.save`; raises HeldElsewhere for a lab that another owner has."""
@@ -119,21 +118,20 @@ class Leases:
             lost: called for each that another owner has taken.
         """
 
-        def run() -> None:
-            while not self._stop.wait(RENEWAL):
-                try:
-                    for code in self.renew(codes) if (codes := held()) else ():
-                        lost(code)
-                except NotKept as error:
-                    log.debug("leases are not renewed: %s", error)
-                except Exception as error:
-                    log_error(error)
+        def renew() -> None:
+            try:
+                for code in self.renew(codes) if (codes := held()) else ():
+                    lost(code)
+            except NotKept as error:
+                log.debug("leases are not renewed: %s", error)
 
-        threading.Thread(target=run, name="leases", daemon=True).start()
+        self._rounds = Rounds("leases", RENEWAL, renew)
+        self._rounds.start()
 
     def close(self) -> None:
         """Let everything go."""
-        self._stop.set()
+        if self._rounds is not None:
+            self._rounds.stop(patience=0.0)
         self.release()
 
     def _claim(self, connection: sa.Connection, code: str) -> bool | None:

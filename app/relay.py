@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from functools import partial
 
@@ -10,10 +9,11 @@ import msgspec
 
 from app.class_commands import Tell
 from app.database import NotKept
-from app.error_log import log_error, log_warning
+from app.error_log import log_warning
 from app.loop import Lab
 from app.mirror import Mirror
 from app.moment import Moment, tell
+from app.rounds import Rounds
 from app.session import Session
 from app.watches import Watches
 
@@ -28,6 +28,9 @@ class Relay:
         find: the lab of a session code, if it lives in this process.
         wanted: which labs that live elsewhere the teachers look at: session codes by client.
         make: a new session, for a mirror.
+
+    Attributes:
+        rounds: looks, from their start to their stop.
     """
 
     def __init__(
@@ -43,18 +46,7 @@ class Relay:
         self._told: dict[str, Moment] = {}
         self._mirrors: dict[int, tuple[str, Mirror]] = {}
         self._looks = 0
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="relay", daemon=True)
-
-    def start(self) -> None:
-        """Begin."""
-        self._thread.start()
-
-    def stop(self) -> None:
-        """End."""
-        self._stop.set()
-        if self._thread.is_alive():
-            self._thread.join(2.0)
+        self.rounds = Rounds("relay", EVERY, self._try)
 
     def mirror(self, client: int, session: str) -> Mirror | None:
         """What a teacher's page shows of a lab that lives elsewhere, once there is anything."""
@@ -69,14 +61,11 @@ class Relay:
         self._be_told()
         self._looks += 1
 
-    def _run(self) -> None:
-        while not self._stop.wait(EVERY):
-            try:
-                self.look()
-            except NotKept as error:
-                log_warning("labs cannot be followed: %s", error)
-            except Exception as error:
-                log_error(error)
+    def _try(self) -> None:
+        try:
+            self.look()
+        except NotKept as error:
+            log_warning("labs cannot be followed: %s", error)
 
     def _tell(self) -> None:
         """What the labs said after the last look; they are asked again."""

@@ -522,6 +522,6 @@ def test_a_relay_that_is_told_nonsense_shows_nothing(two: Two) -> None:
     one.watches.tell({"a": "nonsense"})
     here.look()
     assert here.mirror(7, "a") is None
-    here.start()
+    here.rounds.start()
     wait_for(lambda: here._looks > 4, 5.0)
-    here.stop()
+    here.rounds.stop()
