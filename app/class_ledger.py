@@ -77,13 +77,16 @@ class Ledger:
         there = {code: _connected(member, code in present) for code, member in there.items()}
         return Seen(row.code, row.changes, orders, there, elsewhere)
 
-    def change(self, connection: sa.Connection, now: Now, **values: object) -> int:
-        """Count a change of the class; nobody else changes it before this transaction ends."""
+    def change(self, connection: sa.Connection, now: Now, **values: object) -> ClassRow:
+        """Count a change of the class; nobody else changes it before this transaction ends.
+
+        Returns the class as it is then.
+        """
         new = {"changes": classes.c.changes + 1, "touched": now.wall, **values}
         if not connection.execute(sa.update(classes).where(self._own).values(new)).rowcount:
             self._begin(connection, now)
             connection.execute(sa.update(classes).where(self._own).values(new))
-        return self._row(connection, now).changes
+        return self._row(connection, now)
 
     def enter(
         self, connection: sa.Connection, session: str, name: str, seen: Seen, now: Now
@@ -93,12 +96,12 @@ class Ledger:
         Raises:
             ValueError: see `seated`.
         """
-        changed = self.change(connection, now)
-        seen, row = self.look(connection, seen, now), self._row(connection, now)
+        row = self.change(connection, now)
+        seen = self.look(connection, seen, now)
         number = row.joined + 1
         new = Member(number, "", active=now.here, taken=row.pushes)
         member = seated(seen.members, session, name, new)
-        values = {"changed": changed, "name": member.name}
+        values = {"changed": row.changes, "name": member.name}
         if session in seen.members:
             connection.execute(sa.update(members).where(self._one(session)).values(values))
             return member

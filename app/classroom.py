@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 
 from app.class_door import Door, new_class_code, new_pass
 from app.codes import new_code
-from app.room import Member, Orders, Push, seated
+from app.room import Member, Orders, Push, noted, seated
 
 
 @dataclass(slots=True)
@@ -94,7 +94,7 @@ class Classroom:
         with self._lock:
             old = self._members.get(session)
             if old is not None:
-                self._members[session] = replace(old, **changes)  # pyright: ignore[reportArgumentType]
+                self._members[session] = noted(old, changes)
 
     # What the teacher wants
 

@@ -164,3 +164,8 @@ def seated(members: Mapping[str, Member], session: str, name: str, new: Member) 
         raise ValueError("this class is full")
     others = {member.name.casefold() for code, member in members.items() if code != session}
     return replace(old or new, name=not_among(others, name))
+
+
+def noted(member: Member, changes: Mapping[str, object]) -> Member:
+    """A student of whom something is known anew; see `Room.note`."""
+    return replace(member, **changes)  # pyright: ignore[reportArgumentType]

@@ -21,7 +21,7 @@ from app.class_ledger import Ledger, Now, Seen
 from app.class_rows import push_text
 from app.database import NotKept, Records
 from app.error_log import log_warning
-from app.room import Member, Orders, Push
+from app.room import Member, Orders, Push, noted
 from app.tables import classes
 
 LIVELY = 5.0  # [s] that others may not know of a student's latest deed
@@ -94,7 +94,7 @@ class SharedClassroom:
             old = self._seen.members.get(session)
             if old is None or not changes:
                 return
-            new = _noted(old, changes)
+            new = noted(old, changes)
             self._seen = replace(self._seen, members={**self._seen.members, session: new})
             if {*changes} == {"active"} and new.active - self._told.get(session, -LIVELY) < LIVELY:
                 return
@@ -211,7 +211,7 @@ class SharedClassroom:
             self._ledger.change(connection, now, **values)
         if not notes:
             return
-        changed = self._ledger.change(connection, now)
+        changed = self._ledger.change(connection, now).changes
         for session, changes in notes.items():
             values = dict(changes)
             if "active" in values:
@@ -226,12 +226,8 @@ class SharedClassroom:
                 orders = replace(orders, frozen=bool(values["frozen"]))
         for session, changes in self._notes.items():
             if session in there:
-                there[session] = _noted(there[session], changes)
+                there[session] = noted(there[session], changes)
         return replace(seen, orders=orders, members=there)
-
-
-def _noted(member: Member, changes: Mapping[str, object]) -> Member:
-    return replace(member, **changes)  # pyright: ignore[reportArgumentType]
 
 
 def _hash(shown: str) -> str:
