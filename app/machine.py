@@ -11,7 +11,7 @@ from app import meshes, palette
 from app.node_update import update_node
 from app.poses import Poses, trace_segments
 from app.snapshot import RobotView, TrackerName
-from app.stage import IDENTITY, Stage, add_copies, add_text
+from app.stage import IDENTITY, Stage, add_copies, add_text, set_text
 from lessons.words import ENGLISH, Words
 
 if TYPE_CHECKING:
@@ -190,8 +190,8 @@ class Machine:
             tails = poses.tips - [0.0, 0.01, 0.0]
             arrows = np.stack([tails, tails + self._force_scale * poses.forces], axis=1)
             update_node(self._arrows, points=arrows)
-        if self._acts != acts:
-            self._acts = self._arrows.visible = acts
+        if self._arrows.visible != acts:
+            self._arrows.visible = acts
 
     def update_traces(self, robots: list[RobotView]) -> None:
         """Redraws the traces if they are others, and says how large each force is."""
@@ -203,14 +203,14 @@ class Machine:
         if np.isfinite(points).all() and not np.array_equal(points, self._traced):
             self._traced = points
             update_node(self._traces, points=points)
-        for i, (robot, label) in enumerate(zip(robots, self._force_labels, strict=True)):
-            force = hypot(*robot.force.tolist())
-            shown = f"{force:.{int(force < 1.0)}f}" if force > FORCE_SHOWN else ""
-            if shown != self._forces_told[i]:
-                self._forces_told[i] = shown
-                label.visible = bool(shown)
-                if shown:
-                    label.text = self._words("scene.force", force=shown)
+        for robot, label in zip(robots, self._force_labels, strict=True):
+            set_text(label, self._force_words(hypot(*robot.force.tolist())))
+
+    def _force_words(self, force: float) -> str:
+        """How large a force is, [N]; empty when none is drawn."""
+        if force > FORCE_SHOWN:
+            return self._words("scene.force", force=f"{force:.{int(force < 1.0)}f}")
+        return ""
 
     def _add_force(self, scene: viser.SceneApi, stage: Stage) -> None:
         self._arrows = scene.add_arrows(
@@ -222,11 +222,9 @@ class Machine:
             head_length=0.018,
             visible=False,
         )
-        self._acts = False
         self._force_labels = [
             add_text(scene, f"/force_labels/{name}", "", base + stage.force)
             for name, base in stage.bases.items()
         ]
-        self._forces_told = [""] * len(self._force_labels)
         for label in self._force_labels:
             label.visible = False

@@ -19,7 +19,16 @@ from app.machine import Machine
 from app.path_nodes import PathNodes
 from app.poses import Layout
 from app.snapshot import PathView, RobotView, Snapshot
-from app.stage import FIELD_OF_VIEW, Insets, Stage, add_copies, add_text, build_stage, view_of
+from app.stage import (
+    FIELD_OF_VIEW,
+    Insets,
+    Stage,
+    add_copies,
+    add_text,
+    build_stage,
+    set_text,
+    view_of,
+)
 from app.stages import RIGID
 from lessons.words import ENGLISH, Words
 
@@ -119,10 +128,7 @@ class Scene:
         """Redraws the end-points' traces and the forces' labels; at 5 to 10 Hz."""
         self._machine.update_traces(self._robots(snapshot))
         for note in self._notes:
-            if snapshot.note and note.text != snapshot.note:
-                note.text = snapshot.note
-            if note.visible != bool(snapshot.note):
-                note.visible = bool(snapshot.note)
+            set_text(note, snapshot.note)
 
     def update_path(self, snapshot: Snapshot) -> None:
         """Redraws the path and its control points if the path's version changed."""

@@ -184,6 +184,14 @@ def add_text(
     )
 
 
+def set_text(label: viser.LabelHandle, text: str) -> None:
+    """Other words in the scene, or none."""
+    if text and label.text != text:
+        label.text = text
+    if label.visible != bool(text):
+        label.visible = bool(text)
+
+
 def add_copies(
     scene: viser.SceneApi,
     name: str,
