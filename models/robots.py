@@ -167,10 +167,7 @@ class RigidFiveBar:
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
         """See `Robot.fault`."""
-        if is_calm(q, v):
-            return None
-        with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
-            return first_fault(q, v, collapse(q))
+        return None if is_calm(q, v) else first_fault(q, v, collapse(q))
 
     def place(self, y: Array) -> Array:
         """See `Robot.place`."""
@@ -206,8 +203,10 @@ def rigid_five_bar() -> RigidFiveBar:
 
 def collapse(q: Array) -> tuple[NDArray[np.bool_], str]:
     """Where a five-bar has collapsed, for `first_fault`. q: (rows, at least 2). Eq. (14)."""
+    with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
+        collapsed = five_bar.singularity_margin(q) < COLLAPSED
     return (
-        five_bar.singularity_margin(q) < COLLAPSED,
+        collapsed,
         "the linkage has collapsed (all links in one line): the controller cannot see"
         " its way out of a singular configuration",
     )

@@ -34,6 +34,7 @@ class Push:
 
 
 FREE = Push()
+_conic = lru_cache(maxsize=64)(Curve.conic)  # asked for at every change of a setting
 
 
 def kind_of(
@@ -50,7 +51,7 @@ def kind_of(
     return Kind(
         controller=controller,
         closed=curve.closed,
-        level_set=parameters.across == "level_set" and curve.conic() is not None,
+        level_set=parameters.across == "level_set" and _conic(curve) is not None,
         encoder=parameters.encoder_counts > 0,
         law=getattr(parameters, "law", "redefined"),
         free=plain and every_tick and untouched,
@@ -96,9 +97,6 @@ def settings_vector(
             "model": robot.model(parameters),
         }
     )
-
-
-_conic = lru_cache(maxsize=64)(Curve.conic)
 
 
 def pushed(kernel: Kernel, settings: Array, push: Push) -> Array:
