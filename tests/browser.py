@@ -21,6 +21,7 @@ from app.session import Session
 from app.stages import stage_of
 from tests import waiting
 
+CHROMIUM = "/usr/bin/chromium"
 PLAIN = (*ARGUMENTS, "--disable-gpu-rasterization", "--disable-gpu-compositing")
 """Where a GPU is simulated, a page is put together faster without it."""
 SELDOM = "requestAnimationFrame = act => setTimeout(() => act(performance.now()), 100)"

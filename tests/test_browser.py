@@ -25,10 +25,9 @@ from app.server import LabServer
 from app.session import Session
 from models.loops import find_compiler
 from models.trajectory import read_csv
-from tests.browser import PLAIN, SELDOM, Tab, wait_for
+from tests.browser import CHROMIUM, PLAIN, SELDOM, Tab, wait_for
 
 TRACKER, FOLLOWER = "trajectory_tracking", "path_following"
-CHROMIUM = "/usr/bin/chromium"
 WINDOW = {"width": 1000, "height": 700}
 
 

@@ -20,7 +20,7 @@ from app.loop_store import LoopStore
 from app.server import LabServer
 from app.teacher_view import TeacherView
 from models.loops import find_compiler
-from tests.browser import PLAIN, Tab, wait_for
+from tests.browser import CHROMIUM, PLAIN, Tab, wait_for
 
 HOSTILE = "<img src=x onerror=1>"
 WINDOWS = ((1100, 600), (800, 400), (800, 400))
@@ -41,9 +41,7 @@ def tabs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Class]:
     store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
     server = LabServer("127.0.0.1", 0, store, classroom=room)
     with sync_playwright() as playwright:
-        browser: Browser = playwright.chromium.launch(
-            executable_path="/usr/bin/chromium", args=PLAIN
-        )
+        browser: Browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
         made: list[Tab] = []
         for width, height in WINDOWS:
             context = browser.new_context(viewport={"width": width, "height": height})

@@ -14,6 +14,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from types import NoneType
 from typing import Any
@@ -28,6 +29,7 @@ from app.database import LARGEST, NotKept, Records, default_file, file_url
 from app.keeper import Keeper
 from app.setups import capture, from_data, restore, to_data
 from app.tables import labs, metadata
+from tests import waiting
 from tests.lab import new_session
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -469,11 +471,7 @@ class Memory:
         self.saved.append((code, state["n"]))
 
 
-def until(condition: Callable[[], object]) -> None:
-    deadline = time.monotonic() + 5.0
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.002)
+until = partial(waiting.wait_for, seconds=5.0)
 
 
 def number(n: int) -> Callable[[], dict[str, Any]]:

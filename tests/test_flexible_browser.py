@@ -18,7 +18,7 @@ from app.stages import HORIZONTAL, IN_PATH_PLANE
 from models.catalogue import FIVE_BAR, FLEXIBLE
 from models.flexible_robot import UNSTABLE, FlexibleFiveBar
 from models.loops import find_compiler
-from tests.browser import PLAIN, Tab, wait_for
+from tests.browser import CHROMIUM, PLAIN, Tab, wait_for
 
 FOLLOWER = "path_following"
 
@@ -29,7 +29,7 @@ def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
     store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
     server = LabServer("127.0.0.1", 0, store)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=PLAIN)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
         tab = Tab(server, browser.new_context(viewport={"width": 1000, "height": 700}), draws=False)
         tab.press("Robot…")
         for entry in (FIVE_BAR, FLEXIBLE):

@@ -24,9 +24,8 @@ from app.loop_store import LoopStore
 from app.onlooker import EVERY, PATIENCE, TICK
 from app.server import LabServer
 from models.loops import find_compiler
-from tests.browser import COARSE, PLAIN, wait_for
+from tests.browser import CHROMIUM, COARSE, PLAIN, wait_for
 
-CHROMIUM = "/usr/bin/chromium"
 VALUES = "[...document.querySelectorAll('input')].map(each => each.value)"
 HIDDEN, PAUSED = 200.0, 1000.0  # [B/s]
 

@@ -15,7 +15,7 @@ from app import commands as c
 from app.loop_store import LoopStore
 from app.server import LabServer
 from models.loops import find_compiler
-from tests.browser import PLAIN, Tab, wait_for
+from tests.browser import CHROMIUM, PLAIN, Tab, wait_for
 
 LESSON = "01-path-or-timetable"
 
@@ -26,7 +26,7 @@ def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
     store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
     server = LabServer("127.0.0.1", 0, store)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=PLAIN)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
         tab = Tab(server, browser.new_context(viewport={"width": 1280, "height": 800}), draws=False)
         tab.press("Lessons")
         tab.page.get_by_role("button", name="Open", exact=True).first.click()

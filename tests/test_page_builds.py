@@ -17,6 +17,7 @@ from app.page_builds import FEW
 from app.server import LabServer
 from app.session import Session
 from tests.student import Student
+from tests.waiting import wait_for
 
 CROWD = 6
 LONG = 0.2  # [s] that a page takes at least
@@ -57,11 +58,8 @@ def builds(monkeypatch: pytest.MonkeyPatch) -> Builds:
     return builds
 
 
-def wait_for(server: LabServer, views: int) -> None:
-    end = time.monotonic() + 15
-    while len(server._views) != views:
-        assert time.monotonic() < end
-        time.sleep(0.01)
+def wait_for_views(server: LabServer, count: int) -> None:
+    wait_for(lambda: len(server._views) == count, 15)
 
 
 class Comer(threading.Thread):
@@ -96,7 +94,7 @@ def test_pages_are_built_one_at_a_time_and_who_waits_is_told(
             comer.start()
         for comer in crowd:
             comer.join(30)
-        wait_for(server, CROWD)
+        wait_for_views(server, CROWD)
         assert builds.done == CROWD and builds.most == 1
         after = sorted(comer.after for comer in crowd)
         assert sum(comer.told for comer in crowd) >= CROWD - FEW - 1
@@ -104,10 +102,7 @@ def test_pages_are_built_one_at_a_time_and_who_waits_is_told(
         assert after[-1] - after[0] > 2 * (CROWD - 2) * LONG  # with a rest after each
         for lab in server.simulation.labs:  # a teacher opens a lesson for all
             lab.session.post(lc.OpenLesson(next(iter(lab.session.lessons.course.lessons))))
-        end = time.monotonic() + 20
-        while builds.done < 2 * CROWD:
-            assert time.monotonic() < end
-            time.sleep(0.05)
+        wait_for(lambda: builds.done >= 2 * CROWD, 20)
         assert builds.most == 1
 
 
@@ -120,10 +115,10 @@ def test_who_leaves_while_waiting_is_built_nothing(server: LabServer, builds: Bu
     for comer in crowd:
         comer.join(30)
     inside = [comer for comer in crowd if comer.student.moving]
-    wait_for(server, len(inside))
+    wait_for_views(server, len(inside))
     assert builds.done == len(inside) < CROWD
     for comer in inside:
         comer.student.__exit__()
-    wait_for(server, 0)
+    wait_for_views(server, 0)
     assert all(lab.view is None for lab in server.simulation.labs)
     assert not server.sessions.held()
