@@ -19,7 +19,7 @@ from models.catalogue import FIVE_BAR, ROBOTS, Entry
 from models.curve_faults import curve_faults
 from models.curve_fit import closed_through, control_points, open_through
 from models.curves import TERMS, from_terms, terms_of
-from models.parameters import Parameters, Spec, changed, specs, unknown_name
+from models.parameters import NOTHING, Parameters, Spec, changed, specs, unknown_name
 from models.path_design import MOST_POINTS, REACH, PathDesign, presets
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 UNIT = 1e-6  # [m]
 DIGITS = 6
-TINY = 1e-9  # numbers nearer to 0 are 0: nobody means them, and they must not divide
 EDITED, DRAWN = "edited", "drawn"  # the names of paths that are no presets
 DRAWN_POINTS = {True: 10, False: 6}  # control points of a closed and an open stroke, as in `drawn`
 
@@ -162,7 +161,7 @@ def _wanted(name: str, bench: Bench, paths: Mapping[str, PathDesign]) -> Wanted:
         raise unknown_name(name, list(ROBOTS), "robot")
     parameters = ROBOTS[name].lab
     for field, value in bench.parameters.items():
-        tiny = isinstance(value, float) and abs(value) < TINY
+        tiny = isinstance(value, float) and abs(value) <= NOTHING
         parameters = changed(parameters, field, 0.0 if tiny else value)
     return Wanted(ROBOTS[name], parameters, _design(bench.path, paths))
 
@@ -187,7 +186,7 @@ def kept(spec: Spec, value: Any) -> int | float | str:
 
 
 def _rounded(value: float) -> float:
-    return 0.0 if abs(value) < TINY else float(f"{value:.{DIGITS}g}")
+    return 0.0 if abs(value) <= NOTHING else float(f"{value:.{DIGITS}g}")
 
 
 def capture_path(design: PathDesign, paths: Mapping[str, PathDesign]) -> Path:

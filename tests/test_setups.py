@@ -20,10 +20,12 @@ from app.setups import (
     capture,
     capture_path,
     from_data,
+    kept,
     restore,
     to_data,
 )
 from models.curve_faults import curve_faults
+from models.parameters import NOTHING, specs
 from models.path_design import PathDesign
 from tests.lab import FOLLOWER, do, new_session, run
 from tests.some_setups import CALM, FOLLOWABLE, PRESETS, designs, setups, wave
@@ -69,6 +71,14 @@ def test_what_is_restored_is_captured_again(setup: Setup) -> None:
         run(session, 0.1)
         assert capture(session) == setup
         assert session.time > 0
+
+
+def test_what_a_parameter_takes_for_nothing_is_kept_as_nothing() -> None:
+    for gain in (NOTHING, NOTHING / 2, 2 * NOTHING):
+        session = new_session()
+        restore(session, Setup(benches={"five_bar": Bench({"K1": gain})}))
+        value = session.parameters.K1
+        assert value == kept(specs(session.parameters)["K1"], gain) == (gain > NOTHING) * gain
 
 
 @CALM
