@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 
@@ -107,7 +108,7 @@ class PlantRun:
         state, rows = store.get(self.robot, self.kind).run(self.state, self.settings, table, ticks)
         slices = self.log.slices
         fault = self.robot.fault(rows[:, slices["q"]], rows[:, slices["v"]], parameters)
-        if fault is None and not np.isfinite(state).all():
+        if fault is None and not isfinite(state.dot(state)):
             fault = (len(rows), "the numbers have left the range of a computer")
         if fault is not None:
             self.diverged = Diverged(fault[1], time + fault[0] * dt)
@@ -117,19 +118,19 @@ class PlantRun:
             return
         self.state, self.row = state, rows[-1]
         distances = self._distances(curve, rows)
-        self.distance = float(distances[-1])
-        self.max_distance = max(self.max_distance, float(distances.max()))
+        self.distance = distances[-1]
+        self.max_distance = max(self.max_distance, *distances)
 
-    def _distances(self, curve: Curve, rows: np.ndarray) -> np.ndarray:
+    def _distances(self, curve: Curve, rows: np.ndarray) -> list[float]:
         """Of the actual end-point to the path, of the last row at least, [m]."""
         system, slices = self.robot.system, self.log.slices
         seen = system.controlled_output is system.output and not self.kind.encoder
         if seen and not self.kind.level_set and system.p == 2:
-            return np.abs(rows[:, slices["xi"].start])
+            return [abs(xi) for xi in rows[:, slices["xi"].start].tolist()]
         some = rows[(len(rows) - 1) % EVERY :: EVERY]
         return near_distance(
             self.robot.frame, curve, some[:, slices["y"]], some[:, slices["theta"].start]
-        )
+        ).tolist()
 
     def _configure(self, parameters: Parameters, curve: Curve, push: Push) -> None:
         """New settings vector only when an input changed."""
@@ -153,6 +154,7 @@ class PlantRun:
             row[name][:] = state[name]
         row["y"][:] = self.robot.endpoint(state["q"])
         row["force"][:] = 0.0
+        row["speed"][:] = state["theta_rate"] * np.linalg.norm(curve.at(state["theta"], 1), axis=1)
         self.distance = float(
             near_distance(self.robot.frame, curve, row["y"][None], row["theta"])[0]
         )

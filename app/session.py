@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 from collections import deque
 from collections.abc import Callable, Mapping
-from math import hypot, inf
+from math import inf
 from operator import is_
 from time import perf_counter
 
@@ -394,11 +394,7 @@ class Session:
     def sample(self) -> np.ndarray:
         """Now, shape (robots, sample_layout.size)."""
         runs, fields = self.runs.values(), self.sample_layout.slices
-        samples = np.array([run.row for run in runs])[:, places(self.robot)]
-        per_radian = self.editor.curve.at(samples[:, fields["theta"].start], 1).tolist()
-        rates = samples[:, fields["theta_rate"].start].tolist()
-        speeds = [rate * hypot(*along) for rate, along in zip(rates, per_radian, strict=True)]
-        samples[:, fields["speed"].start] = speeds
+        samples = np.array([run.row for run in runs]).take(places(self.robot), axis=1)
         samples[:, fields["distance"].start] = [run.distance for run in runs]
         if self.robot.extra_fields:
             for sample, run in zip(samples, runs, strict=True):

@@ -63,6 +63,7 @@ def log_layout(system: MechanicalSystem) -> Layout:
             ("y", p),
             ("theta", 1),
             ("theta_rate", 1),
+            ("speed", 1),  # along the path, [m/s]
             ("theta_ref", 1),
             ("xi", p - 1),
             ("xi_rate", p - 1),

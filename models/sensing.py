@@ -52,9 +52,11 @@ def logged(output: VirtualOutput, theta_rate: ca.SX, settings: Fields) -> Fields
     the one it looks ahead to would be wrong for as long as the push lasts.
     """
     half = settings["dt"] / 2
+    per_radian = output.per_radian - half * theta_rate * output.stretch
     return {
         "theta": output.theta - half * theta_rate,
         "theta_rate": theta_rate,
+        "speed": theta_rate * per_radian,
         "xi": output.xi - half * output.xi_rate,
         "xi_rate": output.xi_rate,
     }

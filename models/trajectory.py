@@ -97,21 +97,15 @@ def record(
     distance = [
         path_distance(robot.frame, curve, log.unpack(part)["y"]) for part, curve, _ in segments
     ]
-    speed = [_speed(curve, log.unpack(part)) for part, curve, _ in segments]
     held = [np.full(len(part), hold) for part, _, hold in segments]
     return Trajectory(
         controller=controller,
         t=np.arange(len(rows), dtype=float) * dt if times is None else times,
         fields=log.unpack(rows),
         distance=np.concatenate(distance),
-        speed=np.concatenate(speed),
+        speed=log.unpack(rows)["speed"][:, 0],
         held=np.concatenate(held),
     )
-
-
-def _speed(curve: Curve, fields: dict[str, Array]) -> Array:
-    per_radian = np.linalg.norm(curve.at(fields["theta"][:, 0], 1), axis=-1)
-    return per_radian * fields["theta_rate"][:, 0]
 
 
 def header(robot: Robot) -> list[str]:

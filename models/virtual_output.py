@@ -39,6 +39,8 @@ class VirtualOutput:
         xi, xi_rate: (p - 1, 1), lambda and the plane residual [m], and their rates.
         inverse: columns that turn accelerations of (theta, lambda) into one of z, (2, 2).
         offset: (theta'', lambda'') at z'' = 0, (2, 1).
+        per_radian: |sigma'|, [m/rad].
+        stretch: its derivative along the path, [m/rad^2].
         frame: the output space.
     """
 
@@ -48,6 +50,8 @@ class VirtualOutput:
     xi_rate: ca.SX
     inverse: ca.SX
     offset: ca.SX
+    per_radian: ca.SX
+    stretch: ca.SX
     frame: Frame
 
     def acceleration(self, tangential: ca.SX, transversal: ca.SX) -> ca.SX:
@@ -114,5 +118,7 @@ def virtual_output(
         xi_rate=ca.vertcat(xi_rate, zeta_rate),
         inverse=inverse,
         offset=ca.vertcat(theta_offset, offset),
+        per_radian=length,
+        stretch=stretch,
         frame=frame,
     )

@@ -28,7 +28,7 @@ typedef struct {
 } Settings;
 typedef struct {
   Vec q, v, y;
-  double theta, theta_rate, theta_ref, xi, xi_rate;
+  double theta, theta_rate, speed, theta_ref, xi, xi_rate;
   Vec u, force;
 } Row;
 typedef struct { Vec sigma, first, second, third; } Local;
@@ -183,6 +183,7 @@ static void tick(const Settings *s, const double *table, State *x, Row *row) {
   double top = fabs(s->speed), gap = wrap(s->target - x->theta_ref) / s->dt;
   x->theta_ref += s->dt * (s->position != 0 ? clamp(gap, -top, top) : s->speed);
   x->theta = theta, x->theta_rate = row->theta_rate;
+  row->speed = now * (length - half * now * dot(at.first, at.second) / length);
   row->theta_rate = now, row->theta -= half * now, row->xi -= half * row->xi_rate;
   x->encoder = row->q, x->encoder_rate = row->v, x->u = u;
   x->phase = x->phase + 1 < s->hold_ticks - 0.5 ? x->phase + 1 : 0;
