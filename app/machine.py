@@ -23,8 +23,7 @@ FORCE_SHOWN = 0.05
 LINKS = 4
 """Bars of a robot that are machined links; further ones are pieces of a strip that bends."""
 TRACE_SEGMENTS = 120
-TRACE_DEPTH = np.zeros((TRACE_SEGMENTS, 2, 3))
-TRACE_DEPTH[:, :, 1] = np.linspace(0.012, 0.002, TRACE_SEGMENTS)[:, None]
+TRACE_DEPTHS = (0.012, 0.002)
 """Behind the path, and older laps behind newer ones [m]."""
 
 # Scales of the bearing's mesh, which also serves as pen and as the discs of a marker.
@@ -60,7 +59,7 @@ def part_looks(name: str, robot: RobotView) -> tuple[list[tuple[float, ...]], li
     The tracker's moving reference is a ring, the follower's closest point a dot with a white rim:
     either is two discs, one before the other.
     """
-    joints, extras = len(robot.joints), len(robot.extra_points)
+    joints, extras = robot.counts.joints, robot.counts.marks
     dark = palette.CONTROLLERS[name].toward(palette.INK, 0.45)
     discs, inks = (RING, (dark, palette.WHITE)) if name == TrackerName else (
         DOT, (palette.WHITE, dark)
@@ -78,11 +77,18 @@ def _add_traces(scene: viser.SceneApi, names: list[str]) -> viser.LineSegmentsHa
     )
 
 
+def _trace_origins(origins: np.ndarray) -> np.ndarray:
+    """Where the segments of all robots' traces have their origins, shape (count, 1, 3), [m]."""
+    depths = np.zeros((TRACE_SEGMENTS, 3))
+    depths[:, 1] = np.linspace(*TRACE_DEPTHS, TRACE_SEGMENTS)
+    return (origins[:, None] + depths).reshape(-1, 1, 3)
+
+
 class Bars:
     """Some of the bars as copies of one mesh along x from 0 to 1.
 
     Args:
-        which: of all bars, booleans, shape (n,).
+        which: of all bars: booleans, shape (n,), or a slice.
         colours: of those, linear, shape (k, 3).
     """
 
@@ -91,7 +97,7 @@ class Bars:
         scene: viser.SceneApi,
         name: str,
         mesh: trimesh.Trimesh,
-        which: np.ndarray,
+        which: np.ndarray | slice,
         colours: np.ndarray,
         poses: Poses,
     ) -> None:
@@ -132,8 +138,7 @@ class Machine:
         self._words = words
         self._bases = bases = stage.bases
         self._force_scale = stage.force_scale
-        self._drawn: Poses | None = None
-        self._traced = np.zeros(0)
+        self._drawn = poses
         self._bars = self._add_bars(scene, robots, poses)
         self._parts = self._add_parts(scene, robots, poses)
         self._turns = np.tile(IDENTITY, (len(poses.turns), 1))
@@ -146,17 +151,20 @@ class Machine:
             opacity=0.22,
         )
         self._traces = _add_traces(scene, list(bases))
+        self._trace_origins = _trace_origins(stage.origins)
+        self._traced = self._trace_origins
         self._add_force(scene, stage)
-        self.update(poses)
+        self._draw(poses)
 
     def _add_bars(self, scene: viser.SceneApi, robots: list[RobotView], poses: Poses) -> list[Bars]:
-        is_link = np.concatenate([np.arange(len(robot.bars)) < LINKS for robot in robots])
+        is_link = np.concatenate([np.arange(robot.counts.bars) < LINKS for robot in robots])
         links = np.stack([colour for name in self._bases for colour in link_colours(name)])
+        if is_link.all():
+            return [Bars(scene, "/links", meshes.link(), slice(None), links, poses)]
         bars = [Bars(scene, "/links", meshes.link(), is_link, links, poses)]
-        if not is_link.all():
-            pieces = [len(robot.bars) - LINKS for robot in robots]
-            front = np.repeat(links[LINKS - 1 :: LINKS], pieces, axis=0)
-            bars.append(Bars(scene, "/beams", meshes.blade(), ~is_link, front, poses))
+        pieces = [robot.counts.bars - LINKS for robot in robots]
+        front = np.repeat(links[LINKS - 1 :: LINKS], pieces, axis=0)
+        bars.append(Bars(scene, "/beams", meshes.blade(), ~is_link, front, poses))
         return bars
 
     def _add_parts(
@@ -175,9 +183,11 @@ class Machine:
 
     def update(self, poses: Poses) -> None:
         """Three messages, one more with a force, one with a strip, none when nothing has moved."""
-        if self._drawn is not None and poses.same(self._drawn):
-            return
-        self._drawn = poses
+        if poses.is_news(self._drawn):
+            self._drawn = poses
+            self._draw(poses)
+
+    def _draw(self, poses: Poses) -> None:
         for bars in self._bars:
             bars.update(poses)
         parts = {"batched_positions": poses.parts}
@@ -195,12 +205,9 @@ class Machine:
 
     def update_traces(self, robots: list[RobotView]) -> None:
         """Redraws the traces if they are others, and says how large each force is."""
-        lines = [
-            trace_segments(robot.trace, TRACE_SEGMENTS) + TRACE_DEPTH + base
-            for robot, base in zip(robots, self._bases.values(), strict=True)
-        ]
-        points = np.concatenate(lines)
-        if np.isfinite(points).all() and not np.array_equal(points, self._traced):
+        lines = [trace_segments(robot.trace, TRACE_SEGMENTS) for robot in robots]
+        points = np.concatenate(lines) + self._trace_origins
+        if 0.0 < np.abs(points - self._traced).max() < np.inf:  # not if there is a NaN
             self._traced = points
             update_node(self._traces, points=points)
         for robot, label in zip(robots, self._force_labels, strict=True):

@@ -23,9 +23,14 @@ import viser
 import zstandard
 from viser import _messages
 from viser.infra import Message, _infra
+from viser.infra._messages import wire_field_names
 from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
 
+UPDATES = {
+    kind: wire_field_names(kind)
+    for kind in (_messages.SceneNodeUpdateMessage, _messages.GuiUpdateMessage)
+}
 MOST_UNSENT = 1 << 16  # [B] that a slow network may owe a browser, before viser merges what is late
 _ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[Channel]] = WeakKeyDictionary()
 """Channels with something to send, by the event loop that does it."""
@@ -33,18 +38,20 @@ _ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[Channel]] = WeakKeyDic
 
 def update_node(handle: Any, **arrays: np.ndarray) -> None:
     """Set float32 properties of a node, without a look at whether they have changed."""
-    values = {name: np.array(array, dtype=np.float32) for name, array in arrays.items()}
+    values = {name: np.array(array, np.float32, order="C") for name, array in arrays.items()}
     for name, value in values.items():
         setattr(handle._impl.props, name, value)
     message = _messages.SceneNodeUpdateMessage(handle._impl.name, values)
     handle._impl.api._queue_scene_message(message)
 
 
-def update_plot(handle: Any, lines: np.ndarray) -> None:
-    """Set the data of a plot, shape (series, points), without a look at types and changes."""
-    data = tuple(np.array(lines, dtype=float))
-    handle._impl.props.data = data
-    handle._queue_update("data", data)
+def update_gui(handle: Any, name: str, value: str | tuple[np.ndarray, ...]) -> None:
+    """Set a property of the panel, without a look at its type and whether it has changed.
+
+    Arrays must stay as they are from now on.
+    """
+    setattr(handle._impl.props, name, value)
+    handle._queue_update(name, value)
 
 
 class Channel:
@@ -95,6 +102,8 @@ class Channel:
                 self._loop.call_soon_threadsafe(_write, frames)
 
     def _take(self, message: Message) -> None:
+        if message.excluded_self_client == self._client_id:
+            return  # an echo of its own widgets for the other browsers of a page; there are none
         if self._collector == get_ident():
             self._messages.append(message)
         elif not self.closed:  # while a page is being built, say
@@ -127,21 +136,34 @@ def _write(frames: list[tuple[Channel, list[Message], bytes]]) -> None:
 
 
 def _wire(message: Message, arrays: list[memoryview]) -> dict[str, Any]:
-    """As viser does it, but quicker for what `update_node` makes: arrays only."""
-    if type(message) is not _messages.SceneNodeUpdateMessage:
+    """As viser does it, but quicker for what `update_node` and `update_gui` make."""
+    kind, known = type(message), len(arrays)
+    if kind not in UPDATES:
         return message.as_serializable_dict(arrays)
-    updates: dict[str, Any] = {}
-    for name, value in message.updates.items():
-        if type(value) is not np.ndarray or not value.flags.c_contiguous:
-            return message.as_serializable_dict(arrays)
-        updates[name] = {"__binary_index": len(arrays) + len(updates), "dtype": value.dtype.str}
-    arrays += [value.data for value in message.updates.values()]
-    return {
-        "type": "SceneNodeUpdateMessage",
-        "name": message.name,
-        "updates": updates,
-        "owner": message.owner,
-    }
+    fields = {name: getattr(message, name) for name in UPDATES[kind]}
+    try:
+        updates = {name: _told(value, arrays) for name, value in fields["updates"].items()}
+    except TypeError:
+        del arrays[known:]
+        return message.as_serializable_dict(arrays)
+    return {**fields, "updates": updates, "type": kind.__name__}
+
+
+def _told(value: Any, arrays: list[memoryview]) -> Any:
+    """A value as it goes over the wire; arrays go apart.
+
+    Raises:
+        TypeError: that is viser's business.
+    """
+    kind = type(value)
+    if kind in (str, bool, int, float):
+        return value
+    if kind is tuple:
+        return [_told(each, arrays) for each in value]
+    if kind is not np.ndarray or not value.flags.c_contiguous:
+        raise TypeError(kind)
+    arrays.append(value.data)
+    return {"__binary_index": len(arrays) - 1, "dtype": value.dtype.str}
 
 
 def packed(messages: list[Message], compressor: zstandard.ZstdCompressor) -> bytes:

@@ -108,7 +108,7 @@ class PlantRun:
         state, rows = store.get(self.robot, self.kind).run(self.state, self.settings, table, ticks)
         slices = self.log.slices
         fault = self.robot.fault(rows[:, slices["q"]], rows[:, slices["v"]], parameters)
-        if fault is None and not isfinite(state.dot(state)):
+        if fault is None and not isfinite(sum(state.tolist())):
             fault = (len(rows), "the numbers have left the range of a computer")
         if fault is not None:
             self.diverged = Diverged(fault[1], time + fault[0] * dt)

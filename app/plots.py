@@ -9,7 +9,7 @@ import numpy as np
 import viser
 from viser import uplot
 
-from app.node_update import update_plot
+from app.node_update import update_gui
 from app.palette import CONTROLLERS
 from app.session import Session
 from lessons.words import Words
@@ -105,7 +105,8 @@ class LivePlot:
         begin = session.sample_layout.slices[self._plot.field].start
         values = samples[:, :, begin : begin + self._lines].astype(float) * self._plot.scale
         lines = np.vstack([times, values.reshape(len(times), -1).T])
-        update_plot(self._handle, lines if np.isfinite(lines).all() else np.nan_to_num(lines))
+        finite = lines if np.isfinite(lines).all() else np.nan_to_num(lines)
+        update_gui(self._handle, "data", tuple(finite))
 
     def remove(self) -> None:
         """Take it off the page."""

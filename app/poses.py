@@ -13,7 +13,7 @@ from itertools import pairwise
 import casadi as ca
 import numpy as np
 
-from app.snapshot import RobotView
+from app.snapshot import Counts, RobotView
 from app.stage import Stage
 from models.buffered import Buffered
 
@@ -59,7 +59,7 @@ def bar_quaternions(along: ca.SX, waist: ca.SX) -> ca.SX:
 
 @dataclass(frozen=True, slots=True)
 class Poses:
-    """Everything that moves, for all robots, in the world.
+    """Everything that moves, for all robots, in the world; float32, as browsers take it.
 
     Attributes:
         whole: all that follows in one, flat.
@@ -81,27 +81,9 @@ class Poses:
     tips: np.ndarray
     forces: np.ndarray
 
-    def same(self, other: Poses) -> bool:
-        """Whether nobody could see a difference: 10 µm, 10 µN."""
-        return float(np.abs(self.whole - other.whole).max()) < UNSEEN
-
-    def is_finite(self) -> bool:
-        """Whether all of it can be drawn."""
-        return bool(np.isfinite(self.whole).all())
-
-
-@dataclass(frozen=True, slots=True)
-class Counts:
-    """How many parts each robot has."""
-
-    bars: int
-    joints: int
-    marks: int
-
-    @property
-    def parts(self) -> int:
-        """Bearings, pen, two discs of a marker, further points."""
-        return self.joints + 3 + self.marks
+    def is_news(self, drawn: Poses) -> bool:
+        """Whether it can be drawn, and somebody could see the difference: 10 µm, 10 µN."""
+        return UNSEEN < float(np.abs(self.whole - drawn.whole).max()) < np.inf  # not if it is NaN
 
 
 class Layout:
@@ -116,26 +98,28 @@ class Layout:
     """
 
     def __init__(self, stage: Stage, robots: list[RobotView]) -> None:
-        first = robots[0]
-        counts = Counts(len(first.bars), len(first.joints), len(first.extra_points))
+        counts = robots[0].counts
         bases = tuple(map(tuple, stage.origins.tolist()))
         away = float(stage.away[0]), float(stage.away[1])
         self._poses = Buffered(_layout(bases, away, stage.depths, counts))
-        bars, parts, k = counts.bars * len(robots), counts.parts * len(robots), len(robots)
+        k = len(robots)
+        bars, parts = k * counts.bars, k * _parts(counts)
         self._shapes = ((bars, 3), (bars, 4), (bars,), (parts, 3), (parts, 4), (k, 3), (k, 3))
         ends = np.cumsum([0, *(int(np.prod(shape)) for shape in self._shapes)]).tolist()
         self._places = [slice(*ends) for ends in pairwise(ends)]
 
     def poses(self, robots: list[RobotView]) -> Poses:
         """The poses at one instant."""
-        points = [
-            array.ravel()
-            for r in robots
-            for array in (r.bars, r.joints, r.tip, r.marker, r.extra_points, r.force)
-        ]
-        whole = self._poses(np.concatenate(points))[0].copy()
+        points = np.concatenate([robot.points for robot in robots]).ravel()
+        with np.errstate(over="ignore"):  # what is not finite then is not drawn
+            whole = self._poses(points)[0].astype(np.float32)
         named = zip(self._places, self._shapes, strict=True)
         return Poses(whole, *[whole[place].reshape(shape) for place, shape in named])
+
+
+def _parts(counts: Counts) -> int:
+    """Bearings, pen, two discs of a marker, further points."""
+    return counts.joints + 3 + counts.marks
 
 
 @lru_cache(maxsize=16)
@@ -145,12 +129,11 @@ def _layout(
     depths: tuple[float, float, float, float],
     counts: Counts,
 ) -> ca.Function:
-    """All points and the force of each robot as columns -> the fields of `Poses`, flat."""
-    width = 2 * counts.bars + counts.joints + 2 + counts.marks + 1
-    given = ca.SX.sym("points", 3, width * len(bases))
+    """Points of each robot as columns -> the fields of `Poses`, flat."""
+    given = ca.SX.sym("points", 3, counts.points * len(bases))
     each = [
         _robot(points, ca.DM(base), away, depths, counts)
-        for points, base in zip(ca.horzsplit(given, width), bases, strict=True)
+        for points, base in zip(ca.horzsplit(given, counts.points), bases, strict=True)
     ]
     fields = [ca.horzcat(*columns) for columns in zip(*each, strict=True)]
     flat = ca.vertcat(*[ca.vec(ca.densify(field)) for field in fields])
@@ -166,8 +149,8 @@ def _robot(
 ) -> tuple[ca.SX, ...]:
     """One robot's share of the fields of `Poses`, as columns."""
     back, front, boss, pen = depths
-    at = np.cumsum([0, 2 * counts.bars, counts.joints, 1, 1, counts.marks, 1]).tolist()
-    ends, joints, tip, marker, marks, force = (points[:, i:j] for i, j in pairwise(at))
+    at = np.cumsum([0, 2 * counts.bars, counts.joints, counts.marks, 1, 1, 1, 1]).tolist()
+    ends, joints, marks, marker, tip, _, force = (points[:, i:j] for i, j in pairwise(at))
     waist = waist_angle(ends, away)
     normal = ca.vertcat(-ca.sin(waist), ca.cos(waist), 0)
     begins, along = ends[:, ::2], ends[:, 1::2] - ends[:, ::2]
@@ -194,9 +177,13 @@ def trace_segments(trace: np.ndarray, count: int) -> np.ndarray:
     A constant count lets their colours stay as they are. A trace is thinned evenly, never at its
     newest end.
     """
-    if len(trace) == 0:
-        return np.zeros((count, 2, 3))
-    step = max(1, -(-(len(trace) - 1) // count))
-    kept = trace[::-1][::step][: count + 1][::-1]
-    line = np.concatenate([np.repeat(kept[:1], count + 1 - len(kept), axis=0), kept])
+    return trace[_kept(len(trace), count)] if len(trace) else np.zeros((count, 2, 3))
+
+
+@lru_cache(maxsize=512)
+def _kept(length: int, count: int) -> np.ndarray:
+    """Which points of a trace the segments begin and end at, shape (count, 2)."""
+    step = max(1, -(-(length - 1) // count))
+    line = np.arange(length)[::-1][::step][: count + 1][::-1]
+    line = np.concatenate([np.repeat(line[:1], count + 1 - len(line)), line])
     return np.stack([line[:-1], line[1:]], axis=1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.figure import robot_views
 from app.hardening import make_server
 from app.history import Stretch
 from app.samples import sample_layout
@@ -11,7 +12,7 @@ from app.scene import Scene
 from app.snapshot import PathView, Snapshot
 from app.stage import set_initial_camera
 from app.stages import stage_of
-from app.take_snapshot import CURVE_POINTS, robot_views
+from app.take_snapshot import CURVE_POINTS
 from lessons.words import ENGLISH, Words
 from models.robots import Robot
 

@@ -120,9 +120,7 @@ class Scene:
     def update(self, snapshot: Snapshot) -> None:
         """Moves everything that moves; at about 30 Hz. What is not finite is not drawn."""
         self._snapshot = snapshot
-        poses = self._layout.poses(self._robots(snapshot))
-        if poses.is_finite():
-            self._machine.update(poses)
+        self._machine.update(self._layout.poses(self._robots(snapshot)))
 
     def update_traces(self, snapshot: Snapshot) -> None:
         """Redraws the end-points' traces and the forces' labels; at 5 to 10 Hz."""
@@ -207,7 +205,7 @@ class Scene:
         assert self._snapshot is not None
         robot = self._snapshot.robots[name]
         normal = self._stage.pulls[self.pull].normal
-        return Plane(robot.tip, normal), robot.trace[-1] - robot.tip
+        return Plane(robot.tip, normal), robot.end - robot.tip
 
     def _connect_points(self, points: viser.BatchedMeshHandle) -> None:
         points.on_drag("left")(self._point_dragged)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,37 +11,81 @@ TrackerName = "trajectory_tracking"
 
 
 @dataclass(frozen=True, slots=True)
+class Counts:
+    """How many parts a robot's drawing has."""
+
+    bars: int
+    joints: int
+    marks: int
+
+    @property
+    def points(self) -> int:
+        """Bars' begins and ends, joints, marks, marker, drawn tip, end-point and force."""
+        return 2 * self.bars + self.joints + self.marks + 4
+
+
+@dataclass(frozen=True, slots=True)
 class RobotView:
     """One robot as it is drawn; positions in the robot's own frame (x right, y away, z up), [m].
 
     Attributes:
-        bars: straight pieces of the links, shape (n_bars, 2, 3).
-        joints: bearing centres, shape (n_joints, 3).
-        tip: the end-point as drawn, a deflection perhaps exaggerated, shape (3,).
-        marker: what the controller aims at: the tracker's moving reference point, the follower's
-            closest point, shape (3,).
-        force: external force on the end-point, shape (3,), [N].
-        trace: the end-point's recent positions, never exaggerated, oldest first, shape (n, 3).
+        points: all that the properties below give, in their order, shape (counts.points, 3).
+        counts: of them.
+        trace: the end-point's recent positions, never exaggerated, oldest first, shape (n, 3); of
+            no length when nobody wants to know.
         distance: of the end-point to the path, [m].
         max_distance: the same, largest since reset, [m].
         speed: along the path, [m/s].
         torque: shape (m,), [N m].
-        extra_points: further marked points (a rigid tip, for instance), shape (n, 3).
         deflection: of the end-point from where rigid links would have it, [m]; NaN for those.
     """
 
-    bars: np.ndarray
-    joints: np.ndarray
-    tip: np.ndarray
-    marker: np.ndarray
-    force: np.ndarray
+    points: np.ndarray
+    counts: Counts
     trace: np.ndarray
     distance: float
     max_distance: float
     speed: float
     torque: np.ndarray
-    extra_points: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     deflection: float = float("nan")
+
+    @property
+    def bars(self) -> np.ndarray:
+        """Straight pieces of the links, shape (counts.bars, 2, 3)."""
+        return self.points[: 2 * self.counts.bars].reshape(-1, 2, 3)
+
+    @property
+    def joints(self) -> np.ndarray:
+        """Bearing centres, shape (counts.joints, 3)."""
+        begin = 2 * self.counts.bars
+        return self.points[begin : begin + self.counts.joints]
+
+    @property
+    def marks(self) -> np.ndarray:
+        """Further marked points (a rigid tip, for instance), shape (counts.marks, 3)."""
+        begin = 2 * self.counts.bars + self.counts.joints
+        return self.points[begin : begin + self.counts.marks]
+
+    @property
+    def marker(self) -> np.ndarray:
+        """What the controller aims at: the tracker's moving reference point, the follower's
+        closest point, shape (3,)."""
+        return self.points[-4]
+
+    @property
+    def tip(self) -> np.ndarray:
+        """The end-point as drawn, a deflection perhaps exaggerated, shape (3,)."""
+        return self.points[-3]
+
+    @property
+    def end(self) -> np.ndarray:
+        """The end-point as it is, shape (3,)."""
+        return self.points[-2]
+
+    @property
+    def force(self) -> np.ndarray:
+        """External force on the end-point, shape (3,), [N]."""
+        return self.points[-1]
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ class Buffered:
             buffer.set_res(i, result.data)
         self._buffer = buffer  # keeps the memory alive
 
-    def __call__(self, *arguments: Array) -> list[Array]:
+    def __call__(self, *arguments: Array | float) -> list[Array]:
         """Dense matrices, by columns, flat; the results are overwritten by the next call."""
         for own, given in zip(self._arguments, arguments, strict=True):
             own[:] = given

@@ -29,6 +29,12 @@ class LevelSet:
     weights: ca.SX
     constant: ca.SX
 
+    def at(self, z: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """s and its gradient, (2, 1), [m^2], [m]."""
+        centred = z - self.centre
+        s = ca.dot(self.weights, centred**2) - self.constant
+        return s, 2 * self.weights * centred
+
 
 @dataclass(frozen=True, slots=True)
 class VirtualOutput:
@@ -105,9 +111,7 @@ def virtual_output(
         offset = -bend * rate * along / length
         inverse = ca.horzcat(lever * tangent, normal)
     else:
-        centred = z - level_set.centre
-        gradient = 2 * level_set.weights * centred
-        xi = ca.dot(level_set.weights, centred**2) - level_set.constant
+        xi, gradient = level_set.at(z)
         xi_rate = ca.dot(gradient, z_rate)
         offset = 2 * ca.dot(level_set.weights, z_rate**2)
         inverse = ca.inv_minor(ca.vertcat((tangent / lever).T, gradient.T))

@@ -143,7 +143,7 @@ def test_exaggeration_is_drawn_and_said_but_not_simulated() -> None:
     true, large = (take_snapshot(session, 1.0) for session in (plain, drawn))
     assert true.note == "" and "10×" in large.note
     one, two = true.robots[FOLLOWER], large.robots[FOLLOWER]
-    rigid = one.extra_points[0]
+    rigid = one.marks[0]
     np.testing.assert_allclose(two.tip - rigid, 10 * (one.tip - rigid), atol=2e-3)
     assert one.deflection == two.deflection != 0.0
     np.testing.assert_array_equal(one.trace[-1], two.trace[-1])

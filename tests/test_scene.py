@@ -17,7 +17,7 @@ from app import meshes, palette
 from app.machine import TRACE_SEGMENTS
 from app.poses import bar_quaternions, trace_segments, waist_angle
 from app.scene import Hooks, Scene
-from app.snapshot import FollowerName, PathView, RobotView, Snapshot, TrackerName
+from app.snapshot import Counts, FollowerName, PathView, RobotView, Snapshot, TrackerName
 from app.stage import FIELD_OF_VIEW, Insets, Stage, view_of
 from app.stages import FLEXIBLE, RIGID
 from tests.drawing import evaluated
@@ -37,7 +37,8 @@ def robot(q1: float, q2: float, force: tuple[float, float, float] = (0.0, 0.0, 0
     bars = np.array([(base, a), (base, b), (b, a + b), (a + b, tip)])
     trace = np.linspace(base, tip, 50)
     joints = np.array([base, a, b, a + b])
-    return RobotView(bars, joints, tip, tip, np.array(force), trace, 0.0, 0.0, 0.0, np.zeros(2))
+    points = np.vstack([bars.reshape(-1, 3), joints, tip, tip, tip, force])
+    return RobotView(points, Counts(4, 4, 0), trace, 0.0, 0.0, 0.0, np.zeros(2))
 
 
 def path(version: int = 0, n_points: int = 6) -> PathView:

@@ -6,6 +6,7 @@ import html
 
 import viser
 
+from app.node_update import update_gui
 from app.palette import CONTROLLERS, WARNING
 from app.session import Session
 from app.snapshot import RobotView, Snapshot
@@ -37,7 +38,7 @@ class Readout:
         )
         if content != self._shown:
             self._shown = content
-            self._table.content = content
+            update_gui(self._table, "content", content)
 
 
 def _row(name: str, view: RobotView, words: Words) -> str:
