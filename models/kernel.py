@@ -59,6 +59,14 @@ class Kernel:
             rows.append(row)
         return ca.Function("block", [state, settings, table], [after, ca.horzcat(*rows)])
 
+    def tick(self) -> ca.Function:
+        """(state, settings, curve table) -> (state, log row), one scalar graph for a compiler."""
+        state = ca.SX.sym("state", self.state.size)
+        settings = ca.SX.sym("settings", self.settings.size)
+        table = ca.SX.sym("curve", *TABLE_SHAPE)
+        after, row, _ = self.turn(state, settings, table @ self.basis(state, settings))
+        return ca.Function("onpath_tick", [state, settings, table], [after, row])
+
 
 def build_kernel(
     system: MechanicalSystem,

@@ -27,21 +27,21 @@ SHORT = 100  # ticks, for which a compiled loop keeps the interpreter's lock
 FLAGS = (
     *("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math"),
     "-ffp-contract=off",  # rounds as the interpreter does: both loops agree to the last bit
-    *("-fPIC", "-shared"),
+    *("-fPIC", "-fno-semantic-interposition", "-shared"),
 )
 
+_HEAD = "#define CASADI_SYMBOL_EXPORT static\n"
 _DRIVER = """
-int onpath_run(const double* settings, const double* curve, double* state, double* log,
-               long long ticks) {{
-  const double* arg[{sz_arg}]; double* res[{sz_res}]; long long iw[{sz_iw}]; double w[{sz_w}];
+__attribute__((nonnull))
+void onpath_run(const double* restrict settings, const double* restrict curve,
+                double* restrict state, double* restrict log, long long ticks) {{
   double next[{state}];
+  const double* arg[] = {{state, settings, curve}};
   for (long long k = 0; k < ticks; ++k) {{
-    arg[0] = state; arg[1] = settings; arg[2] = curve;
-    res[0] = next; res[1] = log + k * {log};
-    if (onpath_tick(arg, res, iw, w, 0)) return 1;
+    double* res[] = {{next, log + k * {log}}};
+    onpath_tick(arg, res, 0, 0, 0);
     for (int i = 0; i < {state}; ++i) state[i] = next[i];
   }}
-  return 0;
 }}
 """
 
@@ -91,15 +91,19 @@ class CompiledLoop:
 
     Other Python threads run during a long call, but not during a frame's worth: that takes some
     microseconds, and to get the interpreter back from a busy thread takes a hundred times as long.
+
+    Args:
+        address: of `void onpath_run(const double* settings, const double* curve, double* state,
+            double* log, long long ticks)`, which advances the state and fills the log.
+        owner: what keeps the machine code in memory.
     """
 
-    def __init__(self, kernel: Kernel, library: Path) -> None:
+    def __init__(self, kernel: Kernel, address: int, owner: object) -> None:
         self.kernel = kernel
         self._width = kernel.log.size
-        self._short = ctypes.PyDLL(str(library)).onpath_run
-        self._long = ctypes.CDLL(str(library)).onpath_run
-        for function in (self._short, self._long):
-            function.argtypes = [ctypes.c_void_p] * 4 + [ctypes.c_longlong]
+        self._short = ctypes.PYFUNCTYPE(*_SIGNATURE)(address)
+        self._long = ctypes.CFUNCTYPE(*_SIGNATURE)(address)
+        self._owner = owner
 
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """See `Loop.run`."""
@@ -107,11 +111,11 @@ class CompiledLoop:
         rows = np.empty((ticks, self._width))
         settings, table = (np.ascontiguousarray(a, dtype=float) for a in (settings, table))
         run = self._short if ticks <= SHORT else self._long
-        if run(_address(settings), _address(table), _address(after), _address(rows), ticks):
-            raise RuntimeError("the compiled loop failed")
+        run(_address(settings), _address(table), _address(after), _address(rows), ticks)
         return after, rows
 
 
+_SIGNATURE = (None, *[ctypes.c_void_p] * 4, ctypes.c_longlong)
 _Begin = ctypes.c_char * 0
 
 
@@ -149,26 +153,23 @@ def compile_loop(kernel: Kernel, folder: Path, compiler: str) -> CompiledLoop:
             if outcome.returncode:
                 raise RuntimeError(f"{compiler} failed: {outcome.stderr.strip()[:500]}")
             os.replace(built, library)
-    return CompiledLoop(kernel, library)
+    return load_loop(kernel, library)
+
+
+def load_loop(kernel: Kernel, library: Path) -> CompiledLoop:
+    """The loop of a shared library with `onpath_run`; see `CompiledLoop`."""
+    code = ctypes.CDLL(str(library))
+    address = ctypes.cast(code.onpath_run, ctypes.c_void_p).value
+    assert address is not None
+    return CompiledLoop(kernel, address, code)
 
 
 def generate_source(kernel: Kernel) -> str:
     """C of the kernel's tick and the loop around it."""
-    block = kernel.block(1)
-    inputs = block.mx_in()
-    after, row = block(*inputs)
-    tick = ca.Function("onpath_tick", inputs, [after, row])
     generator = ca.CodeGenerator("loop", {"with_header": False})
-    generator.add(tick)
-    sizes = {
-        "sz_arg": max(tick.sz_arg(), 3),
-        "sz_res": max(tick.sz_res(), 2),
-        "sz_iw": max(tick.sz_iw(), 1),
-        "sz_w": max(tick.sz_w(), 1),
-        "state": kernel.state.size,
-        "log": kernel.log.size,
-    }
-    return generator.dump() + _DRIVER.format(**sizes)
+    generator.add(kernel.tick())
+    driver = _DRIVER.format(state=kernel.state.size, log=kernel.log.size)
+    return _HEAD + generator.dump() + driver
 
 
 def _processor() -> str:

@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 from models.kernel import Kernel
-from models.loops import FLAGS, CompiledLoop
+from models.loops import FLAGS, CompiledLoop, load_loop
 
 SOURCE = Path(__file__).with_name("reference_loop.c")
 
@@ -22,4 +22,4 @@ def reference_loop(kernel: Kernel, folder: Path, compiler: str) -> CompiledLoop:
     library = folder / "reference_loop.so"
     command = [compiler, *FLAGS, str(SOURCE), "-o", str(library), "-lm"]
     subprocess.run(command, check=True, capture_output=True)
-    return CompiledLoop(kernel, library)
+    return load_loop(kernel, library)

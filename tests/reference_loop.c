@@ -189,11 +189,10 @@ static void tick(const Settings *s, const double *table, State *x, Row *row) {
   x->phase = x->phase + 1 < s->hold_ticks - 0.5 ? x->phase + 1 : 0;
 }
 
-int onpath_run(const double *settings, const double *table, double *state, double *log,
-               long long ticks) {
+void onpath_run(const double *settings, const double *table, double *state, double *log,
+                long long ticks) {
   State x = *(const State *)state;
   for (long long k = 0; k < ticks; ++k)
     tick((const Settings *)settings, table, &x, (Row *)log + k);
   *(State *)state = x;
-  return 0;
 }
