@@ -1,7 +1,8 @@
-"""Two ways to run a kernel, with one interface: interpreted by CasADi, or compiled to C.
+"""How a kernel runs: interpreted by CasADi's virtual machine, or compiled to machine code.
 
-Both take many ticks in one call and agree to 1e-12 over 1000 ticks. The interpreted loop needs no
-compiler; the compiled one is an order of magnitude faster and lets other threads run meanwhile.
+Both take many ticks in one call and agree to 1e-12 over 1000 ticks. The interpreted loop is there
+at once; the compiled one is an order of magnitude faster and lets other threads run meanwhile. A C
+compiler makes it here, and LLVM, where there is none, in models/translated_loop.py.
 """
 
 from __future__ import annotations

@@ -18,10 +18,11 @@ from models.flexible_robot import (
     flexible_five_bar_robot,
     robot_for,
 )
-from models.loops import InterpretedLoop, compile_loop, find_compiler
+from models.loops import InterpretedLoop, Loop, compile_loop, find_compiler
 from models.parameters import FiveBarParameters
 from models.simulation import FREE, Push, first_state, kernel_of, kind_of, settings_vector
 from models.system import Array
+from models.translated_loop import translate_loop
 from tests.drawing import drawn
 
 ROBOT, DEFAULTS = flexible_five_bar_robot(), FlexibleParameters()
@@ -146,19 +147,19 @@ def test_compiled_and_interpreted_loops_agree(
     controller: str, modes: int, plant: str, tmp_path: Path
 ) -> None:
     compiler, curve = find_compiler(), circle(0.05)
-    if compiler is None:
-        pytest.skip("no C compiler")
     own = replace(DEFAULTS, modes=modes, plant=plant)
     robot = robot_for(own)
     push = Push(hand=np.array([0.5, 0.06, 0.02]))
     kernel = kernel_of(robot, kind_of(controller, own, curve, push))
     state = first_state(robot, kernel, curve, robot.start)
-    loops = InterpretedLoop(kernel), compile_loop(kernel, tmp_path, compiler)
+    loops: list[Loop] = [InterpretedLoop(kernel), translate_loop(kernel)]
+    loops += [compile_loop(kernel, tmp_path, compiler)] if compiler else []
     runs = [
         loop.run(state, settings_vector(robot, kernel, own, curve, push), curve.table(), 1000)
         for loop in loops
     ]
-    assert np.abs(runs[0][1] - runs[1][1]).max() < 1e-12
+    for run in runs[1:]:
+        assert np.abs(runs[0][1] - run[1]).max() < 1e-12
     fields = kernel.log.unpack(runs[0][1])
     assert np.ptp(fields["y"][:, 1]) > 0.02 and np.abs(fields["force"]).max() > 0.9
 

@@ -1,4 +1,4 @@
-"""Both tiers are the same loop; the compiled one is cached, and nothing needs a compiler."""
+"""All loops of a kernel are the same loop; what cc compiled is cached, and nothing needs it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,15 @@ from conftest import FOLLOWING, Rig
 from models.controllers import NAMES
 from models.curves import Curve, chebyshev_curve, circle
 from models.loop_kind import Kind
-from models.loops import BLOCK, InterpretedLoop, compile_loop, find_compiler, generate_source
+from models.loops import (
+    BLOCK,
+    InterpretedLoop,
+    Loop,
+    compile_loop,
+    find_compiler,
+    generate_source,
+)
+from models.translated_loop import translate_loop
 
 KINDS = [
     Kind(controller, closed, level_set, encoder, free)
@@ -29,20 +37,18 @@ KINDS = [
 needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no C compiler")
 
 
-@needs_compiler
 @pytest.mark.parametrize("kind", KINDS, ids=repr)
-def test_tiers_agree(rig: Rig, random_curve: Callable[[int], Curve], kind: Kind) -> None:
+def test_loops_agree(rig: Rig, random_curve: Callable[[int], Curve], kind: Kind) -> None:
     bent = chebyshev_curve(np.array([[0.0, 0.0], [0.05, 0.0], [0.0, 0.02], [0.0, 0.01]]))
     curve = (circle(0.05) if kind.level_set else random_curve(4)) if kind.closed else bent
     start = rig.on_path(kind, curve, -1.0, 2.0)
     changes = {"K3": 20, "hand_active": 1, "hand_target": (0.03, 0.03), "coulomb": 0.01}
     settings = rig.settings(kind, plant=rig.spoiled, speed=2.0, hold_ticks=2, **changes)
-    interpreted = InterpretedLoop(rig.kernel(kind))
-    results = [
-        loop.run(start, settings, curve.table(), 1000) for loop in (rig.loop(kind), interpreted)
-    ]
-    for compiled, own in zip(*results, strict=True):
-        assert np.abs(compiled - own).max() < 1e-12
+    loops = InterpretedLoop(rig.kernel(kind)), translate_loop(rig.kernel(kind)), rig.loop(kind)
+    results = [loop.run(start, settings, curve.table(), 1000) for loop in loops]
+    for interpreted, translated, compiled in zip(*results, strict=True):
+        assert np.array_equal(interpreted, translated)
+        assert np.abs(interpreted - compiled).max() < 1e-12
     assert np.ptp(results[0][1], axis=0).max() > 0.1
 
 
@@ -65,11 +71,16 @@ def test_the_lean_loop_computes_the_same_while_nothing_acts(
     assert np.abs(moved.run(start, pushed, curve.table(), 1000)[0] - whole[0]).max() > 1e-3
 
 
+def every_loop(rig: Rig) -> tuple[Loop, ...]:
+    kernel = rig.kernel(FOLLOWING)
+    return InterpretedLoop(kernel), translate_loop(kernel), rig.loop(FOLLOWING)
+
+
 @pytest.mark.parametrize("ticks", [0, 1, BLOCK - 1, BLOCK, 2 * BLOCK + 3])
 def test_any_number_of_ticks(rig: Rig, ticks: int) -> None:
     start, settings = rig.state(FOLLOWING, np.array([0.06, 0.0])), rig.settings(FOLLOWING)
     given = start.copy()
-    for loop in (rig.loop(FOLLOWING), InterpretedLoop(rig.kernel(FOLLOWING))):
+    for loop in every_loop(rig):
         state, rows = loop.run(start, settings, circle(0.05).table(), ticks)
         assert rows.shape == (ticks, loop.kernel.log.size) and state.shape == start.shape
         assert np.array_equal(start, given)
@@ -80,7 +91,7 @@ def test_any_number_of_ticks(rig: Rig, ticks: int) -> None:
 
 def test_results_are_not_overwritten_by_the_next_call(rig: Rig) -> None:
     start, settings = rig.state(FOLLOWING, np.array([0.06, 0.0])), rig.settings(FOLLOWING)
-    for loop in (rig.loop(FOLLOWING), InterpretedLoop(rig.kernel(FOLLOWING))):
+    for loop in every_loop(rig):
         state, rows = loop.run(start, settings, circle(0.05).table(), BLOCK)
         kept = state.copy(), rows.copy()
         loop.run(state, settings, circle(0.05).table(), BLOCK)

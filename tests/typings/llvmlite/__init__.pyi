@@ -1,0 +1,1 @@
+"""The part of llvmlite that OnPath uses, typed; it has no stubs of its own."""
