@@ -1,4 +1,7 @@
-"""Where sessions get their loops: interpreted at once, compiled as soon as that is ready."""
+"""Where sessions get their loops: interpreted at once, compiled as soon as that is ready.
+
+The system's C compiler makes the compiled ones, or LLVM in this process where there is none.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,12 @@ from pathlib import Path
 
 import platformdirs
 
+from models.kernel import Kernel
 from models.loop_kind import Kind
 from models.loops import CompiledLoop, InterpretedLoop, Loop, compile_loop, find_compiler
 from models.robots import Robot
 from models.simulation import kernel_of
+from models.translated_loop import translate_loop
 
 log = logging.getLogger(__name__)
 Key = tuple[Robot, Kind]
@@ -27,8 +32,8 @@ class LoopStore:
     """Loops by robot and kind. `get` never waits for a compiler.
 
     Args:
-        compiler: path of the C compiler, or None to do without.
-        folder: cache of compiled loops.
+        compiler: path of the C compiler, or None to translate loops in this process.
+        folder: cache of what the C compiler made.
     """
 
     def __init__(self, compiler: str | None = None, folder: Path | None = None) -> None:
@@ -37,7 +42,7 @@ class LoopStore:
         self._compiled: dict[Key, CompiledLoop] = {}
         self._interpreted: dict[Key, InterpretedLoop] = {}
         self._wanted: set[Key] = set()
-        self._pool = ThreadPoolExecutor(1, "compile") if compiler else None
+        self._pool: ThreadPoolExecutor | None = ThreadPoolExecutor(1, "compile")
         self._lock = threading.Lock()
 
     @staticmethod
@@ -45,7 +50,7 @@ class LoopStore:
         """The usual one."""
         compiler = find_compiler()
         if compiler is None:
-            log.info("no C compiler found: the lab runs without one, more slowly")
+            log.info("no C compiler found: loops are translated instead, in this process")
         return LoopStore(compiler)
 
     def get(self, robot: Robot, kind: Kind) -> Loop:
@@ -54,12 +59,12 @@ class LoopStore:
         ready = self._compiled.get(key)
         if ready is not None:
             return ready
+        if key not in self._interpreted:
+            self._interpreted[key] = InterpretedLoop(kernel_of(robot, kind))
         pool = self._pool  # the other thread may give it up meanwhile
         if pool is not None and key not in self._wanted:
             self._wanted.add(key)
             pool.submit(self._compile, key)
-        if key not in self._interpreted:
-            self._interpreted[key] = InterpretedLoop(kernel_of(robot, kind))
         return self._interpreted[key]
 
     def progress(self) -> tuple[int, int]:
@@ -72,11 +77,10 @@ class LoopStore:
             self._pool.shutdown(wait=False, cancel_futures=True)
 
     def _compile(self, key: Key) -> None:
-        assert self._compiler is not None
         if self._pool is None:
             return  # it failed before, and would again
         try:
-            loop = compile_loop(kernel_of(*key), self._folder, self._compiler)
+            loop = self._made(kernel_of(*key))
         except Exception as error:  # whatever it is, the lab goes on without
             log.warning("cannot compile a loop, the interpreted one goes on: %s", error)
             self._pool = None
@@ -84,3 +88,8 @@ class LoopStore:
             return
         with self._lock:
             self._compiled[key] = loop
+
+    def _made(self, kernel: Kernel) -> CompiledLoop:
+        if self._compiler is None:
+            return translate_loop(kernel)
+        return compile_loop(kernel, self._folder, self._compiler)

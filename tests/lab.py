@@ -22,7 +22,7 @@ FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
 
 @lru_cache(maxsize=1)
 def store() -> LoopStore:
-    """Interpreted loops only, built once."""
+    """Loops made once, and for all tests in this process."""
     return LoopStore(compiler=None, folder=Path("unused"))
 
 

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import logging
+import sys
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from lab import FRAME, new_session, states
+from lab import FRAME, states
 
+from app import loop_store
 from app.loop_store import LoopStore
 from app.session import Session
 from models.controllers import NAMES
 from models.loop_kind import Kind
-from models.loops import CompiledLoop, InterpretedLoop, find_compiler
+from models.loops import CompiledLoop, InterpretedLoop, Loop, find_compiler
 from models.robots import rigid_five_bar
 
 KINDS = [Kind(name) for name in NAMES]
@@ -37,40 +40,47 @@ def script(folder: Path, text: str) -> str:
     return str(file)
 
 
-def test_without_a_compiler_loops_are_interpreted_and_built_once(tmp_path: Path) -> None:
-    store = LoopStore(None, tmp_path)
-    loops = [store.get(rigid_five_bar(), kind) for kind in KINDS]
-    assert all(isinstance(loop, InterpretedLoop) for loop in loops)
-    assert [store.get(rigid_five_bar(), kind) for kind in KINDS] == loops
-    assert store.progress() == (0, 0) and not list(tmp_path.iterdir())
-    store.close()
+def late(gate: threading.Event, made: Callable[..., Loop]) -> Callable[..., Loop]:
+    """The same, but not before the gate is open."""
+
+    def wait_and_make(*arguments: object) -> Loop:
+        assert gate.wait(30.0)
+        return made(*arguments)
+
+    return wait_and_make
 
 
-@needs_compiler
-def test_first_loop_does_not_wait_for_the_compiler(tmp_path: Path) -> None:
-    gate = tmp_path / "gate"
-    waiting = f'while [ ! -e "{gate}" ]; do sleep 0.02; done; exec "{find_compiler()}" "$@"'
-    store = LoopStore(script(tmp_path, waiting), tmp_path / "cache")
-    session, reference = Session(store), new_session()
+COMPILERS = [pytest.param(find_compiler(), id="cc", marks=needs_compiler), pytest.param(None)]
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_loops_are_interpreted_at_once_and_compiled_later(
+    compiler: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gate = threading.Event()
+    for name in ("compile_loop", "translate_loop"):
+        monkeypatch.setattr(loop_store, name, late(gate, getattr(loop_store, name)))
+    store, never = LoopStore(compiler, tmp_path), LoopStore(str(tmp_path / "missing"), tmp_path)
+    session, reference = Session(store), Session(never)
     try:
-        for _ in range(30):
-            session.advance(FRAME)
-            reference.advance(FRAME)
-        assert store.progress() == (0, 2)
-        kinds = [r.kind for r in session.runs.values()]
-        assert all(isinstance(store.get(session.robot, k), InterpretedLoop) for k in kinds)
-        gate.touch()
-        wait(lambda: store.progress() == (2, 2))
-        assert all(isinstance(store.get(session.robot, k), CompiledLoop) for k in kinds)
-        for _ in range(30):
-            session.advance(FRAME)
-            reference.advance(FRAME)
+        for kind_of_loop in (InterpretedLoop, CompiledLoop):
+            for _ in range(30):
+                session.advance(FRAME)
+                reference.advance(FRAME)
+            kinds = [r.kind for r in session.runs.values()]
+            loops = [store.get(session.robot, kind) for kind in kinds]
+            assert all(isinstance(loop, kind_of_loop) for loop in loops)
+            assert [store.get(session.robot, kind) for kind in kinds] == loops
+            assert store.progress() == (2 * gate.is_set(), 2)
+            gate.set()
+            wait(lambda: store.progress() == (2, 2))
     finally:
-        gate.touch()
+        gate.set()
         store.close()
     for name, state in states(session).items():
         assert np.abs(state - reference.runs[name].state).max() < 1e-9
         assert session.runs[name].diverged is None
+    assert bool(list(tmp_path.iterdir())) == (compiler is not None)
 
 
 @pytest.mark.parametrize("failure", ["exit 1", 'printf "\\377\\376"; exit 1', ""])
@@ -89,6 +99,13 @@ def test_missing_compiler_and_unwritable_cache_are_told_once(
     (tmp_path / "file").write_text("")
     compiler = script(tmp_path, "exit 0")
     _fails_once(Session(LoopStore(compiler, tmp_path / "file" / "cache")), caplog)
+
+
+def test_what_cannot_be_translated_is_told_once_and_the_lab_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setitem(sys.modules, "llvmlite.binding", None)
+    _fails_once(Session(LoopStore(None, tmp_path)), caplog)
 
 
 def _fails_once(session: Session, caplog: pytest.LogCaptureFixture) -> None:
