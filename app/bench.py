@@ -8,9 +8,10 @@ import os
 import platform
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import replace
+from functools import partial
 from io import StringIO
 from pathlib import Path
 
@@ -26,9 +27,11 @@ from models.catalogue import FIVE_BAR, FLEXIBLE, Entry
 from models.controllers import NAMES
 from models.curves import circle
 from models.flexible_robot import FlexibleParameters
+from models.kernel import Kernel
 from models.loops import InterpretedLoop, Loop, compile_loop, find_compiler
 from models.parameters import Parameters
 from models.simulation import FREE, first_state, kernel_of, kind_of, settings_vector
+from models.translated_loop import translate_loop
 
 TICKS = 160  # per timed call
 REFERENCE = Path(__file__).parents[1] / "tests" / "reference.py"
@@ -40,6 +43,7 @@ def bench(quick: bool = False) -> None:
     with tempfile.TemporaryDirectory() as folder:
         _loops(Path(folder), 20 if quick else 60)
         _modes(Path(folder), 10 if quick else 30)
+        _making(Path(folder), 3 if quick else 9)
     if not quick:
         _crowds([Crowd(1), Crowd(20), Crowd(20, workers=2)])
         _start_up()
@@ -57,9 +61,7 @@ def _loops(folder: Path, repeats: int) -> None:
 
 
 def _row(entry: Entry, controller: str, lean: bool, folder: Path, repeats: int) -> None:
-    parameters = entry.parameters()
-    loops, call = _prepared(entry, parameters, controller, lean, folder)
-    times = _interleaved(loops, call, repeats)
+    times = _per_tick(_prepared(entry, entry.parameters(), controller, lean, folder), repeats)
     for tier, value in times.items():
         ratio = f"{value / times['C by hand']:6.2f}" if "C by hand" in times else ""
         pushed = "no" if lean else "may be"
@@ -68,12 +70,15 @@ def _row(entry: Entry, controller: str, lean: bool, folder: Path, repeats: int) 
 
 def _prepared(
     entry: Entry, parameters: Parameters, controller: str, lean: bool, folder: Path
-) -> tuple[dict[str, Loop], tuple]:
-    """The loops to time, and what to call them with."""
+) -> dict[str, Callable[[], object]]:
+    """The calls to time, of `TICKS` ticks."""
     robot, curve = entry.make(parameters), circle(0.05)
     kernel = kernel_of(robot, kind_of(controller, parameters, curve, FREE if lean else None))
     start = robot.rest(robot.frame.lift(curve.at(np.array(0.0))))
-    loops: dict[str, Loop] = {"interpreted": InterpretedLoop(kernel)}
+    loops: dict[str, Loop] = {
+        "interpreted": InterpretedLoop(kernel),
+        "translated": translate_loop(kernel),
+    }
     compiler = find_compiler()
     if compiler is not None:
         loops["compiled"] = compile_loop(kernel, folder, compiler)
@@ -82,7 +87,8 @@ def _prepared(
             loops["C by hand"] = _reference().reference_loop(general, folder, compiler)
     settings = settings_vector(robot, kernel, parameters, curve, FREE)
     state = first_state(robot, kernel, curve, start)
-    return loops, (state, settings, curve.table(), TICKS)
+    call = state, settings, curve.table(), TICKS
+    return {name: partial(loop.run, *call) for name, loop in loops.items()}
 
 
 def _reference():
@@ -94,14 +100,19 @@ def _reference():
     return module
 
 
-def _interleaved(loops: dict[str, Loop], call: tuple, repeats: int) -> dict[str, float]:
-    """Median microseconds per tick of each, taken in turn so that drift hits all alike."""
-    times: dict[str, list[float]] = {name: [] for name in loops}
+def _per_tick(calls: Mapping[str, Callable[[], object]], repeats: int) -> dict[str, float]:
+    """Median microseconds."""
+    return {name: 1e6 / TICKS * took for name, took in _interleaved(calls, repeats).items()}
+
+
+def _interleaved(calls: Mapping[str, Callable[[], object]], repeats: int) -> dict[str, float]:
+    """Median seconds of each, taken in turn so that drift hits all alike."""
+    times: dict[str, list[float]] = {name: [] for name in calls}
     for _ in range(repeats):
-        for name, loop in loops.items():
+        for name, call in calls.items():
             begin = time.perf_counter()
-            loop.run(*call)
-            times[name].append((time.perf_counter() - begin) / TICKS * 1e6)
+            call()
+            times[name].append(time.perf_counter() - begin)
     return {name: float(np.median(values)) for name, values in times.items()}
 
 
@@ -109,11 +120,31 @@ def _modes(folder: Path, repeats: int) -> None:
     """Cost of the flexible follower against the number of modes."""
     for modes in range(1, 7):
         parameters = replace(FlexibleParameters(), modes=modes)
-        loops, call = _prepared(FLEXIBLE, parameters, "path_following", True, folder)
-        times = _interleaved(loops, call, repeats)
+        calls = _prepared(FLEXIBLE, parameters, "path_following", True, folder)
+        times = _per_tick(calls, repeats)
         shown = ", ".join(f"{tier} {value:.2f} µs" for tier, value in times.items())
         print(f"flexible, {modes} modes: {shown}")
     print()
+
+
+def _making(folder: Path, repeats: int) -> None:
+    """How long it takes to make machine code of a follower."""
+    compiler = find_compiler()
+    for entry in (FIVE_BAR, FLEXIBLE):
+        parameters = entry.parameters()
+        kind = kind_of("path_following", parameters, circle(0.05))
+        kernel = kernel_of(entry.make(parameters), kind)
+        calls: dict[str, Callable[[], object]] = {"translated": partial(translate_loop, kernel)}
+        if compiler is not None:
+            calls["compiled"] = partial(_compile_anew, kernel, folder, compiler)
+        times = _interleaved(calls, repeats)
+        shown = ", ".join(f"{tier} in {1e3 * took:.0f} ms" for tier, took in times.items())
+        print(f"{entry.name}, a loop is {shown}")
+    print()
+
+
+def _compile_anew(kernel: Kernel, folder: Path, compiler: str) -> Loop:
+    return compile_loop(kernel, Path(tempfile.mkdtemp(dir=folder)), compiler)
 
 
 @contextmanager
