@@ -1,6 +1,7 @@
 """Where sessions get their loops: interpreted at once, compiled as soon as that is ready.
 
-The system's C compiler makes the compiled ones, or LLVM in this process where there is none.
+The system's C compiler makes the compiled ones, or LLVM in this process where there is none that
+works.
 """
 
 from __future__ import annotations
@@ -90,6 +91,10 @@ class LoopStore:
             self._compiled[key] = loop
 
     def _made(self, kernel: Kernel) -> CompiledLoop:
-        if self._compiler is None:
-            return translate_loop(kernel)
-        return compile_loop(kernel, self._folder, self._compiler)
+        if self._compiler is not None:
+            try:
+                return compile_loop(kernel, self._folder, self._compiler)
+            except Exception as error:  # whatever it is, there is another way
+                log.warning("the C compiler fails, loops are translated instead: %s", error)
+                self._compiler = None
+        return translate_loop(kernel)
