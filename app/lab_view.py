@@ -32,7 +32,7 @@ WIDE_SHEET = """<style>@media (max-width:36em){
 .mantine-Paper-root[style*="bottom: 0"] [style*="width: 20em"]{width:100%!important}}</style>"""
 """On a telephone viser's sheet is no wider than on a desk, and leaves a gap beside it."""
 AT_EASE = STRIDES[0]  # the stride of a thread that has time
-SLOW = 3  # frames of display per update of traces, plots and readouts: 10 Hz
+SLOW, SLOWER = 6, 12  # frames per update of traces, plots and readouts: 10 Hz, or 5 of many labs
 SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
 
@@ -77,7 +77,8 @@ class LabView:
             self._exporter.submit(lambda: self._rebuild(session))
             return
         with self._channel.frame():
-            self._show(session, achieved, slow=count % (SLOW * max(stride, AT_EASE)) == 0)
+            every = SLOW if stride <= AT_EASE else SLOWER
+            self._show(session, achieved, slow=count % every == 0)
 
     def send(self) -> None:
         """See `app.loop.View`."""

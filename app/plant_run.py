@@ -38,7 +38,7 @@ class PlantRun:
         self.controller = controller
         self.diverged: Diverged | None = None
         self.distance = self.max_distance = 0.0
-        self._inputs: tuple[Parameters, Curve, Push] | None = None
+        self._inputs: tuple[object, object, object] = (None, None, None)
         self._configure(parameters, curve, Push())
         self._input = Input(self.kind, self.settings, frozen=False)
         self.reset(curve, start)
@@ -135,13 +135,13 @@ class PlantRun:
     def _configure(self, parameters: Parameters, curve: Curve, push: Push) -> None:
         """New settings vector only when an input changed."""
         before, self._inputs = self._inputs, (parameters, curve, push)
-        same = [a is b for a, b in zip(before or (), self._inputs, strict=False)]
-        if same == [True, True, True]:
+        same = before[0] is parameters and before[1] is curve
+        if same and before[2] is push:
             return
         self.kind: Kind = kind_of(self.controller, parameters, curve, push)
         kernel = kernel_of(self.robot, self.kind)
         self.log: Layout = kernel.log
-        if same[:2] == [True, True]:
+        if same:
             self.settings = pushed(kernel, self.settings, push)
         else:
             self.settings = settings_vector(self.robot, kernel, parameters, curve, push)

@@ -110,19 +110,21 @@ class CompiledLoop:
         """See `Loop.run`."""
         after = np.array(state, dtype=float)
         rows = np.empty((ticks, self._width))
-        settings, table = (np.ascontiguousarray(a, dtype=float) for a in (settings, table))
+        settings = np.ascontiguousarray(settings, dtype=float)
+        table = np.ascontiguousarray(table, dtype=float)
         run = self._short if ticks <= SHORT else self._long
         run(_address(settings), _address(table), _address(after), _address(rows), ticks)
         return after, rows
 
 
 _SIGNATURE = (None, *[ctypes.c_void_p] * 4, ctypes.c_longlong)
-_Begin = ctypes.c_char * 0
+_begin = (ctypes.c_char * 0).from_buffer
+_addressof = ctypes.addressof
 
 
 def _address(array: Array) -> int:
     """Of the numbers of a contiguous array; quicker than `array.ctypes.data`."""
-    return ctypes.addressof(_Begin.from_buffer(array.data))
+    return _addressof(_begin(array.data))
 
 
 def find_compiler() -> str | None:
