@@ -16,7 +16,7 @@ import weakref
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import cache, partial
 from http import HTTPStatus
 from pathlib import Path
 from typing import Any
@@ -34,32 +34,29 @@ from app.error_log import log_error, log_warning
 from app.listening import PortInUse, listen, listen_unix
 from app.origin import Door, is_loopback, well
 from app.widget_values import Refused, accepted_value
-from app.wire_form import fault
+from app.wire_form import WireForms
 
 __all__ = ["Limits", "PortInUse", "harden", "make_server"]
 
 _SUBPROTOCOL = f"viser-v{viser.__version__}"
-_FROM_BROWSER: dict[str, type[Any]] = {
-    form.__name__: form
-    for form in (
-        wire.ViewerCameraMessage,
-        wire.ScenePointerMessage,
-        wire.SceneNodeClickMessage,
-        wire.SceneNodeDragMessage,
-        wire.TransformControlsDragStartMessage,
-        wire.TransformControlsUpdateMessage,
-        wire.TransformControlsDragEndMessage,
-        wire.GuiUpdateMessage,
-        wire.GuiButtonHoldMessage,
-        wire.GuiFormDirtyMessage,
-        wire.GuiFormSubmitMessage,
-        wire.CommandTriggerMessage,
-        wire.GetRenderResponseMessage,
-        wire.LocalStorageGetItemResponseMessage,
-        wire.FileTransferStartUpload,
-        wire.FileTransferPart,
-    )
-}
+_FROM_BROWSER: tuple[type[Any], ...] = (
+    wire.ViewerCameraMessage,
+    wire.ScenePointerMessage,
+    wire.SceneNodeClickMessage,
+    wire.SceneNodeDragMessage,
+    wire.TransformControlsDragStartMessage,
+    wire.TransformControlsUpdateMessage,
+    wire.TransformControlsDragEndMessage,
+    wire.GuiUpdateMessage,
+    wire.GuiButtonHoldMessage,
+    wire.GuiFormDirtyMessage,
+    wire.GuiFormSubmitMessage,
+    wire.CommandTriggerMessage,
+    wire.GetRenderResponseMessage,
+    wire.LocalStorageGetItemResponseMessage,
+    wire.FileTransferStartUpload,
+    wire.FileTransferPart,
+)
 _SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
 
 
@@ -136,7 +133,7 @@ def make_server(
 def _cache_icons() -> None:
     """viser reads its archive of icons anew for every button, 25 ms each; once is enough."""
     if not hasattr(_icons.svg_from_icon, "cache_info"):
-        cached: Any = lru_cache(maxsize=None)(_icons.svg_from_icon)
+        cached: Any = cache(_icons.svg_from_icon)
         for module in (_icons, _gui_api, _gui_handles):
             setattr(module, "svg_from_icon", cached)  # noqa: B010, the module's own function
 
@@ -211,12 +208,17 @@ def _guarded_serve(listener: socket.socket, door: Door, limits: Limits) -> Itera
             library.serve = genuine
 
 
+@cache
+def _forms(max_magnitude: float) -> WireForms:
+    return WireForms(_FROM_BROWSER, max_magnitude)
+
+
 class _Connection(ServerConnection):
     """A websocket that yields only well-formed messages, and is closed when they are too many."""
 
     def __init__(self, *args: Any, limits: Limits, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self._limits = limits
+        self._limits, self._forms = limits, _forms(limits.max_magnitude)
         self._allowance = limits.message_burst
         self._counted_at = time.monotonic()
         self._closing: asyncio.Task[None] | None = None
@@ -245,7 +247,7 @@ class _Connection(ServerConnection):
     async def recv(self, decode: bool | None = None) -> Any:
         while True:
             raw = await super().recv(decode)
-            wrong = fault(raw, _FROM_BROWSER, self._limits.max_magnitude)
+            wrong = self._forms.fault(raw)
             if wrong is None:
                 return raw
             _warn_once(self, wrong)

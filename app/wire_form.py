@@ -3,77 +3,83 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
-from functools import cache
-from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+from collections.abc import Iterable
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import msgspec
 
 
-def fault(raw: bytes | str, forms: Mapping[str, type[Any]], max_magnitude: float) -> str | None:
-    """What is wrong with a message, in our own words only; None when nothing is.
+class WireForms:
+    """The messages that may come.
 
     Args:
-        raw: one websocket message; a good one is a msgpack map with its form's name as "type".
-        forms: the dataclasses that may come, by name.
+        forms: their dataclasses; a good message is a msgpack map with its form's name as "type".
         max_magnitude: of any number.
     """
-    if isinstance(raw, str):
-        return "a text frame"
-    try:
-        fields = msgspec.msgpack.decode(raw, type=dict[str, Any])
-    except (ValueError, RecursionError, MemoryError):
-        return "what is no message"
-    name = fields.pop("type", None)
-    form = forms.get(name) if isinstance(name, str) else None
-    if form is None:
-        return "a message that no browser may send"
-    hints, required = _declared(form)
-    if not required <= fields.keys() <= hints.keys():
-        return f"{name} with wrong fields"
-    for key, value in fields.items():
-        if not _conforms(value, hints[key], max_magnitude):
-            return f"{name} with a wrong {key}"
-    return None if _coherent(fields) else f"{name} that makes no sense"
 
+    def __init__(self, forms: Iterable[type[Any]], max_magnitude: float) -> None:
+        self._limit = msgspec.Meta(ge=-max_magnitude, le=max_magnitude)  # NaN is neither
+        whole = int(max_magnitude)
+        self._whole_limit = msgspec.Meta(ge=-whole, le=whole)
+        structs = [self._struct(form) for form in forms]
+        self._decoder = msgspec.msgpack.Decoder(Union[tuple(structs)])  # noqa: UP007
+        self._names = frozenset(struct.__name__ for struct in structs)
 
-@cache
-def _declared(form: type[Any]) -> tuple[dict[str, Any], frozenset[str]]:
-    hints, fields = get_type_hints(form), dataclasses.fields(form)
-    required = frozenset(field.name for field in fields if field.default is dataclasses.MISSING)
-    return {field.name: hints[field.name] for field in fields}, required
+    def fault(self, raw: bytes | str) -> str | None:
+        """What is wrong with a websocket message, in our own words only; None when nothing is."""
+        if isinstance(raw, str):
+            return "a text frame"
+        try:
+            message = self._decoder.decode(raw)
+        except msgspec.ValidationError:
+            name = _name(raw)
+            known = name in self._names
+            return f"{name} with wrong fields" if known else "a message that no browser may send"
+        except (ValueError, RecursionError, MemoryError):
+            return "what is no message"
+        return None if _is_coherent(message) else f"{type(message).__name__} that makes no sense"
 
-
-def _conforms(value: Any, hint: Any, max_magnitude: float) -> bool:
-    """Whether a decoded value is what the annotation says, its numbers finite (NaN is not <=)."""
-    if hint is float or hint is int:
-        is_number = isinstance(value, int if hint is int else (int, float))
-        return is_number and not isinstance(value, bool) and abs(value) <= max_magnitude
-    origin, kinds = _parts(hint)
-    if origin is Literal:
-        return isinstance(value, str) and value in kinds
-    if origin is Union:
-        return any(_conforms(value, kind, max_magnitude) for kind in kinds)
-    if origin is tuple:
-        if not isinstance(value, list):
-            return False
-        kinds = kinds[:1] * len(value) if kinds[-1] is ... else kinds
-        return len(value) == len(kinds) and all(
-            _conforms(item, kind, max_magnitude) for item, kind in zip(value, kinds, strict=True)
+    def _struct(self, form: type[Any]) -> type[msgspec.Struct]:
+        hints, fields = get_type_hints(form), list[Any]()
+        for field in dataclasses.fields(form):
+            known = field.default is not dataclasses.MISSING
+            kind = self._bounded(hints[field.name])
+            fields.append((field.name, kind, field.default) if known else (field.name, kind))
+        return msgspec.defstruct(
+            form.__name__, fields, tag=True, forbid_unknown_fields=True, kw_only=True
         )
-    return isinstance(value, origin or hint)
+
+    def _bounded(self, hint: Any) -> Any:
+        """A type whose numbers are finite and not too large."""
+        if hint is float:
+            return Annotated[float, self._limit]
+        if hint is int:
+            return Annotated[int, self._whole_limit]
+        origin, kinds = get_origin(hint), get_args(hint)
+        if origin is None or origin is Literal:
+            return hint
+        own = tuple(kind if kind is ... else self._bounded(kind) for kind in kinds)
+        return Union[own] if origin is Union else origin[own]  # noqa: UP007
 
 
-@cache
-def _parts(hint: Any) -> tuple[Any, tuple[Any, ...]]:
-    return get_origin(hint), get_args(hint)
+class _Named(msgspec.Struct):
+    type: str
 
 
-def _coherent(fields: Mapping[str, Any]) -> bool:
+def _name(raw: bytes) -> str:
+    """What a message says that it is."""
+    try:
+        return msgspec.msgpack.decode(raw, type=_Named).type
+    except ValueError:
+        return ""
+
+
+def _is_coherent(message: Any) -> bool:
     """What no annotation says: a quaternion has length 1, a click a ray, no index is negative."""
-    if "event_type" in fields:
-        is_click = fields["event_type"] == "click"
-        has_ray = None not in (fields["ray_origin"], fields["ray_direction"])
-        return len(fields["screen_pos"]) == (1 if is_click else 2) and has_ray >= is_click
-    norm_squared = sum(x * x for x in fields.get("wxyz", (1.0,)))
-    return abs(norm_squared - 1.0) < 0.01 and (fields.get("instance_index") or 0) >= 0
+    if event := getattr(message, "event_type", None):
+        is_click = event == "click"
+        has_ray = None not in (message.ray_origin, message.ray_direction)
+        return len(message.screen_pos) == (1 if is_click else 2) and has_ray >= is_click
+    norm_squared = sum(x * x for x in getattr(message, "wxyz", (1.0,)))
+    index = getattr(message, "instance_index", None)
+    return abs(norm_squared - 1.0) < 0.01 and (index or 0) >= 0
