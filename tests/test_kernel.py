@@ -63,6 +63,24 @@ def test_along_the_path_the_speed_decays_with_k5_whatever_happens_across(rig: Ri
     assert log["theta_rate"][:, 0] == pytest.approx(expected, abs=2e-3)
 
 
+@BOTH
+@pytest.mark.parametrize("closed", [True, False])
+def test_logged_speed_is_that_of_the_closest_point(rig: Rig, kind: Kind, closed: bool) -> None:
+    kind = replace(kind, closed=closed)
+    bent = chebyshev_curve(np.array([[0.0, 0.0], [0.05, 0.0], [0.0, 0.02], [0.0, 0.01]]))
+    curve = ellipse((0.07, 0.03), (0.0, 0.01)) if closed else bent
+    log = rig.run(kind, curve, rig.on_path(kind, curve, -1.0, 0.5), 400)
+    theta, rate = log["theta"][:, 0], log["theta_rate"][:, 0]
+    expected = rate * np.linalg.norm(curve.at(theta, 1), axis=1)
+    grid, step = np.linspace(-3.1, 3.1, 2001, retstep=True)
+    lengths = np.linalg.norm(curve.at(grid, 1), axis=1)
+    bend = np.abs(np.diff(lengths, 2)).max() / step**2
+    half = np.abs(rate) * 0.5e-3  # a tick: so far Taylor's series is used
+    neglected = bend / 2 * half**2 * np.abs(rate)
+    assert np.ptp(expected) > 0.02
+    assert np.all(np.abs(log["speed"][:, 0] - expected) <= 1.1 * neglected + 1e-12)
+
+
 def test_position_task_settles_on_its_target_by_the_shorter_way(rig: Rig) -> None:
     dt = 1e-5
     start = rig.on_path(FOLLOWING, CIRCLE, -3.0, 0.0)
