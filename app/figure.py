@@ -124,9 +124,8 @@ def _geometry(robot: Robot, closed: bool) -> tuple[ca.Function, Counts]:
         y, force, aim = seen[:p], seen[p : 2 * p], seen[2 * p]
         bars, joints = robot.skeleton(q, exaggeration)
         sigma = LocalCurve.from_values(aim, closed, table @ basis(aim, closed)).sigma
-        end, pull = placed(y), placed(force) - placed(ca.SX(p, 1))
-        tip = ca.if_else(exaggeration == 1, end, bars[:, -1])
-        return [bars, joints, robot.marks(q), on_path(sigma), tip, end, pull]
+        pull = placed(force) - placed(ca.SX(p, 1))
+        return [bars, joints, robot.marks(q), on_path(sigma), bars[:, -1], placed(y), pull]
 
     each = [drawn(*columns) for columns in zip(ca.horzsplit(q), ca.horzsplit(seen), strict=True)]
     bars, joints, marks = (part.shape[1] for part in each[0][:3])

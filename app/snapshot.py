@@ -74,7 +74,7 @@ class RobotView:
 
     @property
     def tip(self) -> np.ndarray:
-        """The end-point as drawn, a deflection perhaps exaggerated, shape (3,)."""
+        """Where the last bar ends, a deflection perhaps exaggerated, shape (3,)."""
         return self.points[-3]
 
     @property

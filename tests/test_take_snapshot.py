@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from app import commands as c
 from app.snapshot import Snapshot
 from app.take_snapshot import take_snapshot
-from tests.lab import do, new_session, run
+from models.catalogue import ROBOTS
+from tests.drawing import drawn as drawn_skeleton
+from tests.lab import FOLLOWER, do, new_session, run
 
 
 def away(snapshot: Snapshot, name: str = "path_following") -> float:
@@ -52,3 +55,31 @@ def test_an_instant_is_the_same_object_until_something_changes() -> None:
     np.testing.assert_allclose(again.sample, session.sample())
     do(session, c.Reset())
     np.testing.assert_allclose(session.instant().sample, session.sample())
+
+
+@pytest.mark.parametrize("path", ["circle", "clover", "segment"])
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_points_are_drawn_where_robot_and_curve_have_them(robot: str, path: str) -> None:
+    session = new_session()
+    do(session, c.ChooseRobot(robot), c.ChoosePath(path))
+    run(session, 2.0)
+    own, curve = session.robot, session.editor.curve
+    tip = own.place(session.runs[FOLLOWER].shown()["y"])
+    do(session, c.Grab(FOLLOWER, tip + [0.02, 0.0, 0.01]))
+    run(session, 0.1)
+    for name, view in take_snapshot(session, 1.0).robots.items():
+        row = {field: value.copy() for field, value in session.runs[name].shown().items()}
+        aim = row["theta" if name == FOLLOWER else "theta_ref"]
+        place, origin = own.place, own.place(np.zeros(own.system.p))
+        for drawn, meant in {
+            "end": place(row["y"]),
+            "marker": place(own.frame.lift(curve.at(aim)[0])),
+            "force": place(row["force"]) - origin,
+        }.items():
+            np.testing.assert_allclose(getattr(view, drawn), meant, rtol=1e-6, atol=1e-12)
+        assert np.linalg.norm(view.force) > 0.01
+        bars, joints = drawn_skeleton(own.skeleton, session.runs[name].fields()["q"], 1.0)
+        np.testing.assert_allclose(view.bars, bars, atol=1e-12)
+        np.testing.assert_allclose(view.joints, joints, atol=1e-12)
+        np.testing.assert_array_equal(view.tip, view.bars[-1, 1])  # and not where it was a tick ago
+        assert np.linalg.norm(view.tip - view.end) < 2e-3
