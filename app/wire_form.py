@@ -8,6 +8,9 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 
 import msgspec
 
+UNREADABLE = (ValueError, RecursionError, MemoryError)
+"""What msgspec raises of bytes that nobody sends in earnest, deeply nested ones for instance."""
+
 
 class WireForms:
     """The messages that may come.
@@ -35,7 +38,7 @@ class WireForms:
             name = _name(raw)
             known = name in self._names
             return f"{name} with wrong fields" if known else "a message that no browser may send"
-        except (ValueError, RecursionError, MemoryError):
+        except UNREADABLE:
             return "what is no message"
         return None if _is_coherent(message) else f"{type(message).__name__} that makes no sense"
 
@@ -70,7 +73,7 @@ def _name(raw: bytes) -> str:
     """What a message says that it is."""
     try:
         return msgspec.msgpack.decode(raw, type=_Named).type
-    except ValueError:
+    except UNREADABLE:
         return ""
 
 

@@ -489,6 +489,8 @@ def test_what_is_no_message_is_skipped(lab: Lab, attacker: Browser, bystander: B
         b"\xc1",
         b"\xdd\xff\xff\xff\xff",
         b"\x81\xa1a" + b"\x91" * 100_000,
+        b"\x82\xa4type\xadNoSuchMessage\xa1a" + b"\x91" * 100_000,
+        b"\x82\xa4type\xb0GuiUpdateMessage\xa7updates" + b"\x91" * 100_000,
         b"\x81\xa4type\xa1\xff",
         packed(7),
         packed({}),
