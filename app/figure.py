@@ -15,7 +15,7 @@ import numpy as np
 
 from app.history import Instant
 from app.samples import sample_layout
-from app.snapshot import Counts, FollowerName, RobotView, TrackerName
+from app.snapshot import END, Counts, FollowerName, RobotView, TrackerName
 from models.buffered import Buffered
 from models.controllers import NAMES
 from models.curves import TABLE_SHAPE, Curve
@@ -25,7 +25,6 @@ from models.system import Array
 
 AIMS = {TrackerName: "theta_ref", FollowerName: "theta"}
 """Where on the path each controller aims."""
-END = -2  # among a robot's points: the end-point as it is
 UNTRACED = np.zeros((0, len(NAMES), 3))
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 FollowerName = "path_following"
 TrackerName = "trajectory_tracking"
+MARKER, TIP, END, FORCE = -4, -3, -2, -1  # where a robot's points have these
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,22 +71,22 @@ class RobotView:
     def marker(self) -> np.ndarray:
         """What the controller aims at: the tracker's moving reference point, the follower's
         closest point, shape (3,)."""
-        return self.points[-4]
+        return self.points[MARKER]
 
     @property
     def tip(self) -> np.ndarray:
         """Where the last bar ends, a deflection perhaps exaggerated, shape (3,)."""
-        return self.points[-3]
+        return self.points[TIP]
 
     @property
     def end(self) -> np.ndarray:
         """The end-point as it is, shape (3,)."""
-        return self.points[-2]
+        return self.points[END]
 
     @property
     def force(self) -> np.ndarray:
         """External force on the end-point, shape (3,), [N]."""
-        return self.points[-1]
+        return self.points[FORCE]
 
 
 @dataclass(frozen=True, slots=True)

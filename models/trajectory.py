@@ -94,6 +94,7 @@ def record(
         times: of the rows, [s]; None: from 0 on.
     """
     rows = np.concatenate([rows for rows, _, _ in segments])
+    fields = log.unpack(rows)
     distance = [
         path_distance(robot.frame, curve, log.unpack(part)["y"]) for part, curve, _ in segments
     ]
@@ -101,9 +102,9 @@ def record(
     return Trajectory(
         controller=controller,
         t=np.arange(len(rows), dtype=float) * dt if times is None else times,
-        fields=log.unpack(rows),
+        fields=fields,
         distance=np.concatenate(distance),
-        speed=log.unpack(rows)["speed"][:, 0],
+        speed=fields["speed"][:, 0],
         held=np.concatenate(held),
     )
 
