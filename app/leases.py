@@ -14,7 +14,7 @@ from typing import Any
 import sqlalchemy as sa
 from sqlalchemy import exc
 
-from app.database import NotKept, Records, lease_owner
+from app.database import NotKept, Records
 from app.rounds import Rounds
 from app.tables import leases
 
@@ -99,16 +99,17 @@ class Leases:
         Raises:
             NotKept: the database is away; others cannot take anything either.
         """
-        lost: list[str] = []
+        codes, mine = list(codes), {"owner": self._owner, "expires": self._clock() + TERM}
+        ours = leases.c.code.in_(codes) & (leases.c.owner == self._owner)
+        known = sa.select(leases.c.code, leases.c.owner).where(leases.c.code.in_(codes))
         with self._records.transaction() as connection:
             old = leases.c.expires < self._clock() - FORGOTTEN
             connection.execute(sa.delete(leases).where(old))
-            for code in codes:
-                if lease_owner(connection, code) not in (None, self._owner):
-                    lost.append(code)
-                else:
-                    self._claim(connection, code)
-        return lost
+            owners = {row.code: row.owner for row in connection.execute(known.with_for_update())}
+            connection.execute(sa.update(leases).where(ours).values(mine))
+            if new := [{"code": code, **mine} for code in codes if code not in owners]:
+                connection.execute(sa.insert(leases), new)
+        return [code for code in codes if owners.get(code, self._owner) != self._owner]
 
     def keep(self, held: Callable[[], list[str]], lost: Callable[[str], None]) -> None:
         """Renew in a thread of its own until `close`.

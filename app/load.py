@@ -122,7 +122,7 @@ class Browser:
             await asyncio.sleep(EVERY)
         held = False
         while (now := time.monotonic()) < until:
-            phase = (now + 0.37 * self.number) % CYCLE
+            phase, rest = (now + 0.37 * self.number) % CYCLE, EVERY
             pulls = phase < 1.0
             if pulls or held:
                 step = ("update" if held else "start") if pulls else "end"
@@ -131,7 +131,9 @@ class Browser:
             elif 2.0 < phase < 3.0:
                 value = {"value": 400.0 + 10 * round(10 * (phase - 2.0))}
                 await socket.send(packed("GuiUpdateMessage", uuid=self._slider, updates=value))
-            await asyncio.sleep(EVERY)
+            else:
+                rest = max(rest, (2.0 if phase < 2.0 else CYCLE) - phase)
+            await asyncio.sleep(rest)
 
     def _pull(self, step: str, phase: float) -> bytes:
         there = [-0.06 + 0.05 * math.cos(6 * phase), 0.0, 0.2 + 0.05 * math.sin(6 * phase)]

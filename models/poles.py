@@ -7,6 +7,7 @@ control held over the sampling interval; so its poles follow from the gains and 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,15 +51,18 @@ def channels(parameters: Parameters) -> tuple[Channel, Channel]:
     interval = 1 / parameters.control_rate
     ahead = time_step(parameters) / 2
     k1, k2, k3 = parameters.K1, parameters.K2, parameters.K3
-    across = _sampled(interval, ahead, (k1, k2, k3), "xvia" if k3 else "xva")
+    across = (k1, k2, k3), "xvia" if k3 else "xva"
+    along = (0.0, parameters.K5, 0.0), "va"
     if parameters.task == "position":
-        along = _sampled(interval, ahead, (parameters.K4, parameters.K5, 0.0), "xva")
-    else:
-        along = _sampled(interval, ahead, (0.0, parameters.K5, 0.0), "va")
-    return _channel("across", across, interval), _channel("along", along, interval)
+        along = (parameters.K4, parameters.K5, 0.0), "xva"
+    return _channel("across", interval, ahead, *across), _channel("along", interval, ahead, *along)
 
 
-def _channel(name: str, roots: Complex, interval: float) -> Channel:
+@lru_cache(maxsize=256)
+def _channel(
+    name: str, interval: float, ahead: float, gains: tuple[float, float, float], kept: str
+) -> Channel:
+    roots = _sampled(interval, ahead, gains, kept)
     stable = bool(np.all(np.abs(roots) < 1 - 1e-9))
     telling = roots[np.argsort(np.abs(roots))][1:]  # the first forgets the held acceleration
     poles: Complex = np.asarray(np.log(telling + 1e-300) / interval, dtype=np.complex128)
