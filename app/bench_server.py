@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from http.client import HTTPConnection, HTTPException
 from typing import IO
@@ -41,11 +41,16 @@ class Server:
     said: IO[bytes]
 
     def vitals(self, seconds: float = WINDOW) -> dict[int, Vitals]:
-        """How each worker fares, by process; any of them answers, so it is asked until all have.
+        """How each worker fares, by process. Whoever has fewest connections answers, so some are
+        held until all have.
 
         Raises:
             ValueError: they do not.
         """
+        with ExitStack() as held:
+            return self._vitals(seconds, held)
+
+    def _vitals(self, seconds: float, held: ExitStack) -> dict[int, Vitals]:
         told: dict[int, Vitals] = {}
         until, trouble = time.monotonic() + PATIENCE, ""
         while len(told) < self.workers:
@@ -57,6 +62,8 @@ class Server:
                 raise ValueError(f"{len(told)} of {self.workers} workers say how they are{trouble}")
             try:
                 vitals = self._ask(seconds)
+                if vitals.pid in told:
+                    held.enter_context(socket.create_connection(("127.0.0.1", self.port)))
                 told[vitals.pid] = vitals
             except (OSError, HTTPException, msgspec.DecodeError) as error:
                 trouble = f": {error}"

@@ -62,6 +62,7 @@ class Serve:
         if self.workers != 1:
             self._supervise()
             return
+        from app.handing import handed
         from app.server import serve
 
         worker = is_worker()
@@ -79,6 +80,7 @@ class Serve:
             allowed_origins=self.origin,
             unix_socket=self.socket,
             share_port=worker,
+            listener=handed(self.host, self.port),
         )
 
     def _supervise(self) -> None:

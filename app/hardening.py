@@ -100,6 +100,7 @@ def make_server(
     allowed_origins: tuple[str, ...] = (),
     share_port: bool = False,
     unix_socket: Path | None = None,
+    listener: socket.socket | None = None,
     health: Callable[[str], str] = well,
     verbose: bool = False,
 ) -> viser.ViserServer:
@@ -108,10 +109,10 @@ def make_server(
     Args:
         allowed_origins: pages of other sites that may connect, "https://lab.example:8443". The
             server's own page always may, and so may a client that is no browser.
-        share_port: other processes of this user may listen on the same port; each new connection
-            goes to one of them. Only Linux spreads them.
+        share_port: other processes of this user may hold the same port, or listen on it.
         unix_socket: listen on this file alone, for a proxy of this user's that puts the page
             into a folder of its own.
+        listener: listen with this instead.
         health: see `Door`.
 
     Raises:
@@ -119,12 +120,13 @@ def make_server(
         OSError: the address cannot be bound.
     """
     _cache_icons()
-    listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
+    if listener is None:
+        listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
+    port = 0 if unix_socket else listener.getsockname()[1]
     local_only = is_loopback(host) and not unix_socket
     door = Door(allowed_origins, local_only=local_only, health=health)
-    with _guarded_serve(listener, door, limits):
-        bound_port = 0 if unix_socket else listener.getsockname()[1]
-        server = viser.ViserServer(host=host, port=bound_port, label=label, verbose=verbose)
+    with _guarded_serve(listener, door, limits, in_folder=unix_socket is not None):
+        server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     harden(server, limits=limits)
     door.open = True
     return server
@@ -164,12 +166,13 @@ def _to_page(connection: ServerConnection, request: Request) -> Response:
     return response
 
 
-_INTERNET = (socket.AF_INET, socket.AF_INET6)
 _patching = threading.Lock()
 
 
 @contextmanager
-def _guarded_serve(listener: socket.socket, door: Door, limits: Limits) -> Iterator[None]:
+def _guarded_serve(
+    listener: socket.socket, door: Door, limits: Limits, in_folder: bool
+) -> Iterator[None]:
     """Lead the one call of websockets' `serve`, which viser makes on construction, to our gates."""
     library: Any = websockets.asyncio.server
     genuine = library.serve
@@ -183,7 +186,7 @@ def _guarded_serve(listener: socket.socket, door: Door, limits: Limits) -> Itera
                 return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
             if refusal := door.refusal(request):
                 return connection.respond(*refusal)
-            if listener.family not in _INTERNET and request.path.partition("?")[0] == "/":
+            if in_folder and request.path.partition("?")[0] == "/":
                 return _to_page(connection, request)
             return process_request(connection, request)
 

@@ -1,7 +1,7 @@
 """Several lab processes behind one address: starts them, restarts them, stops them.
 
-On Linux they listen on the same port, and the kernel gives each new connection to one of them:
-the page is the same from all, and a lab comes from the database that they share.
+Each connection goes to one of them: the page is the same from all, and a lab comes from the
+database that they share.
 """
 
 from __future__ import annotations
@@ -13,13 +13,14 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
-from app.listening import reserve
+from app.handing import CAN_HAND, CHANNEL, Reception
+from app.listening import listen, reserve
 
 log = logging.getLogger(__name__)
 
@@ -71,12 +72,20 @@ def supervise(options: Options, secrets: Mapping[str, str] | None = None) -> Non
         OSError: a port cannot be had.
     """
     logging.basicConfig(level=options.log_level.upper(), format="%(levelname)s %(message)s")
-    apart = options.successive_ports or sys.platform != "linux"
+    apart = options.successive_ports or not CAN_HAND
     places = options.workers if apart else 1
-    held = [reserve(options.host, options.port + i if options.port else 0) for i in range(places)]
+    hold = reserve if apart else listen
+    held = [hold(options.host, options.port + i if options.port else 0) for i in range(places)]
     ports = [place.getsockname()[1] for place in held]
+    reception = None if apart else Reception(held[0])
     workers = [
-        Worker(number + 1, _command(options, ports[number % places]), dict(secrets or {}), cores)
+        Worker(
+            number + 1,
+            _command(options, ports[number % places]),
+            dict(secrets or {}),
+            cores,
+            reception,
+        )
         for number, cores in enumerate(shares(_cores(), options.workers))
     ]
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -84,10 +93,12 @@ def supervise(options: Options, secrets: Mapping[str, str] | None = None) -> Non
         for worker in workers:
             worker.start()
         _announce(options.host, ports, len(workers))
-        _watch(workers)
+        _watch(workers, time.sleep if reception is None else reception.attend)
     except KeyboardInterrupt:
         log.info("stopping")
     finally:
+        if reception is not None:
+            reception.close()
         _stop(workers)
         for place in held:
             place.close()
@@ -100,12 +111,14 @@ class Worker:
     Attributes:
         secrets: for its environment.
         cores: where it runs; anywhere, if it is empty.
+        reception: hands connections to it, unless it has a port of its own.
     """
 
     number: int
     command: list[str]
     secrets: dict[str, str] = field(default_factory=dict, repr=False)
     cores: frozenset[int] = frozenset()
+    reception: Reception | None = field(default=None, repr=False)
     process: subprocess.Popen[bytes] | None = None
     died: float | None = None
     _reader: threading.Thread | None = field(default=None, repr=False)
@@ -113,14 +126,21 @@ class Worker:
     def start(self) -> None:
         """Start, or start again; in a session of its own, so that Ctrl-C is ours."""
         pipe = subprocess.PIPE
+        environment = {**os.environ, MARK: "1", **self.secrets}
+        channel = None if self.reception is None else self.reception.join()
+        if channel is not None:
+            environment[CHANNEL] = str(channel.fileno())
         self.process = subprocess.Popen(
             self.command,
-            env={**os.environ, MARK: "1", **self.secrets},
+            env=environment,
             stdin=pipe,
             stdout=pipe,
             stderr=subprocess.STDOUT,
             start_new_session=True,
+            pass_fds=() if channel is None else [channel.fileno()],
         )
+        if channel is not None:
+            channel.close()
         self.died = None
         if self.cores:
             with suppress(OSError):  # it has ended already, or those are no longer ours
@@ -214,11 +234,11 @@ def _announce(host: str, ports: list[int], workers: int) -> None:
     )
 
 
-def _watch(workers: list[Worker]) -> None:
+def _watch(workers: list[Worker], wait: Callable[[float], None]) -> None:
     while True:
         for worker in workers:
             worker.look()
-        time.sleep(0.1)
+        wait(0.1)
 
 
 def _stop(workers: list[Worker]) -> None:
