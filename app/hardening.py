@@ -30,6 +30,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode, Frame, Opcode
 from websockets.http11 import Request, Response
 
+from app.compression import share_compressors
 from app.error_log import log_error, log_warning
 from app.listening import PortInUse, listen, listen_unix
 from app.origin import Door, is_loopback, well
@@ -120,6 +121,7 @@ def make_server(
         OSError: the address cannot be bound.
     """
     _cache_icons()
+    share_compressors()
     if listener is None:
         listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
     port = 0 if unix_socket else listener.getsockname()[1]

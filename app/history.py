@@ -17,8 +17,11 @@ from models.loop_kind import Kind
 
 SECONDS = 60.0
 LONGEST = 17  # ticks in a stretch at most
+RECENT = 12.0  # [s], at the full rate; what is older is thinned out
+COARSE = 4 * LONGEST  # ticks in an older stretch at most
 MOST = 7200
 FIRST = 256  # stretches that there is room for at first
+FULL = 0.9  # of the room, when more is needed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,7 +128,7 @@ class History:
     """Stretches of the last minute, oldest first, as columns: all of one kind in one array.
 
     The columns' rows from `_begin` to `_end` are in use; when they reach the columns' end they
-    move to the front.
+    move to the front, and older ones are joined, four frames of the lab to one.
     """
 
     def __init__(self) -> None:
@@ -160,7 +163,7 @@ class History:
         columns["most"][row] = instant.max_distances
         columns["sample"][row] = instant.sample
         self._end += 1
-        while columns["time"][self._begin] < instant.time - SECONDS or len(self) > MOST:
+        while len(self) > MOST or self._ends(self._begin) < instant.time - SECONDS:
             self._begin += 1
 
     def all(self) -> list[Stretch]:
@@ -216,10 +219,11 @@ class History:
         return Stretch(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())
 
     def _make_room(self, instant: Instant) -> None:
-        """Columns with free rows at their end: larger ones, unless enough is free at the front."""
-        size, used = len(self._columns.get("time", ())), slice(self._begin, self._end)
-        old, grows = self._columns, self._begin <= size // 10
-        if grows:
+        """Columns with free rows at their end: thinned out, and larger if that is not enough."""
+        kept, old, size = self._kept(), self._columns, len(self._columns.get("time", ()))
+        if len(kept):
+            old["ticks"][kept] = np.add.reduceat(old["ticks"][: self._end], kept)
+        if len(kept) >= FULL * size:
             rows, robots = max(2 * size, FIRST), len(instant.sample)
             self._columns = {
                 "time": np.empty(rows),
@@ -229,10 +233,31 @@ class History:
                 "most": np.empty((rows, robots)),
                 "sample": np.empty((rows, *instant.sample.shape), dtype=np.float32),
             }
-        count = self._end - self._begin
         for name, column in old.items():
-            self._columns[name][:count] = column[used]
-        if not grows:
-            self._columns["inputs"][count:] = None  # let go of what nobody needs
-        self._before += self._begin
-        self._begin, self._end = 0, count
+            self._columns[name][: len(kept)] = column[kept]
+        self._columns["inputs"][len(kept) :] = None  # let go of what nobody needs
+        self._before += self._end - len(kept)
+        self._begin, self._end = 0, len(kept)
+
+    def _kept(self) -> np.ndarray:
+        """Rows that stay: all recent ones, and older ones unless they join the one before."""
+        if not len(self):
+            return np.zeros(0, dtype=int)
+        inside, inputs = slice(self._begin, self._end), self._columns["inputs"]
+        times, ticks = (self._columns[name][inside].tolist() for name in ("time", "ticks"))
+        kept, joined = list[int](), 0
+        for row, (time, more) in enumerate(zip(times, ticks, strict=True), self._begin):
+            joins = kept and time < times[-1] - RECENT and inputs[row] is inputs[kept[-1]]
+            if not joins or joined + more > COARSE or self._jumps(row):
+                kept.append(row)
+                joined = 0
+            joined += more
+        return np.array(kept)
+
+    def _jumps(self, row: int) -> bool:
+        """Whether a row does not begin where the one before ends."""
+        return abs(self._columns["time"][row] - self._ends(row - 1)) > 1e-6
+
+    def _ends(self, row: int) -> float:
+        columns = self._columns
+        return columns["time"][row] + columns["ticks"][row] * columns["inputs"][row].dt

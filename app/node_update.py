@@ -20,12 +20,13 @@ from weakref import WeakKeyDictionary
 import msgspec
 import numpy as np
 import viser
-import zstandard
 from viser import _messages
 from viser.infra import Message, _infra
 from viser.infra._messages import wire_field_names
 from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
+
+from app.compression import compress
 
 UPDATES = {
     kind: wire_field_names(kind)
@@ -70,7 +71,6 @@ class Channel:
         self._loop = connection._state.event_loop
         self._buffer = connection._state.message_buffer
         self._recorders = connection._record_handles
-        self._compressor = zstandard.ZstdCompressor(level=1)
         self._collector: int | None = None
         self.frames = 0
         self._messages: list[Message] = []
@@ -111,7 +111,7 @@ class Channel:
 
     def _packed(self) -> tuple[list[Message], bytes]:
         messages, self._messages = self._messages, []
-        return messages, packed(messages, self._compressor)
+        return messages, packed(messages)
 
     def write(self, messages: list[Message], data: bytes) -> None:
         """On the event loop."""
@@ -166,7 +166,7 @@ def _told(value: Any, arrays: list[memoryview]) -> Any:
     return {"__binary_index": len(arrays) - 1, "dtype": value.dtype.str}
 
 
-def packed(messages: list[Message], compressor: zstandard.ZstdCompressor) -> bytes:
+def packed(messages: list[Message]) -> bytes:
     """Messages as viser sends them: lengths, compressed msgpack, then the arrays as they are."""
     arrays: list[memoryview] = []
     window = {
@@ -175,7 +175,7 @@ def packed(messages: list[Message], compressor: zstandard.ZstdCompressor) -> byt
         "binaryBufferLengths": [array.nbytes for array in arrays],
     }
     inner = msgspec.msgpack.encode(window)
-    outer = compressor.compress(inner)
+    outer = compress(inner)
     lengths = (len(inner).to_bytes(8, "little"), len(outer).to_bytes(8, "little"))
     parts: list[bytes | memoryview] = [*lengths, outer]
     _infra._append_aligned_buffers(parts, arrays, 16 + len(outer))

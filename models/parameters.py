@@ -275,7 +275,7 @@ def checked(spec: Spec, name: str, value: Any) -> Any:
 
 
 def changed(parameters: Parameters, name: str, value: Any) -> Parameters:
-    """The same with one field set.
+    """The same with one field set; the same object if it has that value.
 
     Raises:
         ValueError: unknown name or bad value.
@@ -283,4 +283,7 @@ def changed(parameters: Parameters, name: str, value: Any) -> Parameters:
     known = specs(parameters)
     if name not in known:
         raise unknown_name(name, list(known))
-    return dataclasses.replace(parameters, **{name: checked(known[name], name, value)})
+    value = checked(known[name], name, value)
+    if getattr(parameters, name) == value:
+        return parameters
+    return dataclasses.replace(parameters, **{name: value})

@@ -26,6 +26,7 @@ from websockets.frames import Frame, Opcode
 from websockets.typing import Origin, Subprotocol
 
 from app import error_log
+from app.compression import LEVEL, compress
 from app.hardening import Limits, PortInUse, make_server
 from tests import waiting
 
@@ -773,3 +774,18 @@ def test_viser_calls_what_hardening_replaces() -> None:
     assert "self._handle_incoming_message(client_id, message)" in worker
     assert "client_connection._handle_incoming_message(client_id, message)" in worker
     assert "await websocket.recv()" in inspect.getsource(_infra._message_consumer)
+    producer = inspect.getsource(_infra._message_producer)
+    assert f"zstandard.ZstdCompressor(level={LEVEL})" in producer and "zstd.compress(" in producer
+
+
+@pytest.mark.usefixtures("lab")
+def test_the_connections_of_a_thread_share_a_compressor() -> None:
+    library: Any = _infra
+    make = library.zstandard.ZstdCompressor
+    one, others = make(level=LEVEL), []
+    asking = threading.Thread(target=lambda: others.append(make(level=LEVEL)))
+    asking.start()
+    asking.join()
+    assert make(level=LEVEL) is one and others[0] is not one
+    assert make(level=12, threads=-1) is not make(level=12, threads=-1)  # a recording's
+    assert zstandard.decompress(compress(b"as it was" * 9)) == b"as it was" * 9

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tracemalloc
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,17 @@ from hypothesis import strategies as st
 from lab import FOLLOWER, FRAME, TRACKER, do, new_session, run, states, y
 
 from app import commands as c
-from app.history import LONGEST, MOST, SECONDS, History, Input, Inputs, Instant
+from app.history import (
+    COARSE,
+    LONGEST,
+    MOST,
+    RECENT,
+    SECONDS,
+    History,
+    Input,
+    Inputs,
+    Instant,
+)
 from app.session import Session
 from app.take_snapshot import take_snapshot
 from models.controllers import NAMES
@@ -105,7 +116,7 @@ def test_short_stretches_do_not_pile_up() -> None:
 
 
 def test_a_minute_takes_little_memory() -> None:
-    """At 60 Hz, both robots, after a long time: less than 2.5 MB."""
+    """At 60 Hz, both robots, after a long time: less than 1 MB."""
     session = new_session(0.5)
     session.simulate(17)
     names, one = list(session.runs), session.history.at(session.time)
@@ -115,11 +126,31 @@ def test_a_minute_takes_little_memory() -> None:
     for k in range(8000):
         drives = {name: session.runs[name].input() for name in names}
         states = [one.drives[name].state for name in names]
-        instant = Instant(k / 60, states, [0.0, 0.0], one.sample)
+        instant = Instant(k * 0.017, states, [0.0, 0.0], one.sample)
         history.append(instant, 17, Inputs(one.curve, one.dt, drives))
     used, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert history.span() > 59 and used < 2.5e6 and peak < 4e6
+    assert history.span() > 59 and used < 1e6 and peak < 2e6
+
+
+def test_older_stretches_are_fewer_and_as_exact() -> None:
+    """Each goes on where the one before ends, to the last bit; a change of input parts them."""
+    session = new_session()
+    for k in range(2400):
+        if k % 37 == 0:
+            do(session, c.SetParameter("K2", 20.0 + k % 5))
+        session.simulate(17)
+    stretches, name = session.history.all(), FOLLOWER
+    assert sum(s.ticks for s in stretches) == 2400 * 17
+    recent = [s.ticks for s in stretches if s.time > session.time - RECENT]
+    assert set(recent) == {17} and max(s.ticks for s in stretches) == COARSE
+    assert len(stretches) < 2400 * 0.8
+    for stretch, later in pairwise(stretches):
+        drive, ends = stretch.drives[name], stretch.time + stretch.ticks * stretch.dt
+        assert later.time == pytest.approx(ends, abs=1e-9)
+        loop = session._store.get(session.robot, drive.kind)
+        state, _ = loop.run(drive.state, drive.settings, stretch.curve.table(), stretch.ticks)
+        assert np.array_equal(state, later.drives[name].state)
 
 
 def test_what_comes_after_is_forgotten() -> None:

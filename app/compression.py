@@ -1,0 +1,39 @@
+"""What goes to browsers is compressed by one compressor for each thread: it takes 0.3 MB."""
+
+from __future__ import annotations
+
+import threading
+from types import SimpleNamespace
+from typing import Any
+
+import zstandard
+from viser.infra import _infra
+
+LEVEL = 1  # viser's
+
+
+class _Own(threading.local):
+    """Each thread's own."""
+
+    def __init__(self) -> None:
+        self.compressor = zstandard.ZstdCompressor(level=LEVEL)
+
+
+_own = _Own()
+
+
+def compress(data: bytes) -> bytes:
+    """As viser does it."""
+    return _own.compressor.compress(data)
+
+
+def share_compressors() -> None:
+    """Let viser's connections, which all live in one thread, do with one; each makes its own."""
+    library: Any = _infra
+    library.zstandard = SimpleNamespace(**{**vars(zstandard), "ZstdCompressor": _compressor})
+
+
+def _compressor(level: int = 3, **options: Any) -> zstandard.ZstdCompressor:
+    if level == LEVEL and not options:
+        return _own.compressor
+    return zstandard.ZstdCompressor(level=level, **options)
