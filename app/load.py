@@ -1,13 +1,14 @@
 """Simulated browsers: they read everything that a lab sends, pull at it and move its sliders.
 
 `python -m app.load PORT CLIENTS SECONDS` writes what they see, a line of JSON at a time; see
-`crowd`.
+`crowd`. Elsewhere they would take no time from the server, so here they stand back.
 """
 
 from __future__ import annotations
 
 import asyncio
 import math
+import os
 import sys
 import time
 from collections.abc import AsyncGenerator
@@ -24,6 +25,7 @@ from websockets.typing import Subprotocol
 
 from app.protocol import CAMERA, SUBPROTOCOL, answer, packed, told, unpacked
 
+STANDS_BACK = 10  # more than the server's priority
 EVERY = 0.05  # [s] between a hand's messages; no browser sends more often
 CYCLE = 4.0  # [s]: pull, rest, move a slider, rest
 MOVING = "/links"
@@ -240,6 +242,8 @@ async def _report(port: int, clients: int, seconds: float) -> None:
 
 
 if __name__ == "__main__":
+    if hasattr(os, "nice"):
+        os.nice(STANDS_BACK)
     try:
         asyncio.run(_report(int(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])))
     except Unserved as unserved:

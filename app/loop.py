@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import gc
 import logging
-import sys
 import threading
 import time
 from collections import deque
@@ -24,9 +23,8 @@ FRAME = 1 / 60  # [s]
 FADING = 1 / 60  # of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; further behind, the schedule starts anew
 PAUSE = 1e-3  # [s] at least between frames: when this thread is late, the network is later still
-SELDOM = (5_000, 20, 50)  # allocations before a collection: these stop all threads
+SELDOM = (5_000, 4, 250)  # allocations before a collection: these stop all threads, 20 ms at most
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones are paid for by waiting
-SWITCH_INTERVAL = 5e-4  # [s], so that the network thread does not keep this one waiting
 
 
 class View(Protocol):
@@ -118,7 +116,6 @@ class SimulationThread:
 
     def start(self) -> None:
         """Begin."""
-        sys.setswitchinterval(SWITCH_INTERVAL)
         gc.freeze()  # what is loaded by now stays: a full collection would take 0.2 s of it
         gc.set_threshold(*SELDOM)
         self._thread.start()
@@ -160,21 +157,28 @@ class SimulationThread:
             late = now - deadline
             self.frames.append((now, late))
             deadline = now + FRAME if late > LATEST else deadline + FRAME
-            self._frame(now - last, count, pace.stride)
-            pace.note(self._clock() - now, now - last)
+            drawing = self._frame(now - last, count, pace.stride)
+            pace.note(self._clock() - now, drawing, now - last)
             last, count = now, count + 1
 
-    def _frame(self, seconds: float, count: int, stride: int) -> None:
-        """Step by step for all labs, and not lab by lab: what a step needs stays in the cache."""
+    def _frame(self, seconds: float, count: int, stride: int) -> float:
+        """Step by step for all labs, and not lab by lab: what a step needs stays in the cache.
+
+        Returns:
+            What was spent on the display, [s].
+        """
         labs = self._labs
-        for step in (
-            Lab.drain,
-            lambda lab: lab.advance(seconds),
-            lambda lab: lab.show(count, stride),
-            Lab.send,
-        ):
-            for lab in labs:
-                try:
-                    step(lab)
-                except Exception as error:  # one lab must not stop the others
-                    log_error(error)
+        _do(Lab.drain, labs)
+        _do(lambda lab: lab.advance(seconds), labs)
+        begun = self._clock()
+        _do(lambda lab: lab.show(count, stride), labs)
+        _do(Lab.send, labs)
+        return self._clock() - begun
+
+
+def _do(step: Callable[[Lab], None], labs: list[Lab]) -> None:
+    for lab in labs:
+        try:
+            step(lab)
+        except Exception as error:  # one lab must not stop the others
+            log_error(error)

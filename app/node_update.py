@@ -33,6 +33,7 @@ UPDATES = {
     for kind in (_messages.SceneNodeUpdateMessage, _messages.GuiUpdateMessage)
 }
 MOST_UNSENT = 1 << 16  # [B] that a slow network may owe a browser, before viser merges what is late
+_DTYPES = {np.dtype(kind): np.dtype(kind).str for kind in (np.float32, np.float64)}  # it is slow
 _ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[Channel]] = WeakKeyDictionary()
 """Channels with something to send, by the event loop that does it."""
 
@@ -163,7 +164,8 @@ def _told(value: Any, arrays: list[memoryview]) -> Any:
     if kind is not np.ndarray or not value.flags.c_contiguous:
         raise TypeError(kind)
     arrays.append(value.data)
-    return {"__binary_index": len(arrays) - 1, "dtype": value.dtype.str}
+    dtype = _DTYPES.get(value.dtype) or value.dtype.str
+    return {"__binary_index": len(arrays) - 1, "dtype": dtype}
 
 
 def packed(messages: list[Message]) -> bytes:

@@ -6,9 +6,9 @@ Simulated time is what must not suffer, so the display gives way first: from 30 
 from __future__ import annotations
 
 STRIDES = (2, 3, 4)  # frames of simulation per frame of display
-BUSY, ENOUGH = 0.9, 0.82  # shares of the time: too much, and what drawing more may come to
-FADING = 1 / 30  # of the measured share, per frame
-PATIENCE = 60  # frames from one change to the next
+BUSY, ENOUGH = 0.9, 0.75  # shares of the time: too much, and what drawing more may come to
+FADING = 1 / 60  # of the measured shares, per frame
+PATIENCE, CAUTION = 60, 300  # frames from one change to the next, slower and faster
 
 
 class Pace:
@@ -16,7 +16,7 @@ class Pace:
 
     def __init__(self) -> None:
         self._at = 0
-        self._share = 0.0
+        self._share = self._drawing = 0.0
         self._since = 0
 
     @property
@@ -24,17 +24,21 @@ class Pace:
         """Frames of simulation per frame of display."""
         return STRIDES[self._at]
 
-    def note(self, busy: float, frame: float) -> None:
+    def note(self, busy: float, drawing: float, frame: float) -> None:
         """A frame has passed.
 
         Args:
-            busy, frame: what was spent on it, how long it was, [s].
+            busy, drawing, frame: what was spent on it, on its display alone, how long it was, [s].
         """
-        self._share += FADING * (busy / max(frame, 1e-6) - self._share)
+        frame = max(frame, 1e-6)
+        self._share += FADING * (busy / frame - self._share)
+        self._drawing += FADING * (drawing / frame - self._drawing)
         self._since += 1
-        if self._since < PATIENCE:
-            return
-        if self._share > BUSY and self._at < len(STRIDES) - 1:
+        if self._since >= PATIENCE and self._share > BUSY and self._at < len(STRIDES) - 1:
             self._at, self._since = self._at + 1, 0
-        elif self._at > 0 and self._share * self.stride / STRIDES[self._at - 1] < ENOUGH:
-            self._at, self._since = self._at - 1, 0  # even if drawing were all that is done
+        elif self._since >= CAUTION and self._at > 0 and self._if_drawn_more() < ENOUGH:
+            self._at, self._since = self._at - 1, 0
+
+    def _if_drawn_more(self) -> float:
+        """The share of the time that the next faster display would take."""
+        return self._share + self._drawing * (self.stride / STRIDES[self._at - 1] - 1)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from app.pace import STRIDES, Pace
+from app.pace import BUSY, STRIDES, Pace
 
 FRAME = 1 / 60
 
 
-def strides(pace: Pace, share: float, frames: int) -> list[int]:
+def strides(pace: Pace, share: float, frames: int, drawing: float = 0.0) -> list[int]:
     found: list[int] = []
     for _ in range(frames):
-        pace.note(share * FRAME, FRAME)
+        pace.note(share * FRAME, drawing * FRAME, FRAME)
         found.append(pace.stride)
     return found
 
@@ -22,22 +22,29 @@ def test_a_busy_thread_draws_less_often_step_by_step_and_recovers() -> None:
     assert set(strides(pace, 0.2, 600)) == {STRIDES[0]}
     busy = strides(pace, 1.2, 600)
     assert busy == sorted(busy) and busy[-1] == STRIDES[-1]
-    calm = strides(pace, 0.1, 600)
+    calm = strides(pace, 0.1, 1200)
     assert calm == sorted(calm, reverse=True) and calm[-1] == STRIDES[0]
 
 
-@pytest.mark.parametrize("work", [0.3, 0.6, 0.8, 1.0, 1.3])
-def test_it_settles_although_drawing_is_most_of_the_work(work: float) -> None:
-    """`work`: share of the time at the first stride; a third of it is simulation."""
-    pace = Pace()
-    for _ in range(1200):
-        pace.note(work * (1 + 2 * STRIDES[0] / pace.stride) / 3 * FRAME, FRAME)
-    assert len({strides(pace, work * (1 + 2 * STRIDES[0] / pace.stride) / 3, 1)[0]
-                for _ in range(600)}) == 1  # fmt: skip
+@pytest.mark.parametrize("drawing", [0.0, 0.3, 0.67, 1.0])
+@pytest.mark.parametrize("work", [0.3, 0.6, 0.8, 1.0, 1.3, 1.9])
+def test_it_settles_where_there_is_time(work: float, drawing: float) -> None:
+    """`work`: share of the time at the first stride; `drawing`: share of the work."""
+    pace, found = Pace(), list[int]()
+
+    def shares() -> tuple[float, float]:
+        drawn = drawing * work * STRIDES[0] / pace.stride
+        return (1 - drawing) * work + drawn, drawn
+
+    for _ in range(1800):
+        share, drawn = shares()
+        found += strides(pace, share, 1, drawn)
+    assert len(set(found[1200:])) == 1
+    assert shares()[0] <= BUSY or pace.stride == STRIDES[-1]
 
 
 def test_one_slow_frame_changes_nothing() -> None:
     pace = Pace()
     strides(pace, 0.3, 300)
-    pace.note(5 * FRAME, FRAME)
+    pace.note(5 * FRAME, 5 * FRAME, FRAME)
     assert set(strides(pace, 0.3, 300)) == {STRIDES[0]}
