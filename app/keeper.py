@@ -13,6 +13,7 @@ from app.error_log import log_error
 log = logging.getLogger(__name__)
 
 INTERVAL = 2.0  # [s] between writes: what a killed process may lose
+BREATH = 0.01  # [s] between labs, for the simulation: it waits while this thread computes
 FLUSH = 10.0  # [s] at most for the last write
 
 
@@ -63,9 +64,7 @@ class Keeper:
     def flush(self, code: str) -> None:
         """Write what is waiting of one lab, in the caller's thread; when it returns, it is kept."""
         with self._writing:  # this lab's turn may be under way
-            with self._lock:
-                make_state = self._pending.pop(code, None)
-            if make_state is not None and self._write(code, make_state):
+            if self._write_waiting(code):
                 self._wanted.set()
 
     def close(self) -> None:
@@ -78,23 +77,29 @@ class Keeper:
         while not self._closing.is_set():
             self._wanted.wait()
             self._wanted.clear()
-            with self._writing:
-                self._write_all()
-            self._closing.wait(self._interval)
-        with self._writing:
             self._write_all()
+            self._closing.wait(self._interval)
+        self._write_all()
 
     def _write_all(self) -> None:
         with self._lock:
-            pending, self._pending = self._pending, {}
+            codes = list(self._pending)
         failed = ""
-        for code, make_state in pending.items():
-            failed = self._write(code, make_state) or failed
+        for code in codes:
+            with self._writing:
+                failed = self._write_waiting(code) or failed
+            self._closing.wait(BREATH)
         if failed:
             self._wanted.set()
-        if pending and failed != self.warning:
+        if codes and failed != self.warning:
             log.warning("%s", f"not kept: {failed}" if failed else "kept again")
             self.warning = failed
+
+    def _write_waiting(self, code: str) -> str:
+        """What is waiting of one lab, if anything; see `_write`."""
+        with self._lock:
+            make_state = self._pending.pop(code, None)
+        return "" if make_state is None else self._write(code, make_state)
 
     def _write(self, code: str, make_state: Callable[[], dict[str, Any]]) -> str:
         """Why it is not kept but will be tried again; empty when it is."""

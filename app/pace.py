@@ -6,7 +6,7 @@ Simulated time is what must not suffer, so the display gives way first: from 30 
 from __future__ import annotations
 
 STRIDES = (2, 3, 4)  # frames of simulation per frame of display
-BUSY, ENOUGH = 0.9, 0.75  # shares of the time: too much, and what drawing more may come to
+BUSY, ENOUGH = 0.9, 0.8  # shares of the time: too much, and what drawing more may come to
 FADING = 1 / 60  # of the measured shares, per frame
 PATIENCE, CAUTION = 60, 300  # frames from one change to the next, slower and faster
 
