@@ -1,4 +1,4 @@
-"""What goes to browsers is compressed by one compressor for each thread: it takes 0.3 MB."""
+"""zstd as viser's browsers have it, one compressor for each thread: it takes 0.3 MB."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ class _Own(threading.local):
 
     def __init__(self) -> None:
         self.compressor = zstandard.ZstdCompressor(level=LEVEL)
+        self.decompressor = zstandard.ZstdDecompressor()
 
 
 _own = _Own()
@@ -25,6 +26,11 @@ _own = _Own()
 def compress(data: bytes) -> bytes:
     """As viser does it."""
     return _own.compressor.compress(data)
+
+
+def decompress(data: bytes) -> bytes:
+    """What `compress` or viser has made."""
+    return _own.decompressor.decompress(data)
 
 
 def share_compressors() -> None:

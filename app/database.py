@@ -32,6 +32,7 @@ _BROKEN = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 
 
 _of = sa.bindparam("of")  # a code; statements made once take half the time
+# who had a lab last; nobody else can take it before the transaction ends
 _OWNER = sa.select(leases.c.owner).where(leases.c.code == _of).with_for_update()
 _CHANGE = (
     sa.update(labs)
@@ -123,8 +124,10 @@ class Records:
         for last in (False, True):
             try:
                 with self.transaction() as connection:
-                    if owner is not None and lease_owner(connection, code) not in (None, owner):
-                        raise HeldElsewhere
+                    if owner is not None:
+                        leased = connection.execute(_OWNER, {"of": code}).scalar()
+                        if leased not in (None, owner):
+                            raise HeldElsewhere
                     changed = connection.execute(_CHANGE, {"of": code, **values})
                     if not changed.rowcount:
                         connection.execute(sa.insert(labs).values(code=code, **values))
@@ -219,11 +222,6 @@ class Records:
             if part.exists():
                 part.rename(aside.with_name(aside.name + tail))
         log.warning("%s is broken (%s): moved to %s, a fresh one is begun", file, why, aside.name)
-
-
-def lease_owner(connection: sa.Connection, code: str) -> str | None:
-    """Who had a lab last; nobody else can take it before this transaction ends."""
-    return connection.execute(_OWNER, {"of": code}).scalar()
 
 
 def _text(code: str, state: dict[str, Any]) -> str:

@@ -41,10 +41,10 @@ class Reception:
         """Do what there is to do, or wait so long for it."""
         for key, _ in self._selector.select(seconds):
             found: Any = key.fileobj
-            if found is self._listener:
-                self._accept()
-            else:
+            if found is not self._listener:
                 self._listen_to(found)
+            elif self._open:  # the last of them may have ended just now
+                self._accept()
 
     def close(self) -> None:
         """Accept no more."""

@@ -176,8 +176,7 @@ class History:
         """How far back it reaches, [s]."""
         if not len(self):
             return 0.0
-        last = self._stretch(self._end - 1)
-        return last.time + last.ticks * last.dt - float(self._columns["time"][self._begin])
+        return float(self._ends(self._end - 1) - self._columns["time"][self._begin])
 
     def at(self, time: float) -> Stretch | None:
         """The stretch during which it was `time`, or the nearest one; None if there is none."""
@@ -259,5 +258,6 @@ class History:
         return abs(self._columns["time"][row] - self._ends(row - 1)) > 1e-6
 
     def _ends(self, row: int) -> float:
+        """When a row ends, [s]."""
         columns = self._columns
         return columns["time"][row] + columns["ticks"][row] * columns["inputs"][row].dt

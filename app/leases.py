@@ -99,7 +99,7 @@ class Leases:
         Raises:
             NotKept: the database is away; others cannot take anything either.
         """
-        codes, mine = list(codes), {"owner": self._owner, "expires": self._clock() + TERM}
+        codes, mine = list(codes), self._mine()
         ours = leases.c.code.in_(codes) & (leases.c.owner == self._owner)
         known = sa.select(leases.c.code, leases.c.owner).where(leases.c.code.in_(codes))
         with self._records.transaction() as connection:
@@ -138,8 +138,7 @@ class Leases:
     def _claim(self, connection: sa.Connection, code: str) -> bool | None:
         wanted = sa.select(leases.c.owner, leases.c.expires).where(leases.c.code == code)
         row = connection.execute(wanted.with_for_update()).first()
-        now = self._clock()
-        mine = {"owner": self._owner, "expires": now + TERM}
+        now, mine = self._clock(), self._mine()
         if row is None:
             connection.execute(sa.insert(leases).values(code=code, **mine))
             return True
@@ -147,6 +146,10 @@ class Leases:
             return None
         connection.execute(sa.update(leases).where(leases.c.code == code).values(mine))
         return row.owner == self._owner
+
+    def _mine(self) -> dict[str, Any]:
+        """What a lease of ours says from now on."""
+        return {"owner": self._owner, "expires": self._clock() + TERM}
 
     def _others(self, codes: list[str]) -> dict[str, tuple[str, float]]:
         """Leases of other owners that have not expired, by code."""

@@ -38,7 +38,7 @@ def listen_unix(file: Path) -> socket.socket:
 
 
 def reserve(host: str, port: int) -> socket.socket:
-    """An address for processes that are to share it, held without listening.
+    """An address for a process that is to listen there, held without listening.
 
     Raises:
         PortInUse: somebody else listens there, sharing or not.

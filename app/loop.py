@@ -23,7 +23,7 @@ FRAME = 1 / 60  # [s]
 FADING = 1 / 60  # of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; further behind, the schedule starts anew
 PAUSE = 1e-3  # [s] at least between frames: when this thread is late, the network is later still
-SELDOM = (5_000, 4, 250)  # allocations before a collection: these stop all threads, 20 ms at most
+SELDOM = (5_000, 4, 250)  # allocations before a collection: these stop all threads, for 20 ms or so
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones are paid for by waiting
 
 

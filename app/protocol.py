@@ -8,7 +8,8 @@ from typing import Any
 import msgspec
 import numpy as np
 import viser
-import zstandard
+
+from app.compression import decompress
 
 SUBPROTOCOL = f"viser-v{viser.__version__}"
 CAMERA = {
@@ -58,14 +59,12 @@ class _Window(msgspec.Struct):
 
 
 _window = msgspec.msgpack.Decoder(_Window)
-_plain = zstandard.ZstdDecompressor().decompress
 
 
 def told(raw: bytes) -> list[Told]:
-    """Of the messages of one frame from the server only that, which takes less than `unpacked`.
-    One thread at a time."""
+    """Of the messages of one frame from the server only that, which takes less than `unpacked`."""
     end = 16 + int.from_bytes(raw[8:16], "little")
-    return _window.decode(_plain(raw[16:end])).messages
+    return _window.decode(decompress(raw[16:end])).messages
 
 
 def unpacked(raw: bytes) -> list[dict[str, Any]]:
@@ -74,7 +73,7 @@ def unpacked(raw: bytes) -> list[dict[str, Any]]:
     A frame is two lengths, compressed msgpack, then the arrays, each at a multiple of 8 bytes.
     """
     end = 16 + int.from_bytes(raw[8:16], "little")
-    window = msgspec.msgpack.decode(zstandard.decompress(raw[16:end]))
+    window = msgspec.msgpack.decode(decompress(raw[16:end]))
     buffers: list[bytes] = []
     for length in window.get("binaryBufferLengths", ()):
         start = end + -end % 8

@@ -110,6 +110,19 @@ def test_who_has_ended_gets_nothing(desk: Desk) -> None:
     assert len(accepted(third)) == 1
 
 
+def test_who_comes_as_the_last_worker_ends_waits(desk: Desk) -> None:
+    desk.worker().close()
+    desk.call(1)
+    last = desk.worker()
+    desk.settle()
+    assert not accepted(last)[1:]
+    last.close()
+    desk.call(1)  # both are noticed at once
+    again = desk.worker()
+    desk.settle()
+    assert len(accepted(again)) == 1
+
+
 def test_who_is_stuck_is_passed_over(desk: Desk) -> None:
     stuck, other = desk.worker(), desk.worker()
     accepts = 0
