@@ -6,8 +6,10 @@ can be computed again, exactly, when somebody wants it as a file.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from operator import is_
 from typing import Any
 
 import numpy as np
@@ -20,6 +22,7 @@ LONGEST = 17  # ticks in a stretch at most
 RECENT = 12.0  # [s], at the full rate; what is older is thinned out
 COARSE = 4 * LONGEST  # ticks in an older stretch at most
 MOST = 7200
+BATCH = 16  # frames that wait at most to be put in together, which is much quicker
 FIRST = 256  # stretches that there is room for at first
 FULL = 0.9  # of the room, when more is needed
 
@@ -53,13 +56,10 @@ class Inputs:
     dt: float
     of: dict[str, Input]
 
-    def same(self, other: Inputs) -> bool:
-        """Whether `other` has the same."""
-        return (
-            self.curve is other.curve
-            and self.dt == other.dt
-            and all(mine is other.of[name] for name, mine in self.of.items())
-        )
+    def are(self, curve: Curve, dt: float, of: Iterable[Input]) -> bool:
+        """Whether they are these."""
+        same = self.curve is curve and self.dt == dt
+        return same and all(map(is_, self.of.values(), of))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,6 +99,29 @@ class Instant:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """What has just been simulated.
+
+    Attributes:
+        time: at the beginning, [s].
+        ticks: how many.
+        inputs: the same object while nothing changes.
+        states: of each robot, at the beginning; nobody changes them any more.
+        max_distances: of each, at the beginning, [m].
+        rows: of the log, of each, at the beginning.
+        distances: of each, at the beginning, [m].
+    """
+
+    time: float
+    ticks: int
+    inputs: Inputs
+    states: Sequence[np.ndarray]
+    max_distances: Sequence[float]
+    rows: Sequence[np.ndarray]
+    distances: Sequence[float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Stretch:
     """Some ticks with the same inputs.
 
@@ -128,46 +151,70 @@ class History:
     """Stretches of the last minute, oldest first, as columns: all of one kind in one array.
 
     The columns' rows from `_begin` to `_end` are in use; when they reach the columns' end they
-    move to the front, and older ones are joined, four frames of the lab to one.
+    move to the front, and older ones are joined, four frames of the lab to one. The latest frames
+    wait outside until somebody looks.
+
+    Args:
+        sample: what the plots show of some frames, shape (frames, robots, fields).
     """
 
-    def __init__(self) -> None:
+    def __init__(self, sample: Callable[[Sequence[Frame]], np.ndarray]) -> None:
+        self._sample = sample
+        self._lock = threading.Lock()  # a page that is being built looks at it, too
         self.clear()
 
     def __len__(self) -> int:
+        self.settle()
         return self._end - self._begin
 
     def clear(self) -> None:
         """Forget everything."""
-        self._columns: dict[str, np.ndarray] = {}
-        self._list: list[Stretch] | None = None
-        self._begin = self._end = 0
-        self._before = 0  # rows that have been moved out at the front, ever
+        with self._lock:
+            self._waiting: list[Frame] = []
+            self._columns: dict[str, np.ndarray] = {}
+            self._list: list[Stretch] | None = None
+            self._begin = self._end = 0
+            self._before = 0  # rows that have been moved out at the front, ever
 
-    def append(self, instant: Instant, ticks: int, inputs: Inputs) -> None:
-        """Add what has just been simulated; drops what is older than a minute."""
+    def append(self, frame: Frame) -> None:
+        """Add what has just been simulated; what is older than a minute is dropped in time."""
+        with self._lock:
+            waiting = self._waiting
+            if waiting and waiting[-1].inputs is frame.inputs:
+                together = waiting[-1].ticks + frame.ticks
+                if together <= LONGEST:
+                    waiting[-1] = replace(waiting[-1], ticks=together)
+                    return
+            waiting.append(frame)
+        if len(waiting) >= BATCH:
+            self.settle()
+
+    def settle(self) -> None:
+        """Put in what waits, before anything changes that samples depend on."""
+        if self._waiting:
+            with self._lock:
+                frames, self._waiting = self._waiting, []
+                if frames:  # no other thread has been here
+                    self._put(frames)
+
+    def _put(self, frames: Sequence[Frame]) -> None:
         self._list = None
-        last = self._columns["inputs"][self._end - 1] if len(self) else inputs
-        if last.same(inputs):
-            inputs = last
-            if len(self) and self._columns["ticks"][self._end - 1] + ticks <= LONGEST:
-                self._columns["ticks"][self._end - 1] += ticks
-                return
-        if not self._columns or self._end == len(self._columns["time"]):
-            self._make_room(instant)
-        columns, row = self._columns, self._end
-        columns["time"][row], columns["ticks"][row] = instant.time, ticks
-        columns["inputs"][row] = inputs
-        for robot, state in enumerate(instant.states):
-            columns["state"][row, robot] = state
-        columns["most"][row] = instant.max_distances
-        columns["sample"][row] = instant.sample
-        self._end += 1
-        while len(self) > MOST or self._ends(self._begin) < instant.time - SECONDS:
-            self._begin += 1
+        if not self._columns or self._end + len(frames) > len(self._columns["time"]):
+            self._make_room(frames)
+        columns, rows = self._columns, slice(self._end, self._end + len(frames))
+        columns["time"][rows] = [frame.time for frame in frames]
+        columns["ticks"][rows] = [frame.ticks for frame in frames]
+        columns["inputs"][rows] = [frame.inputs for frame in frames]
+        columns["state"][rows] = [frame.states for frame in frames]
+        columns["most"][rows] = [frame.max_distances for frame in frames]
+        columns["sample"][rows] = self._sample(frames)
+        self._end = rows.stop
+        reached = self._find(frames[-1].time - SECONDS, "right") - 1
+        self._begin = max(self._begin, reached, self._end - MOST)
 
     def all(self) -> list[Stretch]:
         """Everything, oldest first; the same objects until something changes."""
+        self.settle()
         if self._list is None:
             self._list = [self._stretch(row) for row in range(self._begin, self._end)]
         return list(self._list)
@@ -186,22 +233,26 @@ class History:
 
     def forget_after(self, stretch: Stretch) -> None:
         """Drop `stretch` and everything later."""
+        self.settle()
         self._list = None
         self._end = self._find(stretch.time, "left")
 
-    def samples(self, begin: float, end: float, most: int) -> tuple[np.ndarray, np.ndarray]:
+    def samples(
+        self, begin: float, end: float, most: int, fields: slice = slice(None)
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Times (n,) and samples (n, robots, fields) with begin <= time <= end, n <= most."""
+        self.settle()
         low, high = self._find(begin, "left"), self._find(end, "right")
         if low >= high:
             return np.zeros(0), np.zeros((0, 0, 0))
         step = max(1, -(-(high - low) // most))
         first = low + (-low - self._before) % step  # the same ones from call to call
-        chosen = slice(first, high, step)
-        return self._columns["time"][chosen].copy(), self._columns["sample"][chosen].copy()
+        chosen, columns = slice(first, high, step), self._columns
+        return columns["time"][chosen].copy(), columns["sample"][chosen, :, fields].copy()
 
     def _find(self, time: float, side: Any) -> int:
         """Where `time` would have to be put in."""
-        if not len(self):
+        if self._begin == self._end:
             return self._end
         times = self._columns["time"][self._begin : self._end]
         return self._begin + int(times.searchsorted(time, side))
@@ -217,20 +268,21 @@ class History:
         time, ticks = float(columns["time"][row]), int(columns["ticks"][row])
         return Stretch(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())
 
-    def _make_room(self, instant: Instant) -> None:
+    def _make_room(self, frames: Sequence[Frame]) -> None:
         """Columns with free rows at their end: thinned out, and larger if that is not enough."""
         kept, old, size = self._kept(), self._columns, len(self._columns.get("time", ()))
         if len(kept):
             old["ticks"][kept] = np.add.reduceat(old["ticks"][: self._end], kept)
-        if len(kept) >= FULL * size:
-            rows, robots = max(2 * size, FIRST), len(instant.sample)
+        if len(kept) + len(frames) > FULL * size:
+            rows, sample = max(2 * size, FIRST), self._sample(frames[:1])
+            robots, states = len(frames[0].states), frames[0].states
             self._columns = {
                 "time": np.empty(rows),
                 "ticks": np.empty(rows, dtype=int),
                 "inputs": np.empty(rows, dtype=object),
-                "state": np.empty((rows, robots, len(instant.states[0]))),
+                "state": np.empty((rows, robots, len(states[0]))),
                 "most": np.empty((rows, robots)),
-                "sample": np.empty((rows, *instant.sample.shape), dtype=np.float32),
+                "sample": np.empty((rows, *sample.shape[1:]), dtype=np.float32),
             }
         for name, column in old.items():
             self._columns[name][: len(kept)] = column[kept]
@@ -240,7 +292,7 @@ class History:
 
     def _kept(self) -> np.ndarray:
         """Rows that stay: all recent ones, and older ones unless they join the one before."""
-        if not len(self):
+        if self._begin == self._end:
             return np.zeros(0, dtype=int)
         inside, inputs = slice(self._begin, self._end), self._columns["inputs"]
         times, ticks = (self._columns[name][inside].tolist() for name in ("time", "ticks"))

@@ -116,7 +116,7 @@ class PlantRun:
             if good.size:
                 self.row = rows[good[-1]].copy()
             return
-        self.state, self.row = state, rows[-1]
+        self.state, self.row = state, rows[-1].copy()
         distances = self._distances(curve, rows)
         self.distance = distances[-1]
         self.max_distance = max(self.max_distance, *distances)

@@ -99,11 +99,12 @@ class LivePlot:
         if now == self._shown:
             return
         self._shown = now
-        times, samples = session.history.samples(now - WINDOW, now, POINTS)
+        begin = session.sample_layout.slices[self._plot.field].start
+        fields = slice(begin, begin + self._lines)
+        times, samples = session.history.samples(now - WINDOW, now, POINTS, fields)
         if len(times) < 2:
             return
-        begin = session.sample_layout.slices[self._plot.field].start
-        values = samples[:, :, begin : begin + self._lines].astype(float) * self._plot.scale
+        values = samples.astype(float) * self._plot.scale
         lines = np.vstack([times, values.reshape(len(times), -1).T])
         finite = lines if np.isfinite(lines).all() else np.nan_to_num(lines)
         update_gui(self._handle, "data", tuple(finite))

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
 
 from models.layout import Layout
 from models.loop_vectors import log_layout
+from models.parameters import Parameters
 from models.robots import Robot
+from models.system import Array
 
 
 @lru_cache(maxsize=8)
@@ -40,3 +43,19 @@ def places(robot: Robot) -> np.ndarray:
         where = log.slices.get(name)
         found.extend([0] * size if where is None else range(where.start, where.stop))
     return np.array(found)
+
+
+def samples_of(
+    robot: Robot, parameters: Parameters, rows: Sequence[Array], distances: Sequence[float]
+) -> Array:
+    """What is kept of some rows of the log and the distances at them, shape (n, fields)."""
+    layout = sample_layout(robot)
+    samples = np.concatenate(rows).reshape(len(rows), -1).take(places(robot), axis=1)
+    samples[:, layout.slices["distance"].start] = distances
+    if robot.extra_fields:
+        log = log_layout(robot.system)
+        for sample, row in zip(samples, rows, strict=True):
+            there = log.unpack(row)
+            for name, value in robot.extras(there["q"], there["v"], parameters).items():
+                sample[layout.slices[name]] = value
+    return samples

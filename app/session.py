@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from math import inf
 from operator import is_
 from time import perf_counter
@@ -18,12 +18,12 @@ import numpy as np
 from app import commands
 from app.apply_class import apply
 from app.class_commands import ClassCommand
-from app.history import History, Inputs, Instant
+from app.history import Frame, History, Inputs, Instant
 from app.lesson_run import LessonRun
 from app.loop_store import LoopStore
 from app.path_editor import PathEditor
 from app.plant_run import PlantRun
-from app.samples import places, sample_layout
+from app.samples import sample_layout, samples_of
 from app.script_player import ScriptPlayer
 from app.snapshot import PathView
 from lessons.course import NO_LESSONS, Course
@@ -74,7 +74,8 @@ class Session:
         self._store = store
         self._inbox: deque[commands.Command | ClassCommand] = deque(maxlen=MOST_COMMANDS)
         self._benches: dict[str, tuple[Parameters, PathEditor]] = {}
-        self.history = History()
+        self.history = History(self._samples)
+        self._inputs: Inputs | None = None
         self.presets: Mapping[str, PathDesign] = presets()
         self.running = True
         self.rate = 1.0
@@ -104,6 +105,8 @@ class Session:
 
     def set_parameters(self, parameters: Parameters) -> None:
         """New numbers; a structural one makes another robot, which starts anew."""
+        if self.robot.extra_fields:
+            self.history.settle()  # their samples depend on parameters
         self.parameters = parameters
         robot = self.entry.make(parameters)
         if robot is not self.robot:
@@ -208,25 +211,24 @@ class Session:
         """Both robots by some ticks, with the same path, settings and push."""
         dt = time_step(self.parameters)
         self._bend(ticks * dt)
-        curve = self.editor.curve
-        before = self.instant()
-        for name, run in self.runs.items():
-            was = run.diverged
-            run.advance(
-                self._store,
-                self.parameters,
-                curve,
-                self.editor.table,
-                self.push(name),
-                ticks,
-                self.time,
-                dt,
-            )
-            if run.diverged is not None and was is None:
-                self._tell_divergence(name)
-        inputs = Inputs(curve, dt, {name: run.input() for name, run in self.runs.items()})
-        self.history.append(before, ticks, inputs)
+        curve, runs = self.editor.curve, list(self.runs.values())
+        states, most = [run.state for run in runs], [run.max_distance for run in runs]
+        rows, distances = [run.row for run in runs], [run.distance for run in runs]
+        for run in runs:
+            self._advance(run, ticks, dt)
+        if self._inputs is None or not self._inputs.are(curve, dt, [run.input() for run in runs]):
+            self._inputs = Inputs(curve, dt, {run.controller: run.input() for run in runs})
+        self.history.append(Frame(self.time, ticks, self._inputs, states, most, rows, distances))
         self.time += ticks * dt
+
+    def _advance(self, run: PlantRun, ticks: int, dt: float) -> None:
+        was, name = run.diverged, run.controller
+        editor, push = self.editor, self._pushes[name]
+        run.advance(
+            self._store, self.parameters, editor.curve, editor.table, push, ticks, self.time, dt
+        )
+        if run.diverged is not None and was is None:
+            self._tell_divergence(name)
 
     def _bend(self, seconds: float) -> None:
         """Let an edit of the path blend in."""
@@ -312,7 +314,7 @@ class Session:
 
     def grab(self, controller: str, target: Array) -> None:
         """Pull an end-point towards a target; with `copy`, the other by the same displacement."""
-        if not np.all(np.isfinite(target)):
+        if not np.isfinite(target).all():
             raise ValueError("the hand's target is not a point")
         if self.grabbed != controller:
             self.release()
@@ -324,7 +326,7 @@ class Session:
             self.note("pull", controllers=tuple(self._grab_offset))
         home = self.robot.frame.lift(np.zeros(2))
         for name, offset in self._grab_offset.items():
-            self.hands[name] = np.clip(target + offset, home - REACH, home + REACH)
+            self.hands[name] = (target + offset).clip(home - REACH, home + REACH)
             self._pushes[name] = Push(self.hands[name], self._pushes[name].hold)
 
     def release(self) -> None:
@@ -393,13 +395,13 @@ class Session:
 
     def sample(self) -> np.ndarray:
         """Now, shape (robots, sample_layout.size)."""
-        runs, fields = self.runs.values(), self.sample_layout.slices
-        samples = np.array([run.row for run in runs]).take(places(self.robot), axis=1)
-        samples[:, fields["distance"].start] = [run.distance for run in runs]
-        if self.robot.extra_fields:
-            for sample, run in zip(samples, runs, strict=True):
-                row = run.shown()
-                extras = self.robot.extras(row["q"], row["v"], self.parameters)
-                for name, value in extras.items():
-                    sample[fields[name]] = value
-        return samples
+        runs = self.runs.values()
+        rows, distances = [run.row for run in runs], [run.distance for run in runs]
+        return samples_of(self.robot, self.parameters, rows, distances)
+
+    def _samples(self, frames: Sequence[Frame]) -> np.ndarray:
+        """What the plots show of some frames, shape (frames, robots, sample_layout.size)."""
+        rows = [row for frame in frames for row in frame.rows]
+        distances = [distance for frame in frames for distance in frame.distances]
+        samples = samples_of(self.robot, self.parameters, rows, distances)
+        return samples.reshape(len(frames), len(self.runs), -1)

@@ -49,10 +49,9 @@ def scale_note(session: Session) -> str:
 
 def _traces(session: Session, time: float) -> Array:
     """End-points of both robots lately, shape (n, robots, p)."""
-    _, samples = session.history.samples(time - TRACE, time, TRACE_POINTS)
-    if not samples.size:
-        return np.zeros((0, len(session.runs), session.robot.system.p))
-    return samples[..., session.sample_layout.slices["y"]]
+    y = session.sample_layout.slices["y"]
+    _, samples = session.history.samples(time - TRACE, time, TRACE_POINTS, y)
+    return samples if samples.size else np.zeros((0, len(session.runs), session.robot.system.p))
 
 
 def _path_view(session: Session, curve: Curve) -> PathView:
