@@ -6,7 +6,6 @@ as few numbers as these. Points are columns in it, and rows of the arrays around
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from functools import lru_cache
 
@@ -14,6 +13,7 @@ import casadi as ca
 import numpy as np
 
 from app.history import Instant
+from app.per_thread import per_thread
 from app.samples import sample_layout
 from app.snapshot import END, Counts, FollowerName, RobotView, TrackerName
 from models.buffered import Buffered
@@ -81,21 +81,9 @@ class _Figure:
         return flat.reshape(len(NAMES), -1, 3).copy()
 
 
-class _Figures(threading.local):
-    """Each thread's own."""
-
-    def __init__(self) -> None:
-        self.of: dict[tuple[Robot, bool], _Figure] = {}
-
-
-_figures = _Figures()
-
-
+@per_thread
 def _figure(robot: Robot, closed: bool) -> _Figure:
-    key = robot, closed
-    if key not in _figures.of:
-        _figures.of[key] = _Figure(robot, closed)
-    return _figures.of[key]
+    return _Figure(robot, closed)
 
 
 def _seen(robot: Robot) -> list[int]:

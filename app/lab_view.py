@@ -14,7 +14,7 @@ from app.lesson_menu import LessonMenu
 from app.lesson_panel import LessonPanel
 from app.loop_store import LoopStore
 from app.node_update import Channel
-from app.pace import STRIDES
+from app.pace import STRIDES, is_turn
 from app.page_builds import one_at_a_time
 from app.panels.class_panel import ClassPanel
 from app.panels.keys import add_keys
@@ -32,7 +32,7 @@ WIDE_SHEET = """<style>@media (max-width:36em){
 .mantine-Paper-root[style*="bottom: 0"] [style*="width: 20em"]{width:100%!important}}</style>"""
 """On a telephone viser's sheet is no wider than on a desk, and leaves a gap beside it."""
 AT_EASE = STRIDES[0]  # the stride of a thread that has time
-SLOW, SLOWER = 6, 12  # frames per update of traces, plots and readouts: 10 Hz, or 5 of many labs
+SLOW, SLOWER = 6, 12  # frames or so per update of traces, plots, readouts: 10 Hz, 5 of many labs
 SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
 
@@ -65,20 +65,20 @@ class LabView:
         """The tab is gone."""
         self._exporter.close()
 
-    def show(self, session: Session, achieved: float, frame: int, stride: int) -> None:
+    def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
         """See `app.loop.View`."""
         count = frame + self._offset
         if session.grabbed and stride == AT_EASE:
-            stride = 1  # the hand feels every frame of delay
-        if count % stride or self._robot is None or self._channel.closed:
+            stride = 1.0  # the hand feels every frame of delay
+        if not is_turn(count, stride) or self._robot is None or self._channel.closed:
             return
         if self._page(session) != self._built:
             self._robot = None  # nothing is shown until the new one stands
             self._exporter.submit(lambda: self._rebuild(session))
             return
-        with self._channel.frame():
-            every = SLOW if stride <= AT_EASE else SLOWER
-            self._show(session, achieved, slow=count % every == 0)
+        with self._channel:
+            every = stride * round((SLOW if stride <= AT_EASE else SLOWER) / stride)
+            self._show(session, achieved, slow=is_turn(count, every))
 
     def send(self) -> None:
         """See `app.loop.View`."""

@@ -23,14 +23,14 @@ FRAME = 1 / 60  # [s]
 FADING = 1 / 60  # of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; further behind, the schedule starts anew
 PAUSE = 1e-3  # [s] at least between frames: when this thread is late, the network is later still
-SELDOM = (5_000, 4, 250)  # allocations before a collection: these stop all threads, for 20 ms or so
+SELDOM = (1_000, 4, 1_000)  # allocations before a collection: it stops all threads, for 10 ms or so
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones are paid for by waiting
 
 
 class View(Protocol):
     """Whatever shows a session; called by the simulation thread only."""
 
-    def show(self, session: Session, achieved: float, frame: int, stride: int) -> None:
+    def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
         """Show it, in every `stride`-th frame at least; `frame` counts them all."""
         ...
 
@@ -79,7 +79,7 @@ class Lab:
             self._simulated += session.time - before - self._simulated * FADING
             self._passed += seconds - self._passed * FADING
 
-    def show(self, count: int, stride: int) -> None:
+    def show(self, count: int, stride: float) -> None:
         """Show it to who looks."""
         view = self.view  # may go at any time
         if view is not None:
@@ -161,7 +161,7 @@ class SimulationThread:
             pace.note(self._clock() - now, drawing, now - last)
             last, count = now, count + 1
 
-    def _frame(self, seconds: float, count: int, stride: int) -> float:
+    def _frame(self, seconds: float, count: int, stride: float) -> float:
         """Step by step for all labs, and not lab by lab: what a step needs stays in the cache.
 
         Returns:

@@ -9,7 +9,7 @@ import numpy as np
 
 from app import meshes, palette
 from app.node_update import update_node
-from app.poses import Poses, trace_segments
+from app.poses import Poses, difference, trace_segments
 from app.snapshot import RobotView, TrackerName
 from app.stage import IDENTITY, Stage, add_copies, add_text, set_text
 from lessons.words import ENGLISH, Words
@@ -110,7 +110,7 @@ class Bars:
         """One message."""
         which, lengths = self._which, poses.lengths[self._which]
         arrays = {"batched_positions": poses.bars[which], "batched_wxyzs": poses.quaternions[which]}
-        if np.abs(lengths - self._lengths).max() > 1e-4:
+        if difference(lengths, self._lengths) > 1e-4:
             self._lengths = lengths
             arrays["batched_scales"] = link_scales(lengths)
         update_node(self._node, **arrays)
@@ -191,11 +191,11 @@ class Machine:
         for bars in self._bars:
             bars.update(poses)
         parts = {"batched_positions": poses.parts}
-        if np.abs(poses.turns - self._turns).max() > 1e-3:
+        if difference(poses.turns, self._turns) > 1e-3:
             self._turns = parts["batched_wxyzs"] = poses.turns
         update_node(self._parts, **parts)
         update_node(self.grips, batched_positions=poses.tips)
-        acts = bool(np.abs(poses.forces).max() > FORCE_SHOWN)
+        acts = max(map(abs, poses.forces.ravel().tolist())) > FORCE_SHOWN
         if acts:
             tails = poses.tips - [0.0, 0.01, 0.0]
             arrows = np.stack([tails, tails + self._force_scale * poses.forces], axis=1)
@@ -207,7 +207,7 @@ class Machine:
         """Redraws the traces if they are others, and says how large each force is."""
         lines = [trace_segments(robot.trace, TRACE_SEGMENTS) for robot in robots]
         points = np.concatenate(lines) + self._trace_origins
-        if 0.0 < np.abs(points - self._traced).max() < np.inf:  # not if there is a NaN
+        if 0.0 < difference(points, self._traced) < np.inf:  # not if there is a NaN
             self._traced = points
             update_node(self._traces, points=points)
         for robot, label in zip(robots, self._force_labels, strict=True):

@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from functools import partial
 from threading import get_ident
 from typing import Any
@@ -83,17 +82,16 @@ class Channel:
         """Whether the browser is gone."""
         return self._buffer.done
 
-    @contextmanager
-    def frame(self) -> Iterator[None]:
-        """What this thread tells the browser in here waits for `send`."""
+    def __enter__(self) -> None:
+        """What this thread tells the browser from now on waits for `send`."""
         self._collector = get_ident()
-        try:
-            yield
-        finally:
-            self._collector = None
-            if self._messages:
-                self.frames += 1
-                _ready.setdefault(self._loop, []).append(self)
+
+    def __exit__(self, *_: object) -> None:
+        """What it tells from now on goes at once."""
+        self._collector = None
+        if self._messages:
+            self.frames += 1
+            _ready.setdefault(self._loop, []).append(self)
 
     def send(self) -> None:
         """Send the frames of all channels of this server, with one call of its event loop."""
@@ -143,11 +141,12 @@ def _wire(message: Message, arrays: list[memoryview]) -> dict[str, Any]:
         return message.as_serializable_dict(arrays)
     fields = {name: getattr(message, name) for name in UPDATES[kind]}
     try:
-        updates = {name: _told(value, arrays) for name, value in fields["updates"].items()}
+        fields["updates"] = {k: _told(value, arrays) for k, value in fields["updates"].items()}
     except TypeError:
         del arrays[known:]
         return message.as_serializable_dict(arrays)
-    return {**fields, "updates": updates, "type": kind.__name__}
+    fields["type"] = kind.__name__
+    return fields
 
 
 def _told(value: Any, arrays: list[memoryview]) -> Any:

@@ -1,12 +1,13 @@
 """How often the labs are drawn: less often, for all alike, when there are too many of them.
 
-Simulated time is what must not suffer, so the display gives way first: from 30 Hz to 20, then 15.
+Simulated time is what must not suffer, so the display gives way first: from 30 Hz to 24, 20, 15.
 """
 
 from __future__ import annotations
 
-STRIDES = (2, 3, 4)  # frames of simulation per frame of display
-BUSY, ENOUGH = 0.9, 0.8  # shares of the time: too much, and what drawing more may come to
+STRIDES = (2.0, 2.5, 3.0, 4.0)  # frames of simulation per frame of display
+ENOUGH = (0.5, 0.75, 0.85)  # shares of the time up to which the first, second, third is chosen
+BUSY = 0.9  # a share that is too much
 FADING = 1 / 60  # of the measured shares, per frame
 PATIENCE, CAUTION = 60, 300  # frames from one change to the next, slower and faster
 
@@ -20,7 +21,7 @@ class Pace:
         self._since = 0
 
     @property
-    def stride(self) -> int:
+    def stride(self) -> float:
         """Frames of simulation per frame of display."""
         return STRIDES[self._at]
 
@@ -36,9 +37,14 @@ class Pace:
         self._since += 1
         if self._since >= PATIENCE and self._share > BUSY and self._at < len(STRIDES) - 1:
             self._at, self._since = self._at + 1, 0
-        elif self._since >= CAUTION and self._at > 0 and self._if_drawn_more() < ENOUGH:
+        elif self._since >= CAUTION and self._at > 0 and self._has_time_for(self._at - 1):
             self._at, self._since = self._at - 1, 0
 
-    def _if_drawn_more(self) -> float:
-        """The share of the time that the next faster display would take."""
-        return self._share + self._drawing * (self.stride / STRIDES[self._at - 1] - 1)
+    def _has_time_for(self, at: int) -> bool:
+        share = self._share + self._drawing * (self.stride / STRIDES[at] - 1)
+        return share < ENOUGH[at]
+
+
+def is_turn(frame: int, stride: float) -> bool:
+    """Whether this frame of simulation is one of the display's."""
+    return frame // stride != (frame - 1) // stride

@@ -9,10 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from math import sqrt
 
 import casadi as ca
 import numpy as np
 
+from app.per_thread import per_thread
 from app.snapshot import Counts, RobotView
 from app.stage import Stage
 from models.buffered import Buffered
@@ -83,38 +85,49 @@ class Poses:
 
     def is_news(self, drawn: Poses) -> bool:
         """Whether it can be drawn, and somebody could see the difference: 10 µm, 10 µN."""
-        return UNSEEN < float(np.abs(self.whole - drawn.whole).max()) < np.inf  # not if it is NaN
+        return UNSEEN < difference(self.whole, drawn.whole) < np.inf  # not if it is NaN
 
 
-class Layout:
-    """Turns snapshots of robots with a constant number of parts into poses. One thread at a time.
+def difference(a: np.ndarray, b: np.ndarray) -> float:
+    """Euclidean norm of a - b, of all their numbers together."""
+    d = (a - b).ravel()
+    return sqrt(d.dot(d))
+
+
+def poses_of(stage: Stage, robots: list[RobotView]) -> Poses:
+    """The poses of robots that are all alike, on their stage, at one instant.
 
     Links 1 and 3 lie in the back layer, link 2 and the pieces of link 4 in the front one, so that
     none runs through another; bearings span both.
-
-    Args:
-        stage: where k robots stand.
-        robots: as they are at first, all alike.
     """
+    return _layout(stage, robots[0].counts).poses(robots)
 
-    def __init__(self, stage: Stage, robots: list[RobotView]) -> None:
-        counts = robots[0].counts
+
+class _Layout:
+    """Turns points of robots into poses. One thread at a time."""
+
+    def __init__(self, stage: Stage, counts: Counts) -> None:
         bases = tuple(map(tuple, stage.origins.tolist()))
         away = float(stage.away[0]), float(stage.away[1])
-        self._poses = Buffered(_layout(bases, away, stage.depths, counts))
-        k = len(robots)
+        self._poses = Buffered(_geometry(bases, away, stage.depths, counts))
+        k = len(bases)
         bars, parts = k * counts.bars, k * _parts(counts)
         self._shapes = ((bars, 3), (bars, 4), (bars,), (parts, 3), (parts, 4), (k, 3), (k, 3))
         ends = np.cumsum([0, *(int(np.prod(shape)) for shape in self._shapes)]).tolist()
         self._places = [slice(*ends) for ends in pairwise(ends)]
 
     def poses(self, robots: list[RobotView]) -> Poses:
-        """The poses at one instant."""
+        """See `poses_of`."""
         points = np.concatenate([robot.points for robot in robots]).ravel()
         with np.errstate(over="ignore"):  # what is not finite then is not drawn
             whole = self._poses(points)[0].astype(np.float32)
         named = zip(self._places, self._shapes, strict=True)
         return Poses(whole, *[whole[place].reshape(shape) for place, shape in named])
+
+
+@per_thread
+def _layout(stage: Stage, counts: Counts) -> _Layout:
+    return _Layout(stage, counts)
 
 
 def _parts(counts: Counts) -> int:
@@ -123,7 +136,7 @@ def _parts(counts: Counts) -> int:
 
 
 @lru_cache(maxsize=16)
-def _layout(
+def _geometry(
     bases: tuple[tuple[float, ...], ...],
     away: tuple[float, float],
     depths: tuple[float, float, float, float],

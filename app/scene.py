@@ -17,7 +17,7 @@ from app.drag import Plane, pointer_on_plane
 from app.freehand import Freehand
 from app.machine import Machine
 from app.path_nodes import PathNodes
-from app.poses import Layout
+from app.poses import poses_of
 from app.snapshot import PathView, RobotView, Snapshot
 from app.stage import (
     FIELD_OF_VIEW,
@@ -104,8 +104,7 @@ class Scene:
         """Creates every node, once, with as many bars, joints and points as the snapshot has."""
         robots = self._robots(snapshot)
         self._titles = build_stage(self._client.scene, self._stage, self._words)
-        self._layout = Layout(self._stage, robots)
-        poses = self._layout.poses(robots)
+        poses = poses_of(self._stage, robots)
         self._machine = Machine(self._client.scene, self._stage, robots, poses, self._words)
         self._machine.grips.on_drag("left")(self._tip_dragged)
         self._snapshot = snapshot
@@ -120,7 +119,7 @@ class Scene:
     def update(self, snapshot: Snapshot) -> None:
         """Moves everything that moves; at about 30 Hz. What is not finite is not drawn."""
         self._snapshot = snapshot
-        self._machine.update(self._layout.poses(self._robots(snapshot)))
+        self._machine.update(poses_of(self._stage, self._robots(snapshot)))
 
     def update_traces(self, snapshot: Snapshot) -> None:
         """Redraws the end-points' traces and the forces' labels; at 5 to 10 Hz."""

@@ -34,7 +34,7 @@ class TeacherView(LabView):
         session.post(CloseLesson())
         super().__init__(client, session, store, desk)
 
-    def show(self, session: Session, achieved: float, frame: int, stride: int) -> None:
+    def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
         """See `app.loop.View`."""
         lab = self._teaching.followed()
         if lab is None:

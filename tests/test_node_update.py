@@ -125,12 +125,12 @@ def test_what_one_thread_tells_in_a_frame_arrives_at_once_and_in_order(
         names = [f"/{i}" for i in range(5)]
         nodes = [client.scene.add_point_cloud(n, np.zeros((1, 3)), (0, 0, 0)) for n in names]
         for node in nodes[:2]:  # nodes wait in viser's queue: these must wait behind them
-            with channel.frame():
+            with channel:
                 update_node(node, points=np.ones((1, 3)))
             channel.send()
         told = [name for frame in told_until(socket, "/1") for name in frame]
         assert all(told.index(f"new {name}") < told.index(name) for name in names[:2])
-        with channel.frame():
+        with channel:
             for node in nodes[2:4]:
                 update_node(node, points=np.ones((1, 3)))
             other = Thread(target=lambda: update_node(nodes[4], points=np.ones((1, 3))))
@@ -154,7 +154,7 @@ def test_nobody_is_told_anything_when_he_is_gone(
     while server.get_clients():
         sleep(0.01)
     assert channel.closed
-    with channel.frame():
+    with channel:
         update_node(node, points=np.ones((1, 3)))
     channel.send()
     done = Event()

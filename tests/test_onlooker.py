@@ -41,7 +41,7 @@ class Browser:
         self.lab = Lab(new_session())
         self.onlooker.watch(self.lab, self)
 
-    def show(self, session: object, achieved: float, frame: int, stride: int) -> None:
+    def show(self, session: object, achieved: float, frame: int, stride: float) -> None:
         self.told += 1
 
     def send(self) -> None:

@@ -32,7 +32,7 @@ class Desk:
 
 
 class _View:
-    def show(self, session: object, achieved: float, frame: int, stride: int) -> None:
+    def show(self, session: object, achieved: float, frame: int, stride: float) -> None:
         pass
 
     def send(self) -> None:

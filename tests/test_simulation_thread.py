@@ -41,7 +41,7 @@ class View:
         self.work = work
         self.shown: list[tuple[float, float, int]] = []
 
-    def show(self, session: Session, achieved: float, frame: int, stride: int) -> None:
+    def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
         self.shown.append((session.time, achieved, frame))
         self.work(frame)
 

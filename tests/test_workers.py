@@ -18,11 +18,11 @@ import viser
 from app import hardening
 from app.cli import run_command
 from app.listening import PortInUse, listen, reserve
-from app.workers import Worker
+from app.workers import Worker, shares
 from tests.student import Student
 from tests.supervisor import Supervisor
 
-linux_only = pytest.mark.skipif(sys.platform != "linux", reason="only Linux shares a port")
+linux_only = pytest.mark.skipif(sys.platform != "linux", reason="tried on Linux only")
 
 
 @pytest.fixture
@@ -56,6 +56,18 @@ def test_a_lab_survives_its_worker_on_a_shared_port(supervisor: Supervisor) -> N
     supervisor.process.send_signal(signal.SIGINT)
     assert supervisor.process.wait(15) == 0
     assert not any(Path(f"/proc/{worker}").exists() for worker in after)
+
+
+@pytest.mark.parametrize("cores", [[], [3], [0, 1], [0, 2, 4, 6], list(range(7))])
+@pytest.mark.parametrize("workers", [1, 2, 3, 5])
+def test_each_worker_has_its_own_cores_and_none_is_left_idle(
+    cores: list[int], workers: int
+) -> None:
+    given = shares(cores, workers)
+    assert len(given) == workers and all(given) == bool(cores)
+    assert frozenset[int]().union(*given) == set(cores)
+    if len(cores) >= workers:
+        assert sum(map(len, given)) == len(cores)
 
 
 def test_what_cannot_be_is_said_once() -> None:

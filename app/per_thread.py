@@ -1,0 +1,24 @@
+"""Each thread's own objects."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from functools import cache, wraps
+from typing import ParamSpec, TypeVar
+
+Asked = ParamSpec("Asked")
+Made = TypeVar("Made")
+
+
+def per_thread(make: Callable[Asked, Made]) -> Callable[Asked, Made]:
+    """As `functools.cache`, but no thread gets what another one has."""
+    own = threading.local()
+
+    @wraps(make)
+    def made(*args: Asked.args, **options: Asked.kwargs) -> Made:
+        if not hasattr(own, "made"):
+            own.made = cache(make)
+        return own.made(*args, **options)
+
+    return made
