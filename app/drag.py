@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from math import hypot, isfinite
+from operator import mul, sub
 
 import numpy as np
 
@@ -59,15 +62,22 @@ def intersect_ray_plane(
         The point, shape (3,), [m]; None when the ray runs parallel to the plane, when the plane
         lies behind its origin, or when anything is not finite.
     """
-    lengths = np.linalg.norm(direction) * np.linalg.norm(plane_normal)
-    closing = float(np.dot(direction, plane_normal))
-    if not np.isfinite(lengths) or abs(closing) <= PARALLEL_COSINE * lengths:
+    start, way, there, normal = (
+        np.asarray(vector, dtype=float).tolist()  # quicker for three numbers
+        for vector in (origin, direction, plane_point, plane_normal)
+    )
+    lengths, closing = hypot(*way) * hypot(*normal), _dot(way, normal)
+    if not isfinite(lengths) or abs(closing) <= PARALLEL_COSINE * lengths:
         return None
-    along = float(np.dot(np.subtract(plane_point, origin), plane_normal)) / closing
+    along = _dot(map(sub, there, start), normal) / closing
     if not along >= 0.0:
         return None
-    point = np.asarray(origin, dtype=float) + along * np.asarray(direction, dtype=float)
-    return point if np.isfinite(point).all() else None
+    point = [x + along * dx for x, dx in zip(start, way, strict=True)]
+    return np.array(point) if all(map(isfinite, point)) else None
+
+
+def _dot(a: Iterable[float], b: Iterable[float]) -> float:
+    return sum(map(mul, a, b))
 
 
 def pointer_on_plane(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import accumulate
@@ -51,25 +52,21 @@ class Layout:
         Raises:
             ValueError: a field is missing, unknown, of the wrong size, or not finite.
         """
-        names = [name for name, _ in self.fields]
-        odd = set(names).symmetric_difference(values)
-        if odd:
+        if values.keys() != self.slices.keys():
+            odd = values.keys() ^ self.slices.keys()
             raise ValueError(f"missing or unknown: {', '.join(sorted(odd))}")
-        parts = [np.ravel(values[name]) for name in names]
-        if all(part.size == size for part, (_, size) in zip(parts, self.fields, strict=True)):
-            whole = np.concatenate(parts, dtype=float)
-            if np.isfinite(whole).all():
-                return whole
-        vector = np.empty(self.size)
-        for name, where in self.slices.items():
-            value = np.asarray(values[name], dtype=float).ravel()
-            if value.size != where.stop - where.start or not np.all(np.isfinite(value)):
-                raise ValueError(
-                    f"{name}: expected {where.stop - where.start} finite numbers, got {value}"
-                )
-            vector[where] = value
-        return vector
+        numbers = list[float]()
+        for name, size in self.fields:
+            own = _numbers(values[name])
+            if len(own) != size or not all(map(math.isfinite, own)):
+                raise ValueError(f"{name}: expected {size} finite numbers, got {values[name]}")
+            numbers += own
+        return np.array(numbers)
 
     def unpack(self, vectors: Array) -> dict[str, Array]:
         """Views of the fields, shape (..., size) -> (..., field size)."""
         return {name: vectors[..., where] for name, where in self.slices.items()}
+
+
+def _numbers(value: ArrayLike) -> list[float]:
+    return [value] if isinstance(value, float) else np.asarray(value, dtype=float).ravel().tolist()

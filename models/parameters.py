@@ -7,8 +7,11 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from functools import cache
+from types import MappingProxyType
 from typing import Any
 
 NOTHING = 1e-9  # of any parameter; what is smaller is taken as 0, so that its inverse is finite
@@ -238,9 +241,14 @@ class FiveBarParameters(Parameters):
     )
 
 
-def specs(kind: type[Parameters] | Parameters) -> dict[str, Spec]:
+def specs(kind: type[Parameters] | Parameters) -> Mapping[str, Spec]:
     """Field name -> Spec, in the order of declaration."""
-    return {f.name: f.metadata["spec"] for f in dataclasses.fields(kind)}
+    return _specs(kind if isinstance(kind, type) else type(kind))
+
+
+@cache
+def _specs(kind: type[Parameters]) -> Mapping[str, Spec]:
+    return MappingProxyType({f.name: f.metadata["spec"] for f in dataclasses.fields(kind)})
 
 
 def unknown_name(name: str, known: list[str], what: str = "parameter") -> ValueError:

@@ -139,16 +139,12 @@ class RigidFiveBar:
     def plant(self, parameters: Parameters) -> Array:
         """See `Robot.plant`."""
         own = _own(parameters)
-        removed = own.counterweights_removed / 100
-        return self.system.parameter_vector(self.links.spoiled(removed, own.payload).lumped())
+        return _plant(self, own.counterweights_removed / 100, own.payload)
 
     def model(self, parameters: Parameters) -> Array:
         """See `Robot.model`: the balanced robot of (12), each entry wrong as asked."""
         own = _own(parameters)
-        values = self.links.lumped()
-        for name in ("M11", "M22", "b1", "b2"):
-            values[name] *= 1 + getattr(own, f"error_{name}") / 100
-        return self.system.parameter_vector(values)
+        return _model(self, own.error_M11, own.error_M22, own.error_b1, own.error_b2)
 
     def rest(self, y: Array) -> Array:
         """See `Robot.rest`."""
@@ -193,6 +189,26 @@ class RigidFiveBar:
     def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
         """See `Robot.extras`: none."""
         return {}
+
+
+@lru_cache(maxsize=64)
+def _plant(robot: RigidFiveBar, removed: float, payload: float) -> Array:
+    links = robot.links.spoiled(removed, payload)
+    return _constant(robot.system.parameter_vector(links.lumped()))
+
+
+@lru_cache(maxsize=64)
+def _model(robot: RigidFiveBar, *percent: float) -> Array:
+    values = robot.links.lumped()
+    for name, error in zip(("M11", "M22", "b1", "b2"), percent, strict=True):
+        values[name] *= 1 + error / 100
+    return _constant(robot.system.parameter_vector(values))
+
+
+def _constant(array: Array) -> Array:
+    """The same, for all who ask."""
+    array.flags.writeable = False
+    return array
 
 
 @lru_cache(maxsize=1)
