@@ -136,7 +136,7 @@ def _load(server: Server, clients: int, seconds: float) -> Iterator[Iterator[See
     """What a crowd sees: first when it has settled, then every so many seconds."""
     command = [sys.executable, "-m", "app.load", *map(str, (server.port, clients, seconds))]
     pipe = subprocess.PIPE
-    with subprocess.Popen(command, stdout=pipe, stderr=pipe) as process:
+    with subprocess.Popen(command, stdout=pipe, stderr=pipe, start_new_session=True) as process:
         try:
             yield _lines(process)
         finally:
