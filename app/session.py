@@ -9,6 +9,7 @@ from __future__ import annotations
 import logging
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from math import inf
 from operator import is_
 from time import perf_counter
@@ -43,7 +44,7 @@ log = logging.getLogger(__name__)
 
 MOST_COMMANDS = 500  # waiting at once; a flood beyond is dropped
 MOST_TICKS = 200  # in one frame
-MOST_HAPPENINGS = 2000
+MOST_HAPPENINGS = 1500  # 0.2 MB
 REACH = 0.4  # [m], a hand's target stays within this of the middle
 
 
@@ -175,8 +176,8 @@ class Session:
 
     def note(self, name: str, detail: str = "", controllers: tuple[str, ...] = NAMES) -> None:
         """Remember that something has happened."""
-        robots: tuple[RobotName, ...] = tuple(ROLES[controller] for controller in controllers)
-        self.happenings.append(Happening(self.run_number, self.time, name, detail, robots))
+        what = Happening(self.run_number, self.time, name, detail, _roles(controllers))
+        self.happenings.append(what)
 
     def say(self, message: str, level: str = "info") -> None:
         """Show a sentence to the user."""
@@ -405,3 +406,9 @@ class Session:
         distances = [distance for frame in frames for distance in frame.distances]
         samples = samples_of(self.robot, self.parameters, rows, distances)
         return samples.reshape(len(frames), len(self.runs), -1)
+
+
+@lru_cache
+def _roles(controllers: tuple[str, ...]) -> tuple[RobotName, ...]:
+    """The same object for all that concerns the same robots: it is kept many times."""
+    return tuple(ROLES[controller] for controller in controllers)
