@@ -19,6 +19,7 @@ from uuid import uuid4
 import msgspec
 import platformdirs
 import sqlalchemy as sa
+from filelock import FileLock
 from sqlalchemy import event, exc, pool
 
 from app.tables import LONGEST_CODE, labs, leases, meta, metadata
@@ -204,13 +205,18 @@ class Records:
             try:
                 return _prepared(self._url)
             except _Broken as error:
-                if file is not None and _identity(file) == before:  # nobody was quicker
-                    self._move_aside(file, str(error))
+                if file is not None:
+                    self._move_aside(file, before, str(error))
             except exc.SQLAlchemyError as error:
                 raise NotKept(_words(error)) from error
         raise NotKept("it breaks again and again")
 
-    def _move_aside(self, file: Path, why: str) -> None:
+    def _move_aside(self, file: Path, broken: tuple[int, int] | None, why: str) -> None:
+        with FileLock(f"{file}.lock", timeout=PATIENCE):
+            if _identity(file) == broken:  # nobody was quicker
+                self._rename(file, why)
+
+    def _rename(self, file: Path, why: str) -> None:
         stamp = time.strftime("%Y%m%d-%H%M%S", time.gmtime(self._clock()))
         aside = file.with_name(f"{file.name}.broken-{stamp}")
         count = 1

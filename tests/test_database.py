@@ -432,6 +432,27 @@ def test_processes_that_find_a_broken_file_at_once(file: Path) -> None:
         assert all(records.load(f"w{i}") for i in range(3))
 
 
+def test_who_finds_a_broken_file_while_it_is_moved_aside_waits(file: Path) -> None:
+    file.parent.mkdir()
+    file.write_bytes(b"broken" * 1000)
+    others: list[Records] = []
+    other = threading.Thread(target=lambda: others.append(Records(file_url(file))))
+
+    def clock() -> float:  # asked for the name, when nothing is moved yet
+        if not other.ident:
+            other.start()
+            other.join(timeout=1.0)
+        return NOON
+
+    records = Records(file_url(file), clock=clock)
+    other.join(timeout=30.0)
+    assert [aside.read_bytes() for aside in broken_files(file)] == [b"broken" * 1000]
+    records.save("mine", {"n": 1})
+    assert others[0].load("mine") == {"n": 1} and others[0].is_shared
+    for each in (records, *others):
+        each.close()
+
+
 # Other databases
 
 
