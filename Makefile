@@ -11,7 +11,7 @@ STAMP   = $(VENV)/.installed
 .DEFAULT_GOAL := run
 
 $(STAMP): pyproject.toml
-	$(PYTHON) -m venv $(VENV)
+	$(PYTHON) -m venv --clear $(VENV)
 	$(BIN)/pip install --quiet --editable ".[dev]"
 	touch $(STAMP)
 

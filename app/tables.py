@@ -1,7 +1,7 @@
 """The tables of the database, and nothing else. What is in them is made by the modules named here.
 
-`database.py`: meta, labs. `leases.py`: leases. `shared_classroom.py`: classes, members, passes.
-`watches.py`: watches.
+`database_engine.py`: meta. `database.py`: labs. `leases.py`: leases. `watches.py`: watches.
+`shared_classroom.py`: classes, members, passes.
 """
 
 from __future__ import annotations
