@@ -124,31 +124,33 @@ def _(command: c.Hold, session: Session) -> None:
         _known(command.controller)
     everyone: list[str] = list(NAMES)
     names = everyone if command.controller is None else session.targets(command.controller)
-    on = not session.held.intersection(names) if command.on is None else command.on
-    session.hold(names, on)
+    on = not session.grips.held.intersection(names) if command.on is None else command.on
+    session.grips.hold(names, on, session.editor.curve)
 
 
 @apply.register(c.Grab)
 def _(command: c.Grab, session: Session) -> None:
     _known(command.controller)
     _leave_past(session)
-    session.grab(command.controller, session.robot.unplace(_point(command.target)))
+    target, together = _point(command.target), session.targets(command.controller)
+    session.grips.grab(command.controller, session.robot.unplace(target), together)
 
 
 @apply.register(c.Release)
 def _(command: c.Release, session: Session) -> None:
-    if command.controller in (None, session.grabbed):
-        session.release()
+    if command.controller in (None, session.grips.grabbed):
+        session.grips.release()
 
 
 @apply.register(c.Tug)
 def _(command: c.Tug, session: Session) -> None:
     _leave_past(session)
-    name = session.grabbed or NAMES[-1]
-    target = session.hands.get(name, session.runs[name].shown()["y"])
+    name = session.grips.grabbed or NAMES[-1]
+    target = session.grips.hands.get(name, session.runs[name].shown()["y"])
     plane = session.robot.frame
     z = plane.planar(target) + np.array([_finite(command.right), _finite(command.up)])
-    session.grab(name, target + plane.lift(z) - plane.lift(plane.planar(target)))
+    there = target + plane.lift(z) - plane.lift(plane.planar(target))
+    session.grips.grab(name, there, session.targets(name))
 
 
 @apply.register(c.LookBack)

@@ -20,7 +20,7 @@ def _(command: c.Freeze, session: Session) -> None:
     if command.on == session.frozen:
         return
     if command.on:
-        session.release()
+        session.grips.release()
         if session.editor.proposed is not None:  # a point is being dragged
             apply(commands.EndMove(), session)
     session.frozen = command.on

@@ -68,7 +68,7 @@ class LabView:
     def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
         """See `app.loop.View`."""
         count = frame + self._offset
-        if session.grabbed and stride == AT_EASE:
+        if session.grips.grabbed and stride == AT_EASE:
             stride = 1.0  # the hand feels every frame of delay
         if not is_turn(count, stride) or self._robot is None or self._channel.closed:
             return

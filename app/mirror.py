@@ -119,8 +119,9 @@ class Mirror(Lab):
         """A hand moves more often than it is told."""
         old = self._taken
         assert old is not None
+        pushes = self.session.grips.pushes
         passed = (time - old.time) / (new.time - old.time)
         for name, this, that in zip(NAMES, old.robots, new.robots, strict=True):
             if this.hand and that.hand and this.hand != that.hand:
                 at = (1 - passed) * np.array(this.hand) + passed * np.array(that.hand)
-                self.session.set_push(name, Push(at, self.session.push(name).hold))
+                pushes[name] = Push(at, pushes[name].hold)

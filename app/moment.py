@@ -113,7 +113,7 @@ def tell(lab: Lab) -> Moment:
     robots = tuple(
         _robot(
             session.runs[name],
-            session.push(name),
+            session.grips.pushes[name],
             instant.states[number],
             instant.sample[number],
             instant.max_distances[number],
@@ -129,8 +129,8 @@ def tell(lab: Lab) -> Moment:
         moves=session.running and not session.frozen,
         rate=session.rate,
         exaggeration=session.exaggeration,
-        held=tuple(session.held),
-        grabbed=session.grabbed,
+        held=tuple(session.grips.held),
+        grabbed=session.grips.grabbed,
         message=session.message[:2000],
         level=session.message_level,
         language=session.lessons.words.language,
@@ -238,10 +238,11 @@ def take_over(session: Session, new: Moment, old: Moment | None) -> None:
     if new.language != session.lessons.words.language:
         session.lessons.set_language(new.language)
     session.time, session.running, session.rate = new.time, new.running, new.rate
-    session.exaggeration, session.grabbed, session.held = new.exaggeration, new.grabbed, {*new.held}
+    session.exaggeration, grips = new.exaggeration, session.grips
+    grips.grabbed, grips.held = new.grabbed, {*new.held}
     session.say(new.message, new.level)
     for name, robot in zip(NAMES, new.robots, strict=True):
-        session.set_push(name, _push(robot))
+        grips.pushes[name] = _push(robot)
         _take_robot(session, session.runs[name], robot)
 
 

@@ -70,17 +70,19 @@ def perform(action: Action, session: Session) -> None:
 
 
 def _hold(action: Action, session: Session) -> None:
-    session.hold([CONTROLLERS[action.only]] if action.only else list(NAMES), bool(action.hold))
+    session.grips.hold(_whom(action), bool(action.hold), session.editor.curve)
 
 
 def _pull(action: Action, session: Session) -> None:
-    copy, session.copy = session.copy, not action.only
     name = CONTROLLERS[action.only or "follower"]
     plane, at = session.robot.frame, session.runs[name].shown()["y"]
     z = plane.planar(at)
     away = np.array(action.pull) / 1e3
-    session.grab(name, at + plane.lift(z + away) - plane.lift(z))
-    session.copy = copy
+    session.grips.grab(name, at + plane.lift(z + away) - plane.lift(z), _whom(action))
+
+
+def _whom(action: Action) -> list[str]:
+    return [CONTROLLERS[action.only]] if action.only else list(NAMES)
 
 
 def _set(action: Action, session: Session) -> None:

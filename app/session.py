@@ -19,6 +19,7 @@ import numpy as np
 from app import commands
 from app.apply_class import apply
 from app.class_commands import ClassCommand
+from app.grips import Grips
 from app.history import Frame, History, Inputs, Instant
 from app.lesson_run import LessonRun
 from app.loop_store import LoopStore
@@ -37,7 +38,7 @@ from models.layout import Layout
 from models.parameters import Parameters
 from models.path_design import PathDesign, presets
 from models.robots import Robot
-from models.simulation import FREE, TICK, Push, brake_at, time_step
+from models.simulation import TICK, time_step
 from models.system import Array
 
 log = logging.getLogger(__name__)
@@ -45,7 +46,6 @@ log = logging.getLogger(__name__)
 MOST_COMMANDS = 500  # waiting at once; a flood beyond is dropped
 MOST_TICKS = 200  # in one frame
 MOST_HAPPENINGS = 1500  # 0.2 MB
-REACH = 0.4  # [m], a hand's target stays within this of the middle
 
 
 class Session:
@@ -57,7 +57,7 @@ class Session:
         history: the last minute.
         time: simulated, [s].
         viewing: the past instant being looked at, [s], or None.
-        held, hands: who is held back; where hands pull, by controller, in output coordinates.
+        grips: what holds the robots back, and what pulls at them.
         happenings: what was done and came about, for the lessons' checks.
         run_number: how often the robots have been set back to the start.
         script: what is being done by itself, or None.
@@ -224,7 +224,7 @@ class Session:
 
     def _advance(self, run: PlantRun, ticks: int, dt: float) -> None:
         was, name = run.diverged, run.controller
-        editor, push = self.editor, self._pushes[name]
+        editor, push = self.editor, self.grips.pushes[name]
         run.advance(
             self._store, self.parameters, editor.curve, editor.table, push, ticks, self.time, dt
         )
@@ -257,17 +257,13 @@ class Session:
         self._owed = 0.0
         self._now: Instant | None = None
         self.viewing: float | None = None
-        self.held: set[str] = set()
-        self.hands: dict[str, Array] = {}
-        self.grabbed: str | None = None
-        self._grab_offset: dict[str, Array] = {}
-        self._pushes: dict[str, Push] = dict.fromkeys(NAMES, FREE)
         self.history.clear()
         start = self.start_point(self.editor.curve)
         curve = self.editor.curve
         self.runs = {
             name: PlantRun(self.robot, name, self.parameters, curve, start) for name in NAMES
         }
+        self.grips = Grips(self.robot, self.runs, self.note)
 
     def start_point(self, curve: Curve) -> Array:
         """Where a run begins: on the path, (p,), [m]."""
@@ -286,58 +282,9 @@ class Session:
         )
         self.say(said, "error")
 
-    # Forces
-
-    def push(self, name: str) -> Push:
-        """What acts on a robot from outside; the same object while nothing changes."""
-        return self._pushes[name]
-
-    def set_push(self, name: str, push: Push) -> None:
-        """Let something act on a robot that is known from elsewhere."""
-        self._pushes[name] = push
-
     def targets(self, controller: str) -> list[str]:
         """Which robots a gesture at `controller` acts on."""
         return list(NAMES) if self.copy else [controller]
-
-    def hold(self, names: list[str], on: bool) -> None:
-        """Begin or end holding robots back, each where it is now."""
-        changed = tuple(name for name in names if on != (name in self.held))
-        if changed:
-            self.note("hold" if on else "let_go", controllers=changed)
-        for name in changed:
-            (self.held.add if on else self.held.discard)(name)
-            brake = None
-            if on:
-                row = self.runs[name].shown()
-                brake = brake_at(self.robot, self.editor.curve, row["y"], float(row["theta"][0]))
-            self._pushes[name] = Push(self.hands.get(name), brake)
-
-    def grab(self, controller: str, target: Array) -> None:
-        """Pull an end-point towards a target; with `copy`, the other by the same displacement."""
-        if not np.isfinite(target).all():
-            raise ValueError("the hand's target is not a point")
-        if self.grabbed != controller:
-            self.release()
-            own = self.runs[controller].shown()["y"].copy()
-            self.grabbed = controller
-            self._grab_offset = {
-                name: self.runs[name].shown()["y"] - own for name in self.targets(controller)
-            }
-            self.note("pull", controllers=tuple(self._grab_offset))
-        home = self.robot.frame.lift(np.zeros(2))
-        for name, offset in self._grab_offset.items():
-            self.hands[name] = (target + offset).clip(home - REACH, home + REACH)
-            self._pushes[name] = Push(self.hands[name], self._pushes[name].hold)
-
-    def release(self) -> None:
-        """Let all end-points go."""
-        if self.hands:
-            self.note("release", controllers=tuple(self.hands))
-        for name in self.hands:
-            self._pushes[name] = Push(None, self._pushes[name].hold)
-        self.hands.clear()
-        self.grabbed = None
 
     # The past
 
@@ -347,7 +294,7 @@ class Session:
             self.viewing = None
             return
         self.running = False
-        self.release()
+        self.grips.release()
         self.viewing = self.time - min(ago, self.history.span())
 
     def go_on(self) -> None:
@@ -360,8 +307,7 @@ class Session:
                 self.time = stretch.time
                 for name, run in self.runs.items():
                     run.restore(stretch.drives[name], self.editor.curve, stretch.curve)
-                    self._pushes[name] = FREE
-                self.held.clear()
+                self.grips.let_go()
             self.viewing = None
         self.running = True
         self.say("")

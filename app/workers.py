@@ -34,7 +34,7 @@ START = f"import sys; sys.path[0] = {str(ROOT)!r}; from app.cli import main; mai
 
 
 class Options(Protocol):
-    """What was asked for on the command line; see `app.cli.Serve`."""
+    """What was asked for on the command line; see `app.cli_serve.Serve`."""
 
     @property
     def host(self) -> str: ...

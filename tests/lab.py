@@ -71,7 +71,7 @@ def assert_sound(session: Session) -> None:
     assert np.isfinite(editor.table).all() and np.isfinite(editor.points()).all()
     assert editor.selected is None or 0 <= editor.selected < len(editor.design.points)
     assert 0.125 <= session.rate <= 4
-    assert session.held <= set(NAMES) and set(session.hands) <= set(NAMES)
+    assert session.grips.held <= set(NAMES) and set(session.grips.hands) <= set(NAMES)
     assert session.viewing is None or not session.running
     assert_drawable(take_snapshot(session, 1.0))
 

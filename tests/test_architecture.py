@@ -17,7 +17,7 @@ MAY_IMPORT = {
 }
 MATHEMATICS = ("models", "lessons")
 FOREIGN = {"viser", "threading", "time", "asyncio", "datetime", "random"}
-PRINTING = {"app/cli.py", "app/bench.py"}
+PRINTING = {"app/cli.py", "app/cli_serve.py", "app/cli_experiment.py", "app/bench.py"}
 LONGEST = 40
 
 

@@ -106,7 +106,7 @@ def test_pulling_an_end_point_pulls_both(tab: Tab, name: str) -> None:
     start = tab.placed(name, before[name])
     goal = start[0] - 40, start[1] + 30
     with tab.dragging(start, goal):
-        wait_for(lambda: session.grabbed == name and len(session.hands) == 2)
+        wait_for(lambda: session.grips.grabbed == name and len(session.grips.hands) == 2)
         wait_for(lambda: math.dist(tab.placed(name, hands(session)[name]), goal) < 12)
         pulled = hands(session)
         moved = {each: pulled[each] - before[each] for each in pulled}
@@ -116,12 +116,12 @@ def test_pulling_an_end_point_pulls_both(tab: Tab, name: str) -> None:
         for each, run in session.runs.items():
             assert (tab.tip(each) - before[each]) @ moved[each] > 0, each
             assert np.linalg.norm(run.shown()["force"]) > 0.1
-    wait_for(lambda: session.grabbed is None and not session.hands)
+    wait_for(lambda: session.grips.grabbed is None and not session.grips.hands)
 
 
 def hands(session: Session) -> dict[str, np.ndarray]:
     """Where they pull, in the path's plane, shape (2,) each, [m]."""
-    return {name: session.robot.frame.planar(hand) for name, hand in session.hands.items()}
+    return {name: session.robot.frame.planar(hand) for name, hand in session.grips.hands.items()}
 
 
 def test_without_copy_only_the_robot_in_hand_is_pulled(tab: Tab) -> None:
@@ -130,8 +130,8 @@ def test_without_copy_only_the_robot_in_hand_is_pulled(tab: Tab) -> None:
     stop_between_control_points(tab)
     start = tab.placed(TRACKER, tab.tip(TRACKER))
     with tab.dragging(start, (start[0] - 30, start[1])):
-        wait_for(lambda: tab.session.hands)
-        assert list(tab.session.hands) == [TRACKER]
+        wait_for(lambda: tab.session.grips.hands)
+        assert list(tab.session.grips.hands) == [TRACKER]
     tab.page.get_by_label("Copy to both").check()
     wait_for(lambda: tab.session.copy)
 
@@ -188,7 +188,7 @@ def test_holding_both_back_tells_the_story(tab: Tab) -> None:
     for _ in range(5):  # two laps: as in the paper's experiment, held back at the rightmost point
         tab.ask(*[c.Step()] * 400)
     tab.press("Hold both back")
-    wait_for(lambda: len(session.held) == 2)
+    wait_for(lambda: len(session.grips.held) == 2)
     tab.press("Run")
     wait_for(lambda: session.time > 4.0)
     assert session.runs[FOLLOWER].max_distance < 0.003
@@ -196,13 +196,13 @@ def test_holding_both_back_tells_the_story(tab: Tab) -> None:
     shown = tab.page.get_by_role("row", name="Path following").first.inner_text()
     assert float(shown.split("\t")[-1].split()[0]) < 3.0
     tab.press("Let both go")
-    wait_for(lambda: not session.held)
+    wait_for(lambda: not session.grips.held)
     tab.button("Hold both back").wait_for()
     wait_for(lambda: max(run.distance for run in session.runs.values()) < 2e-3)
 
 
 def test_holding_as_long_as_the_button_is_down(tab: Tab) -> None:
-    held = tab.session.held
+    held = tab.session.grips.held
     box = tab.button("Hold while pressed").bounding_box()
     assert box is not None
     middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
@@ -316,9 +316,9 @@ def test_keys_do_what_the_buttons_do(tab: Tab) -> None:
     wait_for(lambda: session.time > paused)
     assert session.time == pytest.approx(paused + 1e-3, abs=1e-9)
     keys.press("h")
-    wait_for(lambda: len(session.held) == 2)
+    wait_for(lambda: len(session.grips.held) == 2)
     keys.press("h")
-    wait_for(lambda: not session.held)
+    wait_for(lambda: not session.grips.held)
     keys.press("r")
     wait_for(lambda: session.time == 0.0)
     keys.press("Space")
@@ -463,7 +463,7 @@ def test_a_narrow_screen_shows_both_robots_and_the_buttons(
             assert 0 < x < 390 and 0 < y < 0.5 * 844
     tab.button("Hold both back").scroll_into_view_if_needed()
     tab.press("Hold both back")
-    wait_for(lambda: len(tab.session.held) == 2)
+    wait_for(lambda: len(tab.session.grips.held) == 2)
     assert tab.page.evaluate("document.documentElement.scrollWidth") <= 390
     context.close()
 
@@ -485,7 +485,7 @@ def test_the_lab_needs_no_compiler(browser: Browser, tmp_path: Path) -> None:
     tab = Tab(server, context, draws=False)
     begun = tab.session.time
     tab.page.keyboard.press("h")
-    wait_for(lambda: len(tab.session.held) == 2 and tab.session.time > begun + 2.0)
+    wait_for(lambda: len(tab.session.grips.held) == 2 and tab.session.time > begun + 2.0)
     follower, tracker = (tab.session.runs[name].max_distance for name in (FOLLOWER, TRACKER))
     assert follower < 0.006 < 0.04 < tracker
     assert tab.lab.achieved > 0.5

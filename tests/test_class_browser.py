@@ -126,7 +126,7 @@ def test_the_teacher_looks_on_and_touches_nothing(tabs: Class) -> None:
     assert teacher.button("Hold both back").count() == 0
     teacher.page.keyboard.press("h")
     teacher.page.wait_for_timeout(300)
-    assert not first.session.held and not teacher.session.held
+    assert not first.session.grips.held and not teacher.session.grips.held
 
 
 def test_a_teacher_who_reloads_is_still_the_teacher(tabs: Class) -> None:

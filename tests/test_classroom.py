@@ -172,7 +172,7 @@ def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -
     klass.room.freeze(True)
     klass.look()
     before = session.time
-    assert session.message == ENGLISH("class.frozen") and not session.hands
+    assert session.message == ENGLISH("class.frozen") and not session.grips.hands
     for command in (c.SetRunning(False), c.Step(), c.SetParameter("K1", 1.0), c.Tug(0.01, 0.0)):
         session.say("")
         do(session, command)
@@ -180,7 +180,7 @@ def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -
     run(session, 0.5)
     run(outside, 0.5)
     assert session.time == before and outside.time > 0.4
-    assert session.running and session.parameters.K1 != 1.0 and not session.hands
+    assert session.running and session.parameters.K1 != 1.0 and not session.grips.hands
     klass.room.freeze(False)
     klass.look()
     run(session, 0.5)

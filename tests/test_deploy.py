@@ -10,7 +10,7 @@ import pytest
 import yaml
 from sqlalchemy import make_url
 
-from app.cli import Serve
+from app.cli_serve import Serve
 from app.origin import HEALTH
 from tests.supervisor import ROOT
 

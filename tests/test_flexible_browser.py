@@ -69,16 +69,16 @@ def test_the_tip_is_pulled_in_the_plane_that_was_chosen(tab: Tab, plane: str) ->
     before, start = tip(tab), tab.pixel(FOLLOWER, tip(tab))
 
     def pulled() -> np.ndarray:
-        return session.robot.place(session.hands[FOLLOWER])
+        return session.robot.place(session.grips.hands[FOLLOWER])
 
     with tab.dragging(start, (start[0] + 45, start[1] + 25)):
-        wait_for(lambda: session.hands and np.linalg.norm(pulled() - before) > 0.01)
+        wait_for(lambda: session.grips.hands and np.linalg.norm(pulled() - before) > 0.01)
         moved = pulled() - before
         flat = moved[2] if plane == HORIZONTAL else moved @ [0.1, 1.0, 0.0]
         assert abs(flat) < 1e-6
         tab.ask(c.SetRunning(True))
         wait_for(lambda: deflection(tab) > 1e-3)
-    wait_for(lambda: not session.hands)
+    wait_for(lambda: not session.grips.hands)
     wait_for(lambda: deflection(tab) < 1e-3)
     assert tab.said() == ""
 

@@ -301,7 +301,7 @@ def test_going_on_forgets_what_came_after() -> None:
     most = session.runs[TRACKER].max_distance
     do(session, c.View(session.time - 0.2), c.GoOn())
     assert session.time < 0.21 and session.history.span() < 0.21
-    assert not session.held and not session.hands
+    assert not session.grips.held and not session.grips.hands
     assert session.runs[TRACKER].max_distance < most / 3
     run(session, 0.5)
     assert contiguous(session.history)

@@ -126,12 +126,12 @@ def test_a_task_is_failed_then_passed(tab: Tab) -> None:
 def hold_for(tab: Tab, seconds: float) -> None:
     """Hold both robots back by the button, for some simulated seconds."""
     tab.button("Hold both back").first.click()
-    wait_for(lambda: tab.session.held)
+    wait_for(lambda: tab.session.grips.held)
     tab.ask(c.SetRunning(True))
     begin = tab.session.time
     wait_for(lambda: tab.session.time > begin + seconds)
     tab.button("Let both go").first.click()
-    wait_for(lambda: not tab.session.held)
+    wait_for(lambda: not tab.session.grips.held)
 
 
 def test_the_free_lab_is_as_it_was(tab: Tab) -> None:

@@ -115,7 +115,7 @@ def test_hints_come_one_at_a_time(session: Session) -> None:
 def test_links_act_on_the_lab(session: Session) -> None:
     do(session, lc.Act((Action(set={"K3": 100.0}), Action(path="clover"), Action(hold=True))))
     assert session.parameters.K3 == 100.0 and session.editor.design.name == "clover"
-    assert session.held
+    assert session.grips.held
     do(session, lc.Act((Action(set={"K3": 1e9}),)))
     assert session.parameters.K3 == 100.0 and "K3" in session.message
 

@@ -145,10 +145,10 @@ def test_a_hand_that_pulls_is_near_meanwhile_and_exact_after() -> None:
         return c.Tug(0.002 * np.cos(3 * time), 0.002 * np.sin(3 * time))
 
     both.run(1.0, pull)
-    assert both.distance() < 5 * SAME and both.mirror.session.grabbed
+    assert both.distance() < 5 * SAME and both.mirror.session.grips.grabbed
     do(both.session, c.Release())
     both.run(1.5)
-    assert both.distance() < SAME and not both.mirror.session.grabbed
+    assert both.distance() < SAME and not both.mirror.session.grips.grabbed
 
 
 @pytest.mark.parametrize(

@@ -297,11 +297,11 @@ def test_both_robots_share_path_parameters_and_clock() -> None:
 def test_hold_acts_on_both_with_copy_and_on_one_without(controller: str, copy: bool) -> None:
     session = new_session(0.5)
     do(session, c.SetCopy(copy), c.Hold(True, controller))
-    assert session.held == (set(NAMES) if copy else {controller})
+    assert session.grips.held == (set(NAMES) if copy else {controller})
     run(session, 0.2)
     for name, run_ in session.runs.items():
         force = np.linalg.norm(run_.shown()["force"])
-        assert (force > 0.1) == (name in session.held)
+        assert (force > 0.1) == (name in session.grips.held)
     do(session, c.Hold(False, controller))
     run(session, 0.1)
     assert all(np.all(r.shown()["force"] == 0) for r in session.runs.values())
@@ -315,7 +315,7 @@ def test_hold_tears_the_tracker_off_and_not_the_follower() -> None:
     assert shown.held
     assert shown.robots[FOLLOWER].max_distance < 0.004 < 0.03 < shown.robots[TRACKER].max_distance
     do(session, c.Hold())
-    assert not session.held
+    assert not session.grips.held
 
 
 @pytest.mark.parametrize("controller", NAMES)
@@ -328,18 +328,18 @@ def test_grab_pulls_both_by_the_same_or_one_alone(controller: str, copy: bool) -
     for shift in ([0.02, 0.0, 0.01], [0.03, 0.0, -0.02]):
         target = session.robot.place(before[controller]) + np.array(shift)
         do(session, c.Grab(controller, target))
-        assert set(session.hands) == (set(NAMES) if copy else {controller})
-        for name, hand in session.hands.items():
+        assert set(session.grips.hands) == (set(NAMES) if copy else {controller})
+        for name, hand in session.grips.hands.items():
             assert hand - before[name] == pytest.approx([shift[0], shift[2]])
     session.simulate(1)
     pulled = {n for n, r in session.runs.items() if np.linalg.norm(r.shown()["force"]) > 0.1}
-    assert pulled == set(session.hands)
+    assert pulled == set(session.grips.hands)
     other = next(name for name in NAMES if name != controller)
     do(session, c.Release(other))
-    assert session.hands  # that robot was not the one being pulled
+    assert session.grips.hands  # that robot was not the one being pulled
     do(session, c.Release(controller))
     session.simulate(1)
-    assert not session.hands and take_snapshot(session, 1.0).grabbed is None
+    assert not session.grips.hands and take_snapshot(session, 1.0).grabbed is None
     assert all(np.all(r.shown()["force"] == 0) for r in session.runs.values())
 
 
@@ -351,7 +351,7 @@ def test_the_hand_holds_one_robot_at_a_time_unless_it_is_copied() -> None:
         do(session, c.Grab(name, target))
         session.simulate(1)
         pulled = {n for n, r in session.runs.items() if np.any(r.shown()["force"] != 0)}
-        assert pulled == {name} == set(session.hands)
+        assert pulled == {name} == set(session.grips.hands)
 
 
 def test_same_state_same_hand_same_force() -> None:
@@ -378,8 +378,8 @@ def test_tug_takes_hold_and_adds_up() -> None:
     do(session, c.SetRunning(False))
     start = session.runs[FOLLOWER].shown()["y"].copy()
     do(session, c.Tug(0.01, 0.0), c.Tug(0.01, -0.01))
-    assert session.grabbed == FOLLOWER
-    assert session.hands[FOLLOWER] - start == pytest.approx([0.02, -0.01])
+    assert session.grips.grabbed == FOLLOWER
+    assert session.grips.hands[FOLLOWER] - start == pytest.approx([0.02, -0.01])
 
 
 # The path

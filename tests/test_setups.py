@@ -54,7 +54,7 @@ def everything(session: Session) -> list[Any]:
     kept = [session.entry, session.parameters, session.robot, editor, editor.design, editor.curve]
     kept += [editor.version, session.rate, session.copy, session.exaggeration, session.time]
     kept += [id(run) for run in session.runs.values()] + [len(session.history), session.running]
-    return [*kept, dict(session._benches), session.held.copy(), session.message]
+    return [*kept, dict(session._benches), session.grips.held.copy(), session.message]
 
 
 def test_a_new_lab_has_nothing_to_tell() -> None:

@@ -49,7 +49,7 @@ class RunPanel:
 
     def follow(self, session: Session) -> None:
         """Show what is; ends a press that has been let go."""
-        held = bool(session.held)
+        held = bool(session.grips.held)
         label = self._words("run.let_both_go" if held else "run.hold_both")
         if not session.copy:
             label = self._words("run.let_go" if held else "run.hold")

@@ -1,0 +1,49 @@
+"""Files that somebody has asked for: whole, or not at all, and refused before the work is done."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+def check_plot(path: Path | None) -> None:
+    """Complain of a picture that cannot be made.
+
+    Raises:
+        ValueError: an unknown kind of file, or nothing can be written there.
+    """
+    if path is None:
+        return
+    if path.suffix not in (".png", ".svg", ".pdf"):
+        raise ValueError(f"--plot {path}: expected a name ending in .png, .svg or .pdf")
+    check_writable(path)
+
+
+def check_writable(path: Path) -> None:
+    """Complain before the work is done, not after it.
+
+    Raises:
+        ValueError: nothing can be written there.
+    """
+    if path.is_dir():
+        raise ValueError(f"{path}: that is a folder")
+    if not path.parent.is_dir():
+        raise ValueError(f"{path}: no folder {path.parent}")
+    if not os.access(path.parent, os.W_OK):
+        raise ValueError(f"{path}: nothing can be written to {path.parent}")
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """A scratch file that takes the name `path` only once it is complete."""
+    handle, scratch = tempfile.mkstemp(dir=path.parent, suffix=path.suffix)
+    os.close(handle)
+    try:
+        yield Path(scratch)
+        os.chmod(scratch, 0o644)
+        os.replace(scratch, path)
+    finally:
+        Path(scratch).unlink(missing_ok=True)
