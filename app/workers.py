@@ -28,6 +28,7 @@ MOST = 64
 AGAIN = 1.0  # [s] before a worker that died is started again
 LAST_WORDS = 10.0  # [s] to stop before being killed
 MARK = "ONPATH_WORKER"  # in a worker's environment
+ONE_HEAP = {"MALLOC_ARENA_MAX": "1"}  # instead of one for each thread: a twentieth less memory
 USAGE = 2  # exit code: what was asked for makes no sense, nor will it later
 ROOT = Path(__file__).resolve().parent.parent
 START = f"import sys; sys.path[0] = {str(ROOT)!r}; from app.cli import main; main()"
@@ -126,7 +127,7 @@ class Worker:
     def start(self) -> None:
         """Start, or start again; in a session of its own, so that Ctrl-C is ours."""
         pipe = subprocess.PIPE
-        environment = {**os.environ, MARK: "1", **self.secrets}
+        environment = {**ONE_HEAP, **os.environ, MARK: "1", **self.secrets}
         channel = None if self.reception is None else self.reception.join()
         if channel is not None:
             environment[CHANNEL] = str(channel.fileno())
