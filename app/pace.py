@@ -5,9 +5,11 @@ Simulated time is what must not suffer, so the display gives way first: from 30 
 
 from __future__ import annotations
 
+from math import inf
+
 STRIDES = (2.0, 2.5, 3.0, 4.0)  # frames of simulation per frame of display
 ENOUGH = (0.5, 0.75, 0.85)  # shares of the time up to which the first, second, third is chosen
-BUSY = 0.9  # a share that is too much
+BUSY = (0.8, 0.9, 0.9)  # shares that are too much for the first, second, third; frames are late
 FADING = 1 / 60  # of the measured shares, per frame
 PATIENCE, CAUTION = 60, 300  # frames from one change to the next, slower and faster
 
@@ -35,7 +37,7 @@ class Pace:
         self._share += FADING * (busy / frame - self._share)
         self._drawing += FADING * (drawing / frame - self._drawing)
         self._since += 1
-        if self._since >= PATIENCE and self._share > BUSY and self._at < len(STRIDES) - 1:
+        if self._since >= PATIENCE and self._share > (*BUSY, inf)[self._at]:
             self._at, self._since = self._at + 1, 0
         elif self._since >= CAUTION and self._at > 0 and self._has_time_for(self._at - 1):
             self._at, self._since = self._at - 1, 0
