@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import io
 import math
+import re
 import threading
 import weakref
 from collections.abc import Iterator
@@ -233,9 +234,10 @@ def test_pause_step_and_run(tab: Tab) -> None:
 def test_time_runs_slower(tab: Tab) -> None:
     tab.choose("Time runs at", "0.125×")
     wait_for(lambda: tab.session.rate == 0.125)
-    tab.page.get_by_text("running at 0.12×").or_(
-        tab.page.get_by_text("running at 0.13×")
-    ).wait_for()
+    at_most = re.compile(
+        r"running at 0\.(0[1-9]|1[0-3])×"
+    )  # less on a busy machine, and it says so
+    tab.page.get_by_text(at_most).wait_for()
 
 
 def test_gains_by_number_and_by_slider(tab: Tab) -> None:
