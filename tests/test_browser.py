@@ -5,7 +5,6 @@ from __future__ import annotations
 import gc
 import io
 import math
-import re
 import threading
 import weakref
 from collections.abc import Iterator
@@ -231,13 +230,13 @@ def test_pause_step_and_run(tab: Tab) -> None:
     wait_for(lambda: session.time > paused + 0.2)
 
 
+@pytest.mark.flaky(reruns=2, only_rerun="TimeoutError")  # a busy machine may be slower still
 def test_time_runs_slower(tab: Tab) -> None:
     tab.choose("Time runs at", "0.125×")
     wait_for(lambda: tab.session.rate == 0.125)
-    at_most = re.compile(
-        r"running at 0\.(0[1-9]|1[0-3])×"
-    )  # less on a busy machine, and it says so
-    tab.page.get_by_text(at_most).wait_for()
+    tab.page.get_by_text("running at 0.12×").or_(
+        tab.page.get_by_text("running at 0.13×")
+    ).wait_for()
 
 
 def test_gains_by_number_and_by_slider(tab: Tab) -> None:
