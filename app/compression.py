@@ -2,37 +2,26 @@
 
 from __future__ import annotations
 
-import threading
 from types import SimpleNamespace
 from typing import Any
 
 import zstandard
 from viser.infra import _infra
 
+from app.per_thread import per_thread
+
 LEVEL = 1  # viser's
 QUICK = -5  # of what is told in every frame: a third of the time, 15 % longer
 
 
-class _Own(threading.local):
-    """Each thread's own."""
-
-    def __init__(self) -> None:
-        self.compressor = zstandard.ZstdCompressor(level=LEVEL)
-        self.quick = zstandard.ZstdCompressor(level=QUICK)
-        self.decompressor = zstandard.ZstdDecompressor()
-
-
-_own = _Own()
-
-
 def compress(data: bytes) -> bytes:
     """So that viser's browsers can read it."""
-    return _own.quick.compress(data)
+    return _own_compressor(QUICK).compress(data)
 
 
 def decompress(data: bytes) -> bytes:
     """What `compress` or viser has made."""
-    return _own.decompressor.decompress(data)
+    return _own_decompressor().decompress(data)
 
 
 def share_compressors() -> None:
@@ -43,5 +32,15 @@ def share_compressors() -> None:
 
 def _compressor(level: int = 3, **options: Any) -> zstandard.ZstdCompressor:
     if level == LEVEL and not options:
-        return _own.compressor
+        return _own_compressor(LEVEL)
     return zstandard.ZstdCompressor(level=level, **options)
+
+
+@per_thread
+def _own_compressor(level: int) -> zstandard.ZstdCompressor:
+    return zstandard.ZstdCompressor(level=level)
+
+
+@per_thread
+def _own_decompressor() -> zstandard.ZstdDecompressor:
+    return zstandard.ZstdDecompressor()

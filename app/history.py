@@ -198,16 +198,16 @@ class History:
                     self._put(frames)
 
     def _put(self, frames: Sequence[Frame]) -> None:
-        self._list = None
+        self._list, samples = None, self._sample(frames)
         if not self._columns or self._end + len(frames) > len(self._columns["time"]):
-            self._make_room(frames)
+            self._make_room(frames, samples)
         columns, rows = self._columns, slice(self._end, self._end + len(frames))
         columns["time"][rows] = [frame.time for frame in frames]
         columns["ticks"][rows] = [frame.ticks for frame in frames]
         columns["inputs"][rows] = [frame.inputs for frame in frames]
         columns["state"][rows] = [frame.states for frame in frames]
         columns["most"][rows] = [frame.max_distances for frame in frames]
-        columns["sample"][rows] = self._sample(frames)
+        columns["sample"][rows] = samples
         self._end = rows.stop
         reached = self._find(frames[-1].time - SECONDS, "right") - 1
         self._begin = max(self._begin, reached, self._end - MOST)
@@ -268,21 +268,21 @@ class History:
         time, ticks = float(columns["time"][row]), int(columns["ticks"][row])
         return Stretch(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())
 
-    def _make_room(self, frames: Sequence[Frame]) -> None:
+    def _make_room(self, frames: Sequence[Frame], samples: np.ndarray) -> None:
         """Columns with free rows at their end: thinned out, and larger if that is not enough."""
         kept, old, size = self._kept(), self._columns, len(self._columns.get("time", ()))
         if len(kept):
             old["ticks"][kept] = np.add.reduceat(old["ticks"][: self._end], kept)
         if len(kept) + len(frames) > FULL * size:
-            rows, sample = max(2 * size, FIRST), self._sample(frames[:1])
-            robots, states = len(frames[0].states), frames[0].states
+            rows, states = max(2 * size, FIRST), frames[0].states
+            robots = len(states)
             self._columns = {
                 "time": np.empty(rows),
                 "ticks": np.empty(rows, dtype=int),
                 "inputs": np.empty(rows, dtype=object),
                 "state": np.empty((rows, robots, len(states[0]))),
                 "most": np.empty((rows, robots)),
-                "sample": np.empty((rows, *sample.shape[1:]), dtype=np.float32),
+                "sample": np.empty((rows, *samples.shape[1:]), dtype=np.float32),
             }
         for name, column in old.items():
             self._columns[name][: len(kept)] = column[kept]

@@ -217,8 +217,9 @@ class Session:
         rows, distances = [run.row for run in runs], [run.distance for run in runs]
         for run in runs:
             self._advance(run, ticks, dt)
-        if self._inputs is None or not self._inputs.are(curve, dt, [run.input() for run in runs]):
-            self._inputs = Inputs(curve, dt, {run.controller: run.input() for run in runs})
+        inputs = {run.controller: run.input() for run in runs}
+        if self._inputs is None or not self._inputs.are(curve, dt, inputs.values()):
+            self._inputs = Inputs(curve, dt, inputs)
         self.history.append(Frame(self.time, ticks, self._inputs, states, most, rows, distances))
         self.time += ticks * dt
 
@@ -310,10 +311,7 @@ class Session:
                 self.grips.let_go()
             self.viewing = None
         self.running = True
-        self.say("")
-        for name, run in self.runs.items():
-            if run.diverged is not None:
-                self._tell_divergence(name)
+        self.hush()
 
     def _forget_happenings(self, time: float) -> None:
         """Those of this run after a time; what went on then is over."""
