@@ -157,7 +157,7 @@ class SimulationThread:
             late = now - deadline
             self.frames.append((now, late))
             deadline = now + FRAME if late > LATEST else deadline + FRAME
-            drawing = self._frame(now - last, count, pace.stride)
+            drawing = self._frame(now - last, count, pace.stride_when(late))
             pace.note(self._clock() - now, drawing, now - last)
             last, count = now, count + 1
 

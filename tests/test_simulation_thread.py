@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 import logging
 import threading
 from collections.abc import Callable
+from math import ceil
 
 import pytest
 from lab import FRAME, new_session
 
 from app import commands as c
 from app.loop import LATEST, Lab, SimulationThread
+from app.pace import HURRIED, STRIDES, is_turn
 from app.session import Session
 
 
@@ -47,6 +50,51 @@ class View:
 
     def send(self) -> None:
         pass
+
+
+class Screen:
+    """Draws when it is its turn, which takes so long, [s]."""
+
+    def __init__(self, clock: Clock, offset: int, cost: float) -> None:
+        self.clock, self.offset, self.cost = clock, offset, cost
+        self.drawn = list[int]()
+
+    def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
+        if is_turn(frame + self.offset, stride):
+            self.drawn.append(frame)
+            self.clock.work(self.cost)
+
+    def send(self) -> None:
+        pass
+
+
+def drawn(
+    seconds: float, cost: Callable[[int], float], drawing: float, count: int = 8
+) -> tuple[SimulationThread, list[Lab], list[Screen]]:
+    """The same with labs that are drawn.
+
+    Args:
+        cost: of each frame's simulation, [s].
+        drawing: drawing each of them once, [s].
+    """
+    clock = Clock(seconds)
+    thread = SimulationThread(clock, clock.sleep)
+    clock.thread = thread
+    labs = [Lab(new_session()) for _ in range(count)]
+    frames = itertools.count()
+
+    class Costly(Session):
+        def advance(self, seconds: float) -> None:
+            super().advance(seconds)
+            clock.work(cost(next(frames)))
+
+    labs[0] = Lab(Costly(new_session()._store))
+    screens = [Screen(clock, at, drawing / count) for at in range(count)]
+    for lab, screen in zip(labs, screens, strict=True):
+        lab.view = screen
+        thread.add(lab)
+    thread.run()
+    return thread, labs, screens
 
 
 def simulated(
@@ -97,6 +145,32 @@ def test_after_a_stall_it_goes_on_at_its_pace() -> None:
 def test_short_hiccups_are_made_up_for() -> None:
     _, lab, _, _ = simulated(4.0, lambda frame: 0.05 if frame % 40 == 7 else 0.001)
     assert lab.session.time == pytest.approx(4.0, abs=0.06)
+
+
+def test_frames_that_are_late_are_drawn_less_often_until_they_no_longer_are() -> None:
+    """Two thirds of the time are taken: 16 late frames at the usual pace, half as many so."""
+    thread, _, screens = drawn(8.0, lambda at: 0.095 if at == 300 else 0.005, drawing=0.015)
+    late = [at for at, late in enumerate(thread.lateness) if late > FRAME]
+    assert 3 <= len(late) <= 8 and late[0] == 301
+    for screen in screens:
+        gaps = [b - a for a, b in itertools.pairwise(screen.drawn)]
+        assert max(gaps) < HURRIED + STRIDES[1]  # a turn may be left out when that ends
+        assert max(gaps[-60:]) <= ceil(STRIDES[1])
+
+
+def test_drawing_gives_way_before_simulated_time_does() -> None:
+    """At the slowest pace there is too much to do; when hurried, there is not."""
+    thread, labs, screens = drawn(20.0, lambda _: 0.008, drawing=0.040)
+    for lab, screen in zip(labs, screens, strict=True):
+        assert lab.session.time == pytest.approx(20.0, abs=2 * LATEST)  # until the cost is known
+        assert lab.achieved == pytest.approx(1.0, abs=0.01)
+        assert len(screen.drawn) > 20.0 * 60 / HURRIED
+    assert max(thread.lateness[60:]) < 0.05
+
+
+def test_late_frames_of_what_costs_nothing_to_draw_are_drawn_as_ever() -> None:
+    _, _, (screen,) = drawn(8.0, lambda at: 0.05 if at % 20 == 0 else 0.010, 0.001, count=1)
+    assert max(b - a for a, b in itertools.pairwise(screen.drawn)) <= ceil(STRIDES[1])
 
 
 def test_simulated_time_follows_the_wanted_speed() -> None:
