@@ -8,12 +8,12 @@ from __future__ import annotations
 import logging
 import sqlite3
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
 import sqlalchemy as sa
-from filelock import FileLock
 from sqlalchemy import event, exc, pool
 
 from app.tables import meta, metadata
@@ -98,9 +98,20 @@ def words(error: Exception) -> str:
 def _move_aside(
     file: Path, broken: tuple[int, int] | None, why: str, clock: Callable[[], float]
 ) -> None:
-    with FileLock(f"{file}.lock", timeout=PATIENCE):
+    with _locked(file.with_name(f"{file.name}.lock")):
         if _identity(file) == broken:  # nobody was quicker
             _rename(file, why, clock)
+
+
+@contextmanager
+def _locked(beside: Path) -> Iterator[None]:
+    """Alone among processes, until it ends or is killed: SQLite's own lock, of an empty file."""
+    try:
+        with closing(sqlite3.connect(beside, timeout=PATIENCE, isolation_level=None)) as lock:
+            lock.execute("BEGIN EXCLUSIVE")
+            yield
+    except sqlite3.Error as error:
+        raise NotKept(f"{beside.name}: {error}") from error
 
 
 def _rename(file: Path, why: str, clock: Callable[[], float]) -> None:
