@@ -6,6 +6,7 @@ import asyncio
 import importlib.util
 import os
 import platform
+import signal
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -39,7 +40,7 @@ REFERENCE = Path(__file__).parents[1] / "tests" / "reference.py"
 
 def bench(quick: bool = False) -> None:
     """Print all tables; `quick` leaves out what needs clients or a browser."""
-    _print_machine()
+    _begin()
     with tempfile.TemporaryDirectory() as folder:
         _loops(Path(folder), 20 if quick else 60)
         _modes(Path(folder), 10 if quick else 30)
@@ -161,11 +162,12 @@ def _quiet_lab() -> Iterator[LabServer]:
 
 def bench_crowds(crowds: list[Crowd]) -> None:
     """Print the table of crowds: a row for each, or as many as it asks for."""
-    _print_machine()
+    _begin()
     _crowds(crowds)
 
 
-def _print_machine() -> None:
+def _begin() -> None:
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # the servers are to end as well
     load = os.getloadavg()[0]
     print(f"{platform.platform()}, {os.cpu_count()} cores, load {load:.1f}\n", flush=True)
 

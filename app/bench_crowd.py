@@ -26,8 +26,9 @@ from models.loops import find_compiler
 MOST = 900  # clients; a server has room for 1000 connections
 SHORTEST = 1.0  # [s]
 HEAD = """\
-clients settled simul. slowest  display [Hz]    frames late [ms]    CPU [%]   for each  labs at
-            [s]   [Hz]     lab slowest median   p50   p95   p99  server load  [MB] [kB/s] workers"""
+clients settled  sim slow  display [Hz]  frames late [ms] >50ms       CPU [%]        for each  labs
+            [s] [Hz]  lab slowest median  p50   p95   p99   [%] server load stolen  [MB] [kB/s]"""
+PROCESSOR = Path("/proc/stat")  # Linux alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +69,9 @@ class Row:
         simulation_hz: frames per second of the simulation, of the slowest worker.
         slowest_lab: simulated seconds per second.
         late_ms: frames; three quantiles, of the worst worker each.
+        overdue: share of the frames more than 50 ms late, of the worst worker.
         cpu: of all workers, of a core.
+        stolen: share of this machine's time that its host gave to others; nan if unknown.
         memory_mb: more than without clients, of all workers, for each client; nan if unknown.
     """
 
@@ -78,17 +81,19 @@ class Row:
     simulation_hz: float
     slowest_lab: float
     late_ms: tuple[float, float, float]
+    overdue: float
     cpu: float
+    stolen: float
     memory_mb: float
 
     def __str__(self) -> str:
         seen, labs = self.seen, "+".join(map(str, self.labs))
         p50, p95, p99 = self.late_ms
         return (
-            f"{seen.clients:7d}{self.settled:8.1f}{self.simulation_hz:7.1f}"
-            f"{self.slowest_lab:8.3f}{seen.slowest_hz:8.1f}{seen.median_hz:7.1f}"
-            f"{p50:6.1f}{p95:6.1f}{p99:6.1f}{100 * self.cpu:8.0f}{100 * seen.cpu:5.0f}"
-            f"{self.memory_mb:6.2f}{seen.bytes_per_s / 1e3:7.1f} {labs}"
+            f"{seen.clients:7d}{self.settled:8.1f}{self.simulation_hz:5.1f}{self.slowest_lab:5.2f}"
+            f"{seen.slowest_hz:8.1f}{seen.median_hz:7.1f}{p50:5.1f}{p95:6.1f}{p99:6.1f}"
+            f"{100 * self.overdue:6.2f}{100 * self.cpu:7.0f}{100 * seen.cpu:5.0f}"
+            f"{100 * self.stolen:7.1f}{self.memory_mb:6.2f}{seen.bytes_per_s / 1e3:7.1f} {labs}"
         )
 
 
@@ -105,12 +110,13 @@ def measured(crowd: Crowd, environment: Mapping[str, str]) -> Iterator[Row]:
         alone = server.at_rest()
         with _load(server, crowd.clients, crowd.seconds) as seen:
             settled = next(seen).seconds
-            before = server.vitals()
+            before, spent = server.vitals(), _processor()
             for _ in range(crowd.rows):
                 during = next(seen)
-                after = server.vitals(crowd.seconds)
-                yield _row(during, settled, crowd.clients, alone, before, after)
-                before = after
+                after, now = server.vitals(crowd.seconds), _processor()
+                stolen = (now[0] - spent[0]) / max(now[1] - spent[1], 1.0)
+                yield _row(during, settled, stolen, alone, before, after)
+                before, spent = after, now
 
 
 def rehearse(environment: Mapping[str, str]) -> None:
@@ -154,7 +160,7 @@ def _lines(process: subprocess.Popen[bytes]) -> Iterator[Seen]:
 def _row(
     seen: Seen,
     settled: float,
-    clients: int,
+    stolen: float,
     alone: dict[int, Vitals],
     before: dict[int, Vitals],
     after: dict[int, Vitals],
@@ -171,9 +177,20 @@ def _row(
         simulation_hz=min(v.frames_per_s for v in after.values()),
         slowest_lab=min((speed for a, b in pairs for speed in _speeds(a, b)), default=nan),
         late_ms=(p50, p95, p99),
+        overdue=max(v.overdue for v in after.values()),
         cpu=sum((b.cpu_s - a.cpu_s) / (b.clock - a.clock) for a, b in pairs),
-        memory_mb=sum(grown) / clients,
+        stolen=stolen,
+        memory_mb=sum(grown) / max(seen.clients, 1),
     )
+
+
+def _processor() -> tuple[float, float]:
+    """Of all cores since the start: time that the host gave to others, and all of it, [ticks]."""
+    try:
+        spent = [float(word) for word in PROCESSOR.read_text().split()[1:9]]
+    except OSError:
+        return nan, nan
+    return spent[7], sum(spent)
 
 
 def _speeds(before: Vitals, after: Vitals) -> list[float]:

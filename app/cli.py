@@ -16,6 +16,7 @@ from app.cli_experiment import Experiment, ZeroDynamics
 from app.cli_serve import Serve
 
 COMMANDS = ("serve", "experiment", "zero-dynamics", "lessons", "bench", "forget")
+INTERRUPTED = 130
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,8 @@ def main() -> None:
 def run_command(arguments: list[str]) -> int:
     """Run one command line; returns the exit code.
 
-    That is 0, or 2 with one line on standard error, or 1 for lessons with something wrong.
+    That is 0, or 2 with one line on standard error, 1 for lessons with something wrong, or what
+    shells say of a command that was interrupted.
     """
     if not arguments or arguments[0] not in (*COMMANDS, "-h", "--help"):
         if arguments and not arguments[0].startswith("-"):
@@ -111,6 +113,8 @@ def run_command(arguments: list[str]) -> int:
         return _parse(arguments).run() or 0
     except BrokenPipeError:
         return 0
+    except KeyboardInterrupt:
+        return INTERRUPTED
     except (ValueError, OSError) as error:
         print(f"onpath: {_one_line(str(error))}", file=sys.stderr)
         return 2

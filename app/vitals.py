@@ -14,6 +14,7 @@ from app.loop import SimulationThread
 from app.loop_store import LoopStore
 
 WINDOW, LONGEST = 10.0, 60.0  # [s] looked back at: usually, at most
+OVERDUE = 0.05  # [s] late
 QUANTILES = (0.5, 0.95, 0.99)
 MEMORY = Path("/proc/self/statm")  # Linux alone
 
@@ -28,6 +29,7 @@ class Vitals:
         frames_per_s: of the simulation thread, lately.
         late_ms: frames, lately: half of them are less late than the first, 95 % than the second,
             99 % than the third.
+        overdue: share of them that are more than 50 ms late.
         labs: that somebody looks at now.
         simulated_s: by each of these since it was set back last, [s], in the order of coming.
         compiling: loops that are to be compiled yet.
@@ -39,6 +41,7 @@ class Vitals:
     clock: float
     frames_per_s: float
     late_ms: tuple[float, float, float]
+    overdue: float
     labs: int
     simulated_s: tuple[float, ...]
     compiling: int
@@ -74,6 +77,7 @@ def vitals(simulation: SimulationThread, store: LoopStore, seconds: float = WIND
         clock=round(now, 4),
         frames_per_s=round(len(late) / max(now - since, 0.1), 2),
         late_ms=(p50, p95, p99),
+        overdue=round(sum(each > OVERDUE for each in late) / max(len(late), 1), 5),
         labs=len(seen),
         simulated_s=tuple(round(lab.session.time, 3) for lab in seen),
         compiling=wanted - done,

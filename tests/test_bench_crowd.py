@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -27,12 +31,13 @@ def test_a_small_crowd_on_a_real_server(tmp_path: Path, monkeypatch: pytest.Monk
         assert 10 < row.simulation_hz < 62 and 0.1 < row.slowest_lab < 1.1
         assert 1 < seen.slowest_hz <= seen.median_hz < 62
         p50, p95, p99 = row.late_ms
-        assert p50 <= p95 <= p99
+        assert p50 <= p95 <= p99 and 0 <= row.overdue <= 1
+        assert (row.overdue < 0.01) == (p99 <= 50)
         assert 0 < row.cpu < 4 and 0 < seen.cpu < 4
         assert seen.bytes_per_s > 1e3
         if sys.platform == "linux":
-            assert 0 < row.memory_mb < 100
-        assert len(str(row).rstrip()) < len(HEAD.splitlines()[0])
+            assert 0 < row.memory_mb < 100 and 0 <= row.stolen < 1
+        assert len(str(row).rpartition(" ")[0]) == len(HEAD.splitlines()[1])
     assert (tmp_path / "data" / "onpath" / "onpath.db").exists()
 
 
@@ -58,6 +63,38 @@ def test_what_cannot_be_measured_is_refused_in_words(
     assert run_command(["bench", *options.split()]) == 2
     out = capsys.readouterr()
     assert said in out.err and out.err.count("\n") == 1 and not out.out
+
+
+def processes_of(folder: Path) -> list[str]:
+    """What runs and was told of that folder."""
+    found: list[str] = []
+    for told in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            if str(folder).encode() in told.read_bytes():
+                found.append((told.parent / "cmdline").read_text().replace("\0", " "))
+        except OSError:  # it has ended, or is not ours
+            continue
+    return found
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_a_bench_that_is_stopped_takes_its_server_along(
+    tmp_path: Path, how: signal.Signals
+) -> None:
+    command = [sys.executable, "-m", "app.cli", "bench", "--clients", "2", "--seconds", "60"]
+    environment = {**os.environ, "CC": "none", "TMPDIR": str(tmp_path)}
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe) as process:
+        until = time.monotonic() + 60.0
+        while not any("app.load" in each for each in processes_of(tmp_path)):
+            assert process.poll() is None and time.monotonic() < until
+            time.sleep(0.1)
+        assert any("serve" in each for each in processes_of(tmp_path))
+        process.send_signal(how)
+        _, said = process.communicate(timeout=30.0)
+    assert process.returncode == 130 and said == b""
+    assert not processes_of(tmp_path) and not list(tmp_path.iterdir())
 
 
 def test_a_server_that_ends_says_why(tmp_path: Path) -> None:

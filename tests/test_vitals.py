@@ -32,7 +32,9 @@ def test_vitals_are_those_of_the_window(thread: SimulationThread, tmp_path: Path
     lately, long = vitals(thread, store, 9.0), vitals(thread, store, LONGEST)
     assert lately.late_ms == (5.0, 5.0, 5.0) and max(long.late_ms) == 5.0 > min(long.late_ms)
     thread.frames.extend([(time.perf_counter(), 0.08)] * 20)
-    assert vitals(thread, store, 9.0).late_ms[2] == 80.0
+    assert [lately.overdue, long.overdue] == pytest.approx([1 / 540, 1 / 3600], rel=0.02)
+    after = vitals(thread, store, 9.0)
+    assert after.late_ms[2] == 80.0 and after.overdue == pytest.approx(21 / 560, rel=0.02)
     assert lately.frames_per_s == pytest.approx(60.0, abs=1.0)
     assert lately.pid == os.getpid() and lately.labs == 0 == len(lately.simulated_s)
 
