@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +23,8 @@ from models.translated_loop import translate_loop
 
 settings.register_profile("laws", deadline=None)  # how long it takes is not what is tested
 settings.load_profile("laws")
+signal.signal(signal.SIGINT, signal.default_int_handler)  # servers started from here heed it, too,
+# when a shell has started the tests in the background
 
 FOLLOWING, TRACKING = Kind("path_following"), Kind("trajectory_tracking")
 DEFAULTS: dict[str, Any] = {

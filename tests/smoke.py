@@ -23,6 +23,7 @@ def main() -> None:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # heeded in the background, too
     server = subprocess.Popen([onpath, "--port", str(port)])
     try:
         page = _page(f"http://127.0.0.1:{port}/", patience=20.0)
