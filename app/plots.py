@@ -28,12 +28,15 @@ class Plot:
         field: of the session's samples.
         scale: from SI to what is shown.
         lines: names of the field's entries; one name for a single line.
+        least: what is shown at least, of what is nearly nothing when all goes well: a ripple of a
+            micrometre is not to look like a swing. None for as much as there is.
     """
 
     name: str
     field: str
     scale: float
     lines: Callable[[Session], list[str]]
+    least: tuple[float, float] | None = None
 
 
 def _numbered(symbol: str, field: str) -> Callable[[Session], list[str]]:
@@ -49,14 +52,14 @@ def _alone(_: Session) -> list[str]:
     return [""]
 
 
-DISTANCE = Plot("distance", "distance", 1e3, _alone)
+DISTANCE = Plot("distance", "distance", 1e3, _alone, least=(0.0, 1.0))
 MORE = {
     plot.name: plot
     for plot in (
         Plot("speed", "speed", 1.0, _alone),
         Plot("torques", "u", 1.0, _numbered("u", "u")),
-        Plot("across", "xi", 1e3, _numbered("ξ", "xi")),
-        Plot("across_rate", "xi_rate", 1e3, _numbered("ξ'", "xi_rate")),
+        Plot("across", "xi", 1e3, _numbered("ξ", "xi"), least=(-1.0, 1.0)),
+        Plot("across_rate", "xi_rate", 1e3, _numbered("ξ'", "xi_rate"), least=(-10.0, 10.0)),
         Plot("place", "theta", 1.0, _alone),
         Plot("rate", "theta_rate", 1.0, _alone),
         Plot("modes", "modes", 1e3, _numbered("f", "modes")),
@@ -65,6 +68,14 @@ MORE = {
         Plot("force", "force", 1.0, _numbered("F", "force")),
     )
 }
+
+
+def _at_least(limits: tuple[float, float] | None) -> uplot.Scale:
+    """Grows with the data, but shows no less than this."""
+    if limits is None:
+        return uplot.Scale()
+    low, high = ({"pad": 0.1, "soft": limit, "mode": 1} for limit in limits)
+    return uplot.Scale(range={"min": low, "max": high})
 
 
 class LivePlot:
@@ -88,7 +99,7 @@ class LivePlot:
             tuple(np.zeros(2) for _ in series),
             tuple(series),
             title=words(f"axis.{plot.name}"),
-            scales={"x": uplot.Scale(time=False)},
+            scales={"x": uplot.Scale(time=False), "y": _at_least(plot.least)},
             legend=uplot.Legend(live=False),
             height=height,
         )
