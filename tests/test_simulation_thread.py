@@ -37,6 +37,13 @@ class Clock:
             self.thread.stop()
 
 
+def clocked(seconds: float) -> tuple[Clock, SimulationThread]:
+    """A thread that runs for so long, by a clock of its own."""
+    clock = Clock(seconds)
+    clock.thread = SimulationThread(clock, clock.sleep)
+    return clock, clock.thread
+
+
 class View:
     """Looks for a while at every frame."""
 
@@ -77,9 +84,7 @@ def drawn(
         cost: of each frame's simulation, [s].
         drawing: drawing each of them once, [s].
     """
-    clock = Clock(seconds)
-    thread = SimulationThread(clock, clock.sleep)
-    clock.thread = thread
+    clock, thread = clocked(seconds)
     labs = [Lab(new_session()) for _ in range(count)]
     frames = itertools.count()
 
@@ -101,9 +106,7 @@ def simulated(
     seconds: float, cost: Callable[[int], float], *others: Lab
 ) -> tuple[SimulationThread, Lab, View, Clock]:
     """Some seconds of a thread whose frames cost as much as `cost` says."""
-    clock = Clock(seconds)
-    thread = SimulationThread(clock, clock.sleep)
-    clock.thread = thread
+    clock, thread = clocked(seconds)
     lab = Lab(new_session())
     lab.view = view = View(lambda frame: clock.work(cost(frame)))
     for other in others:
@@ -174,9 +177,7 @@ def test_late_frames_of_what_costs_nothing_to_draw_are_drawn_as_ever() -> None:
 
 
 def test_simulated_time_follows_the_wanted_speed() -> None:
-    clock = Clock(2.0)
-    thread = SimulationThread(clock, clock.sleep)
-    clock.thread = thread
+    clock, thread = clocked(2.0)
     labs = [Lab(new_session()) for _ in range(3)]
     for lab, rate in zip(labs, (0.25, 1.0, 4.0), strict=True):
         lab.session.post(c.SetRate(rate))
@@ -215,9 +216,7 @@ def test_time_waits_while_nobody_looks_and_commands_do_not() -> None:
 
 
 def test_paused_lab_does_not_spoil_its_measured_speed() -> None:
-    clock = Clock(3.0)
-    thread = SimulationThread(clock, clock.sleep)
-    clock.thread = thread
+    clock, thread = clocked(3.0)
     lab = Lab(new_session())
 
     def show(frame: int) -> None:
