@@ -1,13 +1,15 @@
 # make run   creates the environment, installs, starts the lab and prints its address
 # make test  all tests, headless Chromium included
+# make fuzz  the property tests with random inputs; make test has the same ones every time
 # make check lint, format, types      make bench  the speed table
 
 PYTHON ?= python3
 VENV   ?= .venv
 BIN     = $(VENV)/bin
 STAMP   = $(VENV)/.installed
+PYTEST  = $(BIN)/pytest -n 2 --dist loadfile
 
-.PHONY: run test check format bench wheel clean
+.PHONY: run test fuzz check format bench wheel clean
 .DEFAULT_GOAL := run
 
 $(STAMP): pyproject.toml
@@ -18,9 +20,15 @@ $(STAMP): pyproject.toml
 run: $(STAMP)
 	$(BIN)/onpath $(ARGS)
 
+# Both parts run, whatever the first says.
 test: $(STAMP)
-	$(BIN)/pytest -n 2 --dist loadfile --ignore-glob='*browser.py' $(ARGS)
-	$(BIN)/pytest -n 2 --dist loadfile tests/test_*browser.py $(ARGS)
+	@failed=0; \
+	$(PYTEST) --ignore-glob='*browser.py' $(ARGS) || failed=$$?; \
+	$(PYTEST) tests/test_*browser.py $(ARGS) || failed=$$?; \
+	exit $$failed
+
+fuzz: $(STAMP)
+	$(PYTEST) -m hypothesis --hypothesis-profile fuzz $(ARGS)
 
 check: $(STAMP)
 	$(BIN)/ruff check .

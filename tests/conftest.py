@@ -21,7 +21,10 @@ from models.loops import Loop, compile_loop, find_compiler
 from models.system import Array, MechanicalSystem
 from models.translated_loop import translate_loop
 
-settings.register_profile("laws", deadline=None)  # how long it takes is not what is tested
+# How long an example takes is not what is tested. `make test` gives the same verdict every time;
+# `make fuzz` searches at random, and what it finds becomes an @example.
+settings.register_profile("laws", deadline=None, derandomize=True)
+settings.register_profile("fuzz", deadline=None, print_blob=True)
 settings.load_profile("laws")
 signal.signal(signal.SIGINT, signal.default_int_handler)  # servers started from here heed it, too,
 # when a shell has started the tests in the background

@@ -576,6 +576,23 @@ def test_what_could_not_be_kept_is_tried_again_and_told_once(caplog: Any) -> Non
     assert caplog.text.count("the disk is full") == 1 and "kept again" in caplog.text
 
 
+def test_an_older_state_never_overwrites_a_newer_one() -> None:
+    """A write that fails while a newer state arrives is not tried again with the older one."""
+    store = Memory()
+    store.gate.clear()
+    store.fault = NotKept("the disk is full")
+    keeper = Keeper(store, interval=0.0)
+    keeper.submit("a", number(1))
+    until(lambda: not keeper._pending)  # 1 is being written
+    keeper.submit("a", number(2))
+    store.gate.set()  # and fails
+    until(lambda: keeper.warning)
+    store.fault = None
+    until(lambda: store.saved)
+    keeper.close()
+    assert store.saved == [("a", 2)]
+
+
 def test_one_lab_s_mistake_is_its_own(caplog: Any) -> None:
     store = Memory()
     keeper = Keeper(store, interval=0.002)

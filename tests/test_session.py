@@ -397,6 +397,20 @@ def test_new_path_is_followed_after_it_has_blended_in(name: str) -> None:
         assert run_.diverged is None and run_.distance < 1e-3
 
 
+def test_a_jump_of_the_path_empties_the_integrals() -> None:
+    """An error summed along one path says nothing of another one."""
+    session = new_session()
+    do(session, c.SetParameter("K3", 1000.0), c.SetParameter("coulomb", 0.05))
+    run(session, 1.0)
+    summed = {name: np.abs(run_.fields()["integral"]).max() for name, run_ in session.runs.items()}
+    assert min(summed.values()) > 1e-6
+    do(session, c.SetRunning(False), c.ChoosePath("segment"))  # no blend: the kind changes
+    run(session, 2 * FRAME)
+    assert session.editor.curve is session.presets["segment"].curve
+    for run_ in session.runs.values():
+        assert not run_.fields()["integral"].any()
+
+
 def test_refused_path_keeps_the_previous_one_and_says_why() -> None:
     session = new_session(0.5)
     design, curve = session.editor.design, session.editor.curve
