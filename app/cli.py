@@ -8,12 +8,16 @@ import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
 from app.cli_experiment import Experiment, ZeroDynamics
 from app.cli_serve import Serve
+
+if TYPE_CHECKING:
+    from lessons.course import Course
+    from lessons.parse import Problem
 
 COMMANDS = ("serve", "experiment", "zero-dynamics", "lessons", "bench", "forget")
 INTERRUPTED = 130
@@ -21,7 +25,7 @@ INTERRUPTED = 130
 
 @dataclass(frozen=True)
 class Lessons:
-    """List the lessons, or check lessons of your own."""
+    """List the lessons, or check lessons of your own: read them, play what they say."""
 
     do: Annotated[Literal["list", "check"], tyro.conf.Positional]
     """list or check."""
@@ -32,16 +36,29 @@ class Lessons:
         """Print; exit code 1 when something is wrong."""
         from lessons.course import BUILT_IN, read_course
 
-        course, problems = read_course([self.folder or BUILT_IN])
+        folder = self.folder or BUILT_IN
+        course, problems = read_course([folder])
         if self.do == "list":
             for name, versions in course.lessons.items():
                 facts = course.lesson(name, "en").front
                 print(f"{name:30s} {facts.minutes:3d} min  {','.join(versions):8s} {facts.title}")
+        elif not problems:
+            problems = self._played(course, folder)
         for problem in problems:
             print(problem, file=sys.stderr)
-        if self.do == "check" and not problems:
-            print(f"{len(course.lessons)} lessons, nothing wrong")
         return 1 if problems else 0
+
+    def _played(self, course: Course, folder: Path) -> list[Problem]:
+        from app.lesson_check import play_course
+        from app.loop_store import LoopStore
+
+        problems = list(play_course(course, folder, LoopStore()))
+        if not problems:
+            lessons = list(course.lessons.values())
+            tasks = sum(len(next(iter(versions.values())).tasks()) for versions in lessons)
+            count = f"{len(lessons)} lesson{'s' if len(lessons) != 1 else ''}"
+            print(f"{count}, {tasks} solutions and failures played, nothing wrong")
+        return problems
 
 
 @dataclass(frozen=True)

@@ -19,18 +19,26 @@ def listen(host: str, port: int, share_port: bool = False) -> socket.socket:
 
     Raises:
         PortInUse: somebody else does.
-        OSError: the address cannot be had.
+        OSError: the address cannot be had; the message names it.
+        ValueError: there is no such port.
     """
-    with _in_use_said(host, port):
+    with _address_named(host, port):
         return socket.create_server((host, port), family=_family(host), reuse_port=share_port)
 
 
 def listen_unix(file: Path) -> socket.socket:
-    """Listen on a file that only this user can open."""
+    """Listen on a file that only this user can open.
+
+    Raises:
+        OSError: the file cannot be made; the message names it.
+    """
     listener = socket.socket(socket.AF_UNIX)
     before = os.umask(0o177)
     try:
         listener.bind(str(file))
+    except OSError as error:
+        listener.close()
+        raise OSError(f"cannot listen on {file}: {error.strerror or error}") from None
     finally:
         os.umask(before)
     listener.listen()
@@ -42,9 +50,10 @@ def reserve(host: str, port: int) -> socket.socket:
 
     Raises:
         PortInUse: somebody else listens there, sharing or not.
-        OSError: the address cannot be had.
+        OSError: the address cannot be had; the message names it.
+        ValueError: there is no such port.
     """
-    with _in_use_said(host, port):
+    with _address_named(host, port):
         if port:
             socket.create_server((host, port), family=_family(host)).close()
         place = socket.socket(_family(host))
@@ -60,11 +69,13 @@ def _family(host: str) -> socket.AddressFamily:
 
 
 @contextmanager
-def _in_use_said(host: str, port: int) -> Iterator[None]:
+def _address_named(host: str, port: int) -> Iterator[None]:
     try:
         yield
+    except OverflowError:
+        raise ValueError(f"port {port}: expected 0 to 65535") from None
     except OSError as error:
         if error.errno != errno.EADDRINUSE:
-            raise
+            raise OSError(f"cannot listen on {host}: {error.strerror}") from None
         way_out = "stop the program that has it, or choose another port (0 takes any free one)"
         raise PortInUse(error.errno, f"port {port} on {host} is in use: {way_out}") from None

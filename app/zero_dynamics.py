@@ -10,11 +10,13 @@ import numpy as np
 
 from models.beam import MOST_MODES, beam_modes
 from models.flexible_robot import FlexibleParameters, robot_for
-from models.parameters import changed
+from models.parameters import changed, specs
 from models.zero_dynamics import HIGHEST_ALPHA, flexible_zero_dynamics, natural_rate
 
 TABLE_ALPHAS = (-1.0, 0.0, 0.5, 0.7, 0.8, 0.9, 1.0)
 REACH = 0.1  # [m], half-width of the map of critical alpha
+SETTABLE = ("plant", "rho", "frequency", "zeta")
+"""What the internal dynamics depend on; the table is over alpha and modes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,10 +44,14 @@ def changed_all(assignments: dict[str, str]) -> FlexibleParameters:
     """The default parameters with values set by name.
 
     Raises:
-        ValueError: an unknown name or a bad value; the message says which.
+        ValueError: an unknown name, one that would change nothing, or a bad value; the message
+            says which.
     """
     parameters: Any = FlexibleParameters()
     for name, text in assignments.items():
+        if name in specs(parameters) and name not in SETTABLE:
+            hint = f"there are {', '.join(SETTABLE)}"
+            raise ValueError(f"the internal dynamics have no setting {name!r}: {hint}")
         parameters = changed(parameters, name, text)
     return parameters
 

@@ -88,7 +88,7 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
         return Problem(str(file), line, text)
 
     try:
-        content = file.read_text("utf-8")
+        content = file.read_text("utf-8-sig")
         read = msgspec.convert(tomllib.loads(content), dict[str, Reference])
     except (OSError, ValueError) as error:
         text = "there must be one" if isinstance(error, FileNotFoundError) else str(error)

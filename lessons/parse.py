@@ -88,7 +88,7 @@ def read_lesson(path: Path) -> Lesson:
     try:
         if path.stat().st_size > LARGEST:
             raise LessonError([Problem(str(path), 1, f"larger than {LARGEST // 1000} kB")])
-        text = path.read_text("utf-8")
+        text = path.read_text("utf-8-sig")  # Notepad begins with a byte-order mark
     except OSError as error:
         raise LessonError([Problem(str(path), 1, error.strerror or "cannot be read")]) from None
     except UnicodeDecodeError as error:

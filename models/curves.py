@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
 
 from models.system import Array
 
@@ -130,18 +131,37 @@ def nearest(curve: Callable[[Array], Array], grid: Array, points: Array) -> tupl
         theta and distance, each shape (n,).
     """
     points = np.atleast_2d(points)
-    samples = curve(grid)
-    squared = ((points[:, None, :] - samples[None]) ** 2).sum(-1)
-    middle, step = grid[squared.argmin(axis=1)], float(grid[1] - grid[0])
+    middle: Array = grid[local_minima(((points[:, None, :] - curve(grid)) ** 2).sum(-1))]
+    step = float(grid[1] - grid[0])
     low, high = middle - step, middle + step
     ratio = 0.5 * (5**0.5 - 1)
+
+    def squared(theta: Array) -> Array:
+        return ((points[:, None, :] - curve(theta)) ** 2).sum(-1)
+
     for _ in range(36):
         span = ratio * (high - low)
         left, right = high - span, low + span
-        nearer_left = ((points - curve(left)) ** 2).sum(-1) < ((points - curve(right)) ** 2).sum(-1)
+        nearer_left = squared(left) < squared(right)
         low, high = np.where(nearer_left, low, left), np.where(nearer_left, right, high)
     theta = (low + high) / 2
-    return theta, np.linalg.norm(points - curve(theta), axis=-1)
+    found = squared(theta)
+    best = np.arange(len(points)), found.argmin(axis=1)
+    return theta[best], np.sqrt(found[best])
+
+
+def local_minima(values: Array, most: int = 4) -> NDArray[np.intp]:
+    """Where each row has its lowest local minima, shape (n, k) -> (n, most).
+
+    Two valleys of nearly the same depth are told apart only by their refined minima. Where a row
+    has fewer, its lowest one is repeated.
+    """
+    padded = np.pad(values, ((0, 0), (1, 1)), constant_values=np.inf)
+    is_lowest = (values <= padded[:, :-2]) & (values <= padded[:, 2:])
+    masked = np.where(is_lowest, values, np.inf)
+    order: NDArray[np.intp] = masked.argpartition(most, axis=1)[:, :most]
+    found = np.isfinite(masked[np.arange(len(values))[:, None], order])
+    return np.where(found, order, values.argmin(axis=1)[:, None])
 
 
 def _basis(theta: Array, closed: bool) -> Array:

@@ -150,6 +150,15 @@ BAD = [
     ["experiment", "obstruction", "--csv", "."],
     ["experiment", "obstruction", "--csv", ""],
     ["experiment", "obstruction", "--csv", "file/x.csv"],
+    ["--port", "99999"],
+    ["--port", "-1"],
+    ["--workers", "2", "--port", "99999"],
+    ["--socket", "missing/x"],
+    ["--socket", "x" * 200],
+    ["--host", "256.0.0.1"],
+    ["zero-dynamics", "--set", "K1=3"],
+    ["zero-dynamics", "--set", "alpha=0.5"],
+    ["zero-dynamics", "--set", "bogus=3"],
 ]
 
 
@@ -183,6 +192,9 @@ def test_bad_input_gives_one_line_and_code_two(
         (["experiment", "obstruction", "--set", "task=dance"], "speed, position"),
         (["experiment", "obstruction", "--set", "K1=9999"], "0 and 2500 1/s²"),
         (["experiment", "obstruction", "--plot", "x.txt"], ".png, .svg or .pdf"),
+        (["--port", "99999"], "port 99999: expected 0 to 65535"),
+        (["--socket", "missing/x"], "missing/x"),
+        (["zero-dynamics", "--set", "K1=3"], "plant, rho, frequency, zeta"),
     ],
 )
 def test_complaint_names_what_was_expected(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from models.curves import circle
 from models.distance import near_distance, path_distance
 from models.frames import Plane, SlantedPlane
 from models.path_design import presets
@@ -33,3 +34,24 @@ def test_a_wild_guess_never_tells_of_a_distance_that_is_none(design):
     near, far = near_distance(frame, design.curve, y, theta), path_distance(frame, design.curve, y)
     guessed = np.linalg.norm(design.curve.at(theta) - y, axis=1)
     assert np.all(near >= far - 1e-5) and np.all(near <= guessed + 1e-5)
+
+
+def test_on_a_circle_it_is_that_of_the_radius_also_near_the_centre():
+    rng = np.random.default_rng(3)
+    y = rng.normal(size=(4000, 2))
+    y *= (np.geomspace(1e-6, 0.15, 4000) / np.linalg.norm(y, axis=1))[:, None]
+    for found in (path_distance(Plane(), circle(0.05), y), circle(0.05).nearest(y)[1]):
+        assert np.abs(found - np.abs(np.linalg.norm(y, axis=1) - 0.05)).max() < 1e-10
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_no_point_of_the_curve_is_nearer_even_where_two_valleys_are_equally_deep(
+    random_curve, seed
+):
+    curve, y = random_curve(seed), np.random.default_rng(seed).uniform(-0.12, 0.12, (2000, 2))
+    everywhere = curve.at(curve.sample(6000))
+    nearest = np.full(len(y), np.inf)
+    for part in np.array_split(everywhere, 60):
+        nearest = np.minimum(nearest, ((y[:, None, :] - part) ** 2).sum(-1).min(axis=1))
+    for found in (path_distance(Plane(), curve, y, 64), curve.nearest(y, 64)[1]):
+        assert np.all(found <= np.sqrt(nearest) + 1e-12)

@@ -71,6 +71,17 @@ def test_held_back_the_follower_stays_on_the_circle_and_the_tracker_does_not(
     assert torque["trajectory_tracking"] > 2 * torque["path_following"]
 
 
+def test_distance_in_the_file_is_that_of_the_coordinates_in_the_file(
+    obstruction: dict[str, Trajectory],
+) -> None:
+    text = io.StringIO()
+    write_csv(text, experiments()["obstruction"].robot(), list(obstruction.values()))
+    text.seek(0)
+    for columns in read_csv(text).values():
+        expected = np.abs(np.hypot(columns["y1_m"], columns["y2_m"]) - RADIUS)
+        assert np.abs(columns["distance_m"] - expected).max() < 1e-9
+
+
 def test_hold_acts_from_three_to_five_seconds_along_the_tangent_only(
     obstruction: dict[str, Trajectory],
 ) -> None:

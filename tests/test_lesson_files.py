@@ -135,6 +135,19 @@ def test_no_text_at_all(tmp_path: Path, content: bytes, said: str) -> None:
     assert any(said in words for _, words in problems(file))
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+def test_any_editor_will_do(tmp_path: Path, encoding: str, ending: str) -> None:
+    """Windows' Notepad begins a file with a byte-order mark and ends lines with CR LF."""
+    plain = read_lesson(write_lesson(tmp_path / "plain"))
+    file = write_lesson(tmp_path / "own")
+    for own in file.parent.iterdir():
+        own.write_bytes(own.read_text().replace("\n", ending).encode(encoding))
+    assert read_course([tmp_path / "own"])[1] == []
+    assert read_lesson(file) == plain
+    assert run_command(["lessons", "check", str(tmp_path / "own")]) == 0
+
+
 def test_a_wrong_lesson_does_not_take_the_others_with_it(tmp_path: Path) -> None:
     write_lesson(tmp_path, name="01-good")
     write_lesson(tmp_path, "nothing", name="02-bad")

@@ -6,15 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from app.lesson_record import Beginning, record_of
-from app.lesson_scene import apply_scene
-from app.script_player import ScriptPlayer
-from app.session import Session
-from lessons.checks import Verdict, judge
+from app.cli import run_command
+from app.lesson_check import play, play_course, set_up, solved
 from lessons.course import BUILT_IN, REFERENCE, read_course, read_references
-from lessons.schema import Lesson, Scene, Script, Step, Task
-from lessons.words import Words
-from tests.lab import run, store
+from lessons.schema import Lesson, Step, Task
+from tests.lab import store
+from tests.lesson_texts import LESSON, write_lesson
+from tests.lesson_texts import REFERENCE as EXAMPLE
 
 COURSE, PROBLEMS = read_course([BUILT_IN])
 ENGLISH = [versions["en"] for versions in COURSE.lessons.values()]
@@ -31,33 +29,6 @@ def label(value: object) -> str:
     return value.id if isinstance(value, Task) else getattr(value, "title", "")
 
 
-def set_up(lesson: Lesson, until: Step) -> Session:
-    """A lab that has seen the scenes of a lesson up to a step."""
-    session = Session(store())
-    for step in lesson.steps:
-        if step.scene is not None:
-            apply_scene(session, step.scene, lesson.front.robot)
-        elif step is lesson.steps[0]:
-            apply_scene(session, Scene(), lesson.front.robot)
-        if step is until:
-            return session
-    raise AssertionError("no such step")
-
-
-def played(session: Session, script: Script, task: Task | None = None) -> list[list[Verdict]]:
-    """Plays a script; the verdicts on a task, ten times a second."""
-    begin, words = Beginning.now(session), Words()
-    session.script, session.running = ScriptPlayer(script), True
-    verdicts: list[list[Verdict]] = []
-    for _ in range(round(3 * script.until / 0.1)):
-        run(session, 0.1)
-        if task is not None:
-            verdicts.append(judge(task, record_of(session, begin), words))
-        if session.script is None:
-            return verdicts
-    raise AssertionError("the script does not end")
-
-
 def test_every_lesson_is_all_right() -> None:
     assert PROBLEMS == []
     assert len(ENGLISH) >= 8 and "de" in COURSE.languages()
@@ -66,23 +37,51 @@ def test_every_lesson_is_all_right() -> None:
 @pytest.mark.parametrize(("lesson", "step", "task"), TASKS, ids=label)
 def test_solution_passes_and_failure_does_not(lesson: Lesson, step: Step, task: Task) -> None:
     reference = read_references(lesson, BUILT_IN / lesson.name / REFERENCE)[0][task.id]
-    seen = played(set_up(lesson, step), reference.solution, task)
-    assert any(all(v.passed for v in verdicts) for verdicts in seen), [v.words for v in seen[-1]]
-    seen = played(set_up(lesson, step), reference.failure, task)
-    assert not any(all(v.passed for v in verdicts) for verdicts in seen), [
-        v.words for v in seen[-1]
-    ]
+    passed, last = solved(set_up(lesson, step, store()), reference.solution, task)
+    assert passed, [verdict.words for verdict in last]
+    passed, last = solved(set_up(lesson, step, store()), reference.failure, task)
+    assert not passed, [verdict.words for verdict in last]
 
 
 @pytest.mark.parametrize(("lesson", "step"), SCRIPTS, ids=label)
 def test_what_a_step_shows_by_itself_is_let_happen(lesson: Lesson, step: Step) -> None:
     assert step.script is not None
-    session = set_up(lesson, step)
-    played(session, step.script)
-    assert session.message_level != "warning", session.message
+    session = set_up(lesson, step, store())
+    assert list(play(session, step.script)) == []
     assert session.time > 0
 
 
 def test_references_are_where_the_lessons_are() -> None:
     for lesson in ENGLISH:
         assert Path(BUILT_IN / lesson.name / REFERENCE).is_file()
+
+
+@pytest.mark.parametrize(
+    ("reference", "line", "words"),
+    [
+        (EXAMPLE.replace("until = 3.0", "until = 1.5"), 2, "0.5 of 1 s"),
+        (EXAMPLE.replace("until = 1.5", "until = 3.0"), 5, "passes the task"),
+        (EXAMPLE.replace("hold = true", "reset = true"), 2, "0.0 of 1 s"),
+    ],
+    ids=["a solution that fails", "a failure that passes", "a solution that does nothing"],
+)
+def test_a_solution_that_is_none_is_found(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], reference: str, line: int, words: str
+) -> None:
+    file = write_lesson(tmp_path).with_name(REFERENCE)
+    assert run_command(["lessons", "check", str(tmp_path)]) == 0
+    assert "1 lesson," in capsys.readouterr().out
+    file.write_text(reference)
+    assert run_command(["lessons", "check", str(tmp_path)]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f"{file}:{line}: hold.") and words in said
+
+
+def test_a_script_that_the_lab_refuses_is_found(tmp_path: Path) -> None:
+    own = LESSON.replace("{ at = 0.5, hold = true }", '{ at = 0.5, path = "figure of eight" }')
+    file = write_lesson(tmp_path, own)
+    course, problems = read_course([tmp_path])
+    assert problems == []
+    (problem,) = play_course(course, tmp_path, store())
+    assert problem.path == str(file) and "crosses itself" in problem.text
+    assert own.split("\n")[problem.line - 1].startswith("# run")

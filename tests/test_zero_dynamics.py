@@ -11,9 +11,12 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from app.zero_dynamics import SETTABLE, as_json, study
 from models.beam import MOST_MODES, beam_modes
 from models.five_bar import five_bar
 from models.flexible_five_bar import HOME, load_links
+from models.flexible_robot import FlexibleParameters
+from models.parameters import changed, specs
 from models.system import Array, MechanicalSystem
 from models.zero_dynamics import flexible_zero_dynamics, natural_rate, zero_dynamics
 
@@ -41,6 +44,19 @@ def critical(joints: Array, modes: int = 3, plant: str = "lagrangian", **changes
     zero = flexible_zero_dynamics(modes, plant)
     parameters = zero.system.parameter_vector(lumped(0.0, **changes))
     return zero.critical_alpha(straight(joints, modes), parameters, highest=8.0)
+
+
+def test_the_command_takes_just_the_settings_that_change_its_table() -> None:
+    def told(parameters: Any) -> Any:
+        return as_json(study(parameters, (0.0, 0.0), alphas=np.array([0.5])))
+
+    usual, matters = FlexibleParameters(), set[str]()
+    for name, spec in specs(FlexibleParameters).items():
+        other = [option for option in spec.options if option != getattr(usual, name)]
+        value = other[-1] if other else spec.low + 0.37 * (spec.high - spec.low)
+        if told(changed(usual, name, value)) != told(usual):
+            matters.add(name)
+    assert matters == set(SETTABLE)
 
 
 @pytest.mark.parametrize("modes", MODES)

@@ -1,0 +1,126 @@
+"""Plays lessons without a browser: does each script run, does each task tell right from wrong?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from app.lesson_record import Beginning, record_of
+from app.lesson_scene import apply_scene
+from app.loop_store import LoopStore
+from app.script_player import ScriptPlayer
+from app.session import Session
+from lessons.checks import Verdict, judge
+from lessons.course import REFERENCE, Course, read_references
+from lessons.parse import Problem
+from lessons.schema import Lesson, Scene, Script, Step, Task
+from lessons.words import DEFAULT, Words
+
+FRAME = 1 / 60  # [s]
+LOOKS = 0.1  # [s] between looks at a task's checks
+
+
+def play_course(course: Course, folder: Path, store: LoopStore) -> Iterator[Problem]:
+    """What is wrong with the scripts, solutions and failures of a folder's lessons.
+
+    Args:
+        course: what was read from the folder.
+        folder: where the lessons' own folders are.
+        store: where the closed loops come from.
+    """
+    for name in course.lessons:
+        lesson = course.lesson(name, DEFAULT)
+        home = folder / name
+        for step in lesson.steps:
+            yield from _script_faults(lesson, step, home / f"{lesson.language}.md", store)
+        yield from _reference_faults(lesson, home / REFERENCE, store)
+
+
+def set_up(lesson: Lesson, until: Step, store: LoopStore) -> Session:
+    """A lab that has seen the scenes of a lesson up to a step."""
+    session = Session(store)
+    for step in lesson.steps:
+        if step.scene is not None:
+            apply_scene(session, step.scene, lesson.front.robot)
+        elif step is lesson.steps[0]:
+            apply_scene(session, Scene(), lesson.front.robot)
+        if step is until:
+            break
+    return session
+
+
+def play(session: Session, script: Script, task: Task | None = None) -> Iterator[list[Verdict]]:
+    """Play a script to its end; the verdicts on a task, ten times a second.
+
+    Raises:
+        ValueError: the lab refuses what the script does; the message says why.
+    """
+    begin, words = Beginning.now(session), Words()
+    session.script, session.running = ScriptPlayer(script), True
+    for _ in range(round(3 * script.until / LOOKS)):
+        for _ in range(round(LOOKS / FRAME)):
+            session.drain()
+            session.advance(session.rate * FRAME)
+        if session.message_level == "warning":
+            raise ValueError(session.message)
+        if task is not None:
+            yield judge(task, record_of(session, begin), words)
+        if session.script is None:
+            return
+    raise ValueError(f"the script does not reach its end at {script.until:g} s")
+
+
+def solved(session: Session, script: Script, task: Task) -> tuple[bool, list[Verdict]]:
+    """Whether a script ever passes a task, and the last verdicts.
+
+    Raises:
+        ValueError: see `play`.
+    """
+    last: list[Verdict] = []
+    passed = False
+    for last in play(session, script, task):
+        passed |= all(verdict.passed for verdict in last)
+    return passed, last
+
+
+def _script_faults(lesson: Lesson, step: Step, file: Path, store: LoopStore) -> Iterator[Problem]:
+    if step.script is None:
+        return
+    try:
+        for _ in play(set_up(lesson, step, store), step.script):
+            pass
+    except ValueError as error:
+        yield Problem(str(file), step.line, f"the script of step {step.title!r}: {error}")
+
+
+def _reference_faults(lesson: Lesson, file: Path, store: LoopStore) -> Iterator[Problem]:
+    references = read_references(lesson, file)[0]
+    for step in lesson.steps:
+        for task in step.tasks():
+            if task.id not in references:
+                continue  # said by read_references
+            scripts = references[task.id]
+            for what, script in (("solution", scripts.solution), ("failure", scripts.failure)):
+                fault = _fault(set_up(lesson, step, store), script, task, what == "solution")
+                if fault:
+                    heading = f"{task.id}.{what}"
+                    yield Problem(str(file), _line_of(heading, file), f"{heading} {fault}")
+
+
+def _fault(session: Session, script: Script, task: Task, right: bool) -> str:
+    """Why a script is not the solution, or not the failure, that it should be."""
+    try:
+        passed, last = solved(session, script, task)
+    except ValueError as error:
+        return f"cannot be played: {error}"
+    if passed == right:
+        return ""
+    if passed:
+        return "passes the task, which it should not"
+    missing = "; ".join(verdict.words for verdict in last if not verdict.passed)
+    return f"does not pass the task. At its end: {missing}"
+
+
+def _line_of(heading: str, file: Path) -> int:
+    lines = file.read_text("utf-8-sig").split("\n")
+    return next((i for i, line in enumerate(lines, 1) if line.strip() == f"[{heading}]"), 1)
