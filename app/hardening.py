@@ -146,7 +146,6 @@ def _guarded_serve(
 ) -> Iterator[None]:
     """Lead the one call of websockets' `serve`, which viser makes on construction, to our gates."""
     library: Any = websockets.asyncio.server
-    genuine = library.serve
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
         async def knock(connection: ServerConnection, request: Request) -> Response | None:
@@ -175,6 +174,7 @@ def _guarded_serve(
         return genuine(admit, sock=listener, process_request=knock, **options)
 
     with _patching:
+        genuine = library.serve  # read in here: outside it may be another thread's replacement
         library.serve = serve
         try:
             yield
