@@ -196,8 +196,9 @@ def test_a_server_built_while_another_is_being_built_listens(
         server.stop()
 
     with hardening.listen("127.0.0.1", 0) as listener:
-        door = hardening.Door((), local_only=True)
-        with hardening._guarded_serve(listener, door, hardening.Limits(), in_folder=False):
+        door, limits = hardening.Door((), local_only=True), hardening.Limits()
+        crowd = hardening.Crowd(limits, hardening.Proxies())
+        with hardening._guarded_serve(listener, door, limits, crowd, in_folder=False):
             lock.asked.clear()
             threading.Thread(target=build, daemon=True).start()
             assert lock.asked.wait(WAIT)
