@@ -388,7 +388,7 @@ def test_a_client_that_reads_nothing_costs_a_bounded_amount(
             assert connection.transport.get_write_buffer_size() < 16 * MOST_UNSENT
             time.sleep(0.1)
     assert max(waiting[-10:]) <= max(waiting[:20]) + 20  # what is late is merged
-    raw.shutdown(socket.SHUT_RDWR)
+    raw.close()
     wait_for(lambda: deaf not in server._views)
 
 
