@@ -22,8 +22,7 @@ from app.shared_classroom import SharedClassroom
 from app.teaching import Chosen, Teaching
 from app.watches import Watches
 
-STORAGE_KEY = "onpath_teacher"
-STORAGE_WAIT = 3.0  # [s]
+TEACHER_KEY = "onpath_teacher"  # in the browser's storage
 
 
 class ClassDesk:
@@ -57,13 +56,16 @@ class ClassDesk:
         if self._relay is not None:
             self._relay.rounds.stop()
 
-    def greet(self, client: viser.ClientHandle) -> None:
-        """A browser that was a teacher's is one again."""
+    def greet(self, client: viser.ClientHandle, shown: str | None) -> None:
+        """A browser that was a teacher's is one again.
+
+        Args:
+            shown: what it keeps under `TEACHER_KEY`.
+        """
         try:
-            shown = client.local_storage.get_item(STORAGE_KEY, timeout=STORAGE_WAIT)
             if shown is not None and self._class.is_pass(shown):
                 self._teachers[client.client_id] = (shown, Chosen())
-        except (RuntimeError, TimeoutError, OSError):
+        except OSError:
             return  # a student's page is open to everybody
 
     def gone(self, client: int) -> None:
@@ -86,7 +88,7 @@ class ClassDesk:
             shown = self._class.admit(key, code)
             self._class.leave(code)
             self._teachers[client.client_id] = (shown, Chosen())
-            client.local_storage.set_item(STORAGE_KEY, shown)
+            client.local_storage.set_item(TEACHER_KEY, shown)
             reopen()
 
         def join(typed: str, nickname: str) -> None:
@@ -112,7 +114,7 @@ class ClassDesk:
 
         def stop() -> None:
             self._teachers.pop(client.client_id, None)
-            client.local_storage.remove_item(STORAGE_KEY)
+            client.local_storage.remove_item(TEACHER_KEY)
             reopen()
             self._class.revoke(shown)
 

@@ -34,6 +34,8 @@ class Serve:
     """Open a class: prints a code for the students and a key for the teacher."""
     origin: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Address of the page behind a proxy, https://lab.example.org; repeat for more."""
+    trusted_proxy: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """A proxy on another machine, 10.0.0.7 or 10.0.0.0/8, that says who asks; repeat for more."""
     socket: Path | None = None
     """Listen on this Unix socket instead, for a proxy of your own such as Jupyter's."""
     most_clients: int = 64
@@ -70,6 +72,7 @@ class Serve:
             open_class=_opener(silent=worker) if self.classroom else None,
             most_clients=self.most_clients,
             allowed_origins=self.origin,
+            trusted_proxies=self.trusted_proxy,
             unix_socket=self.socket,
             share_port=worker,
             listener=handed(self.host, self.port),

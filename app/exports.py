@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import io
 import logging
+import time
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from datetime import datetime
+from functools import partial
 from itertools import groupby
 
 import numpy as np
@@ -26,14 +28,21 @@ from models.trajectory import Trajectory, join, record, write_csv
 
 log = logging.getLogger(__name__)
 FILM = 10.0  # [s]
+PATIENCE = 60.0  # [s] that somebody waits for a film, and for those of others before it
+_films = ThreadPoolExecutor(1, "films")  # one at a time: many would slow each other and all labs
 
 
 class Exporter:
-    """Makes files in a thread of its own, from copies that the simulation thread hands it."""
+    """Makes files in a thread of its own, from copies that the simulation thread hands it.
+
+    One of each kind at a time: pressed again meanwhile, a button does nothing.
+    """
 
     def __init__(self, client: viser.ClientHandle) -> None:
         self._client = client
         self._wanted: list[Callable[[Session], None]] = []
+        self._under_way: set[str] = set()
+        self._film: Future[None] | None = None
         self._pool = ThreadPoolExecutor(1, "export")
 
     def csv(self) -> None:
@@ -46,10 +55,12 @@ class Exporter:
 
     def recording(self) -> None:
         """Ask for a standalone page with the scene of the last seconds."""
-        self._ask(
-            "onpath.html",
-            lambda robot, history, words: record_scene(robot, _last(history, FILM), words),
-        )
+        until = time.monotonic() + PATIENCE
+
+        def make(robot: Robot, history: list[Stretch], words: Words) -> bytes:
+            return record_scene(robot, _last(history, FILM), words, until)
+
+        self._ask("onpath.html", make, film=True)
 
     def report(self, code: str = "") -> None:
         """Ask for the record of the lessons as a page.
@@ -68,7 +79,7 @@ class Exporter:
                 lambda: report_bytes(run, code, made),
             )
 
-        self._wanted.append(start)
+        self._want("onpath-report.html", start)
 
     def submit(self, work: Callable[[], None]) -> None:
         """Do something else in this thread."""
@@ -88,25 +99,47 @@ class Exporter:
 
     def close(self) -> None:
         """Finish nothing more."""
+        if self._film is not None:
+            self._film.cancel()
         self._pool.shutdown(wait=False, cancel_futures=True)
 
-    def _ask(self, name: str, make: Callable[[Robot, list[Stretch], Words], bytes]) -> None:
+    def _ask(
+        self, name: str, make: Callable[[Robot, list[Stretch], Words], bytes], film: bool = False
+    ) -> None:
         def start(session: Session) -> None:
             robot, history, words = session.robot, session.history.all(), session.lessons.words
             if not history:
                 session.say(words("export.nothing"), "warning")
+                self._under_way.discard(name)
                 return
-            self._pool.submit(self._deliver, name, words, lambda: make(robot, history, words))
+            work = partial(make, robot, history, words)
+            self._pool.submit(self._deliver, name, words, work, film)
 
-        self._wanted.append(start)
+        self._want(name, start)
 
-    def _deliver(self, name: str, words: Words, make: Callable[[], bytes]) -> None:
+    def _want(self, name: str, start: Callable[[Session], None]) -> None:
+        if name not in self._under_way:
+            self._under_way.add(name)
+            self._wanted.append(start)
+
+    def _deliver(
+        self, name: str, words: Words, make: Callable[[], bytes], film: bool = False
+    ) -> None:
         note = self._client.add_notification(
             words("export.title"),
             words("export.making", name=name),
             loading=True,
             with_close_button=False,
         )
+        finish = partial(self._finish, note, name, words, make)
+        if film:
+            self._film = _films.submit(finish)
+        else:
+            finish()
+
+    def _finish(
+        self, note: viser.NotificationHandle, name: str, words: Words, make: Callable[[], bytes]
+    ) -> None:
         try:
             self._client.send_file_download(name, make(), save_immediately=True)
             note.body, note.loading = words("export.ready", name=name), False
@@ -115,6 +148,7 @@ class Exporter:
             log_error(error)
             note.body, note.loading = words("export.failed", name=name), False
         note.with_close_button = True
+        self._under_way.discard(name)
 
 
 def csv_bytes(robot: Robot, history: list[Stretch]) -> bytes:

@@ -9,6 +9,7 @@ import numpy as np
 
 from app import meshes, palette
 from app.drag import pointer_on_plane
+from app.ink import Ink
 from app.stage import Stage, add_copies
 
 if TYPE_CHECKING:
@@ -37,8 +38,9 @@ class Freehand:
         self._bases = stage.origins
         self._plane = stage.path_plane
         self._on_stroke = on_stroke
-        self._points: list[np.ndarray] = []
-        self._ink: viser.LineSegmentsHandle | None = None
+        self._base = self._bases[0]  # of the robot before which is drawn
+        look = (palette.INK, 0.003)
+        self._ink = Ink(scene, "/freehand/ink", look, CLOSEST, self._before_the_robot)
         self.active = True
         sheet = meshes.sheet(*stage.sheet)
         self._sheets = add_copies(
@@ -51,36 +53,25 @@ class Freehand:
         if self.active:
             self.active = False
             self._sheets.remove()
-            if self._ink is not None:
-                self._ink.remove()
+            self._ink.remove()
+
+    def draw(self) -> None:
+        """Show how far the stroke is; at about 10 Hz."""
+        self._ink.draw()
 
     async def _dragged(self, event: viser.SceneNodeDragEvent[viser.BatchedMeshHandle]) -> None:
         if not self.active or event.instance_index is None:
             return
-        base = self._bases[event.instance_index]
+        self._base = self._bases[event.instance_index]
         camera = event.client.camera.position
         seen = [event.start_position] if event.phase == "start" else []
         for pointer in (*seen, event.end_position):
-            point = pointer_on_plane(camera, np.array(pointer), base, self._plane)
-            if point is not None and self._is_new(point):
-                self._points.append(point)
+            point = pointer_on_plane(camera, np.array(pointer), self._base, self._plane)
+            if point is not None:
+                self._ink.add(point)
         if event.phase == "end":
             self.cancel()
-            self._on_stroke(np.array(self._points).reshape(-1, 3))
-        else:
-            self._draw(base)
+            self._on_stroke(self._ink.points.reshape(-1, 3))
 
-    def _is_new(self, point: np.ndarray) -> bool:
-        return not self._points or float(np.linalg.norm(point - self._points[-1])) > CLOSEST
-
-    def _draw(self, base: np.ndarray) -> None:
-        if len(self._points) < 2:
-            return
-        line = np.array(self._points) + base - [0.0, 0.004, 0.0]
-        segments = np.stack([line[:-1], line[1:]], axis=1)
-        if self._ink is None:
-            self._ink = self._scene.add_line_segments(
-                "/freehand/ink", segments, palette.INK.rgb, thickness=0.003
-            )
-        else:
-            self._ink.points = segments.astype(np.float32)
+    def _before_the_robot(self, points: np.ndarray) -> np.ndarray:
+        return points + self._base - [0.0, 0.004, 0.0]

@@ -28,7 +28,10 @@ class Limits:
         max_text_length: of a text widget, [characters]; the rest is cut off.
         max_magnitude: of any number in a drag, pointer, gizmo or camera message.
         max_upload_bytes: of a file, one file at a time, [B]; 0 refuses all.
-        max_connections: of all browsers together, also those that wait or ask for a file.
+        max_connections: of all browsers together, also those that ask for a file.
+        max_connections_each: of one address; sixty students behind one have five each.
+        max_waiting: connections that have sent no whole request yet, besides those.
+        max_waiting_each: of one address.
         silence: after which a browser is asked whether it is there, and how long it may take to
             answer that, [s].
         farewell: how long it may take to answer that it is being closed, [s].
@@ -40,7 +43,10 @@ class Limits:
     max_text_length: int = 2000
     max_magnitude: float = 1e9
     max_upload_bytes: int = 0
-    max_connections: int = 1000
+    max_connections: int = 700  # with those that wait below 1024 files, a usual limit
+    max_connections_each: int = 300
+    max_waiting: int = 250
+    max_waiting_each: int = 200
     silence: float = 20.0
     farewell: float = 2.0
 

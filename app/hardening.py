@@ -28,6 +28,7 @@ from websockets.frames import CloseCode, Frame, Opcode
 from websockets.http11 import Request, Response
 
 from app.compression import share_compressors
+from app.crowd import Crowd, Member, Proxies
 from app.error_log import log_error
 from app.gate import Gate, Limits, warn_once
 from app.listening import PortInUse, listen, listen_unix
@@ -68,6 +69,7 @@ def make_server(
     label: str | None = None,
     limits: Limits = Limits(),
     allowed_origins: tuple[str, ...] = (),
+    trusted_proxies: tuple[str, ...] = (),
     share_port: bool = False,
     unix_socket: Path | None = None,
     listener: socket.socket | None = None,
@@ -79,6 +81,7 @@ def make_server(
     Args:
         allowed_origins: pages of other sites that may connect, "https://lab.example:8443". The
             server's own page always may, and so may a client that is no browser.
+        trusted_proxies: see `app.crowd.Proxies`.
         share_port: other processes of this user may hold the same port, or listen on it.
         unix_socket: listen on this file alone, for a proxy of this user's that puts the page
             into a folder of its own.
@@ -86,9 +89,11 @@ def make_server(
         health: see `Door`.
 
     Raises:
+        ValueError: there can be no such proxy.
         PortInUse: where viser alone would move on to the next port without a word.
         OSError: the address cannot be bound.
     """
+    crowd = Crowd(limits, Proxies(trusted_proxies))
     _cache_icons()
     share_compressors()
     if listener is None:
@@ -96,7 +101,7 @@ def make_server(
     port = 0 if unix_socket else listener.getsockname()[1]
     local_only = is_loopback(host) and not unix_socket
     door = Door(allowed_origins, local_only=local_only, health=health)
-    with _guarded_serve(listener, door, limits, in_folder=unix_socket is not None):
+    with _guarded_serve(listener, door, limits, crowd, in_folder=unix_socket is not None):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     harden(server, limits=limits)
     door.open = True
@@ -142,21 +147,20 @@ _patching = threading.Lock()
 
 @contextmanager
 def _guarded_serve(
-    listener: socket.socket, door: Door, limits: Limits, in_folder: bool
+    listener: socket.socket, door: Door, limits: Limits, crowd: Crowd, in_folder: bool
 ) -> Iterator[None]:
     """Lead the one call of websockets' `serve`, which viser makes on construction, to our gates."""
     library: Any = websockets.asyncio.server
-    genuine = library.serve
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
-        async def knock(connection: ServerConnection, request: Request) -> Response | None:
+        async def knock(connection: Member, request: Request) -> Response | None:
             until = time.monotonic() + STARTING
             while not door.open and time.monotonic() < until:  # who asks is told when it is ready
                 await asyncio.sleep(0.02)
-            if len(connection.server.handlers) > limits.max_connections:
-                return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
-            if refusal := door.refusal(request):
+            if refusal := door.refusal(request):  # or health, whoever is here
                 return connection.respond(*refusal)
+            if not crowd.takes(connection, request):
+                return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
             if in_folder and request.path.partition("?")[0] == "/":
                 return _to_page(connection, request)
             return process_request(connection, request)
@@ -171,10 +175,11 @@ def _guarded_serve(
         options["max_size"] = limits.max_message_bytes
         options["ping_interval"] = options["ping_timeout"] = limits.silence
         options["close_timeout"] = limits.farewell
-        options["create_connection"] = partial(_Connection, limits=limits)
+        options["create_connection"] = partial(_Connection, limits=limits, crowd=crowd)
         return genuine(admit, sock=listener, process_request=knock, **options)
 
     with _patching:
+        genuine = library.serve  # read in here: outside it may be another thread's replacement
         library.serve = serve
         try:
             yield
@@ -187,7 +192,7 @@ def _forms(max_magnitude: float) -> WireForms:
     return WireForms(_FROM_BROWSER, max_magnitude)
 
 
-class _Connection(ServerConnection):
+class _Connection(Member):
     """A websocket that yields only well-formed messages, and is closed when they are too many."""
 
     def __init__(self, *args: Any, limits: Limits, **kwargs: Any) -> None:

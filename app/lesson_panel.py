@@ -79,6 +79,9 @@ class LessonPanel:
                 handle.content = content
         if self._chart is not None and run.playing:
             self._chart.show(run.truth(session))
+        board = self._board  # another thread may take it away
+        if board is not None:
+            board.draw()
 
     def _rebuild(self, session: Session) -> None:
         try:

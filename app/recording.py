@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+import asyncio
+import math
+import threading
+import time
+
 import numpy as np
+import viser
+from viser import _messages as wire
+from viser._viser import InitialCameraConfig
+from viser.infra import WebsockServer
+from viser.infra._async_message_buffer import AsyncMessageBuffer
 
 from app.figure import robot_views
-from app.hardening import make_server
 from app.history import Stretch
 from app.samples import sample_layout
 from app.scene import Scene
@@ -19,32 +28,54 @@ from models.robots import Robot
 RATE = 30.0  # [Hz]
 
 
-def record_scene(robot: Robot, history: list[Stretch], words: Words = ENGLISH) -> bytes:
+class Studio(viser.ViserServer):
+    """The scene of a server without the server: no socket, no thread, nobody is connected.
+
+    What the scene is told is kept in the queue that nobody empties, and can be serialized.
+    Written against viser 1.1.1; a test plays a film made with it.
+    """
+
+    def __init__(self) -> None:
+        loop = asyncio.new_event_loop()
+        loop.close()  # there is nobody to wake
+        self._websock_server = WebsockServer("", 0, wire.Message)
+        self._websock_server._broadcast_buffer = AsyncMessageBuffer(loop, persistent_messages=True)
+        self._initial_camera = InitialCameraConfig(self._websock_server.queue_message)
+        self._scene_lifecycle_lock = threading.RLock()
+        self.scene = viser.SceneApi(self, thread_executor=None, event_loop=loop)  # type: ignore[arg-type]
+        self.scene.reset()
+        self.scene.set_up_direction("+z")
+
+
+def record_scene(
+    robot: Robot, history: list[Stretch], words: Words = ENGLISH, until: float = math.inf
+) -> bytes:
     """A standalone page that replays the history.
 
-    The scene is built once more on a server of its own that nobody is told of.
+    The scene is built once more in a studio of its own.
+
+    Args:
+        until: when to give up, by `time.monotonic`, [s].
+
+    Raises:
+        TimeoutError: it takes longer.
     """
-    server = make_server(port=0)
-    try:
-        stage = stage_of(robot)
-        set_initial_camera(server, stage)
-        scene = Scene(server, stage=stage, words=words)  # type: ignore[arg-type]  # has scene, atomic()
-        frames = _frames(history)
-        serializer = None
-        for number, stretch in enumerate(frames):
-            snapshot = _snapshot(robot, stretch, number, frames[max(0, number - 45) : number])
-            if serializer is None:
-                scene.build(snapshot)
-                serializer = server.get_scene_serializer()
-            scene.update(snapshot)
-            scene.update_path(snapshot)
-            if number % 3 == 0:
-                scene.update_traces(snapshot)
-            serializer.insert_sleep(1 / RATE)
-        assert serializer is not None
-        return serializer.as_html().encode()
-    finally:
-        server.stop()
+    frames = _frames(history)
+    studio, stage = Studio(), stage_of(robot)
+    set_initial_camera(studio, stage)
+    scene = Scene(studio, stage=stage, words=words)  # type: ignore[arg-type]  # has scene, atomic()
+    scene.build(_snapshot(robot, frames[0], 0, []))
+    serializer = studio.get_scene_serializer()
+    for number, stretch in enumerate(frames):
+        if time.monotonic() > until:
+            raise TimeoutError("the recording takes too long")
+        snapshot = _snapshot(robot, stretch, number, frames[max(0, number - 45) : number])
+        scene.update(snapshot)
+        scene.update_path(snapshot)
+        if number % 3 == 0:
+            scene.update_traces(snapshot)
+        serializer.insert_sleep(1 / RATE)
+    return serializer.as_html().encode()
 
 
 def _frames(history: list[Stretch]) -> list[Stretch]:

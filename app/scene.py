@@ -122,8 +122,11 @@ class Scene:
         self._machine.update(poses_of(self._stage, self._robots(snapshot)))
 
     def update_traces(self, snapshot: Snapshot) -> None:
-        """Redraws the end-points' traces and the forces' labels; at 5 to 10 Hz."""
+        """Redraws the end-points' traces, the forces' labels and a stroke; at 5 to 10 Hz."""
         self._machine.update_traces(self._robots(snapshot))
+        freehand = self._freehand  # another thread may end it
+        if freehand is not None:
+            freehand.draw()
         for note in self._notes:
             set_text(note, snapshot.note)
 

@@ -13,7 +13,8 @@ from typing import Any
 
 import viser
 
-from app.class_desk import ClassDesk
+from app.arrivals import Arrivals, Kept
+from app.class_desk import TEACHER_KEY, ClassDesk
 from app.codes import normalised
 from app.database import Records
 from app.desk import Desk
@@ -41,7 +42,6 @@ from models.catalogue import FIVE_BAR
 
 log = logging.getLogger(__name__)
 STORAGE_KEY = "onpath_sessions"
-STORAGE_WAIT = 3.0  # [s]
 MOST_CLIENTS = 64
 
 
@@ -91,7 +91,7 @@ class LabServer:
         self._views: dict[int, LabView] = {}
         self._newcomers, self._onlookers = Newcomers(self.server), Onlookers(self.server)
         set_initial_camera(self.server, RIGID)
-        self.server.on_client_connect(self._connected)
+        self._arrivals = Arrivals(self.server, [STORAGE_KEY, TEACHER_KEY], self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self.simulation.start()
         if self._leases is not None:
@@ -118,15 +118,11 @@ class LabServer:
                 self._leases.close()
             self._records.close()
 
-    def _connected(self, client: viser.ClientHandle) -> None:
-        try:
-            known = client.local_storage.get_item(STORAGE_KEY, timeout=STORAGE_WAIT)
-        except (RuntimeError, TimeoutError):
-            known = None  # a browser that keeps nothing, or one that is gone again
+    def _connected(self, client: viser.ClientHandle, kept: Kept) -> None:
         if self._class is not None:
-            self._class.greet(client)
+            self._class.greet(client, kept[TEACHER_KEY])
         teaches = self._class and self._class.teaching(client, lambda: None)
-        enter = partial(self._entered, client, known)
+        enter = partial(self._entered, client, kept[STORAGE_KEY])
         self._room.admit(client, enter, always=bool(teaches))
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from app import palette
 from app.drag import intersect_ray_plane
+from app.ink import Ink
 from app.stage import Stage
 from lessons.record import QUANTITIES
 from lessons.schema import Sketch
@@ -48,8 +50,8 @@ class SketchBoard:
         self._right, self._up, self._middle, width = _placed(stage)
         self._size = width * np.array([1.0, FORM])
         self._inner = 1 - 2 * MARGIN * np.array([1.0, 1.0 / FORM])
-        self._points: list[np.ndarray] = []
-        self._ink: viser.LineSegmentsHandle | None = None
+        look = (palette.SELECTED, 0.006)
+        self._ink = Ink(scene, "/board/ink", look, CLOSEST, partial(self._world, above=0.003))
         handle = scene.add_image(
             "/board/sheet",
             _picture(sketch, title),
@@ -65,16 +67,17 @@ class SketchBoard:
         self._sheet = handle
 
     def show(self, times: np.ndarray, values: np.ndarray) -> None:
-        """Draw a curve given by numbers, shape (n,) each."""
-        self._points = list(self._from_axes(np.column_stack([times, values])))
-        self._draw()
+        """Have a curve given by numbers, shape (n,) each."""
+        self._ink.begin(self._from_axes(np.column_stack([times, values])))
+
+    def draw(self) -> None:
+        """Show the curve as it is now; at about 10 Hz."""
+        self._ink.draw()
 
     def remove(self) -> None:
         """Take it away."""
         self._sheet.remove()
-        if self._ink is not None:
-            self._ink.remove()
-            self._ink = None
+        self._ink.remove()
 
     # Between the axes' units, places on the board (fractions from its middle) and the world.
 
@@ -97,15 +100,14 @@ class SketchBoard:
 
     async def _dragged(self, event: viser.SceneNodeDragEvent[viser.ImageHandle]) -> None:
         if event.phase == "start":
-            self._points = []
+            self._ink.begin()
         seen = [event.start_position] if event.phase == "start" else []
         for pointer in (*seen, event.end_position):
             place = self._place(event.client.camera.position, np.array(pointer))
-            if place is not None and self._is_new(place):
-                self._points.append(place)
-        self._draw()
-        if event.phase == "end" and len(self._points) > 1:
-            times, values = self._to_axes(np.array(self._points)).T
+            if place is not None:
+                self._ink.add(place)
+        if event.phase == "end" and len(points := self._ink.points) > 1:
+            times, values = self._to_axes(points).T
             self._on_drawn(times, values)
 
     def _place(self, camera: np.ndarray, pointer: np.ndarray) -> np.ndarray | None:
@@ -117,22 +119,6 @@ class SketchBoard:
         way = hit - self._middle
         place = np.array([way @ self._right, way @ self._up]) / self._size
         return np.clip(place, -0.5 * self._inner, 0.5 * self._inner)
-
-    def _is_new(self, place: np.ndarray) -> bool:
-        if not self._points:
-            return True
-        return float(np.abs(place - self._points[-1]).max()) > CLOSEST
-
-    def _draw(self) -> None:
-        line = self._world(np.array(self._points).reshape(-1, 2), 0.003)
-        segments = np.stack([line[:-1], line[1:]], axis=1).astype(np.float32)
-        if self._ink is not None:
-            self._ink.remove()
-            self._ink = None
-        if len(segments):
-            self._ink = self._scene.add_line_segments(
-                "/board/ink", segments, palette.SELECTED.rgb, thickness=0.006
-            )
 
 
 def _picture(sketch: Sketch, title: str) -> np.ndarray:

@@ -48,6 +48,8 @@ class Options(Protocol):
     @property
     def origin(self) -> tuple[str, ...]: ...
     @property
+    def trusted_proxy(self) -> tuple[str, ...]: ...
+    @property
     def workers(self) -> int: ...
     @property
     def most_clients(self) -> int: ...
@@ -221,7 +223,8 @@ def _command(options: Options, port: int) -> list[str]:
     command += ["--lessons", str(options.lessons)] if options.lessons else []
     command += ["--database", options.database] if options.database else []
     command += ["--classroom"] if options.classroom else []
-    return command + [word for origin in options.origin for word in ("--origin", origin)]
+    command += [word for origin in options.origin for word in ("--origin", origin)]
+    return command + [w for proxy in options.trusted_proxy for w in ("--trusted-proxy", proxy)]
 
 
 def _announce(host: str, ports: list[int], workers: int) -> None:

@@ -11,10 +11,12 @@ import yaml
 from sqlalchemy import make_url
 
 from app.cli_serve import Serve
+from app.crowd import Proxies
 from app.origin import HEALTH
 from tests.supervisor import ROOT
 
 DEPLOY = ROOT / "assets" / "deploy"
+NGINX = (DEPLOY / "nginx.conf").read_text()
 CONTAINERFILE = (ROOT / "Containerfile").read_text()
 
 
@@ -68,6 +70,12 @@ def test_the_pod_starts_what_there_is_and_may_do_little(
     assert pod["securityContext"]["runAsNonRoot"] is True
     assert container["securityContext"]["readOnlyRootFilesystem"] is True
     assert not container["securityContext"]["allowPrivilegeEscalation"]
+
+
+def test_proxies_say_who_asks_and_are_believed(container: dict[str, Any]) -> None:
+    assert re.search(r"^\s+proxy_set_header X-Forwarded-For \$remote_addr;$", NGINX, re.MULTILINE)
+    networks = container["args"][container["args"].index("--trusted-proxy") + 1]
+    assert Proxies((networks,)).asker("10.1.2.3", ["203.0.113.7"]) == "203.0.113.7"
 
 
 def test_browsers_stay_with_their_pod_and_websockets_stay_open(manifest: dict[str, Any]) -> None:

@@ -28,7 +28,7 @@ import pytest
 import websockets.sync.client
 from lab import assert_sound
 from websockets.exceptions import ConnectionClosed
-from websockets.frames import Frame, Opcode
+from websockets.frames import Opcode
 from websockets.typing import Subprotocol
 
 from app.hardening import Limits, make_server
@@ -38,9 +38,9 @@ from app.node_update import MOST_UNSENT
 from app.protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from app.server import LabServer
 from tests import waiting
+from tests.raw_socket import WAIT, answer_questions, frames, is_closed, knock
 
 ROOT = Path(__file__).parents[1]
-WAIT = 10.0  # [s]
 RESTING = 30.0  # [Hz]; it is shown more while it pulls
 KEPT = 0.6  # of the display rate that it had before; a busy machine is unsteady by itself
 LONGEST_GAP = 1.0  # [s]
@@ -262,48 +262,6 @@ def test_long_work_asked_for_all_the_time_is_the_asker_s_to_wait_for(
     assert len(attacker.lab.session._inbox) <= 500
 
 
-def frames(*payloads: bytes, opcode: Opcode = Opcode.BINARY) -> bytes:
-    """What a browser would write to its socket."""
-    return b"".join(Frame(opcode, payload).serialize(mask=True) for payload in payloads)
-
-
-def knock(
-    port: int, subprotocol: str | None = SUBPROTOCOL, room: int | None = None
-) -> socket.socket:
-    """A socket that has asked for a websocket, and read nothing.
-
-    Args:
-        room: for what has come and has not been read, [B].
-    """
-    lines = [
-        "GET / HTTP/1.1",
-        f"Host: 127.0.0.1:{port}",
-        "Upgrade: websocket",
-        "Connection: Upgrade",
-        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
-        "Sec-WebSocket-Version: 13",
-        *([f"Sec-WebSocket-Protocol: {subprotocol}"] if subprotocol is not None else []),
-    ]
-    raw = socket.socket()
-    raw.settimeout(WAIT)
-    if room is not None:
-        raw.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, room)
-    raw.connect(("127.0.0.1", port))
-    raw.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
-    return raw
-
-
-def is_closed(raw: socket.socket) -> bool:
-    """Whether the other end has closed; drops what came before."""
-    try:
-        while select.select([raw], [], [], 0)[0]:
-            if not raw.recv(1 << 16):
-                return True
-    except OSError:
-        return True
-    return False
-
-
 def test_5000_messages_a_second_close_the_sender(
     server: LabServer, witness: Witness, quiet_log: None
 ) -> None:
@@ -403,13 +361,22 @@ def test_a_client_that_reads_nothing_costs_a_bounded_amount(
 ) -> None:
     before, sockets = set(server._views), server.server._websock_server._live_connections
     known = set(sockets.values())
-    raw = knock(server.server.get_port(), room=4096)
-    wait_for(lambda: select.select([raw], [], [], 0)[0])
+    raw = socket.socket()
+    raw.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    raw.connect(("127.0.0.1", server.server.get_port()))
+    silent = websockets.sync.client.connect(
+        f"ws://127.0.0.1:{server.server.get_port()}",
+        sock=raw,
+        subprotocols=[Subprotocol(SUBPROTOCOL)],
+        compression=None,
+        max_queue=1,
+    )
     (connection,) = wait_for(lambda: set(sockets.values()) - known)
     connection.transport.get_extra_info("socket").setsockopt(
         socket.SOL_SOCKET, socket.SO_SNDBUF, 4096
     )
-    raw.sendall(frames(packed("ViewerCameraMessage", **CAMERA)))
+    silent.send(packed("ViewerCameraMessage", **CAMERA))
+    answer_questions(silent)
     (deaf,) = wait_for(lambda: set(server._views) - before)
     client = server.server.get_clients()[deaf]
     buffer = client._websock_connection._state.message_buffer

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import socket
 from dataclasses import replace
 from types import SimpleNamespace
@@ -20,6 +19,7 @@ from app.scene import Hooks, Scene
 from app.snapshot import Counts, FollowerName, PathView, RobotView, Snapshot, TrackerName
 from app.stage import FIELD_OF_VIEW, Insets, Stage, view_of
 from app.stages import FLEXIBLE, RIGID
+from tests.drags import play
 from tests.drawing import evaluated
 
 NAMES = (TrackerName, FollowerName)
@@ -84,21 +84,6 @@ def lab(server, monkeypatch):
     queue = server.scene._queue_scene_message
     monkeypatch.setattr(server.scene, "_queue_scene_message", lambda m: (sent.append(m), queue(m)))
     return SimpleNamespace(scene=scene, api=server.scene, sent=sent, heard=heard)
-
-
-def play(lab: Any, node: str, phase: str, instance: int, start: np.ndarray, end: np.ndarray):
-    """Calls a node's drag callbacks as viser would, the pointer's ray being that of a real one."""
-    camera = np.array([0.1, -3.0, 0.5])
-    pointer = camera + 0.97 * (end - camera)
-    event = SimpleNamespace(
-        instance_index=instance,
-        phase=phase,
-        start_position=tuple(start),
-        end_position=tuple(pointer),
-        client=SimpleNamespace(camera=SimpleNamespace(position=camera)),
-    )
-    for entry in lab.api.get_handle_by_name(node)._impl.drag_cb:
-        asyncio.run(entry.callback(event))
 
 
 def test_a_moving_frame_costs_at_most_four_messages(lab):

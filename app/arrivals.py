@@ -1,0 +1,90 @@
+"""Asks newcomers what their browsers keep, and holds no thread while they think about it.
+
+A page answers at once; who does not is none, and stays outside. viser's own way to ask takes one
+of its 32 threads until the answer is here.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from uuid import uuid4
+
+import viser
+from viser import _messages as wire
+from websockets.frames import CloseCode
+
+from app.crowd import Holders
+from app.error_log import log_error
+from app.gate import warn_once
+
+Kept = dict[str, str | None]
+MOST, MOST_EACH = 300, 100  # newcomers that have not answered, in all and of one address
+
+
+class Arrivals:
+    """Newcomers that have not answered yet. On viser's event loop, but for `enter`.
+
+    Args:
+        keys: what is asked for.
+        enter: called in one of viser's threads, with what a browser keeps under those keys.
+        most, most_each: so many have not answered; of more, the oldest are turned away.
+    """
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        keys: list[str],
+        enter: Callable[[viser.ClientHandle, Kept], None],
+        most: int = MOST,
+        most_each: int = MOST_EACH,
+    ) -> None:
+        self._keys, self._enter = keys, enter
+        self._threads = server._thread_executor
+        self._sockets = server._websock_server._live_connections
+        self._silent = Holders[int](most, most_each)
+        self._farewells: set[asyncio.Task[None]] = set()
+        server.on_client_connect(self._greet)
+        server.on_client_disconnect(self._forget)
+
+    async def _greet(self, client: viser.ClientHandle) -> None:
+        socket = self._sockets.get(client.client_id)
+        if socket is None:  # gone already
+            return
+        surplus = self._silent.add(client.client_id, getattr(socket, "address", ""))
+        if surplus is not None:
+            self._turn_away(surplus)
+        connection = client._websock_connection
+        waits = {uuid4().hex: key for key in self._keys}
+        kept = Kept()
+
+        def answered(_: int, message: wire.LocalStorageGetItemResponseMessage) -> None:
+            key = waits.pop(message.request_uuid, None)
+            if key is not None:
+                kept[key] = message.value
+                if not waits and self._silent.discard(client.client_id):
+                    self._threads.submit(self._let_in, client, kept)
+
+        connection.register_handler(wire.LocalStorageGetItemResponseMessage, answered)
+        for question, key in waits.items():
+            connection.queue_message(wire.LocalStorageGetItemRequestMessage(key, question))
+        client.flush()
+
+    async def _forget(self, client: viser.ClientHandle) -> None:
+        self._silent.discard(client.client_id)
+
+    def _let_in(self, client: viser.ClientHandle, kept: Kept) -> None:
+        try:
+            self._enter(client, kept)
+        except Exception as error:
+            log_error(error)
+
+    def _turn_away(self, number: int) -> None:
+        """The page may come back; then it is the newest."""
+        self._silent.discard(number)
+        socket = self._sockets.get(number)
+        if socket is not None:
+            warn_once(socket, "a newcomer that answers nothing")
+            farewell = asyncio.ensure_future(socket.close(CloseCode.TRY_AGAIN_LATER))
+            self._farewells.add(farewell)
+            farewell.add_done_callback(self._farewells.discard)
