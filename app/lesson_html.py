@@ -63,13 +63,17 @@ def box(content: str, colour: str = "#d5dae1") -> str:
 
 
 def question(block: Choice | Quiz, chosen: int | None, revealed: bool, words: Words) -> str:
-    """A question with lettered options; once revealed, with what is right and why."""
+    """A question with lettered options; once revealed, with what is right and why.
+
+    Args:
+        chosen: index of the student's answer; None when there is none.
+    """
     rows = "".join(
         _option(letter, option, i == chosen, revealed)
         for i, (letter, option) in enumerate(zip(LETTERS, block.options, strict=False))
     )
     content = f"<p><b>{block.question}</b></p>{rows}"
-    if revealed and chosen is not None:
+    if revealed:
         content += _answer(block.options, chosen, words)
     return box(content, FOLLOWER.hex)
 
@@ -129,13 +133,14 @@ def _option(letter: str, option: Option, chosen: bool, revealed: bool) -> str:
     )
 
 
-def _answer(options: tuple[Option, ...], chosen: int, words: Words) -> str:
-    own = options[chosen]
-    verdict = words("lesson.right" if own.right else "lesson.not_quite")
-    said = f"<p><b>{verdict}</b> {own.answer}</p>"
-    if own.right:
-        return said
-    right = next(option for option in options if option.right)
+def _answer(options: tuple[Option, ...], chosen: int | None, words: Words) -> str:
+    right, said = next(option for option in options if option.right), ""
+    if chosen is not None:
+        own = options[chosen]
+        verdict = words("lesson.right" if own.right else "lesson.not_quite")
+        said = f"<p><b>{verdict}</b> {own.answer}</p>"
+        if own.right:
+            return said
     return said + f"<p>{words('lesson.the_answer', answer=right.answer)}</p>"
 
 

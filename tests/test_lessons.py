@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from app.lesson_record import Beginning, record_of
-from app.lesson_scene import apply_scene
+from app.lesson_scene import set_up
 from app.script_player import ScriptPlayer
 from app.session import Session
 from lessons.checks import Verdict, judge
 from lessons.course import BUILT_IN, REFERENCE, read_course, read_references
-from lessons.schema import Lesson, Scene, Script, Step, Task
+from lessons.schema import Lesson, Script, Step, Task
 from lessons.words import Words
 from tests.lab import run, store
 
@@ -31,17 +31,11 @@ def label(value: object) -> str:
     return value.id if isinstance(value, Task) else getattr(value, "title", "")
 
 
-def set_up(lesson: Lesson, until: Step) -> Session:
-    """A lab that has seen the scenes of a lesson up to a step."""
+def lab_at(lesson: Lesson, step: Step) -> Session:
+    """A lab set up for a step of a lesson."""
     session = Session(store())
-    for step in lesson.steps:
-        if step.scene is not None:
-            apply_scene(session, step.scene, lesson.front.robot)
-        elif step is lesson.steps[0]:
-            apply_scene(session, Scene(), lesson.front.robot)
-        if step is until:
-            return session
-    raise AssertionError("no such step")
+    set_up(session, lesson, lesson.steps.index(step))
+    return session
 
 
 def played(session: Session, script: Script, task: Task | None = None) -> list[list[Verdict]]:
@@ -66,9 +60,9 @@ def test_every_lesson_is_all_right() -> None:
 @pytest.mark.parametrize(("lesson", "step", "task"), TASKS, ids=label)
 def test_solution_passes_and_failure_does_not(lesson: Lesson, step: Step, task: Task) -> None:
     reference = read_references(lesson, BUILT_IN / lesson.name / REFERENCE)[0][task.id]
-    seen = played(set_up(lesson, step), reference.solution, task)
+    seen = played(lab_at(lesson, step), reference.solution, task)
     assert any(all(v.passed for v in verdicts) for verdicts in seen), [v.words for v in seen[-1]]
-    seen = played(set_up(lesson, step), reference.failure, task)
+    seen = played(lab_at(lesson, step), reference.failure, task)
     assert not any(all(v.passed for v in verdicts) for verdicts in seen), [
         v.words for v in seen[-1]
     ]
@@ -77,7 +71,7 @@ def test_solution_passes_and_failure_does_not(lesson: Lesson, step: Step, task: 
 @pytest.mark.parametrize(("lesson", "step"), SCRIPTS, ids=label)
 def test_what_a_step_shows_by_itself_is_let_happen(lesson: Lesson, step: Step) -> None:
     assert step.script is not None
-    session = set_up(lesson, step)
+    session = lab_at(lesson, step)
     played(session, step.script)
     assert session.message_level != "warning", session.message
     assert session.time > 0
