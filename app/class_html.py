@@ -11,12 +11,12 @@ import numpy as np
 from app.class_record import LETTERS, Distribution, tasks_passed
 from app.palette import FOLLOWER, TRACKER
 from app.room import Member
-from app.thinning import peaks
 from lessons.course import Course
 from lessons.progress import MOST_POINTS as MOST_OF_TRUTH
 from lessons.progress import Progress, Truth
 from lessons.record import QUANTITIES
 from lessons.schema import Choice, Prediction, Sketch
+from lessons.thinning import peaks
 from lessons.words import Words
 
 IDLE = 60.0  # [s] without a command

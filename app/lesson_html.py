@@ -32,7 +32,10 @@ LARGE = "<style>html{font-size:20px}.op-text{font-size:1.15rem;line-height:1.5}<
 
 
 def heading(lesson: Lesson, step: Step, run: LessonRun) -> str:
-    """Where one is: lesson, progress bar, kind and title of the step."""
+    """Where one is: lesson, progress bar, kind and title of the step.
+
+    By data-step, assets/page/steps.js sees that another step is open.
+    """
     words, seen = run.words, run.notes.seen
     bars = "".join(
         f'<div title="{html.escape(each.title)}" style="flex:1;height:6px;border-radius:3px;'
@@ -42,7 +45,8 @@ def heading(lesson: Lesson, step: Step, run: LessonRun) -> str:
     counted = words("lesson.step", step=run.index + 1, steps=len(lesson.steps))
     return (
         f"{STYLE}{LARGE if run.progress.presenting else ''}"
-        f'<div class="op-text" style="padding-top:0.6em"><div style="color:{GREY};'
+        f'<div class="op-text" data-step="{html.escape(lesson.name)}.{run.index}" '
+        f'style="padding-top:0.6em"><div style="color:{GREY};'
         f'font-size:0.85em;margin-bottom:0.4em">{html.escape(lesson.front.title)} · {counted}</div>'
         f'<div style="display:flex;gap:3px;margin-bottom:0.7em">{bars}</div>'
         f'<div style="font-size:0.8em;font-weight:700;letter-spacing:0.04em;color:{FOLLOWER.hex}">'

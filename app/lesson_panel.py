@@ -270,9 +270,11 @@ class LessonPanel:
             self._button(run.words("lesson.finish"), c.CloseLesson(), None, viser.Icon.CHECK)
         else:
             unseen = step.script is not None and not run.has_played()
-            key = "skip" if run.waits else "next_unseen" if unseen else "next"
-            colour = None if key == "next" else "gray"
-            self._button(run.words(f"lesson.{key}"), c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)
+            label, colour = run.words("lesson.next"), None
+            if run.waits or unseen:
+                colour = "gray"
+                label = run.words("lesson.skip" if run.waits else "lesson.next_unseen")
+            self._button(label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)
         keys = ["back", "again", "close"][0 if run.index else 1 :]
         commands = {"back": c.GoToStep(-1), "again": c.BeginStepAnew(), "close": c.CloseLesson()}
         asked = {run.words(f"lesson.{key}"): commands[key] for key in keys}

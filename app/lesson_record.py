@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.thinning import peaks
 from lessons.progress import MOST_POINTS, Truth
 from lessons.record import ROBOTS, ROLES, Record
 from lessons.schema import RobotName
+from lessons.thinning import peaks
 from models.layout import Layout
 from models.system import Array
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from msgspec.structs import replace
 
 from app.lesson_record import Beginning, Trace, record_of
@@ -16,7 +15,7 @@ from app.script_player import ScriptPlayer, perform
 from app.setups import Setup, capture, restore
 from lessons.checks import Verdict, judge, statistic
 from lessons.course import Course
-from lessons.progress import Answer, Notes, Progress, Truth
+from lessons.progress import Answer, Notes, Progress, Truth, sketched
 from lessons.record import Record
 from lessons.schema import Action, Lesson, Prediction, Quiz, Sketch, Step, Task, Window
 from lessons.words import Words
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from app.session import Session
 
 EVERY = 30  # frames between looks at the tasks
-MOST_POINTS = 160  # of a sketch
 
 
 class LessonRun:
@@ -341,27 +339,3 @@ class LessonRun:
 def quantity_of(prediction: Prediction) -> str:
     """What a prediction is about."""
     return prediction.quantity if isinstance(prediction, Sketch) else "distance"
-
-
-def sketched(prediction: Sketch, answer: Answer) -> Answer:
-    """A sketch on the prediction's axes, at rising times, within its range.
-
-    Raises:
-        ValueError: it is not a curve.
-    """
-    if answer.skipped:
-        return answer
-    try:
-        times, values = np.array(answer.times, dtype=float), np.array(answer.values, dtype=float)
-    except (OverflowError, TypeError) as error:
-        raise ValueError("a sketch needs points") from error
-    if times.shape != values.shape or not np.isfinite(times).all() or not np.isfinite(values).all():
-        raise ValueError("a sketch needs points")
-    order = np.argsort(times, kind="stable")
-    times, first = np.unique(np.clip(times[order], 0.0, prediction.seconds), return_index=True)
-    values = np.clip(values[order][first], prediction.bottom, prediction.top)
-    if len(times) < 2:
-        raise ValueError("draw a curve from left to right")
-    at = np.linspace(times[0], times[-1], min(MOST_POINTS, max(2, len(times))))
-    values = np.interp(at, times, values)
-    return Answer(times=tuple(np.round(at, 3).tolist()), values=tuple(np.round(values, 3).tolist()))
