@@ -13,9 +13,10 @@ from app.lesson_record import Beginning, Trace, record_of
 from app.lesson_scene import set_up
 from app.script_player import ScriptPlayer, perform
 from app.setups import Setup, capture, restore
+from app.sketches import sketched
 from lessons.checks import Verdict, judge, statistic
 from lessons.course import Course
-from lessons.progress import Answer, Notes, Progress, Truth, sketched
+from lessons.progress import Answer, Notes, Progress, Truth
 from lessons.record import Record
 from lessons.schema import Action, Lesson, Prediction, Quiz, Sketch, Step, Task, Window
 from lessons.words import Words

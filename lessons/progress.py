@@ -6,13 +6,8 @@ import math
 from typing import Annotated
 
 import msgspec
-import numpy as np
-
-from lessons.schema import Sketch
-from lessons.thinning import peaks
 
 MOST_POINTS = 200
-MOST_DRAWN = 160  # of a sketch
 Index = Annotated[int, msgspec.Meta(ge=0, le=1000)]
 Key = Annotated[str, msgspec.Meta(max_length=80)]
 Points = Annotated[tuple[float, ...], msgspec.Meta(max_length=MOST_POINTS)]
@@ -104,27 +99,3 @@ def read_progress(data: object) -> Progress:
         if not all(map(math.isfinite, numbers)):
             raise ValueError("a number that is not finite")
     return progress
-
-
-def sketched(prediction: Sketch, answer: Answer) -> Answer:
-    """A sketch on the prediction's axes, at rising times, within its range.
-
-    Raises:
-        ValueError: it is not a curve.
-    """
-    if answer.skipped:
-        return answer
-    try:
-        times, values = np.array(answer.times, dtype=float), np.array(answer.values, dtype=float)
-    except (OverflowError, TypeError) as error:
-        raise ValueError("a sketch needs points") from error
-    if times.shape != values.shape or not np.isfinite(times).all() or not np.isfinite(values).all():
-        raise ValueError("a sketch needs points")
-    order = np.argsort(times, kind="stable")
-    times = np.round(np.clip(times[order], 0.0, prediction.seconds), 3)
-    times, first = np.unique(times, return_index=True)
-    values = np.round(np.clip(values[order][first], prediction.bottom, prediction.top), 3)
-    if len(times) < 2:
-        raise ValueError("draw a curve from left to right")
-    kept = peaks([values], MOST_DRAWN)
-    return Answer(times=tuple(times[kept].tolist()), values=tuple(values[kept].tolist()))

@@ -18,9 +18,10 @@ from app.history import RECENT
 from app.lesson_record import Beginning, record_of
 from app.lesson_run import LessonRun
 from app.session import Session
+from app.sketches import sketched
 from lessons.checks import judge
 from lessons.course import BUILT_IN, Course, read_course
-from lessons.progress import MOST_POINTS, Answer, Progress, read_progress, sketched
+from lessons.progress import MOST_POINTS, Answer, Progress, read_progress
 from lessons.schema import Action, Choice, Event, Option, Quiz, Sketch, Task
 from lessons.words import Words
 from models.catalogue import FIVE_BAR
