@@ -6,19 +6,23 @@ import html
 from collections.abc import Iterable
 from functools import lru_cache
 
+import numpy as np
+
 from app.class_record import LETTERS, Distribution, tasks_passed
 from app.palette import FOLLOWER, TRACKER
 from app.room import Member
 from lessons.course import Course
+from lessons.progress import MOST_POINTS as MOST_OF_TRUTH
 from lessons.progress import Progress, Truth
 from lessons.record import QUANTITIES
 from lessons.schema import Choice, Prediction, Sketch
+from lessons.thinning import peaks
 from lessons.words import Words
 
 IDLE = 60.0  # [s] without a command
 GREEN, GREY, AMBER, INK = "#1d7a4f", "#667085", "#8a5a00", "#3f4a5a"
 WIDTH, HEIGHT, LEFT, BELOW = 640, 380, 50, 36  # of a plot, [px]
-MOST_POINTS = 40  # of a curve on it
+MOST_POINTS = 40  # of a sketch on it
 
 
 def class_code(code: str, count: int, words: Words) -> str:
@@ -119,7 +123,8 @@ def _bars(block: Choice, found: Distribution, revealed: bool) -> str:
 def _sketches(block: Sketch, found: Distribution, truth: Truth | None, words: Words) -> str:
     """All curves on one plot."""
     lines = "".join(
-        _line(block, sketch.times, sketch.values, INK, 2, 0.5) for sketch in found.sketches
+        _line(block, sketch.times, sketch.values, INK, 2, 0.5, MOST_POINTS)
+        for sketch in found.sketches
     )
     names = [(INK, words("class.predicted"))]
     if truth is not None:
@@ -160,9 +165,10 @@ def _line(
     colour: str,
     width: int,
     opacity: float,
+    most: int = MOST_OF_TRUTH,
 ) -> str:
-    step = max(1, -(-len(times) // MOST_POINTS))
-    places = [_at(block, t, v) for t, v in zip(times[::step], values[::step], strict=True)]
+    kept = peaks([np.array(values)], most)
+    places = [_at(block, times[i], values[i]) for i in kept]
     points = " ".join(f"{x:.0f},{y:.0f}" for x, y in places)
     return (
         f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}" '

@@ -57,10 +57,9 @@ def put_back(session: Session, state: State) -> None:
     setup = from_data(state.get("setup"))
     progress = read_progress(state.get("lessons"))
     before = state.get("before")
-    session.lessons.resume(progress, from_data(before) if before else None, session)
-    running = session.running
+    earlier = from_data(before) if before else None
     restore(session, setup)
-    session.running = running
+    session.lessons.resume(progress, earlier, session)
 
 
 def _now(session: Session) -> tuple[Setup, Progress, Setup | None]:

@@ -12,8 +12,6 @@ from lessons.record import QUANTITIES
 from lessons.schema import Sketch
 from lessons.words import Words
 
-POINTS = 160
-
 
 class PredictionChart:
     """One uPlot chart."""
@@ -53,14 +51,23 @@ class PredictionChart:
 
     def _data(self, truth: Truth | None) -> tuple[np.ndarray, ...]:
         """Times and three curves, NaN where there is nothing yet."""
-        at = np.linspace(0.0, self._sketch.seconds, POINTS)
         answer = self._answer
-        curves = [
+        return together(
+            self._sketch.seconds,
             (truth.times, truth.tracker) if truth else ((), ()),
             (truth.times, truth.follower) if truth else ((), ()),
             (answer.times, answer.values) if answer else ((), ()),
-        ]
-        return (at, *[_resampled(at, times, values) for times, values in curves])
+        )
+
+
+Curve = tuple[tuple[float, ...], tuple[float, ...]]
+"""Times and values."""
+
+
+def together(seconds: float, *curves: Curve) -> tuple[np.ndarray, ...]:
+    """Curves at the times of all of them and the axis's ends: each has all its own points."""
+    at = np.unique(np.concatenate([[0.0, seconds], *[times for times, _ in curves]]))
+    return (at, *[_resampled(at, times, values) for times, values in curves])
 
 
 def _resampled(at: np.ndarray, times: tuple[float, ...], values: tuple[float, ...]) -> np.ndarray:

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from app.lesson_record import Beginning, record_of
-from app.lesson_scene import apply_scene
+from app.lesson_scene import set_up
 from app.loop_store import LoopStore
 from app.script_player import ScriptPlayer
 from app.session import Session
 from lessons.checks import Verdict, judge
 from lessons.course import REFERENCE, Course, read_references
 from lessons.parse import Problem
-from lessons.schema import Lesson, Scene, Script, Step, Task
+from lessons.schema import Lesson, Script, Step, Task
 from lessons.words import DEFAULT, Words
 
 FRAME = 1 / 60  # [s]
@@ -36,16 +36,10 @@ def play_course(course: Course, folder: Path, store: LoopStore) -> Iterator[Prob
         yield from _reference_faults(lesson, home / REFERENCE, store)
 
 
-def set_up(lesson: Lesson, until: Step, store: LoopStore) -> Session:
-    """A lab that has seen the scenes of a lesson up to a step."""
+def lab_at(lesson: Lesson, step: Step, store: LoopStore) -> Session:
+    """A lab set up for a step of a lesson."""
     session = Session(store)
-    for step in lesson.steps:
-        if step.scene is not None:
-            apply_scene(session, step.scene, lesson.front.robot)
-        elif step is lesson.steps[0]:
-            apply_scene(session, Scene(), lesson.front.robot)
-        if step is until:
-            break
+    set_up(session, lesson, lesson.steps.index(step))
     return session
 
 
@@ -87,7 +81,7 @@ def _script_faults(lesson: Lesson, step: Step, file: Path, store: LoopStore) -> 
     if step.script is None:
         return
     try:
-        for _ in play(set_up(lesson, step, store), step.script):
+        for _ in play(lab_at(lesson, step, store), step.script):
             pass
     except ValueError as error:
         yield Problem(str(file), step.line, f"the script of step {step.title!r}: {error}")
@@ -101,7 +95,7 @@ def _reference_faults(lesson: Lesson, file: Path, store: LoopStore) -> Iterator[
                 continue  # said by read_references
             scripts = references[task.id]
             for what, script in (("solution", scripts.solution), ("failure", scripts.failure)):
-                fault = _fault(set_up(lesson, step, store), script, task, what == "solution")
+                fault = _fault(lab_at(lesson, step, store), script, task, what == "solution")
                 if fault:
                     heading = f"{task.id}.{what}"
                     yield Problem(str(file), _line_of(heading, file), f"{heading} {fault}")

@@ -32,7 +32,10 @@ LARGE = "<style>html{font-size:20px}.op-text{font-size:1.15rem;line-height:1.5}<
 
 
 def heading(lesson: Lesson, step: Step, run: LessonRun) -> str:
-    """Where one is: lesson, progress bar, kind and title of the step."""
+    """Where one is: lesson, progress bar, kind and title of the step.
+
+    By data-step, assets/page/steps.js sees that another step is open.
+    """
     words, seen = run.words, run.notes.seen
     bars = "".join(
         f'<div title="{html.escape(each.title)}" style="flex:1;height:6px;border-radius:3px;'
@@ -42,7 +45,8 @@ def heading(lesson: Lesson, step: Step, run: LessonRun) -> str:
     counted = words("lesson.step", step=run.index + 1, steps=len(lesson.steps))
     return (
         f"{STYLE}{LARGE if run.progress.presenting else ''}"
-        f'<div class="op-text" style="padding-top:0.6em"><div style="color:{GREY};'
+        f'<div class="op-text" data-step="{html.escape(lesson.name)}.{run.index}" '
+        f'style="padding-top:0.6em"><div style="color:{GREY};'
         f'font-size:0.85em;margin-bottom:0.4em">{html.escape(lesson.front.title)} · {counted}</div>'
         f'<div style="display:flex;gap:3px;margin-bottom:0.7em">{bars}</div>'
         f'<div style="font-size:0.8em;font-weight:700;letter-spacing:0.04em;color:{FOLLOWER.hex}">'
@@ -63,13 +67,17 @@ def box(content: str, colour: str = "#d5dae1") -> str:
 
 
 def question(block: Choice | Quiz, chosen: int | None, revealed: bool, words: Words) -> str:
-    """A question with lettered options; once revealed, with what is right and why."""
+    """A question with lettered options; once revealed, with what is right and why.
+
+    Args:
+        chosen: index of the student's answer; None when there is none.
+    """
     rows = "".join(
         _option(letter, option, i == chosen, revealed)
         for i, (letter, option) in enumerate(zip(LETTERS, block.options, strict=False))
     )
     content = f"<p><b>{block.question}</b></p>{rows}"
-    if revealed and chosen is not None:
+    if revealed:
         content += _answer(block.options, chosen, words)
     return box(content, FOLLOWER.hex)
 
@@ -129,13 +137,14 @@ def _option(letter: str, option: Option, chosen: bool, revealed: bool) -> str:
     )
 
 
-def _answer(options: tuple[Option, ...], chosen: int, words: Words) -> str:
-    own = options[chosen]
-    verdict = words("lesson.right" if own.right else "lesson.not_quite")
-    said = f"<p><b>{verdict}</b> {own.answer}</p>"
-    if own.right:
-        return said
-    right = next(option for option in options if option.right)
+def _answer(options: tuple[Option, ...], chosen: int | None, words: Words) -> str:
+    right, said = next(option for option in options if option.right), ""
+    if chosen is not None:
+        own = options[chosen]
+        verdict = words("lesson.right" if own.right else "lesson.not_quite")
+        said = f"<p><b>{verdict}</b> {own.answer}</p>"
+        if own.right:
+            return said
     return said + f"<p>{words('lesson.the_answer', answer=right.answer)}</p>"
 
 

@@ -243,9 +243,12 @@ class LessonPanel:
             self._html(page.text(f"<p><i>{run.words('lesson.playing')}</i></p>"))
         else:
             label = run.words("lesson.replay" if truth else "lesson.play")
-            self._button(label, c.PlayStep(), "green", viser.Icon.PLAYER_PLAY)
+            button = self._button(label, c.PlayStep(), "green", viser.Icon.PLAYER_PLAY)
+            button.disabled = run.waits
         if found is None:
             return
+        if run.waits:
+            self._html(page.text(f"<p><i>{run.words('lesson.predict_before')}</i></p>"))
         block, answer = found[1], run.answer()
         if answer is not None and answer.skipped:
             self._html(page.text(f"<p><i>{run.words('lesson.skipped')}</i></p>"))
@@ -253,8 +256,7 @@ class LessonPanel:
             self._add_chart(block, session)
         elif truth is not None and not run.playing:
             chosen = answer.option if answer else None
-            shown = next(i for i, o in enumerate(block.options) if o.right)
-            self._html(page.question(block, shown if chosen is None else chosen, True, run.words))
+            self._html(page.question(block, chosen, True, run.words))
 
     def _add_chart(self, block: Sketch, session: Session) -> None:
         run = session.lessons
@@ -267,12 +269,14 @@ class LessonPanel:
         lesson = run.lesson
         assert lesson is not None
         last = run.index == len(lesson.steps) - 1
-        waits = step.kind in ("predict", "run") and run.prediction() and run.answer() is None
         if last:
             self._button(run.words("lesson.finish"), c.CloseLesson(), None, viser.Icon.CHECK)
         else:
-            label = run.words("lesson.skip" if waits else "lesson.next")
-            colour = "gray" if waits else None
+            unseen = step.script is not None and not run.has_played()
+            label, colour = run.words("lesson.next"), None
+            if run.waits or unseen:
+                colour = "gray"
+                label = run.words("lesson.skip" if run.waits else "lesson.next_unseen")
             self._button(label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)
         keys = ["back", "again", "close"][0 if run.index else 1 :]
         commands = {"back": c.GoToStep(-1), "again": c.BeginStepAnew(), "close": c.CloseLesson()}

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lessons.record import ROLES, Record
+from lessons.progress import MOST_POINTS, Truth
+from lessons.record import ROBOTS, ROLES, Record
 from lessons.schema import RobotName
+from lessons.thinning import peaks
 from models.layout import Layout
 from models.system import Array
 
@@ -42,9 +44,45 @@ def record_of(session: Session, since: Beginning) -> Record:
         happenings=tuple(session.happenings),
         run=session.run_number,
         parameters=session.parameters,
+        end=session.time,
         path=session.editor.design.name,
         robot=session.entry.name,
     )
+
+
+class Trace:
+    """A quantity of both robots since a step began, at every frame.
+
+    The lab's own past is thinned out after some seconds, and the peaks with it.
+
+    Args:
+        quantity: one of lessons.record.QUANTITIES.
+        begin: when the step began.
+    """
+
+    def __init__(self, quantity: str, begin: Beginning) -> None:
+        self._quantity, self._until = quantity, begin
+        self._rows = np.zeros((0, 1 + len(ROBOTS)))
+
+    def follow(self, session: Session) -> None:
+        """Take in what has happened since the last time; a reset begins anew."""
+        until = self._until
+        if until.run != session.run_number:
+            until, self._rows = Beginning(session.run_number, 0.0), self._rows[:0]
+        begin = min(until.time, session.time)  # the last instant may have been half a one
+        record = record_of(session, Beginning(until.run, begin))
+        nothing = np.zeros(len(record.times))
+        curves = [record.values[robot].get(self._quantity, nothing) for robot in ROBOTS]
+        new = np.nan_to_num(np.column_stack([record.times, *curves]))
+        self._rows = np.concatenate([self._rows[self._rows[:, 0] < begin], new])
+        self._until = Beginning(until.run, float(self._rows[-1, 0]) if len(self._rows) else begin)
+
+    def truth(self) -> Truth:
+        """What has happened so far."""
+        times, *curves = self._rows.T
+        kept = peaks(curves, MOST_POINTS)
+        columns = [tuple(np.round(column[kept], 4).tolist()) for column in (times, *curves)]
+        return Truth(self._quantity, *columns)
 
 
 def _nothing(session: Session) -> dict[RobotName, dict[str, Array]]:

@@ -7,25 +7,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from msgspec.structs import replace
 
-from app.lesson_record import Beginning, record_of
-from app.lesson_scene import apply_scene
+from app.lesson_record import Beginning, Trace, record_of
+from app.lesson_scene import set_up
 from app.script_player import ScriptPlayer, perform
 from app.setups import Setup, capture, restore
+from app.sketches import sketched
 from lessons.checks import Verdict, judge, statistic
 from lessons.course import Course
 from lessons.progress import Answer, Notes, Progress, Truth
 from lessons.record import Record
-from lessons.schema import Action, Lesson, Prediction, Quiz, Scene, Sketch, Step, Task, Window
+from lessons.schema import Action, Lesson, Prediction, Quiz, Sketch, Step, Task, Window
 from lessons.words import Words
 
 if TYPE_CHECKING:
     from app.session import Session
 
 EVERY = 30  # frames between looks at the tasks
-MOST_POINTS = 160  # of a truth that is kept
 
 
 class LessonRun:
@@ -49,6 +48,8 @@ class LessonRun:
         self._begin = Beginning(0, 0.0)
         self._frames = 0
         self._playing = False
+        self._trace: Trace | None = None  # of what is played
+        self._passed: dict[str, int] = {}  # the run in which a task was passed
         self.before: Setup | None = None
 
     # Where we are
@@ -100,6 +101,11 @@ class LessonRun:
         return None if found is None else self.notes.answers.get(found[0])
 
     @property
+    def waits(self) -> bool:
+        """Whether a prediction is still to be made, or skipped."""
+        return self.prediction() is not None and self.answer() is None
+
+    @property
     def playing(self) -> bool:
         """Whether the lab does by itself what the step shows."""
         return self._playing
@@ -134,20 +140,18 @@ class LessonRun:
         steps = self.course.lesson(name, self.progress.language).steps
         if index not in range(len(steps)):
             raise ValueError(f"no step {index + 1} in this lesson: it has {len(steps)}")
-        scenes = [i for i, s in enumerate(steps[: index + 1]) if s.scene and not s.scene.keep]
         if self.lesson is None:
             self.before = capture(session)
         self.progress = replace(self.progress, lesson=name)
-        for each in sorted({scenes[-1] if scenes else 0, index}):
-            self._go(each, session)
+        self._go(index, session)
 
     def resume(self, progress: Progress, before: Setup | None, session: Session) -> None:
-        """Go on as it was kept."""
+        """Go on as it was kept, in a lab that is as it was left."""
         self.progress, self.before = progress, before
         self.words = Words(progress.language)
         self.version += 1
         if self.lesson is not None:
-            self._go(self.index, session)
+            self._arrive(self.index, session)
 
     def close(self, session: Session) -> None:
         """No lesson is open; the lab is as it was before."""
@@ -160,13 +164,19 @@ class LessonRun:
         self.version += 1
 
     def go(self, by: int, session: Session) -> None:
-        """Another step; skips a prediction that is not made."""
+        """Another step; on the way on, a prediction that is not made is skipped.
+
+        Where the lab then shows what was asked, only the prediction is skipped.
+        """
         lesson = self.lesson
         if lesson is None:
             return
         target = min(max(self.index + by, 0), len(lesson.steps) - 1)
-        if target > self.index and self.prediction() and self.answer() is None:
+        if by > 0 and self.waits:
             self._note_answer(Answer())
+            if self.step_is("run"):
+                self._lock(session)
+                return
         self._go(target, session)
 
     def begin_anew(self, session: Session) -> None:
@@ -193,14 +203,17 @@ class LessonRun:
         self.version += 1
 
     def play(self, session: Session) -> None:
-        """Let the lab do what the step shows."""
-        step = self.step
-        if step is None or step.script is None:
+        """Let the lab do what the step shows, set up as the step wants it."""
+        lesson, step, found = self.lesson, self.step, self.prediction()
+        if lesson is None or step is None or step.script is None:
             return
         if session.locked:
             raise ValueError(session.locked)
-        session.reset()
+        rate = session.rate
+        set_up(session, lesson, self.index)
+        session.rate = rate  # may be slow motion; what happens is the same
         self._begin = Beginning.now(session)
+        self._trace = Trace(quantity_of(found[1]), self._begin) if found else None
         session.script, session.running, self._playing = ScriptPlayer(step.script), True, True
         self.version += 1
 
@@ -247,22 +260,30 @@ class LessonRun:
         if self._playing and session.script is None:
             self._playing = False
             self._note_truth(session)
-        if self._frames % EVERY == 0 and self.step is not None and self.step.tasks():
+        if self._frames % EVERY:
+            return
+        if self._playing and self._trace is not None:
+            self._trace.follow(session)
+        if self.step is not None and self.step.tasks():
             self._judge(session, self.step.tasks())
 
     def truth(self, session: Session) -> Truth | None:
         """What has happened of the predicted quantity: now, or when the step was last played."""
         found = self.prediction()
-        if found is None or not self._playing:
+        if found is None or not self._playing or self._trace is None:
             return None if found is None else self.notes.truths.get(found[0])
-        return self._truth(session, found[1])
+        self._trace.follow(session)
+        return self._trace.truth()
 
     def _judge(self, session: Session, tasks: list[Task]) -> None:
         record = record_of(session, self._begin)
         for task in tasks:
             verdicts = judge(task, record, self.words)
-            self.verdicts[task.id] = verdicts
-            if all(verdict.passed for verdict in verdicts):
+            passed = all(verdict.passed for verdict in verdicts)
+            if passed or self._passed.get(task.id) != record.run:
+                self.verdicts[task.id] = verdicts
+            if passed:
+                self._passed[task.id] = record.run
                 self._pass(task, record)
 
     def _pass(self, task: Task, record: Record) -> None:
@@ -277,43 +298,33 @@ class LessonRun:
     def _go(self, index: int, session: Session) -> None:
         lesson = self.lesson
         assert lesson is not None
+        set_up(session, lesson, index)
+        self._arrive(index, session)
+
+    def _arrive(self, index: int, session: Session) -> None:
+        """A step begins, in a lab that is set up."""
+        lesson = self.lesson
+        assert lesson is not None
         self._note(step=index, seen=max(self.notes.seen, index + 1))
-        step = lesson.steps[index]
-        session.script, self._playing = None, False
-        scene = step.scene or (Scene() if index == 0 else None)
-        session.locked = ""
-        if scene is not None:
-            apply_scene(session, scene, lesson.front.robot)
+        session.script, self._playing, self._trace = None, False, None
+        session.running = lesson.scene_at(index).running
         self._lock(session)
-        self.verdicts = {}
+        self.verdicts, self._passed = {}, {}
         self._begin = Beginning.now(session)
 
     def _lock(self, session: Session) -> None:
         """Time stands still until a prediction has been made or skipped."""
-        waits = self.prediction() is not None and self.answer() is None
-        session.locked = self.words("lesson.locked") if waits else ""
-        if waits:
+        session.locked = self.words("lesson.locked") if self.waits else ""
+        if self.waits:
             session.running = False
 
     def _note_truth(self, session: Session) -> None:
         found, truths = self.prediction(), self.notes.truths
-        if found is not None:
-            truths = {**truths, found[0]: self._truth(session, found[1])}
+        if found is not None and self._trace is not None:
+            self._trace.follow(session)
+            truths = {**truths, found[0]: self._trace.truth()}
         played = tuple(dict.fromkeys((*self.notes.played, str(self.index))))
         self._note(truths=truths, played=played)
-
-    def _truth(self, session: Session, prediction: Prediction) -> Truth:
-        quantity = prediction.quantity if isinstance(prediction, Sketch) else "distance"
-        record = record_of(session, self._begin)
-        step = max(1, -(-len(record.times) // MOST_POINTS))
-        curves = [
-            np.nan_to_num(record.values[robot].get(quantity, np.zeros(len(record.times))))
-            for robot in ("tracker", "follower")
-        ]
-        times, tracker, follower = (
-            tuple(np.round(curve[::step], 4).tolist()) for curve in (record.times, *curves)
-        )
-        return Truth(quantity, times, tracker, follower)
 
     def _note_answer(self, answer: Answer) -> None:
         found = self.prediction()
@@ -326,25 +337,6 @@ class LessonRun:
         self.version += 1
 
 
-def sketched(prediction: Sketch, answer: Answer) -> Answer:
-    """A sketch on the prediction's axes, at rising times, within its range.
-
-    Raises:
-        ValueError: it is not a curve.
-    """
-    if answer.skipped:
-        return answer
-    try:
-        times, values = np.array(answer.times, dtype=float), np.array(answer.values, dtype=float)
-    except (OverflowError, TypeError) as error:
-        raise ValueError("a sketch needs points") from error
-    if times.shape != values.shape or not np.isfinite(times).all() or not np.isfinite(values).all():
-        raise ValueError("a sketch needs points")
-    order = np.argsort(times, kind="stable")
-    times, first = np.unique(np.clip(times[order], 0.0, prediction.seconds), return_index=True)
-    values = np.clip(values[order][first], prediction.bottom, prediction.top)
-    if len(times) < 2:
-        raise ValueError("draw a curve from left to right")
-    at = np.linspace(times[0], times[-1], min(MOST_POINTS, max(2, len(times))))
-    values = np.interp(at, times, values)
-    return Answer(times=tuple(np.round(at, 3).tolist()), values=tuple(np.round(values, 3).tolist()))
+def quantity_of(prediction: Prediction) -> str:
+    """What a prediction is about."""
+    return prediction.quantity if isinstance(prediction, Sketch) else "distance"

@@ -4,33 +4,27 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app import commands as c
-from app.apply import apply
-from lessons.schema import Scene
+from msgspec.structs import replace
+
+from app.setups import Bench, Path, Setup, restore
+from lessons.schema import Lesson
 
 if TYPE_CHECKING:
     from app.session import Session
 
-PATH = "circle"
+
+def setup_of(lesson: Lesson, index: int) -> Setup:
+    """A step's set-up: of the lesson alone, not of what was done in the lab before."""
+    scene = lesson.scene_at(index)
+    robot, path = scene.robot or lesson.front.robot, Path(scene.path or Path().name)
+    return Setup(robot, {robot: Bench(dict(scene.set), path)})
 
 
-def apply_scene(session: Session, scene: Scene, robot: str) -> None:
-    """Robot, path and parameters of a scene, from the start.
+def set_up(session: Session, lesson: Lesson, index: int) -> None:
+    """Both robots at the start, everything as the step wants it but how large it is drawn.
 
-    Args:
-        robot: the lesson's, where the scene names none.
+    Raises:
+        ValueError: a robot cannot follow the step's path; then the session is as it was.
     """
-    if not scene.keep:
-        apply(c.ChooseRobot(scene.robot or robot), session)
-        apply(c.ResetParameters(), session)
-        apply(c.SetCopy(True), session)
-        apply(c.SetRate(1.0), session)
-        if session.editor.design.name != (scene.path or PATH):
-            apply(c.ChoosePath(scene.path or PATH), session)
-    elif scene.path:
-        apply(c.ChoosePath(scene.path), session)
-    for name, value in scene.set.items():
-        apply(c.SetParameter(name, value), session)
-    session.editor.settle()
-    session.reset()
-    session.running = scene.running
+    restore(session, replace(setup_of(lesson, index), exaggeration=session.exaggeration))
+    session.editor.select(None)

@@ -36,7 +36,7 @@ class StepControls:
     def follow(self, session: Session) -> None:
         """Show the open step's controls, and what they stand at."""
         scene = _scene_of(session)
-        if scene is not self._scene:
+        if scene != self._scene:
             self._scene, self._parts = scene, []
             self._submit(lambda: self._fill(scene))
         for part in self._parts:
@@ -56,10 +56,6 @@ EMPTY = Scene()
 
 
 def _scene_of(session: Session) -> Scene:
-    """The scene that the open step has, or had from a step before it."""
+    """Of the open step."""
     run = session.lessons
-    lesson = run.lesson
-    if lesson is None:
-        return EMPTY
-    scenes = [step.scene for step in lesson.steps[: run.index + 1] if step.scene is not None]
-    return scenes[-1] if scenes else EMPTY
+    return EMPTY if run.lesson is None else run.lesson.scene_at(run.index)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import singledispatch
 
@@ -24,6 +25,7 @@ from lessons.schema import (
 from lessons.words import Words
 
 TINY = 1e-9
+INSTANT = 1e-6  # [s], shorter than any tick
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +52,7 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
     if record.stopped(check.robot):
         return Verdict(False, words("check.stopped", robot=words(f"robot.{check.robot}")))
     chosen = record.chosen(check.robot, check)
-    seconds = _seconds(check, record, chosen, words)
+    enough, seconds = _seconds(check, record, chosen, words)
     names = {
         "robot": words(f"robot.{check.robot}"),
         "stat": _stat_words(check.stat, check.quantity, words),
@@ -60,9 +62,8 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
     value = statistic(record, check.robot, check.quantity, check.stat, chosen)
     if value is None:
         return Verdict(False, words("check.nothing", **names, seconds=seconds))
-    enough = record.seconds(chosen) >= check.least - TINY
-    unit = QUANTITIES[check.quantity]
-    said = words("check.bound", **names, value=_rounded(value), unit=unit) + seconds
+    unit, shown = QUANTITIES[check.quantity], _rounded(value, check.below, check.above)
+    said = words("check.bound", **names, value=shown, unit=unit) + seconds
     return Verdict(enough and _within(value, check.below, check.above), said)
 
 
@@ -76,7 +77,7 @@ def _(check: Compare, record: Record, words: Words) -> Verdict:
         statistic(record, robot, check.quantity, check.stat, record.chosen(robot, check))
         for robot in (check.larger, smaller)
     ]
-    seconds = _seconds(check, record, chosen, words)
+    enough, seconds = _seconds(check, record, chosen, words)
     names = {
         "stat": _stat_words(check.stat, check.quantity, words),
         "during": words(f"during.{check.during}"),
@@ -91,11 +92,10 @@ def _(check: Compare, record: Record, words: Words) -> Verdict:
     said = words(
         "check.compare",
         larger=words(f"robot.{check.larger}"),
-        ratio=f"{ratio:.3g}" if ratio < 1000 else ">1000",
+        ratio=_rounded(ratio, None, check.ratio) if ratio < 1000 else ">1000",
         wanted=f"{check.ratio:g}",
         **names,
     )
-    enough = record.seconds(chosen) >= check.least - TINY
     return Verdict(enough and ratio >= check.ratio, said + seconds)
 
 
@@ -152,9 +152,14 @@ def statistic(
     return float({"max": np.max, "min": np.min, "mean": np.mean}[stat](values))
 
 
-def _rounded(value: float) -> str:
-    """Three digits, but nothing finer than a hundredth."""
-    return f"{round(value, 2) + 0.0:.2f}" if abs(value) < 1 else f"{value:.3g}"
+def _rounded(value: float, below: float | None, above: float | None) -> str:
+    """Three digits, and nothing finer than a hundredth, unless the bounds need more."""
+    short = f"{round(value, 2) + 0.0:.2f}" if abs(value) < 1 else f"{value:.3g}"
+    holds = _within(value, below, above)
+    for shown in (short, *(f"{value:.{digits}g}" for digits in range(3, 17))):
+        if _within(float(shown), below, above) == holds:
+            return shown
+    return f"{value!r}"
 
 
 def _within(value: float, below: float | None, above: float | None) -> bool:
@@ -177,9 +182,14 @@ def _is(name: str, detail: str, wanted: Event) -> bool:
     return name == wanted.event and wanted.name in ("", detail)
 
 
-def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> str:
-    have = min(record.seconds(chosen), check.least)
-    return words("check.seconds", have=f"{have:.1f}", need=f"{check.least:g}")
+def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> tuple[bool, str]:
+    """Whether the chosen instants last long enough, and words; only then do those say so."""
+    have, need = record.seconds(chosen), f"{check.least:g}"
+    enough = have >= check.least - INSTANT
+    shown = f"{math.floor(10 * have) / 10:.1f}"
+    if enough:
+        shown = need if "." in need else f"{need}.0"
+    return enough, words("check.seconds", have=shown, need=need)
 
 
 def _stat_words(stat: Stat, quantity: str, words: Words) -> str:

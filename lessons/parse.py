@@ -102,7 +102,8 @@ class _Reader:
         self._text = text
         self._problems: list[Problem] = []
         self._markdown = reader()
-        self._robot = "five_bar"
+        self._robot = self._home = "five_bar"
+        self._scene = Scene()
 
     def lesson(self) -> Lesson:
         """Read all of it.
@@ -128,7 +129,7 @@ class _Reader:
         front = self._toml("\n".join(lines[1 : ends[1]]), 2, Front)
         if front is not None:
             self._complain_all(1, vocabulary.scene_faults(Scene(robot=front.robot), front.robot))
-            self._robot = front.robot
+            self._robot = self._home = front.robot
         return front, ends[1] + 1
 
     def _steps(self, body: str, first: int) -> list[_Draft]:
@@ -181,8 +182,9 @@ class _Reader:
             self._complain(line, str(error))
 
     def _scene_faults(self, scene: Scene) -> Iterator[str]:
-        self._robot = scene.robot or self._robot
-        return vocabulary.scene_faults(scene, self._robot)
+        self._scene = scene.after(self._scene)
+        self._robot = self._scene.robot or self._home
+        return vocabulary.scene_faults(self._scene, self._robot)
 
     def _script_faults(self, script: Script) -> Iterator[str]:
         return vocabulary.script_faults(script, self._robot)

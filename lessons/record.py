@@ -63,11 +63,12 @@ class Record:
     """A run since a step began or the last reset.
 
     Attributes:
-        times: shape (n,), [s], rising.
+        times: shape (n,), [s], rising; each instant lasts until the next one.
         values: robot -> quantity -> shape (n,), in the units of QUANTITIES.
         happenings: since the step began, in order; those before the last reset too.
         run: the present one.
         parameters: as they are now.
+        end: when the last instant ends, [s].
         path, robot: names of what is followed and who follows.
     """
 
@@ -76,6 +77,7 @@ class Record:
     happenings: tuple[Happening, ...]
     run: int
     parameters: Parameters
+    end: float
     path: str = "circle"
     robot: str = "five_bar"
     _masks: dict[tuple[RobotName, str], Mask] = field(
@@ -83,7 +85,7 @@ class Record:
     )
 
     def chosen(self, robot: RobotName, window: Window) -> Mask:
-        """Which instants count, booleans, shape (n,)."""
+        """Which instants count, booleans, shape (n,); the latest ones last as long as asked."""
         held = self._during(robot, "hold", "let_go")
         pulled = self._during(robot, "pull", "release")
         chosen: Mask = {
@@ -93,8 +95,9 @@ class Record:
             "free": ~(held | pulled),
         }[window.during]
         if window.last > 0:
-            seconds: Array = np.cumsum((chosen * self._steps())[::-1])[::-1]
-            chosen = chosen & (seconds <= window.last + 1e-9)
+            steps: Array = chosen * self._steps()
+            later: Array = np.cumsum(steps[::-1])[::-1] - steps
+            chosen = chosen & (later < window.last - 1e-9)
         return chosen
 
     def stopped(self, robot: RobotName) -> bool:
@@ -109,9 +112,7 @@ class Record:
         return float(self._steps()[chosen].sum())
 
     def _steps(self) -> Array:
-        if len(self.times) < 2:
-            return np.zeros(len(self.times))
-        return np.diff(self.times, append=2 * self.times[-1] - self.times[-2])
+        return np.diff(self.times, append=self.end).clip(0.0)
 
     def _during(self, robot: RobotName, begin: str, end: str) -> Mask:
         """Instants between two happenings of this run."""

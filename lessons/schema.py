@@ -24,13 +24,13 @@ class Scene(Data, frozen=True):
     """How the lab is set up when a step begins.
 
     Attributes:
-        robot: name of the robot; empty: as it is.
-        path: name of a preset; empty: as it is.
+        robot: name of the robot; empty: the lesson's.
+        path: name of a preset; empty: the circle.
         set: parameters that differ from the lab's defaults; all others go back to them.
         controls: what is shown on the right: names of parameters, or of CONTROLS.
         plot: a plot to show besides the distance, one of PLOTS; empty for none.
         running: whether time runs.
-        keep: leave robot, path and parameters as the student left them.
+        keep: robot, path and parameters are those of the step before, but for what is named here.
     """
 
     robot: str = ""
@@ -40,6 +40,14 @@ class Scene(Data, frozen=True):
     plot: str = ""
     running: bool = True
     keep: bool = False
+
+    def after(self, before: Scene) -> Scene:
+        """Itself, with what it keeps of the scene before it."""
+        if not self.keep:
+            return self
+        kept = {**before.set, **self.set}
+        robot, path = self.robot or before.robot, self.path or before.path
+        return msgspec.structs.replace(self, robot=robot, path=path, set=kept)
 
 
 class Action(Data, frozen=True):
@@ -258,7 +266,7 @@ class Step(msgspec.Struct, frozen=True):
     Attributes:
         line: where it begins in the file.
         blocks: in reading order.
-        scene: what the lab is set to, or None to leave it.
+        scene: what the lab is set to, or None for what the step before has.
         script: what the lab does by itself, or None.
     """
 
@@ -299,6 +307,13 @@ class Lesson(msgspec.Struct, frozen=True):
     language: str
     front: Front
     steps: tuple[Step, ...]
+
+    def scene_at(self, index: int) -> Scene:
+        """What the lab is set to at a step, whichever way one comes to it."""
+        scene = Scene()
+        for step in self.steps[: index + 1]:
+            scene = step.scene.after(scene) if step.scene is not None else scene
+        return scene
 
     def tasks(self) -> list[Task]:
         """Of all steps."""

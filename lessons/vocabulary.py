@@ -24,6 +24,7 @@ from lessons.schema import (
     Value,
 )
 from models.catalogue import ROBOTS, Entry
+from models.curve_faults import curve_faults
 from models.parameters import changed, specs, unknown_name
 from models.path_design import presets
 
@@ -47,7 +48,8 @@ def scene_faults(scene: Scene, robot: str) -> Iterator[str]:
         yield from _one_of(scene.plot, PLOTS, "plot")
     entry = ROBOTS.get(scene.robot or robot)
     if entry is not None:
-        yield from _setting_faults(scene.set, entry)
+        faults = list(_setting_faults(scene.set, entry))
+        yield from faults or _path_faults(scene, entry)
         for name in scene.controls:
             yield from _one_of(name, [*CONTROLS, *specs(entry.parameters)], "control")
 
@@ -123,6 +125,16 @@ def _check_faults(check: Check, entry: Entry | None) -> Iterator[str]:
             yield from _one_of(event.partition(":")[0], EVENTS, "event")
     if isinstance(check, Event) and check.event == "set" and check.name and entry is not None:
         yield from _one_of(check.name, specs(entry.parameters), "parameter")
+
+
+def _path_faults(scene: Scene, entry: Entry) -> Iterator[str]:
+    design, parameters = presets().get(scene.path), entry.lab
+    if design is None:
+        return
+    for name, value in scene.set.items():
+        parameters = changed(parameters, name, value)
+    for fault in curve_faults(entry.make(parameters), design.curve):
+        yield f"path {scene.path!r}: {fault.reason}"
 
 
 def _setting_faults(values: dict[str, Value], entry: Entry) -> Iterator[str]:

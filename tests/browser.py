@@ -13,6 +13,7 @@ from playwright.sync_api import BrowserContext, Locator, Page
 from viser import ClientHandle
 
 from app.apply import apply
+from app.class_commands import ClassCommand
 from app.commands import Command
 from app.loop import Lab
 from app.mouse_latency import ARGUMENTS, NO_TRIANGLES
@@ -113,7 +114,7 @@ class Tab:
         """What the tab shows."""
         return self.lab.session
 
-    def ask(self, *commands: Command) -> None:
+    def ask(self, *commands: Command | ClassCommand) -> None:
         """Commands behind the mouse's back; returns when they have been applied."""
         done: list[bool] = []
         for command in commands:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from app.class_commands import ClassCommand
 from app.commands import Command
 from app.loop_store import LoopStore
 from app.session import Session
@@ -40,7 +41,7 @@ def run(session: Session, seconds: float) -> None:
         session.advance(session.rate * FRAME)
 
 
-def do(session: Session, *commands: Command) -> None:
+def do(session: Session, *commands: Command | ClassCommand) -> None:
     """Apply commands at once."""
     for command in commands:
         session.post(command)

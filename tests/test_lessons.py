@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import run_command
-from app.lesson_check import play, play_course, set_up, solved
+from app.lesson_check import lab_at, play, play_course, solved
 from lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from lessons.schema import Lesson, Step, Task
 from tests.lab import store
@@ -37,16 +37,16 @@ def test_every_lesson_is_all_right() -> None:
 @pytest.mark.parametrize(("lesson", "step", "task"), TASKS, ids=label)
 def test_solution_passes_and_failure_does_not(lesson: Lesson, step: Step, task: Task) -> None:
     reference = read_references(lesson, BUILT_IN / lesson.name / REFERENCE)[0][task.id]
-    passed, last = solved(set_up(lesson, step, store()), reference.solution, task)
+    passed, last = solved(lab_at(lesson, step, store()), reference.solution, task)
     assert passed, [verdict.words for verdict in last]
-    passed, last = solved(set_up(lesson, step, store()), reference.failure, task)
+    passed, last = solved(lab_at(lesson, step, store()), reference.failure, task)
     assert not passed, [verdict.words for verdict in last]
 
 
 @pytest.mark.parametrize(("lesson", "step"), SCRIPTS, ids=label)
 def test_what_a_step_shows_by_itself_is_let_happen(lesson: Lesson, step: Step) -> None:
     assert step.script is not None
-    session = set_up(lesson, step, store())
+    session = lab_at(lesson, step, store())
     assert list(play(session, step.script)) == []
     assert session.time > 0
 
