@@ -11,6 +11,7 @@ import pytest
 from lessons.schema import Action
 from models.five_bar import inverse_kinematics, load_links
 from models.parameters import FiveBarParameters
+from models.poles import channels
 from models.system import Array
 from tests.conftest import jacobian
 from tests.told import WORST, assert_told, held, numbers, play, said, shown, text, value
@@ -205,6 +206,19 @@ def test_swing_is_the_same_with_and_without_the_trip() -> None:
     ]
     alone = play(4.0, do, task="position", target=0.0)["follower"]
     assert np.abs(alone.across[2000:] - follower.across[2000:]).max() < 0.01
+
+
+def test_lab_shows_the_poles_of_the_table() -> None:
+    for gains, names in ((("400", "40"), ("K1", "K2")), (("25", "10"), ("K4", "K5"))):
+        table = said("04", f"| {names[0]} = {gains[0]}, {names[1]} = {gains[1]} | #, # |")
+        shown_as = channels(FiveBarParameters(task="position"))[names[0] == "K4"].pole_words()
+        assert [value(pole) for pole in shown_as.split(", ")] == [value(pole) for pole in table]
+    fast, slow = said("04", "| K1 = 400, K2 = 200 | #, # |")[::-1]
+    sampled, exact = said("04", "a thousand times a second: # instead of #, the others as here")
+    told = channels(FiveBarParameters(K2=200))[0].pole_words().split(", ")
+    assert exact == fast
+    assert_told([sampled, slow], [float(pole) for pole in told])
+    assert_told([fast, slow], sorted(np.roots([1, 200, 400]).real))
 
 
 def test_gain_and_coarse_encoders() -> None:
