@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lessons.course import BUILT_IN
 from lessons.schema import Action
 from models.parameters import FiveBarParameters
 from models.path_design import presets
@@ -113,6 +114,8 @@ def test_bulge_costs_what_its_bend_needs() -> None:
     told = said("08", "at $R = #$ mm, and the end-point passes it at # m/s: # m/s²")
     across = float(bend[sharpest] * speed[sharpest] ** 2)
     assert_told(told, [1e3 / bend[sharpest], float(speed[sharpest]), across])
+    drawn = (BUILT_IN / "08-challenge" / "bend.svg").read_text(encoding="utf-8")
+    assert f"v²/R = {told[2]} m/s²" in drawn and f"{costs[0]:.2f} N m" in drawn
     estimate = said("08", r"\frac{#\cdot #}{#} = #\ \text{N m}")
     assert_told(estimate, [0.0226, across, 0.2, 0.0226 * value(told[2]) / 0.2])
 

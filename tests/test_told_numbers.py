@@ -65,6 +65,20 @@ def test_soft_tracker_is_torn_off_further() -> None:
         assert_told(said("01", answer), [soft])
 
 
+def test_slower_clock_runs_on_and_no_clock_takes_any_speed() -> None:
+    slow = held(3.0, robot="tracker", speed=TURN / 2).distance[3000:]
+    usual = held(3.0, robot="tracker").distance[3000:]
+    for arches, distance in ((2, slow), (4, usual)):  # "the same arches come, only wider"
+        assert np.count_nonzero(np.diff(distance > 25)) == 2 * arches
+        assert 45 < distance.max() < 50
+    jumps = [
+        Action(at=at, set={"speed": speed}) for at, speed in ((1.0, -TURN), (2.0, 0), (3.0, 9))
+    ]
+    free = play(4.0, jumps)  # "no error, whatever speed you ask of it"
+    assert free["follower"].distance.max() < 0.01
+    assert free["tracker"].distance.max() > 1
+
+
 def test_brake_feels_the_catch_and_then_the_lean() -> None:
     both = shown("01", "Held from 3 s to 5 s")
     lean = both["follower"].at(4.9, "force")
