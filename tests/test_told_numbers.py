@@ -98,7 +98,7 @@ def test_nudge_is_what_the_arm_makes_of_the_lean() -> None:
     formula = r"K_1\lambda = #\ \mathrm{m/s^2} \quad\Rightarrow\quad \lambda = #\ "
     assert_told(said("01", formula), [nudge, follower.at(4.9)])
     share = along_to_across(follower.y[3000] * 1e-3)
-    told = said("04", "with # N along the circle, $N\\cdot JM^{-1}J^T\\,T$ is # per kg there")
+    told = said("04", "with # N along the circle, $N\\cdot JM^{-1}J^{\\top}T$ is # per kg there")
     assert_told(told, [lean, share])
     assert_told(said("04", "and $#\\cdot # = #$ m/s² was the nudge"), [share, lean, nudge])
     assert share * lean == pytest.approx(nudge, rel=0.02)  # the brake gives a little
