@@ -16,6 +16,7 @@ from models.parameters import Parameters
 from models.simulation import time_step
 
 Complex = NDArray[np.complex128]
+NO_OVERSHOOT = 0.995  # damping beyond which a pair of poles counts as two equal real ones
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,10 +41,25 @@ class Channel:
                 return f"unstable: an error grows by e every {1 / growth:.2g} s"
             return "not stable: an error never dies out"
         slowest = self.poles[self.poles.real.argmax()]
-        damping = float(-slowest.real / abs(slowest))
+        damping = _damping(slowest)
         settles = 4 / float(-slowest.real)
-        kind = "no overshoot" if damping > 0.995 else f"damping {damping:.2f}"
+        kind = "no overshoot" if damping > NO_OVERSHOOT else f"damping {damping:.2f}"
         return f"settles in {settles:.2g} s, {kind}"
+
+    def pole_words(self) -> str:
+        """The poles to three digits, each pair once, or as two equal ones without overshoot."""
+        rounded = [p.real + 0j if _damping(p) > NO_OVERSHOOT else p for p in self.poles.tolist()]
+        return ", ".join(_pole_words(p) for p in rounded if p.imag >= -1e-9)
+
+
+def _damping(pole: complex) -> float:
+    return float(-pole.real / abs(pole)) if pole else 0.0
+
+
+def _pole_words(pole: complex) -> str:
+    if abs(pole.imag) < 1e-6 * max(1.0, abs(pole)):
+        return f"{pole.real:.3g}"
+    return f"{pole.real:.3g} ± {pole.imag:.3g}i"
 
 
 def channels(parameters: Parameters) -> tuple[Channel, Channel]:

@@ -128,6 +128,21 @@ def test_words_name_damping_and_time() -> None:
     assert "damping 0.2" in swinging.words() and "settles in 1 s" in swinging.words()
 
 
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ({}, "-20, -20"),
+        ({"K1": 1600.0, "K2": 80.0}, "-39.9, -39.9"),
+        ({"K2": 8.0}, "-4 ± 19.6i"),
+        ({"K2": 200.0}, "-194, -2.02"),
+    ],
+)
+def test_poles_are_told_as_the_words_have_it(values: dict[str, float], told: str) -> None:
+    across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]
+    assert across.pole_words() == told
+    assert ("±" in told) is ("no overshoot" not in across.words())
+
+
 @pytest.mark.parametrize("values", [{"K1": 0.0}, {"K1": 0.0, "K2": 0.0}])
 def test_an_error_that_stays_is_not_called_stable(values: dict[str, float]) -> None:
     across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]

@@ -61,13 +61,6 @@ def add_identify(gui: viser.GuiApi, session: Session, post: Post) -> None:
 
 
 def _line(channel: Channel, words: Words) -> str:
-    found = ", ".join(_pole(p) for p in channel.poles if p.imag >= -1e-9)
-    name, poles = words(f"gains.{channel.name}"), words("gains.poles", poles=found)
+    name, poles = words(f"gains.{channel.name}"), words("gains.poles", poles=channel.pole_words())
     mark = "" if channel.stable else "⚠️ "
     return f"**{name}:** {mark}{words.sentence(channel.words())} <br/>{poles}"
-
-
-def _pole(pole: complex) -> str:
-    if abs(pole.imag) < 1e-6 * max(1.0, abs(pole)):
-        return f"{pole.real:.3g}"
-    return f"{pole.real:.3g} ± {pole.imag:.3g}i"
