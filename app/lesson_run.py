@@ -279,7 +279,7 @@ class LessonRun:
         assert lesson is not None
         self._note(step=index, seen=max(self.notes.seen, index + 1))
         step = lesson.steps[index]
-        session.script, self._playing = None, False
+        session.script, session.put_aside, self._playing = None, None, False
         scene = step.scene or (Scene() if index == 0 else None)
         session.locked = ""
         if scene is not None:
