@@ -10,6 +10,7 @@ import numpy as np
 
 from app import commands as c
 from app.identify import identify_model
+from app.looking_back import go_on, look_back, return_to_present, undo_going_on
 from app.setups import capture, restore
 from app.share_code import decode, encode
 from models.catalogue import ROBOTS
@@ -59,7 +60,7 @@ def _(command: c.ChooseRobot, session: Session) -> None:
 
 @apply.register(c.Step)
 def _(_: c.Step, session: Session) -> None:
-    _leave_past(session)
+    return_to_present(session)
     session.step_once()
 
 
@@ -70,12 +71,17 @@ def _(_: c.Reset, session: Session) -> None:
 
 @apply.register(c.View)
 def _(command: c.View, session: Session) -> None:
-    session.view(_finite(command.ago))
+    look_back(session, _finite(command.ago))
 
 
 @apply.register(c.GoOn)
 def _(_: c.GoOn, session: Session) -> None:
-    session.go_on()
+    go_on(session)
+
+
+@apply.register(c.UndoGoOn)
+def _(_: c.UndoGoOn, session: Session) -> None:
+    undo_going_on(session)
 
 
 @apply.register(c.SetCopy)
@@ -104,8 +110,8 @@ def _(_: c.EndMove, session: Session) -> None:
 @apply.register(c.SetRunning)
 def _(command: c.SetRunning, session: Session) -> None:
     running = not session.running if command.running is None else command.running
-    if running and session.viewing is not None:
-        session.go_on()
+    if running:
+        return_to_present(session)
     session.running = running
 
 
@@ -119,7 +125,7 @@ def _(command: c.SetRate, session: Session) -> None:
 
 @apply.register(c.Hold)
 def _(command: c.Hold, session: Session) -> None:
-    _leave_past(session)
+    return_to_present(session)
     if command.controller is not None:
         _known(command.controller)
     everyone: list[str] = list(NAMES)
@@ -131,7 +137,7 @@ def _(command: c.Hold, session: Session) -> None:
 @apply.register(c.Grab)
 def _(command: c.Grab, session: Session) -> None:
     _known(command.controller)
-    _leave_past(session)
+    return_to_present(session)
     target, together = _point(command.target), session.targets(command.controller)
     session.grips.grab(command.controller, session.robot.unplace(target), together)
 
@@ -144,7 +150,7 @@ def _(command: c.Release, session: Session) -> None:
 
 @apply.register(c.Tug)
 def _(command: c.Tug, session: Session) -> None:
-    _leave_past(session)
+    return_to_present(session)
     name = session.grips.grabbed or NAMES[-1]
     target = session.grips.hands.get(name, session.runs[name].shown()["y"])
     plane = session.robot.frame
@@ -156,7 +162,7 @@ def _(command: c.Tug, session: Session) -> None:
 @apply.register(c.LookBack)
 def _(command: c.LookBack, session: Session) -> None:
     now = session.time if session.viewing is None else session.viewing
-    session.view(session.time - now + _finite(command.by))
+    look_back(session, session.time - now + _finite(command.by))
 
 
 @apply.register(c.SelectNext)
@@ -190,7 +196,7 @@ def _(command: c.Arrow, session: Session) -> None:
     index = session.editor.selected
     if index is None:
         if command.right > 0:
-            _leave_past(session)
+            return_to_present(session)
             session.step_once()
         return
     design = session.editor.design
@@ -261,21 +267,17 @@ def _commit(session: Session, design: PathDesign) -> None:
 
 def _finish(session: Session) -> None:
     """End an edit of the path and say why if it is refused."""
-    _leave_past(session)
     before = session.editor.design
     if session.editor.finish():
         if session.editor.design is not before:
             session.note("path", session.editor.design.name)
         session.hush()
+        return_to_present(session)
     elif session.editor.faults:
         words = session.lessons.words
         reasons = "; ".join(words.sentence(fault.reason) for fault in session.editor.faults)
+        return_to_present(session)
         session.say(words("say.refused", reasons=reasons), "warning")
-
-
-def _leave_past(session: Session) -> None:
-    """Acting on the lab ends looking at its past."""
-    session.viewing = None
 
 
 def _selected(session: Session) -> int:

@@ -78,7 +78,12 @@ class LookBack:
 
 @dataclass(frozen=True, slots=True)
 class GoOn:
-    """Go on from the instant being looked at; what came after it is forgotten."""
+    """Go on from the instant being looked at; what came after it is put aside."""
+
+
+@dataclass(frozen=True, slots=True)
+class UndoGoOn:
+    """Bring back what was put aside last, and put aside what was done instead."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,6 +235,7 @@ Command = (
     | View
     | LookBack
     | GoOn
+    | UndoGoOn
     | Hold
     | Grab
     | Release

@@ -46,6 +46,7 @@ class Controls:
 
     Args:
         scene: what drawing, pulling and shading act on.
+        reset_view: puts the camera back.
     """
 
     def __init__(
@@ -56,7 +57,9 @@ class Controls:
         exporter: Exporter,
         scene: Scene,
         desk: Desk,
+        reset_view: Callable[[], None],
     ) -> None:
+        self._reset_view = reset_view
         self._gui, self._session, self._post = gui, session, post
         self._words = session.lessons.words
         self._exporter, self._scene, self._desk = exporter, scene, desk
@@ -87,7 +90,7 @@ class Controls:
     def _add(self, name: str) -> list[Part]:
         gui, session, post = self._gui, self._session, self._post
         make: dict[str, Callable[[], Part | None]] = {
-            "hold": lambda: RunPanel(gui, session, post),
+            "hold": lambda: RunPanel(gui, session, post, self._reset_view),
             "path": lambda: PathChoice(gui, session, post),
             "editor": self._editor,
             "gains": lambda: GainsPanel(gui, session, post),

@@ -90,8 +90,3 @@ class Grips:
             self.pushes[name] = Push(None, self.pushes[name].hold)
         self.hands.clear()
         self.grabbed = None
-
-    def let_go(self) -> None:
-        """Hold nobody back any more, and pull at nobody, without a word."""
-        self.pushes.update(dict.fromkeys(NAMES, FREE))
-        self.held.clear()

@@ -33,6 +33,7 @@ from app.error_log import log_error
 from app.gate import Gate, Limits, warn_once
 from app.listening import PortInUse, listen, listen_unix
 from app.origin import Door, is_loopback, well
+from app.page import add_scripts
 from app.wire_form import WireForms
 
 __all__ = ["Limits", "PortInUse", "harden", "make_server"]
@@ -163,7 +164,10 @@ def _guarded_serve(
                 return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
             if in_folder and request.path.partition("?")[0] == "/":
                 return _to_page(connection, request)
-            return process_request(connection, request)
+            response = process_request(connection, request)
+            if response is not None:
+                add_scripts(response)
+            return response
 
         async def admit(connection: ServerConnection) -> None:
             if connection.subprotocol == _SUBPROTOCOL:

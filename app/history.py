@@ -231,11 +231,15 @@ class History:
             return None
         return self._stretch(max(self._find(time, "right") - 1, self._begin))
 
-    def forget_after(self, stretch: Stretch) -> None:
-        """Drop `stretch` and everything later."""
+    def before(self, stretch: Stretch) -> History:
+        """A copy of what came before `stretch`."""
         self.settle()
-        self._list = None
-        self._end = self._find(stretch.time, "left")
+        copy = History(self._sample)
+        with self._lock:
+            copy._columns = {name: column.copy() for name, column in self._columns.items()}
+            copy._begin, copy._end = self._begin, self._find(stretch.time, "left")
+            copy._before = self._before
+        return copy
 
     def samples(
         self, begin: float, end: float, most: int, fields: slice = slice(None)

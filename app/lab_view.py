@@ -80,6 +80,10 @@ class LabView:
             every = stride * round((SLOW if stride <= AT_EASE else SLOWER) / stride)
             self._show(session, achieved, slow=is_turn(count, every))
 
+    def reset_view(self) -> None:
+        """Put the camera back where it was at first, soon; from any thread."""
+        self._framed = 0.0
+
     def send(self) -> None:
         """See `app.loop.View`."""
         self._channel.send()
@@ -129,14 +133,14 @@ class LabView:
         self._scene = Scene(self._client, _hooks(post), stage_of(robot), words)
         self._scene.build(take_snapshot(session, 1.0))
         self._build_panels(session, post)
-        add_keys(self._client.gui, words, post)
+        add_keys(self._client.gui, words, post, self.reset_view)
         self._robot = robot
 
     def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
         gui, run = self._client.gui, session.lessons
         self._client.gui.add_html(WIDE_SHEET)
         self._parts: list[Part] = []
-        controls = Controls(gui, session, post, self._exporter, self._scene, self._desk)
+        controls = self._controls(session, post)
         if run.lesson is None:
             self._build_head(session, post)
             self._parts += controls.everything()
@@ -158,6 +162,10 @@ class LabView:
             with tabs.add_tab(words("lesson.all_controls"), viser.Icon.ADJUSTMENTS_HORIZONTAL):
                 self._parts += controls.everything()
         self._parts.append(LessonPanel(self._client, session, post, self._scene, submit, tab))
+
+    def _controls(self, session: Session, post: Callable[[c.Command], None]) -> Controls:
+        gui, exporter, scene = self._client.gui, self._exporter, self._scene
+        return Controls(gui, session, post, exporter, scene, self._desk, self.reset_view)
 
     def _build_head(self, session: Session, post: Callable[[c.Command], None]) -> None:
         """What is always there: progress, numbers, the way to the lessons, the distance."""

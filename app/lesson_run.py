@@ -306,7 +306,8 @@ class LessonRun:
         lesson = self.lesson
         assert lesson is not None
         self._note(step=index, seen=max(self.notes.seen, index + 1))
-        session.script, self._playing, self._trace = None, False, None
+        session.script, session.put_aside = None, None
+        self._playing, self._trace = False, None
         session.running = lesson.scene_at(index).running
         self._lock(session)
         self.verdicts, self._passed = {}, {}

@@ -52,16 +52,19 @@ class PlantRun:
         self.diverged = None
         self.max_distance = self.distance
 
-    def restore(self, drive: Drive, curve: Curve, then: Curve) -> None:
-        """The state of a checkpoint; the closest point is searched anew if the path was another."""
+    def restore(self, drive: Drive, curve: Curve) -> None:
+        """The state of a checkpoint, with the path of then."""
         self.state = drive.state.copy()
         self.max_distance = drive.max_distance
         if not drive.frozen:
             self.diverged = None
-        if curve is not then:
-            reference = self.fields()["theta_ref"].copy()
-            self.project(curve)
-            self.fields()["theta_ref"][:] = reference
+        self._fill_row(curve)
+
+    def change_path(self, curve: Curve) -> None:
+        """Another path than the state was made with: only the reference point stays."""
+        reference = self.fields()["theta_ref"].copy()
+        self.project(curve)
+        self.fields()["theta_ref"][:] = reference
         self._fill_row(curve)
 
     def project(self, curve: Curve) -> None:

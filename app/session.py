@@ -22,6 +22,7 @@ from app.class_commands import ClassCommand
 from app.grips import Grips
 from app.history import Frame, History, Inputs, Instant
 from app.lesson_run import LessonRun
+from app.looking_back import Timeline
 from app.loop_store import LoopStore
 from app.path_editor import PathEditor
 from app.plant_run import PlantRun
@@ -57,6 +58,7 @@ class Session:
         history: the last minute.
         time: simulated, [s].
         viewing: the past instant being looked at, [s], or None.
+        put_aside: what going on from the past has forgotten, or None.
         grips: what holds the robots back, and what pulls at them.
         happenings: what was done and came about, for the lessons' checks.
         run_number: how often the robots have been set back to the start.
@@ -258,6 +260,7 @@ class Session:
         self._owed = 0.0
         self._now: Instant | None = None
         self.viewing: float | None = None
+        self.put_aside: Timeline | None = None
         self.history.clear()
         start = self.start_point(self.editor.curve)
         curve = self.editor.curve
@@ -286,40 +289,6 @@ class Session:
     def targets(self, controller: str) -> list[str]:
         """Which robots a gesture at `controller` acts on."""
         return list(NAMES) if self.copy else [controller]
-
-    # The past
-
-    def view(self, ago: float) -> None:
-        """Pause and look at an instant of the past; 0 is now."""
-        if ago <= 0 or not len(self.history):
-            self.viewing = None
-            return
-        self.running = False
-        self.grips.release()
-        self.viewing = self.time - min(ago, self.history.span())
-
-    def go_on(self) -> None:
-        """Go on from the instant being looked at; what came after is forgotten."""
-        if self.viewing is not None:
-            stretch = self.history.at(self.viewing)
-            if stretch is not None:
-                self.history.forget_after(stretch)
-                self._forget_happenings(stretch.time)
-                self.time = stretch.time
-                for name, run in self.runs.items():
-                    run.restore(stretch.drives[name], self.editor.curve, stretch.curve)
-                self.grips.let_go()
-            self.viewing = None
-        self.running = True
-        self.hush()
-
-    def _forget_happenings(self, time: float) -> None:
-        """Those of this run after a time; what went on then is over."""
-        kept = [h for h in self.happenings if h.run != self.run_number or h.time <= time]
-        self.happenings = deque(kept, maxlen=MOST_HAPPENINGS)
-        self.time = time
-        self.note("let_go")
-        self.note("release")
 
     # What is kept of an instant
 

@@ -7,7 +7,6 @@ from collections.abc import Callable
 import viser
 
 from app import commands as c
-from app.controls import Controls
 from app.desk import Desk
 from app.lab_view import LabView
 from app.lesson_commands import CloseLesson
@@ -58,8 +57,7 @@ class TeacherView(LabView):
             self._parts.append(TeacherControls(gui, own, self._teaching))
             self._build_numbers(session)
             self._build_distance(session)
-            controls = Controls(gui, own, post, self._exporter, self._scene, self._desk)
-            self._parts += controls.everything()
+            self._parts += self._controls(own, post).everything()
         else:
             self._parts.append(Following(gui, own, self._teaching))
             self._build_numbers(session)

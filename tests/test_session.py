@@ -109,6 +109,7 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.View: st.builds(c.View, st.one_of(st.floats(-1, 5), WILD)),
     c.LookBack: st.builds(c.LookBack, st.one_of(st.floats(-1, 5), WILD)),
     c.GoOn: st.builds(c.GoOn),
+    c.UndoGoOn: st.builds(c.UndoGoOn),
     c.Hold: st.builds(
         c.Hold, st.sampled_from([None, True, False]), st.one_of(st.none(), CONTROLLERS)
     ),

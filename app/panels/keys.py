@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import viser
@@ -23,12 +24,13 @@ class Key:
         name: of what it does, in the catalogue.
         hotkey: viser's name for it.
         written: how it is written, key by key.
+        command: to the lab; without one it resets the view, which is the tab's own.
     """
 
     name: str
     hotkey: HotkeyKey
     written: str
-    command: c.Command
+    command: c.Command | None
     modifier: KeyModifier | None = None
 
     def does(self, words: Words) -> str:
@@ -62,16 +64,21 @@ KEYS = (
     Key("back", "B", "B", c.LookBack(1.0)),
     Key("forward", "F", "F", c.LookBack(-1.0)),
     Key("go_on", "G", "G", c.GoOn()),
+    Key("undo_go_on", "U", "U", c.UndoGoOn()),
+    Key("view", "home", "Home", None),
 )
 
 
-def add_keys(gui: viser.GuiApi, words: Words, post: Post) -> None:
+def add_keys(gui: viser.GuiApi, words: Words, post: Post, reset_view: Callable[[], None]) -> None:
     """Make the keys work; they are also in viser's command palette."""
     for key in KEYS:
         handle = gui.add_command(key.does(words), hotkey=key.hotkey, modifier=key.modifier)
 
-        async def triggered(_: object, command: c.Command = key.command) -> None:
-            post(command)
+        async def triggered(_: object, command: c.Command | None = key.command) -> None:
+            if command is None:
+                reset_view()
+            else:
+                post(command)
 
         handle.on_trigger(triggered)
 

@@ -27,7 +27,17 @@ class PastPanel:
                 hint=words("past.ago_hint"),
             )
             self._go_on = gui.add_button(
-                words("past.go_on"), icon=viser.Icon.PLAYER_TRACK_NEXT, disabled=True
+                words("past.go_on"),
+                icon=viser.Icon.PLAYER_TRACK_NEXT,
+                disabled=True,
+                hint=words("past.go_on_hint"),
+            )
+            self._undo = gui.add_button(
+                words("past.undo"),
+                icon=viser.Icon.ARROW_BACK_UP,
+                color="gray",
+                disabled=True,
+                hint=words("past.undo_hint"),
             )
         with gui.add_folder(words("export.title"), expand_by_default=False):
             table = gui.add_button(words("export.table"), icon=viser.Icon.TABLE)
@@ -35,14 +45,20 @@ class PastPanel:
             film = gui.add_button(words("export.film"), icon=viser.Icon.MOVIE)
         on_user_update(self._ago, lambda ago: post(c.View(ago)))
         on_press(self._go_on, lambda: post(c.GoOn()))
+        on_press(self._undo, lambda: post(c.UndoGoOn()))
         on_press(table, exporter.csv)
         on_press(picture, exporter.picture)
         on_press(film, exporter.recording)
 
     def follow(self, session: Session) -> None:
-        """Back at the present, the slider is too."""
-        past = session.viewing is not None
-        if self._go_on.disabled == past:
-            self._go_on.disabled = not past
-        if not past and self._ago.value != 0.0:
-            self._ago.value = 0.0
+        """The slider stands at the instant that is shown, however one has come there."""
+        viewing = session.viewing
+        for button, useless in (
+            (self._go_on, viewing is None),
+            (self._undo, session.put_aside is None),
+        ):
+            if button.disabled != useless:
+                button.disabled = useless
+        ago = 0.0 if viewing is None else round(session.time - viewing, 1)
+        if self._ago.value != ago:
+            self._ago.value = ago

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 
 import viser
 
@@ -17,7 +18,9 @@ RATE_LABELS = {f"{rate:g}×": rate for rate in c.RATES}
 class RunPanel:
     """Transport and hold."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, session: Session, post: Post, reset_view: Callable[[], None]
+    ) -> None:
         self._post, self._words = post, session.lessons.words
         self._pressed_at: float | None = None
         words = self._words
@@ -36,14 +39,18 @@ class RunPanel:
         self._run = gui.add_button(
             words("run.pause"), icon=viser.Icon.PLAYER_PAUSE, hint=words("run.run_hint")
         )
-        row = {words("run.step"): c.Step(), words("run.reset"): c.Reset()}
+        row: dict[str, Callable[[], None]] = {
+            words("run.step"): lambda: post(c.Step()),
+            words("run.reset"): lambda: post(c.Reset()),
+            words("run.view"): reset_view,
+        }
         group = gui.add_button_group("", list(row))
         self._rate = gui.add_dropdown(
             words("run.rate"), list(RATE_LABELS), initial_value="1×", hint=words("run.rate_hint")
         )
         on_press(self._hold, lambda: post(c.Hold()))
         on_press(self._run, lambda: post(c.SetRunning()))
-        on_press(group, lambda: post(row[group.value]))
+        on_press(group, lambda: row[group.value]())
         on_user_update(self._rate, lambda label: post(c.SetRate(RATE_LABELS[label])))
         self._press.on_hold(self._held_down)
 

@@ -1,0 +1,46 @@
+// Keys belong to the control that has the focus, and to the lab; none of them moves the camera.
+//
+// viser's page listens to all keys where they come last: its hotkeys, which are the lab's keys, at
+// the <html> element, and its camera at the document. This script runs before viser's, so at each
+// of these it hears a key first, after the focused control has had it, and can end its way there.
+(() => {
+  "use strict";
+
+  const ARROWS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"];
+  const CAMERA = ["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE", ...ARROWS];  // by event.code
+  const PRESS = [" ", "Enter"];
+  const MOVE = [...ARROWS, "Home", "End"];
+
+  // Which keys a control uses itself, by event.key; fields to type in are left to viser.
+  const OWN = [
+    ['[role="slider"]', MOVE],
+    ['[role="tab"]', [...MOVE, ...PRESS]],
+    ['input[type="radio"]', [...ARROWS, ...PRESS]],
+    ['button, [role="button"], input[type="checkbox"]', PRESS],
+  ];
+  const TICKED = 'input[type="checkbox"], input[type="radio"]';
+
+  function isOwn(control, key) {
+    const found = OWN.find(([selector]) => control.matches(selector));
+    return found !== undefined && found[1].includes(key);
+  }
+
+  // viser's hotkeys take everything named <input> for a field to type in; a letter means nothing
+  // to a box that is ticked, so it is told again as if nothing had the focus.
+  function tellAgain(event) {
+    event.stopImmediatePropagation();
+    const again = new KeyboardEvent(event.type, event);
+    if (!document.body.dispatchEvent(again)) event.preventDefault();
+  }
+
+  document.documentElement.addEventListener("keydown", (event) => {
+    const control = event.target;
+    if (!(control instanceof Element)) return;
+    if (isOwn(control, event.key)) event.stopImmediatePropagation();
+    else if (control.matches(TICKED) && event.key !== "Tab") tellAgain(event);
+  });
+
+  document.addEventListener("keydown", (event) => {
+    if (CAMERA.includes(event.code)) event.stopImmediatePropagation();
+  });
+})();
