@@ -220,6 +220,25 @@ def test_orders_reach_the_labs_of_all_processes(two: Two) -> None:
     assert other.room.code == one.room.code and other.room.members() == {}
 
 
+def test_who_joins_later_gets_what_was_sent_whichever_the_process(two: Two) -> None:
+    one, other = two.both
+    own = new_session()
+    do(own, c.SetParameter("K2", 33.0))
+    one.room.push(TakeSetup(capture(own)))
+    one.look()
+    labs = [one.student("a", "Ada"), other.student("b", "Bob")]
+    two.look()
+    assert [capture(lab) for lab in labs] == [capture(own)] * 2
+    do(labs[1], c.SetParameter("K2", 44.0))
+    two.look()
+    assert labs[1].parameters.K2 == 44.0  # once
+    other.room.push(None)
+    two.look()
+    late = one.student("c", "Cid")
+    two.look()
+    assert one.room.orders.push is None and capture(late) != capture(own)
+
+
 def test_a_student_who_changes_the_process_is_the_same(two: Two) -> None:
     one, other = two.both
     session = one.student("a", "Ada")
