@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import threading
 from collections.abc import Iterator
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -17,10 +19,10 @@ from app import commands as c
 from app import lesson_commands as lc
 from app.attendance import Attendance
 from app.class_commands import Freeze, TakeSetup, TakeStep
-from app.class_door import LONGEST_NAME, TRIES, WITHIN, cleaned
+from app.class_door import CODE_LENGTH, LONGEST_NAME, cleaned
 from app.class_record import HEADER, class_csv, distribution, prediction_at, truth_of
 from app.classroom import Classroom
-from app.codes import new_code, shown
+from app.codes import ALPHABET, new_code, shown
 from app.database import Records, file_url
 from app.forget import forget
 from app.keeper import Keeper
@@ -28,6 +30,7 @@ from app.leases import Leases
 from app.session import Session
 from app.setups import Setup, capture
 from app.shared_classroom import SharedClassroom
+from app.throttle import TRIES, WITHIN, Throttle
 from lessons.course import Course, read_course
 from lessons.progress import Answer, Notes, Progress, Truth
 from lessons.schema import Choice, Sketch
@@ -156,11 +159,71 @@ def test_guessing_is_slow_and_locks_out_nobody_else(klass: Watched) -> None:
             room.admit("2222-2222-2222", "thief")
     with pytest.raises(ValueError, match="too many"):
         room.admit(shown(room.key), "thief")
-    with pytest.raises(ValueError, match="too many"):
-        room.join("thief", room.code, "x")
-    assert room.admit(shown(room.key), "teacher")
+    for typed in [f"wrong {number}" for number in range(TRIES)]:
+        with pytest.raises(ValueError, match="class code"):
+            room.join("thief", typed, "x")
+    for typed in (room.code, "wrong"):
+        with pytest.raises(ValueError, match="too many"):
+            room.join("thief", typed, "x")
+    assert room.admit(shown(room.key), "teacher") and room.join("student", room.code, "x")
     klass.now += WITHIN + 1
-    assert room.join("thief", room.code, "x")
+    assert room.join("thief", room.code, "x") and room.admit(shown(room.key), "thief")
+
+
+@pytest.mark.parametrize("wanted", ["class code", "teacher's key"])
+def test_a_flood_of_wrong_codes_from_throwaway_labs_locks_nobody_out(
+    klass: Watched, wanted: str
+) -> None:
+    room, answers = klass.room, []
+
+    def guess(tab: int) -> None:
+        for number in range(100):
+            lab = f"{tab}.{number // TRIES}"
+            try:
+                if wanted == "class code":
+                    room.join(lab, "wrong", "x")
+                else:
+                    room.admit("2222-2222-2222", lab)
+            except ValueError as error:
+                answers.append(str(error))
+
+    tabs = [threading.Thread(target=guess, args=(tab,)) for tab in range(20)]
+    for tab in tabs:
+        tab.start()
+    for tab in tabs:
+        tab.join()
+    assert len(answers) == 2000 and room.members() == {}
+    assert room.join("student", room.code, "Ada") and room.admit(shown(room.key), "teacher")
+
+
+def test_a_class_code_is_not_to_be_guessed_within_a_lesson(klass: Watched) -> None:
+    assert len(klass.room.code) == CODE_LENGTH and set(klass.room.code) <= set(ALPHABET)
+    guesses = 90 * 1700  # of a lesson; see `app.class_door.Door`
+    assert guesses / len(ALPHABET) ** CODE_LENGTH < 1e-3
+
+
+def test_attempts_under_way_count_and_only_failures_go_on_counting() -> None:
+    now = 0.0
+    throttle = Throttle(lambda: now)
+    with ExitStack() as under_way:
+        for _ in range(TRIES):
+            under_way.enter_context(throttle.attempt("tab"))
+        with pytest.raises(ValueError, match="too many"), throttle.attempt("tab"):
+            raise AssertionError
+        with throttle.attempt("other"):
+            pass
+    for _ in range(TRIES):
+        with pytest.raises(OSError), throttle.attempt("tab"):
+            raise OSError
+    for _ in range(TRIES):
+        with pytest.raises(ValueError, match="wrong"), throttle.attempt("tab"):
+            raise ValueError("wrong")
+    now = WITHIN - 1
+    with pytest.raises(ValueError, match="too many"), throttle.attempt("tab"):
+        raise AssertionError
+    now = WITHIN
+    with throttle.attempt("tab"):
+        pass
 
 
 # What reaches the labs.

@@ -14,7 +14,6 @@ import sqlalchemy as sa
 from app import commands as c
 from app.attendance import Attendance
 from app.class_commands import TakeSetup, TakeStep
-from app.class_door import TRIES
 from app.class_ledger import FORGOTTEN
 from app.class_opening import KEY, class_of_workers, given_key, open_class
 from app.classroom import Classroom
@@ -31,6 +30,7 @@ from app.setups import capture
 from app.shared_classroom import LIVELY, SharedClassroom
 from app.tables import OF_A_CLASS, classes
 from app.teaching import Chosen, Teaching
+from app.throttle import TRIES
 from app.watches import GONE, LASTS, NONSENSE, Watches
 from lessons.progress import Answer, Notes, Progress
 from lessons.words import ENGLISH
