@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from app import class_commands as c
 from app import commands
 from app.apply_lesson import apply
-from app.setups import restore
 
 if TYPE_CHECKING:
     from app.session import Session
@@ -30,18 +29,18 @@ def _(command: c.Freeze, session: Session) -> None:
 
 @apply.register(c.TakeSetup)
 def _(command: c.TakeSetup, session: Session) -> None:
-    if session.lessons.lesson is not None:
-        session.lessons.close(session)
-    restore(session, command.setup)
-    session.running = True
-    session.say(session.lessons.words("class.setup"))
+    run = session.lessons
+    run.take(command.setup, session)
+    session.say(run.words("class.setup" if run.lesson is None else "class.setup_in_step"))
     _tell(session)
 
 
 @apply.register(c.TakeStep)
 def _(command: c.TakeStep, session: Session) -> None:
-    session.lessons.open_at(command.lesson, command.step, session)
-    session.say(session.lessons.words("class.step"))
+    run = session.lessons
+    elsewhere = run.lesson is not None and run.progress.lesson != command.lesson
+    run.open_at(command.lesson, command.step, session)
+    session.say(run.words("class.step_elsewhere" if elsewhere else "class.step"))
     _tell(session)
 
 

@@ -24,7 +24,7 @@ class Freeze:
 
 @dataclass(frozen=True, slots=True)
 class TakeSetup:
-    """The free lab, set up so."""
+    """The lab set up so, in the free lab or in the step that is open."""
 
     setup: Setup
 

@@ -87,9 +87,18 @@ def _place(way: Progress, course: Course, words: Words) -> tuple[str, str, str]:
 
 
 def prediction_view(
-    block: Prediction, found: Distribution, truth: Truth | None, revealed: bool, words: Words
+    block: Prediction,
+    found: Distribution,
+    truth: Truth | None,
+    revealed: bool,
+    words: Words,
+    large: bool = False,
 ) -> str:
-    """How the class has answered, without names; the truth too, when it is revealed."""
+    """How the class has answered, without names; the truth too, when it is revealed.
+
+    Args:
+        large: for a projector.
+    """
     given = sum(found.counts) + len(found.sketches)
     facts = words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
     body = (
@@ -98,7 +107,8 @@ def prediction_view(
         else _sketches(block, found, truth if revealed else None, words)
     )
     return (
-        f'<div class="op-class" style="padding:0.4em 1em;font-size:1.15em;line-height:1.4">'
+        f'<div class="op-class" style="padding:0.4em 1em;'
+        f'font-size:{1.7 if large else 1.15}em;line-height:1.4">'
         f"<p><b>{block.question}</b></p>{body}"
         f'<p style="color:{GREY};font-size:0.85em">{facts}</p></div>'
     )

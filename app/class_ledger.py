@@ -99,7 +99,7 @@ class Ledger:
         row = self.change(connection, now)
         seen = self.look(connection, seen, now)
         number = row.joined + 1
-        new = Member(number, "", active=now.here, taken=row.pushes)
+        new = Member(number, "", active=now.here)
         member = seated(seen.members, session, name, new)
         values = {"changed": row.changes, "name": member.name}
         if session in seen.members:

@@ -105,8 +105,10 @@ def read_member(row: sa.Row[Any], ways: Ways, since: float) -> tuple[str, Member
     return kept.session, Member(kept.number, name, progress, False, active, kept.taken)
 
 
-def push_text(push: Push) -> str:
-    """What a teacher sends, as it is kept."""
+def push_text(push: Push | None) -> str:
+    """What a teacher sends, as it is kept; empty for nothing."""
+    if push is None:
+        return ""
     if isinstance(push, TakeStep):
         return msgspec.json.encode({"lesson": push.lesson, "step": push.step}).decode()
     return msgspec.json.encode({"setup": to_data(push.setup)}).decode()

@@ -62,8 +62,7 @@ class Classroom:
         """See `Room.join`."""
         self._door.check_code(typed, self.code, session)
         with self._lock:
-            number, taken = self._joined + 1, self._orders.pushes
-            new = Member(number, "", active=self.clock(), taken=taken)
+            new = Member(self._joined + 1, "", active=self.clock())
             member = self._members[session] = seated(self._members, session, name, new)
             self._joined = max(self._joined, member.number)
             return member
@@ -108,10 +107,11 @@ class Classroom:
         with self._lock:
             self._orders = replace(self._orders, frozen=on)
 
-    def push(self, push: Push) -> None:
+    def push(self, push: Push | None) -> None:
         """See `Room.push`."""
         with self._lock:
-            self._orders = replace(self._orders, pushes=self._orders.pushes + 1, push=push)
+            count = self._orders.pushes + (push is not None)
+            self._orders = replace(self._orders, pushes=count, push=push)
 
     def end(self) -> int:
         """See `Room.end`."""

@@ -153,6 +153,19 @@ class LessonRun:
         if self.lesson is not None:
             self._arrive(self.index, session)
 
+    def take(self, setup: Setup, session: Session) -> None:
+        """Set the lab up otherwise; the open step stays, `begin_anew` brings its own set-up back.
+
+        Raises:
+            ValueError: see `restore`; then all is as it was.
+        """
+        restore(session, setup)
+        session.script, session.running = None, True
+        self._playing, self.verdicts = False, {}
+        self._begin = Beginning.now(session)
+        self._lock(session)
+        self.version += 1
+
     def close(self, session: Session) -> None:
         """No lesson is open; the lab is as it was before."""
         self.progress = replace(self.progress, lesson="")

@@ -28,7 +28,7 @@ class Member:
         progress: the way through the lessons when last looked at.
         connected: whether somebody looks at the lab.
         active: when something was last done in the lab, by the class's clock, [s].
-        taken: number of the last push that the lab has taken.
+        taken: number of the last push that the lab has taken; 0 for none.
     """
 
     number: int
@@ -46,7 +46,7 @@ class Orders:
     Attributes:
         frozen: all labs stand still.
         pushes: how many there have been; 0 for none.
-        push: the last one.
+        push: the last one, which whoever joins takes as well; None if there is none to take.
     """
 
     frozen: bool = False
@@ -135,8 +135,12 @@ class Room(Protocol):
         """All labs stand still, or go on."""
         ...
 
-    def push(self, push: Push) -> None:
-        """Send all who are in the class a set-up or a step; who comes later has it not."""
+    def push(self, push: Push | None) -> None:
+        """Send all who are in the class a set-up or a step, once; it stands for those who join.
+
+        It stands until another is sent, until None is sent (then nobody's lab changes, and who
+        joins begins on one's own), or until the class ends.
+        """
         ...
 
     def end(self) -> int:

@@ -10,7 +10,8 @@ import logging
 import re
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from app.codes import new_code
@@ -20,6 +21,7 @@ from app.kept import State, Watch, put_back
 from app.leases import Leases
 from app.loop import Lab, SimulationThread
 from app.session import Session
+from app.throttle import Throttle
 
 log = logging.getLogger(__name__)
 
@@ -62,7 +64,10 @@ class Sessions:
     keeper: Keeper | None = None
     leases: Leases | None = None
     _entries: dict[str, Entry] = field(default_factory=dict)
-    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _opening: set[str] = field(default_factory=set)
+    _lock: threading.Condition = field(default_factory=threading.Condition)
+    _making: threading.Lock = field(default_factory=threading.Lock)
+    _throttle: Throttle = field(default_factory=Throttle)
 
     def join(self, client: int, known: str | None) -> Entry:
         """The session for a new client.
@@ -73,67 +78,108 @@ class Sessions:
         codes = CODE.findall(known[:200]) if known else []
         if self.leases is not None and codes:
             codes = self.leases.available(codes)
-        with self._lock:
-            self._drop_old()
-            free = [self._entries[code] for code in codes if code in self._entries]
-            free = [entry for entry in free if entry.client is None]
-            entry = max(free, key=lambda e: e.left, default=None)
-            if entry is not None and not self._is_up_to_date(entry):
-                self._remove(entry)
-                codes, entry = [entry.code, *codes], None
-            if entry is None:
-                entry = self._entry([code for code in codes if code not in self._entries])
-            entry.client = client
-            return entry
+        remark = ""
+        try:
+            for code in self._in_turn(codes):
+                if (entry := self._open(client, code)) is not None:
+                    return entry
+        except NotKept as error:
+            remark = f"Your lab is kept, but cannot be opened now: {error}"
+        entry = self._made(new_code())
+        if remark:
+            entry.lab.session.say(remark, "warning")
+        return self._give(client, entry)
 
     def enter(self, client: int, code: str) -> Entry:
         """The session of a code that somebody typed, for a client that leaves its own.
 
         Raises:
-            ValueError: there is none, or it is open elsewhere.
+            ValueError: there is none, it is open elsewhere, or the client has tried too often.
+            NotKept: the database cannot say, or what it has cannot be read.
         """
-        with self._lock:
+        with self._throttle.attempt(str(client)):
             entry = self._entries.get(code)
             taken = entry is not None and entry.client is not None
             if taken or (self.leases is not None and not self.leases.available([code])):
                 raise ValueError("this lab is open in another window: close that one first")
+            found = self._open(client, code)
+            if found is None:
+                raise ValueError("there is no lab with this code")
+            return found
+
+    def _in_turn(self, codes: list[str]) -> list[str]:
+        """Those of some codes whose lab waits, the one left last first; then those not here."""
+        with self._lock:
+            self._drop_old()
+            here = {code: self._entries[code] for code in codes if code in self._entries}
+        waiting = [entry for entry in here.values() if entry.client is None]
+        waiting.sort(key=lambda entry: entry.left, reverse=True)
+        return [*(entry.code for entry in waiting), *(code for code in codes if code not in here)]
+
+    def _open(self, client: int, code: str) -> Entry | None:
+        """The lab of a code, a client's from now on; None if there is none that it can have.
+
+        Raises:
+            NotKept: the database cannot say, or what it has cannot be read.
+        """
+        with self._alone(code):
+            entry = self._entries.get(code)
+            if entry is not None and entry.client is not None:
+                return None
             if entry is not None and not self._is_up_to_date(entry):
-                self._remove(entry)
+                with self._lock:
+                    self._remove(entry)
                 entry = None
             if entry is None:
-                entry = self._entry([code])
-                if entry.code != code:
-                    self._remove(entry)
-                    raise ValueError("there is no lab with this code")
+                state = self._kept(code)
+                if state is None:
+                    return None
+                entry = self._made(code, state)
+            return self._give(client, entry)
+
+    @contextmanager
+    def _alone(self, code: str) -> Iterator[None]:
+        """Nobody else opens the lab of a code, or lets it go.
+
+        This may take as long as the database, or other processes, do; the lock of all sessions is
+        never held meanwhile.
+        """
+        with self._lock:
+            self._lock.wait_for(lambda: code not in self._opening)
+            self._opening.add(code)
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._opening.discard(code)
+                self._lock.notify_all()
+
+    def _made(self, code: str, state: State | None = None) -> Entry:
+        """A new session, or one as it was kept; one is made at a time, for the simulation's sake.
+
+        Raises:
+            NotKept: the state cannot be read.
+        """
+        with self._making:
+            session = self.make()
+            try:
+                if state is not None:
+                    put_back(session, state)
+            except ValueError as error:
+                log.warning("what was kept cannot be read: %s", error)
+                raise NotKept("what was kept of this lab cannot be read") from None
+        if (keeper := self.keeper) is not None:
+            session.watch = Watch(lambda make: keeper.submit(code, make), session)
+        return Entry(code, Lab(session))
+
+    def _give(self, client: int, entry: Entry) -> Entry:
+        with self._lock:
             self._abandon(client)
             entry.client = client
+            if entry.code not in self._entries:
+                self._entries[entry.code] = entry
+                self.simulation.add(entry.lab)
             return entry
-
-    def _entry(self, codes: list[str]) -> Entry:
-        """A session kept under one of some codes, or else a new one under a new code."""
-        session, code = self.make(), new_code()
-        for known in codes:
-            try:
-                state = self._kept(known)
-            except NotKept as error:
-                session.say(f"Your lab is kept, but cannot be read now: {error}", "warning")
-                break
-            if state is not None:
-                code = known
-                try:
-                    put_back(session, state)
-                except ValueError as error:
-                    log.warning("what was kept cannot be read: %s", error)
-                    session.say("What was kept of your lab cannot be read.", "warning")
-                    code = new_code()
-                break
-        keeper = self.keeper
-        if keeper is not None:
-            session.watch = Watch(lambda make: keeper.submit(code, make), session)
-        entry = Entry(code, Lab(session))
-        self._entries[code] = entry
-        self.simulation.add(entry.lab)
-        return entry
 
     def find(self, code: str) -> Entry | None:
         """The session of a code, if it is here now."""
@@ -184,13 +230,13 @@ class Sessions:
         """Other processes may have a lab, as it was left."""
         if self.keeper is not None:
             self.keeper.flush(entry.code)
-        with self._lock:
+        with self._alone(entry.code):
             if self.leases is not None and entry.client is None:
                 self.leases.release(entry.code)
 
     def _remove(self, entry: Entry) -> None:
         self.simulation.remove(entry.lab)
-        del self._entries[entry.code]
+        self._entries.pop(entry.code, None)
 
     def _abandon(self, client: int) -> Entry | None:
         for entry in self._entries.values():
@@ -209,7 +255,8 @@ class Sessions:
         return len(self._entries)
 
     def _drop_old(self) -> None:
-        waiting = [e for e in self._entries.values() if e.client is None]
+        idle = [e for e in self._entries.values() if e.client is None]
+        waiting = [e for e in idle if e.code not in self._opening]
         waiting.sort(key=lambda e: e.left, reverse=True)
         for rank, entry in enumerate(waiting):
             if rank >= MOST_ABANDONED or self.clock() - entry.left > KEPT:

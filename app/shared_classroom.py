@@ -107,10 +107,11 @@ class SharedClassroom:
             self._wanted.append({"frozen": int(on)})
             self._seen = replace(self._seen, orders=replace(self._seen.orders, frozen=on))
 
-    def push(self, push: Push) -> None:
+    def push(self, push: Push | None) -> None:
         """See `Room.push`."""
+        sent = {} if push is None else {"pushes": classes.c.pushes + 1}
         with self._lock:
-            self._wanted.append({"pushes": classes.c.pushes + 1, "push": push_text(push)})
+            self._wanted.append({**sent, "push": push_text(push)})
 
     def look(self) -> None:
         """See `Room.look`. When the database does not work, all stays as it is."""

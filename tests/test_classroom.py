@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import threading
 from collections.abc import Iterator
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -17,17 +19,18 @@ from app import commands as c
 from app import lesson_commands as lc
 from app.attendance import Attendance
 from app.class_commands import Freeze, TakeSetup, TakeStep
-from app.class_door import LONGEST_NAME, TRIES, WITHIN, cleaned
+from app.class_door import CODE_LENGTH, LONGEST_NAME, cleaned
 from app.class_record import HEADER, class_csv, distribution, prediction_at, truth_of
 from app.classroom import Classroom
-from app.codes import new_code, shown
+from app.codes import ALPHABET, new_code, shown
 from app.database import Records, file_url
 from app.forget import forget
 from app.keeper import Keeper
 from app.leases import Leases
 from app.session import Session
-from app.setups import capture
+from app.setups import Setup, capture
 from app.shared_classroom import SharedClassroom
+from app.throttle import TRIES, WITHIN, Throttle
 from lessons.course import Course, read_course
 from lessons.progress import Answer, Notes, Progress, Truth
 from lessons.schema import Choice, Sketch
@@ -36,13 +39,14 @@ from models.catalogue import FIVE_BAR
 from tests.lab import do, run, store
 from tests.lesson_texts import write_lesson
 
-LESSON = "01-a"
+LESSON, OTHER = "01-a", "02-b"
 HOSTILE = '<img src=x onerror="alert(1)">'
 
 
 @pytest.fixture
 def course(tmp_path: Path) -> Course:
     write_lesson(tmp_path / "course")
+    write_lesson(tmp_path / "course", name=OTHER)
     return read_course([tmp_path / "course"])[0]
 
 
@@ -155,11 +159,71 @@ def test_guessing_is_slow_and_locks_out_nobody_else(klass: Watched) -> None:
             room.admit("2222-2222-2222", "thief")
     with pytest.raises(ValueError, match="too many"):
         room.admit(shown(room.key), "thief")
-    with pytest.raises(ValueError, match="too many"):
-        room.join("thief", room.code, "x")
-    assert room.admit(shown(room.key), "teacher")
+    for typed in [f"wrong {number}" for number in range(TRIES)]:
+        with pytest.raises(ValueError, match="class code"):
+            room.join("thief", typed, "x")
+    for typed in (room.code, "wrong"):
+        with pytest.raises(ValueError, match="too many"):
+            room.join("thief", typed, "x")
+    assert room.admit(shown(room.key), "teacher") and room.join("student", room.code, "x")
     klass.now += WITHIN + 1
-    assert room.join("thief", room.code, "x")
+    assert room.join("thief", room.code, "x") and room.admit(shown(room.key), "thief")
+
+
+@pytest.mark.parametrize("wanted", ["class code", "teacher's key"])
+def test_a_flood_of_wrong_codes_from_throwaway_labs_locks_nobody_out(
+    klass: Watched, wanted: str
+) -> None:
+    room, answers = klass.room, []
+
+    def guess(tab: int) -> None:
+        for number in range(100):
+            lab = f"{tab}.{number // TRIES}"
+            try:
+                if wanted == "class code":
+                    room.join(lab, "wrong", "x")
+                else:
+                    room.admit("2222-2222-2222", lab)
+            except ValueError as error:
+                answers.append(str(error))
+
+    tabs = [threading.Thread(target=guess, args=(tab,)) for tab in range(20)]
+    for tab in tabs:
+        tab.start()
+    for tab in tabs:
+        tab.join()
+    assert len(answers) == 2000 and room.members() == {}
+    assert room.join("student", room.code, "Ada") and room.admit(shown(room.key), "teacher")
+
+
+def test_a_class_code_is_not_to_be_guessed_within_a_lesson(klass: Watched) -> None:
+    assert len(klass.room.code) == CODE_LENGTH and set(klass.room.code) <= set(ALPHABET)
+    guesses = 90 * 1700  # of a lesson; see `app.class_door.Door`
+    assert guesses / len(ALPHABET) ** CODE_LENGTH < 1e-3
+
+
+def test_attempts_under_way_count_and_only_failures_go_on_counting() -> None:
+    now = 0.0
+    throttle = Throttle(lambda: now)
+    with ExitStack() as under_way:
+        for _ in range(TRIES):
+            under_way.enter_context(throttle.attempt("tab"))
+        with pytest.raises(ValueError, match="too many"), throttle.attempt("tab"):
+            raise AssertionError
+        with throttle.attempt("other"):
+            pass
+    for _ in range(TRIES):
+        with pytest.raises(OSError), throttle.attempt("tab"):
+            raise OSError
+    for _ in range(TRIES):
+        with pytest.raises(ValueError, match="wrong"), throttle.attempt("tab"):
+            raise ValueError("wrong")
+    now = WITHIN - 1
+    with pytest.raises(ValueError, match="too many"), throttle.attempt("tab"):
+        raise AssertionError
+    now = WITHIN
+    with throttle.attempt("tab"):
+        pass
 
 
 # What reaches the labs.
@@ -211,8 +275,6 @@ def test_a_step_is_opened_for_all_as_if_they_had_come_there(klass: Watched) -> N
         do(session, lc.CloseLesson())
     klass.look()
     assert first.lessons.lesson is None  # once, not again and again
-    late = klass.student("Cid")
-    assert late.lessons.lesson is None
     for wrong in (TakeStep("nope", 0), TakeStep(LESSON, 99), TakeStep(LESSON, -1)):
         klass.room.push(wrong)
         klass.look()
@@ -223,13 +285,123 @@ def test_a_setup_is_taken_by_all_even_when_frozen(klass: Watched) -> None:
     own = Session(store(), FIVE_BAR, klass.course)
     do(own, c.SetParameter("K2", 33), c.ChoosePath("clover"))
     session = klass.student("Ada")
-    do(session, lc.OpenLesson(LESSON))
     klass.room.freeze(True)
     klass.look()
     klass.room.push(TakeSetup(capture(own)))
     klass.look()
-    assert capture(session) == capture(own) and session.lessons.lesson is None
+    assert capture(session) == capture(own)
     assert session.frozen and session.message == ENGLISH("class.frozen")
+
+
+def sent_setup(course: Course) -> Setup:
+    """That no step of the lessons has."""
+    own = Session(store(), FIVE_BAR, course)
+    do(own, c.SetParameter("K2", 33), c.ChoosePath("clover"))
+    return capture(own)
+
+
+@pytest.mark.parametrize("step", range(8))
+def test_a_setup_leaves_a_student_in_the_open_step(klass: Watched, step: int) -> None:
+    session, setup = klass.student("Ada"), sent_setup(klass.course)
+    do(session, c.SetParameter("K1", 7.0), lc.OpenLesson(LESSON))
+    do(session, *[lc.GoToStep(1)] * step)
+    run(session, 0.2)
+    waits, before = session.locked, session.lessons.progress
+    klass.room.push(TakeSetup(setup))
+    klass.look()
+    assert capture(session) == setup and session.message == ENGLISH("class.setup_in_step")
+    assert session.lessons.progress == before and session.lessons.index == step
+    assert session.locked == waits and session.running == (not waits)
+    do(session, lc.GoToStep(1))
+    assert session.lessons.index == min(step + 1, 7)
+    do(session, lc.CloseLesson())
+    assert session.parameters.K1 == 7.0  # the free lab as it was
+
+
+def test_set_up_again_brings_the_steps_own_setup_back(klass: Watched) -> None:
+    session = klass.student("Ada")
+    do(session, lc.OpenLesson(LESSON))
+    own = capture(session)
+    klass.room.push(TakeSetup(sent_setup(klass.course)))
+    klass.look()
+    assert capture(session) != own
+    do(session, lc.BeginStepAnew())
+    assert capture(session) == own and session.lessons.index == 0
+
+
+def test_a_setup_ends_what_plays_and_nothing_is_noted_of_it(klass: Watched) -> None:
+    session = klass.student("Ada")
+    do(session, lc.OpenLesson(LESSON), *[lc.GoToStep(1)] * 2, lc.PlayStep())
+    run(session, 0.5)
+    assert session.lessons.playing
+    klass.room.push(TakeSetup(sent_setup(klass.course)))
+    klass.look()
+    run(session, 2.5)
+    assert not session.lessons.playing and not session.lessons.has_played()
+    assert session.lessons.notes.truths == {}
+
+
+def test_a_step_that_is_opened_is_a_step_of_a_lesson(klass: Watched) -> None:
+    session, free = klass.student("Ada"), klass.student("Bob")
+    do(session, c.SetParameter("K1", 7.0), lc.OpenLesson(OTHER), *[lc.GoToStep(1)] * 6)
+    klass.room.push(TakeStep(LESSON, 5))
+    klass.look()
+    assert session.message == ENGLISH("class.step_elsewhere")
+    assert free.message == ENGLISH("class.step")
+    for by, index in ((0, 5), (1, 6), (1, 7), (-1, 6), (-1, 5), (-1, 4)):
+        do(session, lc.GoToStep(by))
+        assert session.lessons.progress.lesson == LESSON and session.lessons.index == index
+    do(session, lc.OpenLesson(OTHER))
+    assert session.lessons.index == 6 and session.editor.design.name == "ellipse"
+    assert set(session.lessons.notes.answers) == {"1", "3"}
+    do(session, lc.CloseLesson())
+    assert session.parameters.K1 == 7.0
+
+
+def test_who_joins_later_gets_what_was_sent_last(klass: Watched) -> None:
+    klass.room.push(TakeStep(OTHER, 0))
+    klass.room.push(TakeStep(LESSON, 1))
+    for name in ("Ada", "Bob"):
+        late = klass.student(name)
+        assert late.lessons.progress.lesson == LESSON and late.lessons.index == 1
+        do(late, lc.CloseLesson())
+        klass.look()
+        assert late.lessons.lesson is None  # once
+    klass.room.push(TakeSetup(sent_setup(klass.course)))
+    assert capture(klass.student("Cid")) == sent_setup(klass.course)
+
+
+def test_what_stands_ends_when_the_teacher_says_so(klass: Watched) -> None:
+    first = klass.student("Ada")
+    klass.room.push(TakeStep(LESSON, 1))
+    klass.look()
+    klass.room.push(None)
+    klass.look()
+    assert klass.room.orders.push is None and first.lessons.progress.lesson == LESSON
+    assert klass.student("Bob").lessons.lesson is None
+    klass.room.push(TakeStep(OTHER, 0))
+    klass.look()
+    assert first.lessons.progress.lesson == OTHER
+    klass.room.end()
+    klass.look()
+    assert klass.student("Cid").lessons.lesson is None
+
+
+def test_who_reloads_has_what_was_sent_and_goes_on_from_there(klass: Watched) -> None:
+    session = klass.student("Ada")
+    klass.labs["lab 0"] = session, False  # a reload, and just then the teacher sends
+    klass.look()
+    klass.room.push(TakeStep(LESSON, 1))
+    klass.look()
+    klass.labs["lab 0"] = session, True
+    klass.look()
+    assert session.lessons.index == 1
+    do(session, lc.GoToStep(1))
+    klass.labs["lab 0"] = session, False
+    klass.look()
+    klass.labs["lab 0"] = session, True
+    klass.look()
+    assert session.lessons.index == 2  # and is not sent back
 
 
 def test_only_a_teacher_thaws(klass: Watched) -> None:

@@ -14,7 +14,6 @@ import sqlalchemy as sa
 from app import commands as c
 from app.attendance import Attendance
 from app.class_commands import TakeSetup, TakeStep
-from app.class_door import TRIES
 from app.class_ledger import FORGOTTEN
 from app.class_opening import KEY, class_of_workers, given_key, open_class
 from app.classroom import Classroom
@@ -31,6 +30,7 @@ from app.setups import capture
 from app.shared_classroom import LIVELY, SharedClassroom
 from app.tables import OF_A_CLASS, classes
 from app.teaching import Chosen, Teaching
+from app.throttle import TRIES
 from app.watches import GONE, LASTS, NONSENSE, Watches
 from lessons.progress import Answer, Notes, Progress
 from lessons.words import ENGLISH
@@ -218,6 +218,25 @@ def test_orders_reach_the_labs_of_all_processes(two: Two) -> None:
     assert one.room.end() == 2
     two.look()
     assert other.room.code == one.room.code and other.room.members() == {}
+
+
+def test_who_joins_later_gets_what_was_sent_whichever_the_process(two: Two) -> None:
+    one, other = two.both
+    own = new_session()
+    do(own, c.SetParameter("K2", 33.0))
+    one.room.push(TakeSetup(capture(own)))
+    one.look()
+    labs = [one.student("a", "Ada"), other.student("b", "Bob")]
+    two.look()
+    assert [capture(lab) for lab in labs] == [capture(own)] * 2
+    do(labs[1], c.SetParameter("K2", 44.0))
+    two.look()
+    assert labs[1].parameters.K2 == 44.0  # once
+    other.room.push(None)
+    two.look()
+    late = one.student("c", "Cid")
+    two.look()
+    assert one.room.orders.push is None and capture(late) != capture(own)
 
 
 def test_a_student_who_changes_the_process_is_the_same(two: Two) -> None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable
-from typing import Any
 
 import viser
 
 from app.desk import Seat
+from app.panels.widgets import on_slow_press
 from app.session import Session
 
 
@@ -30,9 +30,9 @@ class ClassPanel:
             with gui.add_folder(words("class.teacher"), expand_by_default=False):
                 key = gui.add_text(words("class.key"), "", hint=words("class.key_hint"))
                 teach = gui.add_button(words("class.teach"), color="gray", icon=viser.Icon.KEY)
-        self._join.on_click(self._trying(lambda: seat.join(self._code.value, self._name.value)))
-        self._leave.on_click(self._trying(seat.leave))
-        teach.on_click(self._trying(lambda: seat.teach(key.value)))
+        self._try(self._join, lambda: seat.join(self._code.value, self._name.value))
+        self._try(self._leave, seat.leave)
+        self._try(teach, lambda: seat.teach(key.value))
         self._shown: str | None = None
         self.follow(session)
 
@@ -48,17 +48,15 @@ class ClassPanel:
             handle.visible = not name
         self._leave.visible = bool(name)
 
-    def _trying(self, act: Callable[[], object]) -> Callable[[Any], None]:
-        """In a thread of viser's, since the page may be built anew."""
-
-        def tried(_: Any) -> None:
+    def _try(self, button: viser.GuiButtonHandle, act: Callable[[], object]) -> None:
+        def tried() -> None:
             self._said.content = ""
             try:
                 act()  # may build the page anew, without this panel
             except (ValueError, OSError) as error:
                 self._said.content = _text(html.escape(self._words.sentence(str(error))))
 
-        return tried
+        on_slow_press(button, tried)
 
 
 def _text(content: str) -> str:

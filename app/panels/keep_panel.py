@@ -10,7 +10,7 @@ from app import commands as c
 from app.codes import shown
 from app.desk import Desk
 from app.exports import Exporter
-from app.panels.widgets import Post, on_press
+from app.panels.widgets import Post, on_press, on_slow_press
 from app.session import Session
 
 
@@ -28,7 +28,7 @@ class KeepPanel:
                 self._typed = gui.add_text(words("keep.other"), "", hint=words("keep.other_hint"))
                 go = gui.add_button(words("keep.go"), color="gray", icon=viser.Icon.LOGIN)
                 self._said = gui.add_html("")
-                go.on_click(self._enter)
+                on_slow_press(go, self._enter)
             share = gui.add_button(words("keep.share"), icon=viser.Icon.SHARE)
             self._share = gui.add_html("")
             pasted = gui.add_text(words("keep.paste"), "", hint=words("keep.paste_hint"))
@@ -44,13 +44,15 @@ class KeepPanel:
             self._code = session.shared
             self._share.content = _code(self._words("keep.shared"), session.shared)
 
-    def _enter(self, _: viser.GuiEvent[viser.GuiButtonHandle]) -> None:
-        """In a thread of viser's, since the page is built anew."""
+    def _enter(self) -> None:
+        self._say(self._words("keep.moment"))
         try:
-            self._desk.enter(self._typed.value)
+            self._desk.enter(self._typed.value)  # builds the page anew, without this panel
         except (ValueError, OSError) as error:
-            said = html.escape(self._words.sentence(str(error)))
-            self._said.content = f'<div class="op-text">{said}</div>'
+            self._say(self._words.sentence(str(error)))
+
+    def _say(self, said: str) -> None:
+        self._said.content = f'<div class="op-text">{html.escape(said)}</div>'
 
 
 def _code(label: str, code: str) -> str:

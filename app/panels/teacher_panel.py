@@ -8,13 +8,14 @@ from collections.abc import Callable
 import viser
 
 from app import class_html as page
+from app import lesson_commands as c
 from app.class_commands import TakeStep
 from app.class_record import class_csv, distribution, prediction_at, truth_of
 from app.panels.widgets import on_press, on_user_update
 from app.session import Session
 from app.teaching import Teaching
 
-WIDTH = 480  # [px]
+WIDTH, WIDE = 480, 760  # [px]; wide for a projector
 EVERY = 1.0  # [s] between two looks at the class
 
 Submit = Callable[[Callable[[], None]], None]
@@ -36,7 +37,7 @@ class TeacherPanel:
         self._course, self._words, self._own = own.lessons.course, own.lessons.words, own
         self._next, self._busy = 0.0, False
         self._codes: list[viser.GuiHtmlHandle] = []
-        words = self._words
+        words, self._large = self._words, own.lessons.progress.presenting
         panel = self._gui.add_panel(order=0)
         with panel.add_tab(words("class.title"), viser.Icon.USERS):
             self._build_class()
@@ -46,7 +47,7 @@ class TeacherPanel:
         with panel.add_tab(words("class.record"), viser.Icon.FILE_TEXT):
             self._build_record()
         panel.dock_left()
-        panel.set_width(WIDTH)
+        panel.set_width(WIDE if self._large else WIDTH)
 
     def follow(self, session: Session) -> None:
         """Once a second, in another thread: the class may be large."""
@@ -65,6 +66,7 @@ class TeacherPanel:
             self._show_names()
             still = self._teaching.why_still(self._words)
             _show(self._still, _text(still) if still else "")
+            self._show_standing()
             if self._course.lessons:
                 _show(self._prediction, self._prediction_view())
         finally:
@@ -80,7 +82,11 @@ class TeacherPanel:
         )
         on_user_update(self._names, self._choose_followed)
         self._still = self._gui.add_html("")
+        self._standing = self._gui.add_html("")
+        self._clear = self._gui.add_button(self._words("class.push_end"), color="gray")
+        on_press(self._clear, lambda: self._class.push(None))
         self._show_names()
+        self._show_standing()
 
     def _followable(self) -> dict[str, str]:
         """Session codes by what is shown of them."""
@@ -95,6 +101,19 @@ class TeacherPanel:
             self._names.options = options
         if self._names.value != shown:
             self._names.value = shown
+
+    def _show_standing(self) -> None:
+        """What whoever joins now gets, and the button that ends it."""
+        push = self._class.orders.push
+        self._clear.visible = push is not None
+        if push is None:
+            said = ""
+        elif isinstance(push, TakeStep):
+            title = {name: label for label, name in self._lessons().items()}.get(push.lesson, "")
+            said = self._words("class.standing_step", lesson=title, step=push.step + 1)
+        else:
+            said = self._words("class.standing_setup")
+        _show(self._standing, _text(said) if said else "")
 
     def _choose_followed(self, name: str) -> None:
         self._chosen.followed = self._followable().get(name, "")
@@ -116,10 +135,12 @@ class TeacherPanel:
         push = gui.add_button(words("class.push_step"), icon=viser.Icon.SEND)
         self._sent = gui.add_html("")
         reveal = gui.add_checkbox(words("class.truth"), chosen.revealed)
+        large = gui.add_checkbox(words("lesson.presenting"), self._large)
         self._prediction = gui.add_html("")
         on_user_update(lesson, lambda label: self._choose_lesson(lessons[label]))
         on_user_update(self._step, self._choose_step)
         on_user_update(reveal, self._reveal)
+        on_user_update(large, lambda on: self._own.post(c.SetPresenting(on)))
         on_press(push, self._push_step)
 
     def _lessons(self) -> dict[str, str]:
@@ -169,7 +190,7 @@ class TeacherPanel:
         ways = [member.progress for member in self._class.members().values()]
         truth = truth_of(chosen.lesson, at, [*ways, self._own.lessons.progress])
         counted = distribution(block, chosen.lesson, at, ways)
-        view = page.prediction_view(block, counted, truth, chosen.revealed, words)
+        view = page.prediction_view(block, counted, truth, chosen.revealed, words, self._large)
         missing = chosen.revealed and not counted.counts and truth is None
         return view + (_text(words("class.no_truth")) if missing else "")
 

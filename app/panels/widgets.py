@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable
 from typing import Any
 
 import viser
 
 from app.commands import Command, SetParameter
+from app.error_log import log_error
 from app.session import Session
 from lessons.words import Words
 from models.parameters import Parameters, Spec, specs
@@ -31,6 +33,26 @@ def on_press(handle: Any, act: Callable[[], None]) -> None:
 
     async def pressed(_: viser.GuiEvent[Any]) -> None:
         act()
+
+    handle.on_click(pressed)
+
+
+def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
+    """Call `act()` when the button is pressed, in a thread of its own: it may wait, or build the
+    page anew. Presses while it is under way are dropped, so that nothing piles up."""
+    under_way = threading.Lock()
+
+    def run() -> None:
+        try:
+            act()
+        except Exception as error:
+            log_error(error)
+        finally:
+            under_way.release()
+
+    async def pressed(_: viser.GuiEvent[Any]) -> None:
+        if under_way.acquire(blocking=False):
+            threading.Thread(target=run, name="press", daemon=True).start()
 
     handle.on_click(pressed)
 
