@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.bench_crowd import HEAD, Crowd, folders, measured, rehearse
+from app.bench_crowd import HEAD, Crowd, folders, measured
 from app.bench_server import serving
 from app.load import first_poses
 from app.loop_store import LoopStore
@@ -28,8 +28,7 @@ from models.catalogue import FIVE_BAR, FLEXIBLE, Entry
 from models.controllers import NAMES
 from models.curves import circle
 from models.flexible_robot import FlexibleParameters
-from models.kernel import Kernel
-from models.loops import InterpretedLoop, Loop, compile_loop, find_compiler
+from models.loops import InterpretedLoop, Loop
 from models.parameters import Parameters
 from models.simulation import FREE, first_state, kernel_of, kind_of, settings_vector
 from models.translated_loop import translate_loop
@@ -44,7 +43,7 @@ def bench(quick: bool = False) -> None:
     with tempfile.TemporaryDirectory() as folder:
         _loops(Path(folder), 20 if quick else 60)
         _modes(Path(folder), 10 if quick else 30)
-        _making(Path(folder), 3 if quick else 9)
+    _making(3 if quick else 9)
     if not quick:
         _crowds([Crowd(1), Crowd(20), Crowd(20, workers=2)])
         _start_up()
@@ -78,14 +77,13 @@ def _prepared(
     start = robot.rest(robot.frame.lift(curve.at(np.array(0.0))))
     loops: dict[str, Loop] = {
         "interpreted": InterpretedLoop(kernel),
-        "translated": translate_loop(kernel),
+        "compiled": translate_loop(kernel),
     }
-    compiler = find_compiler()
-    if compiler is not None:
-        loops["compiled"] = compile_loop(kernel, folder, compiler)
-        if entry is FIVE_BAR and REFERENCE.exists():
-            general = kernel_of(robot, kind_of("path_following", parameters, curve))
-            loops["C by hand"] = _reference().reference_loop(general, folder, compiler)
+    if entry is FIVE_BAR and REFERENCE.exists():
+        general = kernel_of(robot, kind_of("path_following", parameters, curve))
+        by_hand = _reference().reference_loop(general, folder)
+        if by_hand is not None:
+            loops["C by hand"] = by_hand
     settings = settings_vector(robot, kernel, parameters, curve, FREE)
     state = first_state(robot, kernel, curve, start)
     call = state, settings, curve.table(), TICKS
@@ -128,31 +126,22 @@ def _modes(folder: Path, repeats: int) -> None:
     print()
 
 
-def _making(folder: Path, repeats: int) -> None:
+def _making(repeats: int) -> None:
     """How long it takes to make machine code of a follower."""
-    compiler = find_compiler()
     for entry in (FIVE_BAR, FLEXIBLE):
         parameters = entry.parameters()
         kind = kind_of("path_following", parameters, circle(0.05))
         kernel = kernel_of(entry.make(parameters), kind)
-        calls: dict[str, Callable[[], object]] = {"translated": partial(translate_loop, kernel)}
-        if compiler is not None:
-            calls["compiled"] = partial(_compile_anew, kernel, folder, compiler)
-        times = _interleaved(calls, repeats)
-        shown = ", ".join(f"{tier} in {1e3 * took:.0f} ms" for tier, took in times.items())
-        print(f"{entry.name}, a loop is {shown}")
+        took = _interleaved({"compiled": partial(translate_loop, kernel)}, repeats)["compiled"]
+        print(f"{entry.name}, a loop is compiled in {1e3 * took:.0f} ms")
     print()
-
-
-def _compile_anew(kernel: Kernel, folder: Path, compiler: str) -> Loop:
-    return compile_loop(kernel, Path(tempfile.mkdtemp(dir=folder)), compiler)
 
 
 @contextmanager
 def _quiet_lab() -> Iterator[LabServer]:
     """A server in this process, without viser's banner."""
     with redirect_stdout(StringIO()):
-        lab = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler())
+        lab = LabServer("127.0.0.1", 0, LoopStore())
     try:
         yield lab
     finally:
@@ -174,7 +163,6 @@ def _begin() -> None:
 
 def _crowds(crowds: list[Crowd]) -> None:
     with tempfile.TemporaryDirectory() as folder:
-        rehearse(folders(Path(folder), "rehearsal"))
         print(HEAD, flush=True)
         for number, crowd in enumerate(crowds):
             for row in measured(crowd, folders(Path(folder), f"data{number}")):
@@ -183,19 +171,13 @@ def _crowds(crowds: list[Crowd]) -> None:
 
 
 def _start_up() -> None:
-    """From the start of the process to the first picture: cold, warm, and without a compiler."""
-    with tempfile.TemporaryDirectory() as cache:
-        for name, extra in (
-            ("cold cache", {}),
-            ("warm cache", {}),
-            ("no compiler", {"CC": "none"}),
-        ):
-            environment = {"XDG_CACHE_HOME": cache, "XDG_DATA_HOME": cache, **extra}
-            with serving(environment) as server:
+    """From the start of the process to the first picture."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("the first time", "again"):
+            with serving(folders(Path(folder), "data")) as server:
                 asyncio.run(asyncio.wait_for(first_poses(server.port), 30.0))
                 took = time.monotonic() - server.begun
                 print(f"start-up, {name}: {took:.2f} s to the first picture")
-                time.sleep(2.0)  # lets the cache be filled
 
 
 def _mouse() -> None:

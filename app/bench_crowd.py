@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -18,10 +17,9 @@ from pathlib import Path
 import msgspec
 
 from app.bench_server import Server, serving
-from app.load import CYCLE, Seen
+from app.load import Seen
 from app.vitals import LONGEST, Vitals
 from app.workers import MOST as MOST_WORKERS
-from models.loops import find_compiler
 
 MOST = 900  # clients; a server has room for 1000 connections
 SHORTEST = 1.0  # [s]
@@ -119,22 +117,9 @@ def measured(crowd: Crowd, environment: Mapping[str, str]) -> Iterator[Row]:
                 before, spent = after, now
 
 
-def rehearse(environment: Mapping[str, str]) -> None:
-    """Let the loops that a crowd needs be compiled, so that a later server finds them."""
-    if find_compiler() is None:
-        return
-    with serving(environment) as server:
-        server.vitals()
-        with _load(server, 1, CYCLE + 1.0) as seen:
-            next(seen)
-            next(seen)
-        while any(each.compiling for each in server.vitals().values()):
-            time.sleep(0.2)
-
-
 def folders(folder: Path, name: str) -> dict[str, str]:
-    """An environment with data of its own; what is compiled is everybody's."""
-    return {"XDG_CACHE_HOME": str(folder / "cache"), "XDG_DATA_HOME": str(folder / name)}
+    """An environment with data of its own."""
+    return {"XDG_DATA_HOME": str(folder / name)}
 
 
 @contextmanager

@@ -79,7 +79,7 @@ class Server:
             connection.close()
 
     def at_rest(self) -> dict[int, Vitals]:
-        """How it fares with all imported that is imported after the start, before anybody comes."""
+        """How it fares before anybody comes, with all ready that `warm_up` makes ready."""
         sizes: list[tuple[float, float]] = []
         while True:
             vitals, now = self.vitals(), time.monotonic()

@@ -12,7 +12,6 @@ from app.desk import Desk
 from app.exports import Exporter
 from app.lesson_menu import LessonMenu
 from app.lesson_panel import LessonPanel
-from app.loop_store import LoopStore
 from app.node_update import Channel
 from app.pace import STRIDES, is_turn
 from app.page_builds import one_at_a_time
@@ -40,13 +39,10 @@ CONTROL_WIDTH = 330  # [px]
 class LabView:
     """What one client sees. Built in a thread of its own, then used by the simulation thread."""
 
-    def __init__(
-        self, client: viser.ClientHandle, session: Session, store: LoopStore, desk: Desk
-    ) -> None:
+    def __init__(self, client: viser.ClientHandle, session: Session, desk: Desk) -> None:
         self._client = client
         self._desk = desk
         self._channel = Channel(client)
-        self._store = store
         self._offset = client.client_id  # spreads the clients' slow updates over the frames
         self._exporter = Exporter(client)
         self._framed, self._settling = 0.0, SETTLING
@@ -104,7 +100,6 @@ class LabView:
         if slow:
             self._scene.update_traces(snapshot)
             self._frame_camera()
-            self._show_progress()
             for part in self._parts:
                 part.follow(session)
             self._readout.follow(snapshot)
@@ -168,7 +163,7 @@ class LabView:
         return Controls(gui, session, post, exporter, scene, self._desk, self.reset_view)
 
     def _build_head(self, session: Session, post: Callable[[c.Command], None]) -> None:
-        """What is always there: progress, numbers, the way to the lessons, the distance."""
+        """What is always there: numbers, the way to the lessons, the distance."""
         gui = self._client.gui
         self._build_numbers(session)
         if session.lessons.course.lessons:
@@ -178,7 +173,6 @@ class LabView:
         self._build_distance(session)
 
     def _build_numbers(self, session: Session) -> None:
-        self._progress = self._client.gui.add_progress_bar(0.0, visible=False, animated=True)
         self._readout = Readout(self._client.gui, session)
 
     def _build_distance(self, session: Session) -> None:
@@ -188,14 +182,6 @@ class LabView:
     def _is_narrow(self) -> bool:
         camera = self._client.camera
         return camera.image_width < NARROW * camera.image_height
-
-    def _show_progress(self) -> None:
-        done, wanted = self._store.progress()
-        busy = done < wanted
-        if busy:
-            self._progress.value = 100.0 * (done + 0.5) / wanted
-        if self._progress.visible != busy:
-            self._progress.visible = busy
 
     def _frame_camera(self) -> None:
         """Both robots fill the view again whenever its shape has changed.

@@ -76,7 +76,7 @@ class LabServer:
         self._room = WaitingRoom(most_clients)
         lessons = course or read_course([BUILT_IN])[0]
         self.simulation = SimulationThread()
-        health = partial(asked_vitals, self.simulation, store)
+        health = partial(asked_vitals, self.simulation)
         self.server = make_server(host, port, label="OnPath", health=health, **listening)
         self._records = records
         self._leases = Leases(records) if records else None
@@ -160,8 +160,8 @@ class LabServer:
         desk = Desk(entry.code, self._records is not None, partial(self._enter, client), seat)
         session = entry.lab.session
         if taught:
-            return TeacherView(client, session, self._store, desk, taught)
-        return LabView(client, session, self._store, desk)
+            return TeacherView(client, session, desk, taught)
+        return LabView(client, session, desk)
 
     def _enter(self, client: viser.ClientHandle, text: str) -> None:
         """Another session for a client, by a code that was typed.
@@ -225,11 +225,11 @@ def serve(
     records = Records(database)
     if records.warning:
         log.warning("%s", records.warning)
-    store = LoopStore.with_system_compiler()
+    store = LoopStore()
     classroom = open_class(records) if open_class else None
     lab = LabServer(host, port, store, course, records, classroom, **listening)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    warm_up()
+    warm_up(store)
     log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
     if open_browser:
         webbrowser.open(lab.address)

@@ -10,7 +10,6 @@ from app import commands as c
 from app.desk import Desk
 from app.lab_view import LabView
 from app.lesson_commands import CloseLesson
-from app.loop_store import LoopStore
 from app.mirror import Mirror
 from app.panels.teacher_controls import Following, TeacherControls
 from app.panels.teacher_panel import TeacherPanel
@@ -25,13 +24,12 @@ class TeacherView(LabView):
         self,
         client: viser.ClientHandle,
         session: Session,
-        store: LoopStore,
         desk: Desk,
         teaching: Teaching,
     ) -> None:
         self._own, self._teaching = session, teaching
         session.post(CloseLesson())
-        super().__init__(client, session, store, desk)
+        super().__init__(client, session, desk)
 
     def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
         """See `app.loop.View`."""

@@ -11,7 +11,6 @@ from urllib.parse import parse_qs
 import msgspec
 
 from app.loop import SimulationThread
-from app.loop_store import LoopStore
 
 WINDOW, LONGEST = 10.0, 60.0  # [s] looked back at: usually, at most
 OVERDUE = 0.05  # [s] late
@@ -32,7 +31,6 @@ class Vitals:
         overdue: share of them that are more than 50 ms late.
         labs: that somebody looks at now.
         simulated_s: by each of these since it was set back last, [s], in the order of coming.
-        compiling: loops that are to be compiled yet.
         cpu_s: spent since the process began, [s].
         rss_mb: of memory, now, [MB]; None where the system does not tell.
     """
@@ -44,12 +42,11 @@ class Vitals:
     overdue: float
     labs: int
     simulated_s: tuple[float, ...]
-    compiling: int
     cpu_s: float
     rss_mb: float | None
 
 
-def asked_vitals(simulation: SimulationThread, store: LoopStore, query: str) -> str:
+def asked_vitals(simulation: SimulationThread, query: str) -> str:
     """The vitals as JSON.
 
     Args:
@@ -60,10 +57,10 @@ def asked_vitals(simulation: SimulationThread, store: LoopStore, query: str) -> 
     except (KeyError, ValueError):
         seconds = WINDOW
     seconds = seconds if 1.0 <= seconds <= LONGEST else WINDOW
-    return msgspec.json.encode(vitals(simulation, store, seconds)).decode() + "\n"
+    return msgspec.json.encode(vitals(simulation, seconds)).decode() + "\n"
 
 
-def vitals(simulation: SimulationThread, store: LoopStore, seconds: float = WINDOW) -> Vitals:
+def vitals(simulation: SimulationThread, seconds: float = WINDOW) -> Vitals:
     """How this process fares; `seconds` are looked back at."""
     now = time.perf_counter()
     frames = simulation.frames.copy()
@@ -71,7 +68,6 @@ def vitals(simulation: SimulationThread, store: LoopStore, seconds: float = WIND
     late = sorted(late for began, late in frames if began > since)
     p50, p95, p99 = (_quantile_ms(late, part) for part in QUANTILES)
     seen = [lab for lab in simulation.labs if lab.view is not None]
-    done, wanted = store.progress()
     return Vitals(
         pid=os.getpid(),
         clock=round(now, 4),
@@ -80,7 +76,6 @@ def vitals(simulation: SimulationThread, store: LoopStore, seconds: float = WIND
         overdue=round(sum(each > OVERDUE for each in late) / max(len(late), 1), 5),
         labs=len(seen),
         simulated_s=tuple(round(lab.session.time, 3) for lab in seen),
-        compiling=wanted - done,
         cpu_s=round(time.process_time(), 3),
         rss_mb=_resident(),
     )

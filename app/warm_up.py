@@ -1,4 +1,4 @@
-"""What takes long to import and is not needed for the first picture, imported when that is shown.
+"""What takes long and is not needed for the first picture, made ready when that is shown.
 
 Who asks for it sooner gets it by the imports inside the functions that need it.
 """
@@ -6,18 +6,25 @@ Who asks for it sooner gets it by the imports inside the functions that need it.
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from importlib import import_module
 from threading import Thread
+
+from app.loop_store import LoopStore
+from app.session import Session
 
 LATER = ("app.figures", "app.report", "app.sketch_board", "scipy.signal")
 REST = 3.0  # [s] for the first browser to open its lab
 
 
-def warm_up(rest: float = REST) -> Thread:
-    """Import the rest in a thread, after a while."""
+def warm_up(store: LoopStore, rest: float = REST) -> Thread:
+    """Import the rest and have a new lab's loops compiled, in a thread, after a while."""
 
     def work() -> None:
         time.sleep(rest)
+        for run in Session(store).runs.values():
+            for free in (True, False):
+                store.prepare(run.robot, replace(run.kind, free=free))
         for name in LATER:
             import_module(name)
 

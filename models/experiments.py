@@ -1,7 +1,6 @@
 """The paper's experiments, headless: a task, a schedule, both controllers, a summary.
 
-They always run in the interpreted loop, so that the same input gives the same bytes on any
-machine of a kind, with or without a compiler.
+They run in the interpreted loop: the same input gives the same bytes on any machine of a kind.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""A kernel compiled in this process, for machines without a C compiler.
+"""A kernel compiled to machine code in this process.
 
-The instructions of a tick are translated one by one to LLVM's language, which LLVM makes machine
-code of. Each rounds as it does in CasADi's virtual machine: both loops agree to the last bit.
+The instructions of a tick are translated one by one to LLVM's language, which LLVM compiles. Each
+rounds as it does in CasADi's virtual machine: both loops agree to the last bit.
 """
 
 from __future__ import annotations
@@ -120,11 +120,10 @@ def translate_loop(kernel: Kernel) -> CompiledLoop:
     """Translate a kernel and compile it for this processor, within some tenths of a second.
 
     Raises:
-        ImportError: llvmlite is not there.
         NotImplementedError: see `translate`.
         RuntimeError: LLVM does not know this machine.
     """
-    import llvmlite.binding as llvm  # takes 0.1 s, and only who has no C compiler needs it
+    import llvmlite.binding as llvm  # takes 0.1 s: not before the first picture
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import signal
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from models.five_bar import FiveBarLinks, five_bar, inverse_kinematics, load_lin
 from models.frames import Plane
 from models.kernel import Kernel, build_kernel
 from models.loop_kind import Kind
-from models.loops import Loop, compile_loop, find_compiler
+from models.loops import Loop
 from models.system import Array, MechanicalSystem
 from models.translated_loop import translate_loop
 
@@ -62,7 +61,6 @@ class Rig:
 
     links: FiveBarLinks
     system: MechanicalSystem
-    folder: Path
     kernels: dict[Kind, Kernel] = field(default_factory=dict[Kind, Kernel])
     loops: dict[Kind, Loop] = field(default_factory=dict[Kind, Loop])
 
@@ -80,12 +78,9 @@ class Rig:
         return self.kernels[kind]
 
     def loop(self, kind: Kind) -> Loop:
-        """What the lab runs, with a C compiler or without: the laws must hold in it."""
+        """What the lab runs: the laws must hold in it."""
         if kind not in self.loops:
-            kernel, compiler = self.kernel(kind), find_compiler()
-            self.loops[kind] = (
-                compile_loop(kernel, self.folder, compiler) if compiler else translate_loop(kernel)
-            )
+            self.loops[kind] = translate_loop(self.kernel(kind))
         return self.loops[kind]
 
     def settings(self, kind: Kind, **changes: Any) -> Array:
@@ -121,8 +116,8 @@ def jacobian(q: Array) -> Array:
 
 
 @pytest.fixture(scope="session")
-def rig(tmp_path_factory: pytest.TempPathFactory) -> Rig:
-    return Rig(load_links(), five_bar(), tmp_path_factory.mktemp("loops"))
+def rig() -> Rig:
+    return Rig(load_links(), five_bar())
 
 
 @pytest.fixture(scope="session")

@@ -1,9 +1,8 @@
-"""What the tests of the lab share: a session without a compiler, driven by hand."""
+"""What the tests of the lab share: a session driven by hand."""
 
 from __future__ import annotations
 
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 
@@ -24,7 +23,7 @@ FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
 @lru_cache(maxsize=1)
 def store() -> LoopStore:
     """Loops made once, and for all tests in this process."""
-    return LoopStore(compiler=None, folder=Path("unused"))
+    return LoopStore()
 
 
 def new_session(seconds: float = 0.0) -> Session:

@@ -20,11 +20,9 @@ class Supervisor:
     def __init__(self, folder: Path, *options: str) -> None:
         self.database = f"sqlite:///{folder / 'labs.db'}"
         command = [sys.executable, "-m", "app.cli", "--database", self.database, *options]
-        environment = {**os.environ, "CC": "none"}
         self.process = subprocess.Popen(
             command,
             cwd=ROOT,
-            env=environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

@@ -19,8 +19,7 @@ CLIENTS, SECONDS = 3, 1.0
 WORKERS = 2 if sys.platform == "linux" else 1
 
 
-def test_a_small_crowd_on_a_real_server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("CC", "none")
+def test_a_small_crowd_on_a_real_server(tmp_path: Path) -> None:
     crowd = Crowd(CLIENTS, WORKERS, SECONDS, rows=2)
     rows = list(measured(crowd, folders(tmp_path, "data")))
     assert len(rows) == 2
@@ -83,7 +82,7 @@ def test_a_bench_that_is_stopped_takes_its_server_along(
     tmp_path: Path, how: signal.Signals
 ) -> None:
     command = [sys.executable, "-m", "app.cli", "bench", "--clients", "2", "--seconds", "60"]
-    environment = {**os.environ, "CC": "none", "TMPDIR": str(tmp_path)}
+    environment = {**os.environ, "TMPDIR": str(tmp_path)}
     pipe = subprocess.PIPE
     with subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe) as process:
         until = time.monotonic() + 60.0

@@ -23,7 +23,6 @@ from app.loop_store import LoopStore
 from app.mouse_latency import NO_TRIANGLES
 from app.server import LabServer
 from app.session import Session
-from models.loops import find_compiler
 from models.trajectory import read_csv
 from tests.browser import CHROMIUM, PLAIN, SELDOM, Tab, wait_for
 
@@ -40,9 +39,8 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
-    folder = tmp_path_factory.getbasetemp() / "loops"
-    server = LabServer("127.0.0.1", 0, LoopStore(find_compiler(), folder))
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
     yield server
     server.stop()
 
@@ -478,17 +476,3 @@ def test_hostile_text_is_not_rendered(tab: Tab) -> None:
     assert tab.page.get_by_role("status").locator("b, img").count() == 0
     assert tab.page.evaluate("window.harmed") is False
     tab.session.say("")
-
-
-def test_the_lab_needs_no_compiler(browser: Browser, tmp_path: Path) -> None:
-    server = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path))
-    context = fresh(browser)
-    tab = Tab(server, context, draws=False)
-    begun = tab.session.time
-    tab.page.keyboard.press("h")
-    wait_for(lambda: len(tab.session.grips.held) == 2 and tab.session.time > begun + 2.0)
-    follower, tracker = (tab.session.runs[name].max_distance for name in (FOLLOWER, TRACKER))
-    assert follower < 0.006 < 0.04 < tracker
-    assert tab.lab.achieved > 0.5
-    context.close()
-    server.stop()

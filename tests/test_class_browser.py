@@ -19,7 +19,6 @@ from app.codes import shown
 from app.loop_store import LoopStore
 from app.server import LabServer
 from app.teacher_view import TeacherView
-from models.loops import find_compiler
 from tests.browser import CHROMIUM, PLAIN, Tab, wait_for
 
 HOSTILE = "<img src=x onerror=1>"
@@ -36,9 +35,9 @@ class Class:
 
 
 @pytest.fixture(scope="module")
-def tabs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Class]:
+def tabs() -> Iterator[Class]:
     room = Classroom()
-    store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
+    store = LoopStore()
     server = LabServer("127.0.0.1", 0, store, classroom=room)
     with sync_playwright() as playwright:
         browser: Browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)

@@ -17,16 +17,15 @@ from app.server import LabServer
 from app.stages import HORIZONTAL, IN_PATH_PLANE
 from models.catalogue import FIVE_BAR, FLEXIBLE
 from models.flexible_robot import UNSTABLE, FlexibleFiveBar
-from models.loops import find_compiler
 from tests.browser import CHROMIUM, PLAIN, Tab, wait_for
 
 FOLLOWER = "path_following"
 
 
 @pytest.fixture(scope="module")
-def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
+def tab() -> Iterator[Tab]:
     """A tab in which the flexible link has been chosen from the menu."""
-    store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
+    store = LoopStore()
     server = LabServer("127.0.0.1", 0, store)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)

@@ -23,7 +23,6 @@ from app import commands as c
 from app.loop_store import LoopStore
 from app.onlooker import EVERY, PATIENCE, TICK
 from app.server import LabServer
-from models.loops import find_compiler
 from tests.browser import CHROMIUM, COARSER, PLAIN, wait_for
 
 VALUES = "[...document.querySelectorAll('input')].map(each => each.value)"
@@ -72,8 +71,8 @@ class Window:
 
 
 @pytest.fixture
-def server(tmp_path: Path) -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopStore(find_compiler(), tmp_path / "loops"))
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
     yield server
     server.stop()
 

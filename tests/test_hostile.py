@@ -149,8 +149,8 @@ class Witness:
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler())
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
     yield server
     server.stop()
 
@@ -435,7 +435,7 @@ def test_200_connections_a_second(server: LabServer, witness: Witness, quiet_log
 
 
 def test_beyond_capacity_a_newcomer_is_told_to_wait_and_gets_the_first_free_place() -> None:
-    server = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler(), most_clients=2)
+    server = LabServer("127.0.0.1", 0, LoopStore(), most_clients=2)
     try:
         inside = Witness(server.server.get_port())
         leaving = Guest(server)
@@ -482,7 +482,7 @@ SUSPENDED = """
 import sys
 from app.loop_store import LoopStore
 from app.server import LabServer
-server = LabServer("127.0.0.1", 0, LoopStore.with_system_compiler())
+server = LabServer("127.0.0.1", 0, LoopStore())
 print("told", server.server.get_port(), flush=True)
 for _ in sys.stdin:
     (lab,) = server.simulation.labs

@@ -39,7 +39,7 @@ def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
     names = ("HOME", "JUPYTER_CONFIG_DIR", "JUPYTER_RUNTIME_DIR", "XDG_DATA_HOME", "XDG_CACHE_HOME")
     places = dict.fromkeys(names, str(folder))
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    environment = {**os.environ, **places, "PYTHONPATH": path, "CC": "none"}
+    environment = {**os.environ, **places, "PYTHONPATH": path}
     said = (folder / "log").open("w")
     server = subprocess.Popen(command, cwd=folder, env=environment, stderr=said)
     end = time.monotonic() + 30

@@ -14,16 +14,15 @@ from playwright.sync_api import Page, sync_playwright
 from app import commands as c
 from app.loop_store import LoopStore
 from app.server import LabServer
-from models.loops import find_compiler
 from tests.browser import CHROMIUM, PLAIN, Tab, wait_for
 
 LESSON = "01-path-or-timetable"
 
 
 @pytest.fixture(scope="module")
-def tab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
+def tab() -> Iterator[Tab]:
     """A tab in which lesson 1 has been opened from the overview."""
-    store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
+    store = LoopStore()
     server = LabServer("127.0.0.1", 0, store)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Iterator
 from contextlib import aclosing, contextmanager
-from pathlib import Path
 from socket import create_server
 from threading import Thread
 
@@ -37,12 +36,12 @@ def test_filling_in_a_push_is_the_same_as_packing_anew(name: str) -> None:
             assert np.array_equal(pushed(kernel, before, push), pack)
 
 
-def test_simulated_browsers_see_and_do_what_real_ones_do(tmp_path: Path) -> None:
+def test_simulated_browsers_see_and_do_what_real_ones_do() -> None:
     async def look(port: int) -> list[Seen]:
         async with aclosing(crowd(port, 2, seconds=4.5)) as seen:
             return [await anext(seen) for _ in range(2)]
 
-    server = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path))
+    server = LabServer("127.0.0.1", 0, LoopStore())
     try:
         first, then = asyncio.run(look(server.server.get_port()))
         labs = server.simulation.labs
@@ -57,12 +56,12 @@ def test_simulated_browsers_see_and_do_what_real_ones_do(tmp_path: Path) -> None
     assert any(lab.session.parameters.K1 != 400.0 for lab in labs)
 
 
-def test_a_crowd_that_is_not_served_says_so(tmp_path: Path) -> None:
+def test_a_crowd_that_is_not_served_says_so() -> None:
     async def settle(port: int, patience: float) -> None:
         async with aclosing(crowd(port, 2, 1.0, patience)) as seen:
             await anext(seen)
 
-    server = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path), most_clients=1)
+    server = LabServer("127.0.0.1", 0, LoopStore(), most_clients=1)
     try:
         with pytest.raises(Unserved, match=r"only 1 of 2 clients .* moving robots in 3 s"):
             asyncio.run(settle(server.server.get_port(), 3.0))
@@ -96,12 +95,12 @@ def answering(*answers: bytes) -> Iterator[tuple[int, Thread]]:
         yield int(listener.getsockname()[1]), thread
 
 
-def test_the_bench_waits_for_a_server_that_is_not_ready(tmp_path: Path) -> None:
+def test_the_bench_waits_for_a_server_that_is_not_ready() -> None:
     async def wait(port: int, early: Thread) -> None:
         waiting = asyncio.create_task(first_poses(port))
         await asyncio.to_thread(early.join, 5.0)
         assert not early.is_alive() and not waiting.done()
-        server = LabServer("127.0.0.1", port, LoopStore(None, tmp_path))
+        server = LabServer("127.0.0.1", port, LoopStore())
         try:
             await asyncio.wait_for(waiting, 20.0)
         finally:

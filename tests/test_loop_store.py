@@ -5,131 +5,132 @@ from __future__ import annotations
 import logging
 import sys
 import threading
-import time
-from collections.abc import Callable
-from pathlib import Path
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from lab import FRAME, states
+from lab import FRAME, do, states
 
+from app import commands as c
 from app import loop_store
 from app.loop_store import LoopStore
 from app.session import Session
+from app.warm_up import LATER, warm_up
 from models.controllers import NAMES
+from models.kernel import Kernel
 from models.loop_kind import Kind
-from models.loops import CompiledLoop, InterpretedLoop, Loop, find_compiler
+from models.loops import CompiledLoop, InterpretedLoop, Loop
 from models.robots import rigid_five_bar
 
-KINDS = [Kind(name) for name in NAMES]
-needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no C compiler")
+PATIENCE = 60.0  # [s]
 
 
-def wait(condition: Callable[[], bool], seconds: float = 30.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it never happened"
-        time.sleep(0.01)
+@pytest.fixture
+def store() -> Iterator[LoopStore]:
+    made = LoopStore()
+    yield made
+    made.close()
 
 
-def script(folder: Path, text: str) -> str:
-    """A compiler of our own."""
-    file = folder / "compiler"
-    file.write_text(f"#!/bin/sh\n{text}\n")
-    file.chmod(0o755)
-    return str(file)
+class Gate(threading.Event):
+    """Nothing is translated before it is open; `passed` has what was."""
+
+    def __init__(self, translate: Callable[[Kernel], CompiledLoop]) -> None:
+        super().__init__()
+        self.reached = threading.Event()
+        self.passed: list[Kernel] = []
+        self._translate = translate
+
+    def __call__(self, kernel: Kernel) -> CompiledLoop:
+        self.reached.set()
+        assert self.wait(PATIENCE)
+        self.passed.append(kernel)
+        return self._translate(kernel)
 
 
-def late(gate: threading.Event, made: Callable[..., Loop]) -> Callable[..., Loop]:
-    """The same, but not before the gate is open."""
-
-    def wait_and_make(*arguments: object) -> Loop:
-        assert gate.wait(30.0)
-        return made(*arguments)
-
-    return wait_and_make
+@pytest.fixture
+def gate(monkeypatch: pytest.MonkeyPatch) -> Iterator[Gate]:
+    made = Gate(loop_store.translate_loop)
+    monkeypatch.setattr(loop_store, "translate_loop", made)
+    yield made
+    made.set()
 
 
-COMPILERS = [pytest.param(find_compiler(), id="cc", marks=needs_compiler), pytest.param(None)]
+def finish(store: LoopStore) -> None:
+    """Wait until all loops that were asked for are compiled, or given up."""
+    for wanted in list(store._wanted.values()):
+        with suppress(CancelledError):
+            wanted.result(PATIENCE)
 
 
-@pytest.mark.parametrize("compiler", COMPILERS)
-def test_loops_are_interpreted_at_once_and_compiled_later(
-    compiler: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    gate = threading.Event()
-    for name in ("compile_loop", "translate_loop"):
-        monkeypatch.setattr(loop_store, name, late(gate, getattr(loop_store, name)))
-    store, never = LoopStore(compiler, tmp_path), LoopStore(str(tmp_path / "missing"), tmp_path)
+def loops(session: Session, store: LoopStore) -> list[Loop]:
+    return [store.get(run.robot, run.kind) for run in session.runs.values()]
+
+
+def test_loops_are_interpreted_at_once_and_compiled_later(store: LoopStore, gate: Gate) -> None:
+    never = LoopStore()
+    never.close()
     session, reference = Session(store), Session(never)
-    try:
-        for kind_of_loop in (InterpretedLoop, CompiledLoop):
-            for _ in range(30):
-                session.advance(FRAME)
-                reference.advance(FRAME)
-            kinds = [r.kind for r in session.runs.values()]
-            loops = [store.get(session.robot, kind) for kind in kinds]
-            assert all(isinstance(loop, kind_of_loop) for loop in loops)
-            assert [store.get(session.robot, kind) for kind in kinds] == loops
-            assert store.progress() == (2 * gate.is_set(), 2)
-            gate.set()
-            wait(lambda: store.progress() == (2, 2))
-    finally:
+    for tier in (InterpretedLoop, CompiledLoop):
+        for _ in range(30):
+            session.advance(FRAME)
+            reference.advance(FRAME)
+        now = loops(session, store)
+        assert all(isinstance(loop, tier) for loop in now) and loops(session, store) == now
+        assert all(isinstance(loop, InterpretedLoop) for loop in loops(reference, never))
         gate.set()
-        store.close()
+        finish(store)
     for name, state in states(session).items():
-        assert np.abs(state - reference.runs[name].state).max() < 1e-9
+        assert np.array_equal(state, reference.runs[name].state)
         assert session.runs[name].diverged is None
-    assert bool(list(tmp_path.iterdir())) == (compiler is not None)
+    assert len(gate.passed) == len(NAMES)
 
 
-@pytest.mark.parametrize("failure", ["exit 1", 'printf "\\377\\376"; exit 1', ""])
-def test_failing_compiler_is_told_once_and_loops_are_translated(
-    failure: str, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
-    session = Session(LoopStore(script(tmp_path, failure), tmp_path / "cache"))
-    _fails_once(session, caplog, "translated", compiled=2)
-
-
-def test_missing_compiler_and_unwritable_cache_are_told_once(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
-    compiler = str(tmp_path / "nothing")
-    _fails_once(Session(LoopStore(compiler, tmp_path)), caplog, "translated", compiled=2)
-    caplog.clear()
-    (tmp_path / "file").write_text("")
-    compiler = script(tmp_path, "exit 0")
-    store = LoopStore(compiler, tmp_path / "file" / "cache")
-    _fails_once(Session(store), caplog, "translated", compiled=2)
-
-
-def test_what_cannot_be_translated_is_told_once_and_the_lab_goes_on(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+def test_what_cannot_be_compiled_is_told_once_and_the_lab_goes_on(
+    store: LoopStore, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setitem(sys.modules, "llvmlite.binding", None)
-    _fails_once(Session(LoopStore(None, tmp_path)), caplog, "interpreted", compiled=0)
-
-
-def _fails_once(
-    session: Session, caplog: pytest.LogCaptureFixture, instead: str, compiled: int
-) -> None:
+    session = Session(store)
     with caplog.at_level(logging.WARNING):
         session.advance(FRAME)
-        wait(lambda: session._store.progress() == (compiled, compiled))
+        finish(store)
         for _ in range(20):
             session.advance(FRAME)
-    warnings = [r for r in caplog.records if r.name == "app.loop_store"]
-    assert len(warnings) == 1 and instead in warnings[0].getMessage()
-    assert session._store.progress() == (compiled, compiled)
-    assert session.time == pytest.approx(21 * FRAME, abs=2e-3)
+        do(session, c.Hold(on=True))
+        session.advance(FRAME)  # a loop that nobody has asked for before
+        finish(store)
+    (warning,) = [r for r in caplog.records if r.name == "app.loop_store"]
+    assert "interpreted" in warning.getMessage()
+    assert session.time == pytest.approx(22 * FRAME, abs=2e-3)
+    assert all(isinstance(loop, InterpretedLoop) for loop in loops(session, store))
 
 
-def test_closing_gives_up_what_is_waiting(tmp_path: Path) -> None:
-    count = tmp_path / "count"
-    store = LoopStore(script(tmp_path, f'echo x >> "{count}"; sleep 0.3; exit 1'), tmp_path)
-    for closed in (True, False):
-        for encoder in (True, False):
-            store.get(rigid_five_bar(), Kind(NAMES[0], closed=closed, encoder=encoder))
+def test_closing_gives_up_what_is_waiting(store: LoopStore, gate: Gate) -> None:
+    kinds = [Kind(NAMES[0], closed, encoder=e) for closed in (True, False) for e in (True, False)]
+    for kind in kinds:
+        store.get(rigid_five_bar(), kind)
+    assert gate.reached.wait(PATIENCE)
     store.close()
-    time.sleep(0.8)
-    assert len(count.read_text().split()) <= 2  # of one loop: its version, its compilation
+    gate.set()
+    finish(store)
+    assert len(gate.passed) == 1
+    for kind in kinds[1:]:
+        assert isinstance(store.get(rigid_five_bar(), kind), InterpretedLoop)
+    store.get(rigid_five_bar(), replace(kinds[0], free=True))  # that is new, and refused quietly
+    assert len(store._wanted) == len(kinds)
+
+
+def test_a_first_lab_finds_its_loops_compiled(store: LoopStore) -> None:
+    """Free and held: whoever comes after a while meets no interpreted loop."""
+    warm_up(store, rest=0.0).join(PATIENCE)
+    finish(store)
+    assert all(name in sys.modules for name in LATER)
+    session = Session(store)
+    for commands in ([], [c.Hold(on=True)]):
+        do(session, *commands)
+        session.advance(FRAME)
+        assert all(isinstance(loop, CompiledLoop) for loop in loops(session, store))
+    assert len(store._wanted) == 2 * len(NAMES)

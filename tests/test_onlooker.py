@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -142,10 +141,10 @@ GONE = sum(SOON.values()) + 0.5  # [s]
 
 
 @pytest.fixture
-def server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[LabServer]:
+def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[LabServer]:
     for name, seconds in SOON.items():
         monkeypatch.setattr(onlooker, name, seconds)
-    server = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path))
+    server = LabServer("127.0.0.1", 0, LoopStore())
     yield server
     server.stop()
 

@@ -6,7 +6,6 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
-from pathlib import Path
 
 import pytest
 
@@ -45,8 +44,8 @@ class Builds:
 
 
 @pytest.fixture
-def server(tmp_path: Path) -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path))
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
     yield server
     server.stop()
 

@@ -6,7 +6,6 @@ import json
 import os
 import time
 import urllib.request
-from pathlib import Path
 
 import msgspec
 import pytest
@@ -27,36 +26,32 @@ def thread() -> SimulationThread:
     return made
 
 
-def test_vitals_are_those_of_the_window(thread: SimulationThread, tmp_path: Path) -> None:
-    store = LoopStore(None, tmp_path)
-    lately, long = vitals(thread, store, 9.0), vitals(thread, store, LONGEST)
+def test_vitals_are_those_of_the_window(thread: SimulationThread) -> None:
+    lately, long = vitals(thread, 9.0), vitals(thread, LONGEST)
     assert lately.late_ms == (5.0, 5.0, 5.0) and max(long.late_ms) == 5.0 > min(long.late_ms)
     thread.frames.extend([(time.perf_counter(), 0.08)] * 20)
     assert [lately.overdue, long.overdue] == pytest.approx([1 / 540, 1 / 3600], rel=0.02)
-    after = vitals(thread, store, 9.0)
+    after = vitals(thread, 9.0)
     assert after.late_ms[2] == 80.0 and after.overdue == pytest.approx(21 / 560, rel=0.02)
     assert lately.frames_per_s == pytest.approx(60.0, abs=1.0)
     assert lately.pid == os.getpid() and lately.labs == 0 == len(lately.simulated_s)
 
 
-def test_a_thread_that_stands_still_is_seen_to(thread: SimulationThread, tmp_path: Path) -> None:
-    store = LoopStore(None, tmp_path)
+def test_a_thread_that_stands_still_is_seen_to(thread: SimulationThread) -> None:
     old = SimulationThread()
     old.frames.extend((began - LONGEST, late) for began, late in thread.frames)
     for silent in (old, SimulationThread()):
-        assert vitals(silent, store).frames_per_s == 0.0
+        assert vitals(silent).frames_per_s == 0.0
 
 
 @pytest.mark.parametrize("query", ["", "seconds=x", "seconds=nan", "seconds=1e9", "seconds=", "%"])
-def test_nonsense_is_answered_as_if_it_were_not_there(
-    query: str, thread: SimulationThread, tmp_path: Path
-) -> None:
-    answer = json.loads(asked_vitals(thread, LoopStore(None, tmp_path), query))
+def test_nonsense_is_answered_as_if_it_were_not_there(query: str, thread: SimulationThread) -> None:
+    answer = json.loads(asked_vitals(thread, query))
     assert answer["late_ms"] == [5.0, 5.0, 5.0]
 
 
-def test_a_server_tells_its_vitals(tmp_path: Path) -> None:
-    server = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path))
+def test_a_server_tells_its_vitals() -> None:
+    server = LabServer("127.0.0.1", 0, LoopStore())
     try:
         time.sleep(0.5)
         address = f"http://127.0.0.1:{server.server.get_port()}/health"
