@@ -16,6 +16,7 @@ from typing import Any
 import sqlalchemy as sa
 from sqlalchemy import event, exc, pool
 
+from app.migrations import HEAD, known_revisions, revision_of, upgrade
 from app.tables import meta, metadata
 
 log = logging.getLogger(__name__)
@@ -181,7 +182,7 @@ def _prepared(url: sa.URL) -> sa.Engine:
                 found = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar())
                 if found != "ok":
                     raise _Broken(found)
-            _check_tables(connection)
+            _migrate(connection)
     except Exception as error:
         engine.dispose()
         code = getattr(getattr(error, "orig", None), "sqlite_errorcode", 0)
@@ -193,7 +194,28 @@ def _prepared(url: sa.URL) -> sa.Engine:
     return engine
 
 
+def _migrate(connection: sa.Connection) -> None:
+    """Bring the tables up to date.
+
+    Raises:
+        NotKept: they are somebody else's, or a newer version's.
+    """
+    revision = revision_of(connection)
+    if revision is None:
+        _check_tables(connection)
+    if revision != HEAD:
+        if revision is not None and revision not in known_revisions():
+            raise NotKept(f"its tables ({revision}) are of a newer OnPath, which is needed here")
+        upgrade(connection)
+    version = connection.execute(sa.select(meta.c.number).where(meta.c.name == "version")).scalar()
+    if version is None:
+        connection.execute(sa.insert(meta).values(name="version", number=VERSION))
+    elif version > VERSION:
+        raise NotKept(f"it is of version {version}, made by a newer OnPath, which is needed here")
+
+
 def _check_tables(connection: sa.Connection) -> None:
+    """Tables from before migrations, or none: those that there are must be OnPath's."""
     inspector = sa.inspect(connection)
     there = set(inspector.get_table_names())
     for table in metadata.tables.values():
@@ -201,9 +223,3 @@ def _check_tables(connection: sa.Connection) -> None:
             columns = {column["name"] for column in inspector.get_columns(table.name)}
             if columns != set(table.columns.keys()):
                 raise NotKept(f"its table {table.name} is not OnPath's")
-    metadata.create_all(connection)
-    version = connection.execute(sa.select(meta.c.number).where(meta.c.name == "version")).scalar()
-    if version is None:
-        connection.execute(sa.insert(meta).values(name="version", number=VERSION))
-    elif version > VERSION:
-        raise NotKept(f"it is of version {version}, made by a newer OnPath, which is needed here")

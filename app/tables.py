@@ -1,5 +1,7 @@
 """The tables of the database, and nothing else. What is in them is made by the modules named here.
 
+A change here needs a revision in `migrations/versions`.
+
 `database_engine.py`: meta. `database.py`: labs. `leases.py`: leases. `watches.py`: watches.
 `shared_classroom.py`: classes, members, passes.
 """
