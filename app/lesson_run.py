@@ -160,8 +160,9 @@ class LessonRun:
             ValueError: see `restore`; then all is as it was.
         """
         restore(session, setup)
-        session.script, session.running = None, True
-        self._playing, self.verdicts = False, {}
+        session.script, session.put_aside, session.running = None, None, True
+        self._playing, self._trace = False, None
+        self.verdicts, self._passed = {}, {}
         self._begin = Beginning.now(session)
         self._lock(session)
         self.version += 1
