@@ -164,10 +164,7 @@ def _guarded_serve(
                 return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
             if in_folder and request.path.partition("?")[0] == "/":
                 return _to_page(connection, request)
-            response = process_request(connection, request)
-            if response is not None:
-                add_scripts(response)
-            return response
+            return add_scripts(process_request(connection, request))
 
         async def admit(connection: ServerConnection) -> None:
             if connection.subprotocol == _SUBPROTOCOL:

@@ -10,13 +10,14 @@ from websockets.http11 import Response
 from assets import asset_path
 
 
-def add_scripts(response: Response) -> None:
+def add_scripts(response: Response | None) -> Response | None:
     """Put our scripts into a response, if it is viser's page; every other stays as it is."""
-    if response.headers.get("Content-Type", "").startswith("text/html"):
+    if response and response.headers.get("Content-Type", "").startswith("text/html"):
         packed = response.headers.get("Content-Encoding") == "gzip"
         response.body = _page(bytes(response.body), packed)
         del response.headers["Content-Length"]
         response.headers["Content-Length"] = str(len(response.body))
+    return response
 
 
 def with_scripts(page: bytes, scripts: bytes) -> bytes:
