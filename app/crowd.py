@@ -126,10 +126,10 @@ class Crowd:
             surplus.transport.abort()
 
     def takes(self, member: Member, request: Request) -> bool:
-        """Whether there is room for one whose request is here; waits no more then."""
+        """Whether there is room for one whose request is here, if it is still there itself."""
         forwarded = request.headers.get_all("X-Forwarded-For")
         member.address = self._proxies.asker(member.peer, forwarded)
-        if self._inside.has_room(member.address):
+        if member in self._waiting and self._inside.has_room(member.address):
             self._waiting.discard(member)
             self._inside.add(member, member.address)
         return member in self._inside

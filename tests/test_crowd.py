@@ -12,8 +12,10 @@ import pytest
 import viser
 from hypothesis import given
 from hypothesis import strategies as st
+from websockets.datastructures import Headers
+from websockets.http11 import Request
 
-from app.crowd import Holders, Proxies
+from app.crowd import Crowd, Holders, Proxies
 from app.hardening import Limits, make_server
 from app.protocol import SUBPROTOCOL
 from tests import waiting
@@ -122,6 +124,22 @@ def test_a_class_behind_one_address_and_a_proxy_fits() -> None:
             assert site.websocket(**school) == 101
         assert site.websocket(**school) == 503
         assert site.websocket(**home) == site.websocket() == 101
+
+
+class Visitor:
+    """One end of a connection."""
+
+    peer = address = ONE
+
+
+def test_who_is_gone_before_the_request_is_looked_at_takes_no_room() -> None:
+    crowd, request = Crowd(Limits(max_connections_each=1), Proxies()), Request("/", Headers())
+    hasty, patient = Visitor(), Visitor()
+    crowd.came(hasty)  # type: ignore[arg-type]
+    crowd.gone(hasty)  # type: ignore[arg-type]
+    assert not crowd.takes(hasty, request)  # type: ignore[arg-type]
+    crowd.came(patient)  # type: ignore[arg-type]
+    assert crowd.takes(patient, request)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
