@@ -83,8 +83,8 @@ def critical_alpha(parameters: FlexibleParameters, at: tuple[float, float]) -> f
 
 
 def highest(parameters: FlexibleParameters) -> float:
-    """Up to where alpha is looked at: as printed the model acts as if it were rho times alpha."""
-    return HIGHEST_ALPHA / (parameters.rho if parameters.plant == "as_printed" else 1.0)
+    """Up to where alpha is looked at: unit_modes act as if it were rho times alpha."""
+    return HIGHEST_ALPHA / (parameters.rho if parameters.plant == "unit_modes" else 1.0)
 
 
 def critical_map(parameters: FlexibleParameters, count: int = 13) -> tuple[np.ndarray, np.ndarray]:
