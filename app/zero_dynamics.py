@@ -130,7 +130,7 @@ def as_table(result: Study) -> str:
         f"internal dynamics of the flexible link, output held at y2 = {y2 * 1e3:g} mm,"
         f" y3 = {y3 * 1e3:g} mm",
         f"plant {own.plant.replace('_', ' ')}, rho = {own.rho:g} kg/m,"
-        f" first frequency {own.frequency:g} Hz, zeta = {own.zeta:g}",
+        f" first frequency {own.frequency:g} Hz, zeta = {own.zeta:g} in every mode",
         f"largest real part of the exponents [1/s]; above 0 the inside is unstable"
         f" (sqrt(EI/rho)/l^2 = {result.unit:.3f} 1/s)",
         "",

@@ -100,6 +100,11 @@ def test_critical_alpha_depends_on_the_shape_of_the_arm_but_not_on_mass_or_stiff
         assert critical(HOME, **changes) == pytest.approx(critical(HOME), abs=1e-4)
 
 
+def test_between_two_limits_it_is_damping_that_destabilises() -> None:
+    assert critical(HOME) == pytest.approx(0.7227, abs=1e-4)
+    assert critical(HOME, zeta=0.0) == pytest.approx(0.7585, abs=1e-4)
+
+
 @pytest.mark.parametrize("rho", [0.2, 0.4, 1.0])
 def test_unit_modes_act_like_alpha_times_rho(rho: float) -> None:
     limit = critical(HOME, plant="unit_modes", rho=rho)
