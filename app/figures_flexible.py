@@ -67,7 +67,7 @@ def _draw_map(axes: Axes, result: Study) -> None:
 
 
 def _draw_rho(axes: Axes, result: Study) -> None:
-    for plant, style in (("lagrangian", "-"), ("as_printed", "--")):
+    for plant, style in (("lagrangian", "-"), ("unit_modes", "--")):
         own = [replace(result.parameters, plant=plant, rho=rho) for rho in RHOS]
         critical = [critical_alpha(one, result.at) for one in own]
         axes.plot(RHOS, critical, style, marker="o", label=plant.replace("_", " "))

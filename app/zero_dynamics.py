@@ -89,8 +89,8 @@ def critical_alpha(parameters: FlexibleParameters, at: tuple[float, float]) -> f
 
 
 def highest(parameters: FlexibleParameters) -> float:
-    """Up to where alpha is looked at: as printed the model acts as if it were rho times alpha."""
-    return HIGHEST_ALPHA / (parameters.rho if parameters.plant == "as_printed" else 1.0)
+    """Up to where alpha is looked at: unit_modes act as if it were rho times alpha."""
+    return HIGHEST_ALPHA / (parameters.rho if parameters.plant == "unit_modes" else 1.0)
 
 
 def critical_map(parameters: FlexibleParameters, count: int = 13) -> tuple[np.ndarray, np.ndarray]:
@@ -136,7 +136,7 @@ def as_table(result: Study) -> str:
         f"internal dynamics of the flexible link, output held at y2 = {y2 * 1e3:g} mm,"
         f" y3 = {y3 * 1e3:g} mm",
         f"plant {own.plant.replace('_', ' ')}, rho = {own.rho:g} kg/m,"
-        f" first frequency {own.frequency:g} Hz, zeta = {own.zeta:g}",
+        f" first frequency {own.frequency:g} Hz, zeta = {own.zeta:g} in every mode",
         f"largest real part of the exponents [1/s]; above 0 the inside is unstable"
         f" (sqrt(EI/rho)/l^2 = {result.unit:.3f} 1/s)",
         "",

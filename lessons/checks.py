@@ -23,6 +23,7 @@ from lessons.schema import (
     Window,
 )
 from lessons.words import Words
+from models.parameters import specs
 
 TINY = 1e-9
 INSTANT = 1e-6  # [s], shorter than any tick
@@ -129,7 +130,9 @@ def _(check: Setting, record: Record, words: Words) -> Verdict:
     own: dict[str, object] = {"path": record.path, "robot": record.robot}
     value = own.get(check.name, getattr(record.parameters, check.name, None))
     if check.equals is not None:
-        passed, wanted = _same(value, check.equals), words("check.equals", value=check.equals)
+        spec = specs(record.parameters).get(check.name)
+        equals = check.equals if spec is None else spec.present(check.equals)
+        passed, wanted = _same(value, equals), words("check.equals", value=equals)
     else:
         passed = isinstance(value, int | float) and _within(value, check.below, check.above)
         wanted = _range_words(check.below, check.above, "", words)

@@ -1,6 +1,8 @@
 """Assumed modes of a uniform beam, clamped at s = 0 and free at s = l (Euler-Bernoulli).
 
-w(s, t) = sum_j phi_j(s) f_j(t), with the integral of phi_i phi_j over the beam delta_ij.
+w(s, t) = sum_j phi_j(s) f_j(t), with the integral of phi_i phi_j over the beam delta_ij: the shapes
+know nothing of the beam's mass. Mass-normalised ones, rho integral of phi_i phi_j = delta_ij, are
+these over sqrt(rho), and their modal coordinates sqrt(rho) f_j.
 """
 
 from __future__ import annotations

@@ -18,7 +18,8 @@ from assets import asset_path
 from models.beam import BeamModes, beam_modes
 from models.system import Array, MechanicalSystem, mechanical_system
 
-PLANTS = ("lagrangian", "as_printed")
+PLANTS = ("lagrangian", "unit_modes")
+FORMER_PLANTS = {"as_printed": "unit_modes"}  # in share codes, kept labs and lessons of others
 _NAMES = "M11 M22 J0 J1 l1 l rho omega1 zeta alpha b1 b2 b3"
 NAMES: tuple[str, ...] = tuple(_NAMES.split())
 HOME = np.array([np.pi / 2, np.pi, 0.0])
@@ -163,9 +164,8 @@ def flexible_five_bar(modes: int = 3, plant: str = "lagrangian") -> MechanicalSy
 
     Args:
         modes: assumed modes of the beam, 1 to 6.
-        plant: "lagrangian", or "as_printed" with the paper's factor rho on the coupling of the
-            modes to the waist and, as there, Coriolis terms cancelled beforehand. That one has no
-            energy balance: its `mass` is not symmetric.
+        plant: "lagrangian", or "unit_modes": (20)-(21) with Coriolis terms cancelled beforehand,
+            as there, and their symbols read with the integral of phi^2 = 1. See `_unit_modes`.
 
     Raises:
         ValueError: an unknown plant or number of modes.
@@ -177,7 +177,7 @@ def flexible_five_bar(modes: int = 3, plant: str = "lagrangian") -> MechanicalSy
     parameters = ca.SX.sym("parameters", len(NAMES))
     s = _symbols(modes, parameters)
     rho = s.p["rho"]
-    parts = _lagrangian(s) if plant == "lagrangian" else _as_printed(s)
+    parts = _lagrangian(s) if plant == "lagrangian" else _unit_modes(s)
     w = 2 / ca.sqrt(s.p["l"]) * ca.dot((-1.0) ** np.arange(modes), s.f)
     return mechanical_system(
         name="flexible_five_bar",
@@ -236,8 +236,16 @@ def _lagrangian(s: _Symbols) -> _Dynamics:
     )
 
 
-def _as_printed(s: _Symbols) -> _Dynamics:
-    """M' q3'' = u3 + Psi.Omega and f'' = -rho Psi q3'' - Omega / rho, rho once too often.
+def _unit_modes(s: _Symbols) -> _Dynamics:
+    """M' q3'' = u3 + Psi.Omega and f'' = -rho Psi q3'' - Omega / rho with integral of phi^2 = 1.
+
+    The paper leaves Psi, Omega and M' to [15], which is not at hand. With mass-normalised shapes,
+    rho integral of phi_i phi_j = delta_ij, these equations are those of Lagrange for small
+    deflections; a test shows it. With this file's own shapes the term rho Psi q3'' has not the
+    units of f'', the modes feel the waist rho times (in SI) as strongly as Lagrange's equations
+    say, `mass` is not symmetric and there is no energy balance. This reading is kept because with
+    rho = 0.2 it reproduces the paper's figures 6 and 7 with the actual tip, and for no other
+    reason. The friction of the joints, b1 to b3, is this project's addition: (20) has none.
 
     Source: eqs. (20)-(21).
     """

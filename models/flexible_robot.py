@@ -10,7 +10,7 @@ import numpy as np
 
 from models import five_bar, flexible_five_bar
 from models.beam import MOST_MODES, BeamModes, beam_modes
-from models.flexible_five_bar import PLANTS, RIGID, FlexibleLinks
+from models.flexible_five_bar import FORMER_PLANTS, PLANTS, RIGID, FlexibleLinks
 from models.forces import Grip, SpringLimits
 from models.frames import Frame, SlantedPlane
 from models.parameters import Parameters, choice, number
@@ -101,9 +101,10 @@ class FlexibleParameters(Parameters):
     plant: str = choice(
         "lagrangian",
         PLANTS,
-        "the derived model, or the paper's with a factor ρ too much",
+        "Lagrange's equations, or (20)-(21) read with ∫φ² = 1: the coupling's units do not fit",
         group="robot",
         label="Plant",
+        former=FORMER_PLANTS,
     )
     modes: int = choice(
         3,

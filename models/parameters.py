@@ -29,6 +29,7 @@ class Spec:
         options: of a choice; empty for a number.
         help: one line.
         on: where 0 means "off", the value that a switch turns it on with.
+        former: earlier names of options, still read wherever they were stored or typed.
     """
 
     group: str
@@ -40,6 +41,11 @@ class Spec:
     options: tuple[Any, ...]
     help: str
     on: float | None = None
+    former: Mapping[str, str] | None = None
+
+    def present(self, value: Any) -> Any:
+        """An option by the name that it has now; any other value as it is."""
+        return self.former.get(str(value), value) if self.former else value
 
 
 def number(
@@ -57,9 +63,17 @@ def number(
     return field(default=default, metadata={"spec": spec})
 
 
-def choice(default: Any, options: tuple[Any, ...], text: str, *, group: str, label: str) -> Any:
-    """A field that takes one of `options`."""
-    spec = Spec(group, label, "", 0.0, 0.0, 0.0, options, text)
+def choice(
+    default: Any,
+    options: tuple[Any, ...],
+    text: str,
+    *,
+    group: str,
+    label: str,
+    former: Mapping[str, str] | None = None,
+) -> Any:
+    """A field that takes one of `options`, also by a former name."""
+    spec = Spec(group, label, "", 0.0, 0.0, 0.0, options, text, former=former)
     return field(default=default, metadata={"spec": spec})
 
 
@@ -267,8 +281,9 @@ def checked(spec: Spec, name: str, value: Any) -> Any:
         ValueError: not a finite number in range, or not one of the options.
     """
     if spec.options:
+        present = str(spec.present(value))
         for option in spec.options:
-            if str(option) == str(value):
+            if str(option) == present:
                 return option
         options = ", ".join(str(option) for option in spec.options)
         raise ValueError(f"{name}: {value!r} is not one of {options}")

@@ -38,8 +38,8 @@ def test_the_actual_tip_as_output_diverges_at_once_and_says_why(controller: str)
     assert np.isfinite(log.fields["q"]).all()
 
 
-def test_the_printed_model_keeps_the_actual_tip_on_the_path() -> None:
-    log = flexible(alpha=1, plant="as_printed", rho=0.2)
+def test_unit_modes_keep_the_actual_tip_on_the_path() -> None:
+    log = flexible(alpha=1, plant="unit_modes", rho=0.2)
     assert log.diverged_at is None
     assert log.distance[-1] < 1e-5
     assert log.fields["theta_rate"][-1, 0] == pytest.approx(-2.0, rel=0.02)
@@ -95,12 +95,12 @@ def test_table_has_a_critical_alpha_for_each_number_of_modes(
         assert 0.7 < row["critical_alpha"] < 1
 
 
-def test_critical_alpha_grows_with_one_over_rho_as_printed(
+def test_critical_alpha_grows_with_one_over_rho_unit_modes(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     limits = list[float]()
     for rho in ("0.2", "0.4"):
-        options = ["--set", "plant=as_printed", "--set", f"rho={rho}", "--json"]
+        options = ["--set", "plant=unit_modes", "--set", f"rho={rho}", "--json"]
         assert run_command(["zero-dynamics", *options]) == 0
         limits.append(json.loads(capsys.readouterr().out)["modes"]["3"]["critical_alpha"])
     assert limits[0] == pytest.approx(2 * limits[1], rel=1e-3)

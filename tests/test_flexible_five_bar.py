@@ -124,26 +124,86 @@ def test_acceleration_solves_the_equation_of_motion(plant: str, modes: int) -> N
         assert np.abs(by_parts.full()).max() < 1e-9 * (1 + scale)
 
 
-@pytest.mark.parametrize("rho", [0.2, 0.4])
-def test_the_printed_plant_is_as_printed(rho: float) -> None:
-    """(20)-(21) with Psi and J by quadrature, Omega elastic and damping force of the modes."""
-    s, modes = robot(3, "as_printed"), beam_modes(3, LINKS.beam)
-    parts, without = s.function("drift", "input_gain"), {"b1": 0.0, "b2": 0.0, "b3": 0.0}
+# Equations (20)-(21) in the normalisations of the modes -------------------------------------------
+
+FRICTIONLESS = {"b1": 0.0, "b2": 0.0, "b3": 0.0}  # (20) has no friction in the joints
+
+
+def printed(q: Array, v: Array, rho: float, norm: float) -> tuple[Array, Array]:
+    """f_v and g_v letter for letter, with shapes scaled so that the integral of phi_j^2 is `norm`.
+
+    q and v have the modal coordinates of the integral 1, and so have the results. Psi and J are
+    quadratures, Omega is the beam's elastic and damping force.
+    """
+    modes, scale = beam_modes(3, LINKS.beam), np.sqrt(norm)
     omega = 2 * np.pi * LINKS.frequency * modes.overtones
+    f, f_rate, reach = q[RIGID:] / scale, v[RIGID:] / scale, points(q, STATIONS)[1]
+    psi = scale * (SHARES * reach) @ modes.shapes(STATIONS)
+    force = rho * (omega**2 * f + 2 * LINKS.zeta * omega * f_rate)
+    inertia = LINKS.J0 + LINKS.J1 * np.cos(q[0]) ** 2 + rho * SHARES @ reach**2
+    waist = inertia - (rho * psi) @ (rho * psi) / (rho * norm)  # over the modal mass
+    drift = np.concatenate([[0, 0, psi @ force / waist], -force / rho])
+    drift[RIGID:] -= rho * psi * (psi @ force) / waist
+    gain = np.zeros((RIGID + 3, RIGID))
+    gain[0, 0], gain[1, 1], gain[2, 2] = 1 / LINKS.M11, 1 / LINKS.M22, 1 / waist
+    gain[RIGID:, 2] = -rho * psi / waist
+    back = np.concatenate([np.ones(RIGID), np.full(3, scale)])
+    return back * drift, back[:, None] * gain
+
+
+@pytest.mark.parametrize("rho", [0.2, 0.4])
+def test_read_with_unit_modes_the_printed_equations_are_that_plant(rho: float) -> None:
+    parts = robot(3, "unit_modes").function("drift", "input_gain")
     for seed in SEEDS:
         q, v = poses(seed)
-        f, f_rate, reach = q[RIGID:], v[RIGID:], points(q, STATIONS)[1]
-        psi = SHARES * reach @ modes.shapes(STATIONS)
-        inertia = LINKS.J0 + LINKS.J1 * np.cos(q[0]) ** 2 + rho * SHARES @ reach**2
-        waist = inertia - rho * psi @ psi
-        force = rho * (omega**2 * f + 2 * LINKS.zeta * omega * f_rate)
-        drift, gain = (part.full() for part in parts(q, v, numbers(rho=rho, **without)))
-        expected = np.concatenate([[0, 0, psi @ force / waist], -force / rho])
-        expected[RIGID:] -= rho * psi * (psi @ force) / waist
+        drift, gain = (part.full() for part in parts(q, v, numbers(rho=rho, **FRICTIONLESS)))
+        expected, expected_gain = printed(q, v, rho, norm=1.0)
         assert drift.ravel() == pytest.approx(expected, rel=1e-9, abs=1e-9)
-        column = np.concatenate([[0, 0, 1], -rho * psi]) / waist
-        assert gain[:, 2] == pytest.approx(column, rel=1e-9, abs=1e-12)
-        assert gain[:2, :2] == pytest.approx(np.diag([1 / LINKS.M11, 1 / LINKS.M22]))
+        assert gain == pytest.approx(expected_gain, rel=1e-9, abs=1e-12)
+
+
+def to_first_order(rho: float, seed: int, norm: float | None) -> tuple[Array, Array]:
+    """d f_v / d(f, f') and g_v at a pose of the joints at rest, about the straight beam.
+
+    Args:
+        norm: of `printed`; None: those of the Lagrangian plant.
+    """
+    parts = robot().function("drift", "input_gain")
+    joints, step = poses(seed)[0][:RIGID], 1e-6
+
+    def both(bent: Array) -> tuple[Array, Array]:
+        q, v = np.concatenate([joints, bent[:3]]), np.concatenate([np.zeros(RIGID), bent[3:]])
+        if norm is not None:
+            return printed(q, v, rho, norm)
+        drift, gain = (part.full() for part in parts(q, v, numbers(rho=rho, **FRICTIONLESS)))
+        return drift.ravel(), gain
+
+    ways = step * np.eye(6)
+    slopes = [(both(way)[0] - both(-way)[0]) / (2 * step) for way in ways]
+    return np.array(slopes), both(np.zeros(6))[1]
+
+
+@pytest.mark.parametrize("rho", [0.05, 0.2, 1.0])
+def test_read_with_mass_normalised_modes_they_are_the_lagrangian_plant(rho: float) -> None:
+    """To first order in the deflection, the joints at rest: (20) has cancelled what motion adds."""
+    for seed in SEEDS:
+        slopes, gain = to_first_order(rho, seed, norm=1 / rho)
+        expected, expected_gain = to_first_order(rho, seed, norm=None)
+        assert np.abs(slopes - expected).max() < 1e-8 * np.abs(expected).max()
+        assert np.abs(gain - expected_gain).max() < 1e-12 * np.abs(expected_gain).max()
+
+
+@pytest.mark.parametrize("norm", [1.0, LINKS.beam / 4, 2 / LINKS.rho])
+def test_in_another_normalisation_the_modes_feel_the_waist_too_little_or_too_much(
+    norm: float,
+) -> None:
+    """By the modal mass rho norm; l / 4 is the integral of phi^2 where phi(l) = 1."""
+    assert np.sqrt(LINKS.beam / 4) * np.abs(BEAM.tip) == pytest.approx(1.0)
+    for seed in SEEDS:
+        column = to_first_order(LINKS.rho, seed, norm)[1][:, 2]
+        expected = to_first_order(LINKS.rho, seed, None)[1][:, 2]
+        felt = (column / column[2])[RIGID:] / (expected / expected[2])[RIGID:]
+        assert felt == pytest.approx(LINKS.rho * norm, rel=1e-9)
 
 
 def test_output_is_the_last_point_of_the_beam() -> None:

@@ -151,7 +151,7 @@ def test_exaggeration_is_drawn_and_said_but_not_simulated() -> None:
     assert drawn.exaggeration == 10 and drawn.message
 
 
-@pytest.mark.parametrize(("name", "value"), [("modes", 5), ("plant", "as_printed")])
+@pytest.mark.parametrize(("name", "value"), [("modes", 5), ("plant", "unit_modes")])
 def test_a_structural_change_starts_anew_and_fits_what_is_kept(name: str, value: object) -> None:
     session = flexible(0.2)
     do(session, c.SetParameter(name, value))

@@ -42,7 +42,7 @@ def test_one_instance_for_each_number_of_modes_and_plant() -> None:
     others = {
         robot_for(replace(DEFAULTS, modes=m, plant=p))
         for m in (1, 3)
-        for p in ("lagrangian", "as_printed")
+        for p in ("lagrangian", "unit_modes")
     }
     assert len(others) == 4 and ROBOT in others
     assert ROBOTS["flexible"] is FLEXIBLE and FLEXIBLE.make(DEFAULTS) is ROBOT
@@ -141,7 +141,7 @@ def test_the_controller_s_model_is_wrong_where_asked_and_only_there() -> None:
 
 
 @pytest.mark.parametrize("controller", ["path_following", "trajectory_tracking"])
-@pytest.mark.parametrize("modes, plant", [(1, "as_printed"), (3, "lagrangian"), (6, "lagrangian")])
+@pytest.mark.parametrize("modes, plant", [(1, "unit_modes"), (3, "lagrangian"), (6, "lagrangian")])
 def test_compiled_and_interpreted_loops_agree(controller: str, modes: int, plant: str) -> None:
     curve = circle(0.05)
     own = replace(DEFAULTS, modes=modes, plant=plant)

@@ -24,7 +24,7 @@ from models.simulation import kernel_of
 from models.translated_loop import OPERATIONS, translate, translate_loop
 
 NUMBERS = [0.0, -0.0, 1.0, -1.0, 0.3, -2.5, 1e3, 5e-324, 1e300, np.inf, -np.inf, np.nan]
-PLANTS = ("as_printed", "lagrangian")
+PLANTS = ("unit_modes", "lagrangian")
 
 
 def flexible(plant: str) -> Robot:

@@ -116,17 +116,22 @@ def test_critical_alpha_depends_on_the_shape_of_the_arm_but_not_on_mass_or_stiff
         assert critical(HOME, **changes) == pytest.approx(critical(HOME), abs=1e-4)
 
 
+def test_between_two_limits_it_is_damping_that_destabilises() -> None:
+    assert critical(HOME) == pytest.approx(0.7227, abs=1e-4)
+    assert critical(HOME, zeta=0.0) == pytest.approx(0.7585, abs=1e-4)
+
+
 @pytest.mark.parametrize("rho", [0.2, 0.4, 1.0])
-def test_the_printed_model_acts_like_alpha_times_rho(rho: float) -> None:
-    printed = critical(HOME, plant="as_printed", rho=rho)
-    assert rho * printed == pytest.approx(critical(HOME), abs=1e-3)
+def test_unit_modes_act_like_alpha_times_rho(rho: float) -> None:
+    limit = critical(HOME, plant="unit_modes", rho=rho)
+    assert rho * limit == pytest.approx(critical(HOME), abs=1e-3)
     for alpha in (1.0, 0.5):
-        same = exponents(alpha, plant="as_printed", rho=rho)
+        same = exponents(alpha, plant="unit_modes", rho=rho)
         assert np.abs(same - exponents(alpha * rho)).max() < 1e-6 * np.abs(same).max()
 
 
 def test_where_nothing_is_unstable_there_is_no_critical_alpha() -> None:
-    zero = flexible_zero_dynamics(3, "as_printed")
+    zero = flexible_zero_dynamics(3, "unit_modes")
     parameters = zero.system.parameter_vector(lumped(0.0))
     assert zero.critical_alpha(straight(HOME, 3), parameters, highest=1.0) == math.inf
 

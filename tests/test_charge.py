@@ -1,0 +1,45 @@
+"""Nobody is told that the paper's equations (20)-(21) are wrong: they are not.
+
+That they are those of Lagrange with mass-normalised modes is a law of test_flexible_five_bar.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+TOLD = sorted(
+    file
+    for pattern in ("*.md", "*.py", "*.toml", "*.svg")
+    for folder in ("app", "assets", "lessons", "models")
+    for file in (ROOT / folder).rglob(pattern)
+)
+CHARGE = re.compile(
+    r"\bas.printed|wie gedruckt|(factor|Faktor) (ρ|rho)|(ρ|rho) (= 0.2 )?(too|zu) (much|often|viel)"
+    r"|(rho|ρ) once too",
+    re.IGNORECASE,
+)
+FORMER = '{"as_printed": "unit_modes"}'  # still read
+
+
+@pytest.mark.parametrize("file", [*TOLD, ROOT / "README.md"], ids=lambda file: file.name)
+def test_no_file_says_so(file: Path) -> None:
+    text = " ".join(file.read_text(encoding="utf-8").replace(FORMER, "").split())
+    assert not CHARGE.search(text), CHARGE.search(text)
+
+
+@pytest.mark.parametrize(
+    "charge",
+    [
+        "the derived model, or the paper's with a factor ρ too much",
+        "das Modell des Artikels mit einem Faktor ρ zu viel",
+        "where a factor ρ = 0.2 too much stands",
+        "rho once too often",
+        "the plant as printed",
+    ],
+)
+def test_it_would_be_noticed(charge: str) -> None:
+    assert CHARGE.search(charge)
