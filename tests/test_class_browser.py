@@ -130,19 +130,6 @@ def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None
     teacher.page.get_by_text("Whoever joins gets").wait_for(state="hidden")
 
 
-def test_a_projector_shows_predictions_large(tabs: Class) -> None:
-    page = tabs.teacher.page
-    page.get_by_role("tab", name="Predictions").click()
-
-    def wide() -> float:
-        box = page.locator(".op-class").bounding_box()
-        return box["width"] if box else 0.0
-
-    before = wide()
-    page.get_by_label("Presentation: large type").check()
-    wait_for(lambda: wide() > 1.5 * before)
-
-
 def test_the_teacher_looks_on_and_touches_nothing(tabs: Class) -> None:
     teacher, (first, _) = tabs.teacher, tabs.students
     teacher.page.get_by_role("tab", name="Class").click()
