@@ -42,8 +42,8 @@ class TeacherView(LabView):
             super().show(lab.session, lab.achieved, frame, stride)
 
     def _page(self, session: Session) -> tuple[object, ...]:
-        run = self._own.lessons
-        return id(session), session.robot, run.words.language, run.progress.presenting
+        words = self._own.lessons.words
+        return id(session), session.robot, words.language
 
     def _poster(self, session: Session) -> Callable[[c.Command], None]:
         return session.post if session is self._own else _ignore

@@ -112,6 +112,23 @@ def test_a_pushed_step_opens_and_predictions_show_without_names(tabs: Class) -> 
     assert "2 predicted" in picture.inner_text() and "Ada" not in picture.inner_text()
 
 
+def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None:
+    teacher, (first, _) = tabs.teacher, tabs.students
+    teacher.ask(c.SetParameter("K2", 33.0))
+    teacher.press("Send my set-up to all")
+    wait_for(lambda: "“Set up again” brings" in first.said())
+    assert first.session.parameters.K2 == 33.0 and first.session.lessons.index == 1
+    assert first.page.get_by_role("heading", name="Draw what the tracker does").is_visible()
+    first.press("Next")
+    wait_for(lambda: first.session.lessons.index == 2)
+    wait_for(lambda: teacher.page.get_by_text("Students in the class: 2").count() == 2)
+    teacher.page.get_by_role("tab", name="Class").click()
+    teacher.page.get_by_text("Whoever joins gets the set-up").wait_for()
+    teacher.press("No longer for those who join")
+    wait_for(lambda: tabs.room.orders.push is None)
+    teacher.page.get_by_text("Whoever joins gets").wait_for(state="hidden")
+
+
 def test_the_teacher_looks_on_and_touches_nothing(tabs: Class) -> None:
     teacher, (first, _) = tabs.teacher, tabs.students
     teacher.page.get_by_role("tab", name="Class").click()

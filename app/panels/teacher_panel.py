@@ -48,6 +48,7 @@ class TeacherPanel:
             self._build_record()
         panel.dock_left()
         panel.set_width(WIDE if self._large else WIDTH)
+        self._panel = panel
 
     def follow(self, session: Session) -> None:
         """Once a second, in another thread: the class may be large."""
@@ -140,7 +141,7 @@ class TeacherPanel:
         on_user_update(lesson, lambda label: self._choose_lesson(lessons[label]))
         on_user_update(self._step, self._choose_step)
         on_user_update(reveal, self._reveal)
-        on_user_update(large, lambda on: self._own.post(c.SetPresenting(on)))
+        on_user_update(large, self._present)
         on_press(push, self._push_step)
 
     def _lessons(self) -> dict[str, str]:
@@ -170,6 +171,12 @@ class TeacherPanel:
 
     def _reveal(self, on: bool) -> None:
         self._chosen.revealed = on
+        self._look_again()
+
+    def _present(self, on: bool) -> None:
+        self._large = on
+        self._own.post(c.SetPresenting(on))
+        self._panel.set_width(WIDE if on else WIDTH)
         self._look_again()
 
     def _look_again(self) -> None:
