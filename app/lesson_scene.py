@@ -32,6 +32,5 @@ def apply_scene(session: Session, scene: Scene, robot: str) -> None:
     for name, value in scene.set.items():
         apply(c.SetParameter(name, value), session)
     session.editor.settle()
-    session.editor.select(None)
     session.reset()
     session.running = scene.running

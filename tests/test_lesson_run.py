@@ -107,11 +107,6 @@ def test_a_task_fails_then_passes_and_stays_passed(session: Session) -> None:
     assert "hold" in session.lessons.notes.tasks
 
 
-def test_no_point_of_the_path_is_selected_when_a_step_begins(session: Session) -> None:
-    do(session, c.SelectPoint(2), lc.GoToStep(3), lc.GoToStep(3))
-    assert session.lessons.step_is("task") and session.editor.selected is None
-
-
 def test_hints_come_one_at_a_time(session: Session) -> None:
     do(session, lc.ShowHint("hold"))
     assert session.lessons.notes.hints == {"hold": 1}
