@@ -58,12 +58,11 @@ class Hands:
         wait_for(lambda: self.session.asked > asked)
 
     def has(self, label: str, value: float, near: float = 0.0) -> bool:
-        """Whether what stands in the lab under a label is near a value, or as near as it can."""
+        """Whether what stands in the lab under a label is near a value."""
         own = self.session.parameters
         known = {label_of(ENGLISH, name, spec): name for name, spec in specs(own).items()}
         name = next(known[full] for full in known if full.startswith(label))
-        step = specs(own)[name].step
-        return abs(getattr(own, name) - value) <= max(near, step / 2) + 1e-9
+        return abs(getattr(own, name) - value) <= near + 1e-9
 
     def is_near(self, output: np.ndarray, z: np.ndarray) -> bool:
         """Whether an output is at a place of the path's plane, shape (2,), [m]."""
