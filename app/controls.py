@@ -73,6 +73,7 @@ class Controls:
 
     def of_step(self, scene: LessonScene) -> list[Part]:
         """Run and hold, and what a lesson's scene names."""
+        self._scene.path_first = "editor" in scene.controls
         parts = list(self._add("hold"))
         known = specs(self._session.parameters)
         parameters = [name for name in scene.controls if name in known]

@@ -124,7 +124,10 @@ def bearing() -> trimesh.Trimesh:
 
 @lru_cache
 def grip() -> trimesh.Trimesh:
-    """A lens about an end-point, thick enough that a control point within does not take a press."""
+    """A lens about an end-point, thick enough that it takes a press on a control point within.
+
+    The scene decides then which of the two is meant.
+    """
     return ball(1.0).apply_scale(GRIP)
 
 

@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 
 ZONE_DEPTH = 0.052
 """y of the shading of singular places [m]: behind the links."""
+WITHIN = 0.01
+"""How near a control point [m] one must press to take it, where the end-point covers it."""
 
 
 def _ignore(*_: object) -> None:
@@ -77,6 +79,8 @@ class Scene:
 
     Attributes:
         pull: name of the plane in which an end-point is pulled, one of the stage's.
+        path_first: whether a press where an end-point covers a control point takes that; the
+            selected one is always taken.
     """
 
     def __init__(
@@ -92,11 +96,13 @@ class Scene:
         self._origins = stage.origins
         self._hooks = hooks or Hooks()
         self.pull = next(iter(stage.pulls))
+        self.path_first = False
         self._snapshot: Snapshot | None = None
         self._grip: tuple[Plane, np.ndarray] | None = None
         self._path: PathView | None = None
         self._path_nodes = PathNodes(client.scene, self._origins, self._connect_points)
         self._point_offset = np.zeros(3)
+        self._covered: int | None = None
         self._freehand: Freehand | None = None
         self._zone: viser.BatchedMeshHandle | None = None
 
@@ -192,6 +198,11 @@ class Scene:
         if event.instance_index is None:
             return
         name = self._names[event.instance_index]
+        if event.phase == "start":
+            self._covered = self._covered_point(event, name)
+        if self._covered is not None:
+            self._drag_point(event, name, self._covered)
+            return
         if event.phase == "end":
             self._hooks.on_release(name)
             return
@@ -209,6 +220,16 @@ class Scene:
         normal = self._stage.pulls[self.pull].normal
         return Plane(robot.tip, normal), robot.end - robot.tip
 
+    def _covered_point(self, event: DragEvent, name: str) -> int | None:
+        """The control point that a press on an end-point means instead of it, if any."""
+        path, pressed = self._path, self._on_plane(event, event.start_position, name)
+        if path is None or pressed is None or not len(path.control_points):
+            return None
+        distances = np.linalg.norm(path.control_points - pressed, axis=1)
+        nearest = int(distances.argmin())
+        meant = self.path_first or nearest == path.selected
+        return nearest if meant and distances[nearest] < WITHIN else None
+
     def _connect_points(self, points: viser.BatchedMeshHandle) -> None:
         points.on_drag("left")(self._point_dragged)
         points.on_click()(self._point_clicked)
@@ -218,10 +239,13 @@ class Scene:
         if event.instance_index is None or path is None or not len(path.control_points):
             return
         robot, index = divmod(event.instance_index, len(path.control_points))
-        name = self._names[robot]
+        self._drag_point(event, self._names[robot], index)
+
+    def _drag_point(self, event: DragEvent, name: str, index: int) -> None:
         if event.phase == "start":  # pressed beside the centre: keep that offset, do not jump
+            assert self._path is not None
             pressed = self._on_plane(event, event.start_position, name)
-            centre = path.control_points[index]
+            centre = self._path.control_points[index]
             self._point_offset = np.zeros(3) if pressed is None else centre - pressed
             self._hooks.on_point_selected(index)
         target = self._on_plane(event, event.end_position, name)

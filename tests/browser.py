@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -15,11 +16,12 @@ from viser import ClientHandle
 from app.apply import apply
 from app.class_commands import ClassCommand
 from app.commands import Command
-from app.loop import Lab
+from app.loop import FRAME, Lab
 from app.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from app.server import LabServer
 from app.session import Session
 from app.stages import stage_of
+from models.simulation import time_step
 from tests import waiting
 
 CHROMIUM = "/usr/bin/chromium"
@@ -49,6 +51,22 @@ class Note:
 @apply.register(Note)
 def _(note: Note, _: Session) -> None:
     note.done.append(True)
+
+
+class Elapse:
+    """A command that lets simulated time pass, frame by frame, as quickly as can be computed."""
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+
+
+@apply.register(Elapse)
+def _(elapse: Elapse, session: Session) -> None:
+    dt = time_step(session.parameters)
+    left, each = round(elapse.seconds / dt), round(FRAME / dt)
+    while left > 0:
+        session.simulate(min(each, left))
+        left -= each
 
 
 class Tab:
@@ -122,6 +140,10 @@ class Tab:
         self.session.post(Note(done))  # type: ignore[arg-type]
         wait_for(lambda: done)
 
+    def elapse(self, seconds: float) -> None:
+        """Let simulated time pass in a paused lab, to the tick."""
+        self.ask(Elapse(seconds))  # type: ignore[arg-type]
+
     # Where things are.
 
     def pixel(self, name: str, point: np.ndarray) -> tuple[float, float]:
@@ -168,6 +190,25 @@ class Tab:
         yield
         mouse.up()
 
+    @contextmanager
+    def touching(self, *way: tuple[float, float]) -> Iterator[None]:
+        """A finger put down at the first place and moved through the others, down meanwhile."""
+        touched = self.page.context.new_cdp_session(self.page)
+
+        def tell(kind: str, *places: tuple[float, float]) -> None:
+            points = [{"x": x, "y": y} for x, y in places]
+            touched.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+        self.settle()
+        tell("touchStart", way[0])
+        for begin, end in pairwise([*way, way[-1]]):
+            for place in np.linspace(begin, end, 4)[1:].tolist():
+                tell("touchMove", (place[0], place[1]))
+                self.page.wait_for_timeout(60)
+        yield
+        tell("touchEnd")
+        touched.detach()
+
     def settle(self) -> None:
         """Return when the page has drawn what the lab has sent by now."""
         self.page.wait_for_timeout(100)
@@ -191,7 +232,7 @@ class Tab:
 
     def choose(self, label: str, option: str) -> None:
         """Take an option of a drop-down list."""
-        self.page.get_by_label(label, exact=True).click()
+        self.page.get_by_label(label, exact=True).filter(visible=True).first.click()
         self.page.get_by_role("option", name=option, exact=True).click()
 
     def slider(self, label: str) -> Locator:

@@ -176,6 +176,35 @@ def test_a_dragged_point_moves_by_what_the_mouse_moved(lab, robot_index):
     np.testing.assert_allclose(lab.heard[2][2], point + shift, atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("path_first", "selected", "beside", "taken"),
+    [
+        (False, None, 0.0, "grab"),
+        (True, None, 0.0, "dragged"),
+        (True, None, 0.016, "grab"),  # nearer to the rim of what takes the press
+        (False, 4, 0.0, "dragged"),
+        (False, 3, 0.0, "grab"),
+    ],
+)
+def test_where_an_end_point_covers_a_control_point_the_one_that_is_meant_is_taken(
+    lab, path_first, selected, beside, taken
+):
+    lab.scene.path_first = path_first
+    lab.scene.update_path(snapshot(path=replace(path(1), selected=selected)))
+    name = NAMES[1]
+    point = path().control_points[4] + [beside, 0.0, 0.0]
+    pressed, shift = RIGID.bases[name] + point, np.array([0.02, 0.0, 0.01])
+    for phase, way in (("start", 0.0), ("update", 1.0), ("end", 1.0)):
+        play(lab, "/grips", phase, 1, pressed, pressed + way * shift)
+    heard = [event[0] for event in lab.heard]
+    if taken == "grab":
+        assert heard == ["grab", "grab", "release"]
+        return
+    assert heard == ["selected", "dragged", "dragged", "dragged", "dropped"]
+    assert all(event[1] == 4 for event in lab.heard)
+    np.testing.assert_allclose(lab.heard[2][2], path().control_points[4] + shift, atol=1e-9)
+
+
 def test_a_freehand_stroke_is_told_once_in_the_robots_frame(lab):
     strokes: list[np.ndarray] = []
     lab.scene.begin_freehand(strokes.append)
