@@ -49,7 +49,7 @@ class Lessons:
         return 1 if problems else 0
 
     def _played(self, course: Course, folder: Path) -> list[Problem]:
-        from app.lesson_check import play_course
+        from app.course_check import play_course
         from app.loop_store import LoopStore
 
         problems = list(play_course(course, folder, LoopStore()))

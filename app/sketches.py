@@ -7,6 +7,7 @@ import numpy as np
 from lessons.progress import Answer
 from lessons.schema import Sketch
 from lessons.thinning import peaks
+from models.system import Array
 
 MOST_POINTS = 160
 
@@ -28,7 +29,7 @@ def sketched(prediction: Sketch, answer: Answer) -> Answer:
     order = np.argsort(times, kind="stable")
     times = np.round(np.clip(times[order], 0.0, prediction.seconds), 3)
     times, first = np.unique(times, return_index=True)
-    values = np.round(np.clip(values[order][first], prediction.bottom, prediction.top), 3)
+    values: Array = np.round(np.clip(values[order][first], prediction.bottom, prediction.top), 3)
     if len(times) < 2:
         raise ValueError("draw a curve from left to right")
     kept = peaks([values], MOST_POINTS)

@@ -7,7 +7,6 @@ import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
 from functools import partial
-from pathlib import Path
 
 import pytest
 import viser
@@ -44,8 +43,8 @@ def all_threads_are_free(server: viser.ViserServer) -> bool:
 
 
 @pytest.fixture
-def lab(tmp_path: Path) -> Iterator[LabServer]:
-    lab = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path))
+def lab() -> Iterator[LabServer]:
+    lab = LabServer("127.0.0.1", 0, LoopStore())
     yield lab
     lab.stop()
 

@@ -18,7 +18,6 @@ from app import lesson_commands as lc
 from app.loop_store import LoopStore
 from app.panels.keys import KEYS
 from app.server import LabServer
-from models.loops import find_compiler
 from models.parameters import specs
 from tests.browser import CHROMIUM, PLAIN, Tab, wait_for
 
@@ -38,9 +37,8 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
-    store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
-    server = LabServer("127.0.0.1", 0, store)
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
     yield server
     server.stop()
 

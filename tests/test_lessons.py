@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import run_command
-from app.lesson_check import lab_at, play, play_course, solved
+from app.course_check import lab_at, play, play_course, solved
 from lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from lessons.schema import Lesson, Step, Task
 from tests.lab import store
@@ -59,7 +59,7 @@ def test_references_are_where_the_lessons_are() -> None:
 @pytest.mark.parametrize(
     ("reference", "line", "words"),
     [
-        (EXAMPLE.replace("until = 3.0", "until = 1.5"), 2, "0.5 of 1 s"),
+        (EXAMPLE.replace("until = 3.0", "until = 1.5"), 2, "0.4 of 1 s"),
         (EXAMPLE.replace("until = 1.5", "until = 3.0"), 5, "passes the task"),
         (EXAMPLE.replace("hold = true", "reset = true"), 2, "0.0 of 1 s"),
     ],

@@ -195,7 +195,7 @@ def test_presses_while_one_is_under_way_are_dropped() -> None:
 
 def test_a_tab_that_presses_for_ever_is_one_of_many(tmp_path: Path) -> None:
     records = Records(file_url(tmp_path / "labs.db"))
-    own = LoopStore(compiler=None, folder=tmp_path)  # ends with the server
+    own = LoopStore()  # ends with the server
     server = LabServer("127.0.0.1", 0, own, records=records, limits=WIDE)
     gate, loads = Gate(), []
 

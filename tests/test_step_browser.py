@@ -14,7 +14,6 @@ from app import lesson_commands as lc
 from app.class_commands import TakeStep
 from app.loop_store import LoopStore
 from app.server import LabServer
-from models.loops import find_compiler
 from tests.browser import CHROMIUM, PLAIN, Tab, wait_for
 
 LESSON, LONG = "01-path-or-timetable", "03-the-five-bar"
@@ -33,9 +32,8 @@ SEEN = """(heading) => {
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
-    store = LoopStore(find_compiler(), tmp_path_factory.getbasetemp() / "loops")
-    server = LabServer("127.0.0.1", 0, store)
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
     yield server
     server.stop()
 

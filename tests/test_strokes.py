@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -85,8 +84,8 @@ class Page:
 
 
 @pytest.fixture
-def page(tmp_path: Path) -> Iterator[Page]:
-    lab = LabServer("127.0.0.1", 0, LoopStore(None, tmp_path))
+def page() -> Iterator[Page]:
+    lab = LabServer("127.0.0.1", 0, LoopStore())
     with Student(f"ws://127.0.0.1:{lab.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.may("Path") and lab._views)

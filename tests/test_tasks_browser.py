@@ -19,7 +19,6 @@ from app.loop_store import LoopStore
 from app.server import LabServer
 from lessons.course import BUILT_IN, read_course
 from lessons.schema import Task
-from models.loops import find_compiler
 from tests.browser import CHROMIUM, PLAIN, Tab, wait_for
 from tests.hands import (
     ROBOT,
@@ -141,9 +140,8 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
-    folder = tmp_path_factory.getbasetemp() / "loops"
-    server = LabServer("127.0.0.1", 0, LoopStore(find_compiler(), folder))
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
     yield server
     server.stop()
 

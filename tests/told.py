@@ -9,19 +9,19 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from app.exports import replay
-from app.lesson_scene import apply_scene
+from app.lesson_scene import set_up
 from app.script_player import ScriptPlayer
 from app.session import Session
+from app.setups import Bench, Path, Setup, restore
 from lessons.course import BUILT_IN
 from lessons.parse import read_lesson
 from lessons.record import ROLES
-from lessons.schema import Action, Lesson, RobotName, Scene, Script, Value
+from lessons.schema import Action, Lesson, RobotName, Script, Value
 from models.system import Array
 from models.trajectory import Trajectory
 from tests.lab import run, store
@@ -103,7 +103,9 @@ WORST = 3 + 25 / 36  # [s], the brake then catches the follower at 214 degrees
 
 def play(until: float, do: list[Action], path: str = "", **settings: Value) -> Run:
     """What both robots do, set up with the lab's defaults but for some settings."""
-    return _played(Scene(path=path, set=settings), Script(tuple(do), until), "five_bar")
+    session = Session(store())
+    restore(session, Setup("five_bar", {"five_bar": Bench(settings, Path(path or Path().name))}))
+    return _played(session, Script(tuple(do), until))
 
 
 def held(at: float, seconds: float = 2.0, robot: RobotName = "follower", **gains: Any) -> Motion:
@@ -120,18 +122,16 @@ def pulled(right: float, up: float = 0.0, robot: RobotName = "follower", **gains
 def shown(lesson: str, title: str) -> Run:
     """What a step that runs by itself shows."""
     (home,) = BUILT_IN.glob(f"{lesson}-*")
-    told: Lesson = read_lesson(Path(home / "en.md"))
-    scene = Scene()
-    for step in told.steps:
-        scene = step.scene or scene
+    told: Lesson = read_lesson(home / "en.md")
+    for index, step in enumerate(told.steps):
         if step.title == title and step.script is not None:
-            return _played(scene, step.script, told.front.robot)
+            session = Session(store())
+            set_up(session, told, index)
+            return _played(session, step.script)
     raise AssertionError(f"lesson {lesson} shows no {title!r}")
 
 
-def _played(scene: Scene, script: Script, robot: str) -> Run:
-    session = Session(store())
-    apply_scene(session, scene, robot)
+def _played(session: Session, script: Script) -> Run:
     session.script, session.running = ScriptPlayer(script), True
     while session.script is not None:
         run(session, 0.1)
