@@ -214,6 +214,10 @@ class Tab:
         self.page.wait_for_timeout(100)
         self.page.evaluate(THREE_FRAMES)
 
+    def is_built(self) -> bool:
+        """Whether the page is that of the present robot, and not about to be built anew."""
+        return getattr(self.view, "_robot", None) is self.session.robot
+
     def press(self, name: str) -> None:
         """Press a button."""
         self.button(name).click()

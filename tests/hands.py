@@ -155,6 +155,8 @@ class Choose:
     def __call__(self, hands: Hands) -> None:
         with hands.heard():
             hands.tab.choose(self.label, self.option)
+        wait_for(hands.tab.is_built)  # another number of modes is another robot
+        hands.tab.settle()
 
 
 @dataclass(frozen=True)

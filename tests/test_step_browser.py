@@ -81,8 +81,9 @@ def test_a_hint_leaves_the_page_where_it_is(tab: Tab) -> None:
     tab.ask(TakeStep(LESSON, 6))
     wait_for(lambda: is_seen(tab, 6))
     hint = tab.page.get_by_role("button", name="Hint (3 left)").first
+    tab.page.evaluate(SCROLL, 150)
     hint.scroll_into_view_if_needed()
-    before = tab.page.evaluate(SCROLL, 150)
+    before = tab.page.evaluate(SCROLL, None)
     hint.click()
     tab.page.get_by_role("button", name="Hint (2 left)").first.wait_for()
     assert tab.page.evaluate(SCROLL, None) == before > 0

@@ -239,7 +239,7 @@ def test_the_ball_under_the_end_point_is_dragged(by: str, request: pytest.Fixtur
     hands: Hands = request.getfixturevalue(by)
     tab, session = hands.tab, hands.session
     go_to(tab, "03-the-five-bar", 0)
-    tab.elapse(1)
+    tab.elapse(2)  # both come to rest there
     end = session.editor.design.points[-1] * 1e3
     assert np.linalg.norm(tab.tip(ROBOT) * 1e3 - end) < 1
     DragBall((end[0], end[1]), (end[0] - 10, end[1] + 25))(hands)
