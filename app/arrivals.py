@@ -14,7 +14,7 @@ import viser
 from viser import _messages as wire
 from websockets.frames import CloseCode
 
-from app.crowd import Holders
+from app.crowd import PerAddress
 from app.error_log import log_error
 from app.gate import warn_once
 
@@ -42,7 +42,7 @@ class Arrivals:
         self._keys, self._enter = keys, enter
         self._threads = server._thread_executor
         self._sockets = server._websock_server._live_connections
-        self._silent = Holders[int](most, most_each)
+        self._silent = PerAddress[int](most, most_each)
         self._farewells: set[asyncio.Task[None]] = set()
         server.on_client_connect(self._greet)
         server.on_client_disconnect(self._forget)

@@ -17,11 +17,12 @@ from pathlib import Path
 import msgspec
 
 from app.bench_server import Server, serving
+from app.gate import Limits
 from app.load import Seen
 from app.vitals import LONGEST, Vitals
 from app.workers import MOST as MOST_WORKERS
 
-MOST = 900  # clients; a server has room for 1000 connections
+MOST = Limits().max_connections_each  # clients: to the server they are of one address
 SHORTEST = 1.0  # [s]
 HEAD = """\
 clients settled  sim slow  display [Hz]  frames late [ms] >50ms       CPU [%]        for each  labs

@@ -95,16 +95,18 @@ def _reference_faults(lesson: Lesson, file: Path, store: LoopStore) -> Iterator[
                 continue  # said by read_references
             scripts = references[task.id]
             for what, script in (("solution", scripts.solution), ("failure", scripts.failure)):
-                fault = _fault(lab_at(lesson, step, store), script, task, what == "solution")
+                fault = _fault(lesson, step, script, task, store, what == "solution")
                 if fault:
                     heading = f"{task.id}.{what}"
                     yield Problem(str(file), _line_of(heading, file), f"{heading} {fault}")
 
 
-def _fault(session: Session, script: Script, task: Task, right: bool) -> str:
+def _fault(
+    lesson: Lesson, step: Step, script: Script, task: Task, store: LoopStore, right: bool
+) -> str:
     """Why a script is not the solution, or not the failure, that it should be."""
     try:
-        passed, last = solved(session, script, task)
+        passed, last = solved(lab_at(lesson, step, store), script, task)
     except ValueError as error:
         return f"cannot be played: {error}"
     if passed == right:

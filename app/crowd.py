@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
-from ipaddress import IPv6Address, ip_address, ip_network
+from ipaddress import IPv4Address, IPv6Address, ip_address, ip_network
 from typing import Any, Generic, TypeVar
 
 from websockets.asyncio.server import ServerConnection
@@ -19,7 +19,7 @@ from app.gate import Limits
 T = TypeVar("T")
 
 
-class Holders(Generic[T]):
+class PerAddress(Generic[T]):
     """What addresses hold, the oldest first.
 
     Args:
@@ -90,7 +90,7 @@ class Proxies:
     def _believes(self, address: str) -> bool:
         if not address:
             return True
-        there = ip_address(address)
+        there = _parsed(address)
         return there.is_loopback or any(there in network for network in self._networks)
 
 
@@ -104,10 +104,17 @@ def _is_address(text: str) -> bool:
 
 def _household(address: str) -> str:
     """One who has an address of IPv6 has 2^64 of them."""
-    there = ip_address(address) if address else None
-    if isinstance(there, IPv6Address):
-        return str(ip_network((int(there), 64), strict=False))
-    return address
+    if not address:
+        return address
+    there = _parsed(address)
+    return str(ip_network((int(there), 64), strict=False) if there.version == 6 else there)
+
+
+def _parsed(address: str) -> IPv4Address | IPv6Address:
+    """An address; ::ffff:192.0.2.1 is 192.0.2.1."""
+    there = ip_address(address)
+    mapped = there.ipv4_mapped if isinstance(there, IPv6Address) else None
+    return mapped or there
 
 
 class Crowd:
@@ -115,32 +122,32 @@ class Crowd:
 
     def __init__(self, limits: Limits, proxies: Proxies) -> None:
         self._proxies = proxies
-        self._waiting = Holders[Member](limits.max_waiting, limits.max_waiting_each)
-        self._inside = Holders[Member](limits.max_connections, limits.max_connections_each)
+        self._waiting = PerAddress[Visitor](limits.max_waiting, limits.max_waiting_each)
+        self._inside = PerAddress[Visitor](limits.max_connections, limits.max_connections_each)
 
-    def came(self, member: Member) -> None:
+    def came(self, visitor: Visitor) -> None:
         """Somebody has connected."""
-        surplus = self._waiting.add(member, self._proxies.asker(member.peer, []))
+        surplus = self._waiting.add(visitor, self._proxies.asker(visitor.peer, []))
         if surplus is not None:
             self._waiting.discard(surplus)
             surplus.transport.abort()
 
-    def takes(self, member: Member, request: Request) -> bool:
+    def takes(self, visitor: Visitor, request: Request) -> bool:
         """Whether there is room for one whose request is here, if it is still there itself."""
         forwarded = request.headers.get_all("X-Forwarded-For")
-        member.address = self._proxies.asker(member.peer, forwarded)
-        if member in self._waiting and self._inside.has_room(member.address):
-            self._waiting.discard(member)
-            self._inside.add(member, member.address)
-        return member in self._inside
+        visitor.address = self._proxies.asker(visitor.peer, forwarded)
+        if visitor in self._waiting and self._inside.has_room(visitor.address):
+            self._waiting.discard(visitor)
+            self._inside.add(visitor, visitor.address)
+        return visitor in self._inside
 
-    def gone(self, member: Member) -> None:
+    def gone(self, visitor: Visitor) -> None:
         """Somebody has left."""
-        self._waiting.discard(member)
-        self._inside.discard(member)
+        self._waiting.discard(visitor)
+        self._inside.discard(visitor)
 
 
-class Member(ServerConnection):
+class Visitor(ServerConnection):
     """A connection of a crowd.
 
     Attributes:

@@ -17,7 +17,8 @@ import sqlalchemy as sa
 from sqlalchemy import event, exc, pool
 
 from app.migrations import HEAD, known_revisions, revision_of, upgrade
-from app.tables import meta, metadata
+from app.migrations.first_tables import strange_table
+from app.tables import meta
 
 log = logging.getLogger(__name__)
 
@@ -201,8 +202,8 @@ def _migrate(connection: sa.Connection) -> None:
         NotKept: they are somebody else's, or a newer version's.
     """
     revision = revision_of(connection)
-    if revision is None:
-        _check_tables(connection)
+    if revision is None and (strange := strange_table(connection)):
+        raise NotKept(f"its table {strange} is not OnPath's")
     if revision != HEAD:
         if revision is not None and revision not in known_revisions():
             raise NotKept(f"its tables ({revision}) are of a newer OnPath, which is needed here")
@@ -212,14 +213,3 @@ def _migrate(connection: sa.Connection) -> None:
         connection.execute(sa.insert(meta).values(name="version", number=VERSION))
     elif version > VERSION:
         raise NotKept(f"it is of version {version}, made by a newer OnPath, which is needed here")
-
-
-def _check_tables(connection: sa.Connection) -> None:
-    """Tables from before migrations, or none: those that there are must be OnPath's."""
-    inspector = sa.inspect(connection)
-    there = set(inspector.get_table_names())
-    for table in metadata.tables.values():
-        if table.name in there:
-            columns = {column["name"] for column in inspector.get_columns(table.name)}
-            if columns != set(table.columns.keys()):
-                raise NotKept(f"its table {table.name} is not OnPath's")

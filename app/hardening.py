@@ -28,7 +28,7 @@ from websockets.frames import CloseCode, Frame, Opcode
 from websockets.http11 import Request, Response
 
 from app.compression import share_compressors
-from app.crowd import Crowd, Member, Proxies
+from app.crowd import Crowd, Proxies, Visitor
 from app.error_log import log_error
 from app.gate import Gate, Limits, warn_once
 from app.listening import PortInUse, listen, listen_unix
@@ -154,7 +154,7 @@ def _guarded_serve(
     library: Any = websockets.asyncio.server
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
-        async def knock(connection: Member, request: Request) -> Response | None:
+        async def knock(connection: Visitor, request: Request) -> Response | None:
             until = time.monotonic() + STARTING
             while not door.open and time.monotonic() < until:  # who asks is told when it is ready
                 await asyncio.sleep(0.02)
@@ -193,7 +193,7 @@ def _forms(max_magnitude: float) -> WireForms:
     return WireForms(_FROM_BROWSER, max_magnitude)
 
 
-class _Connection(Member):
+class _Connection(Visitor):
     """A websocket that yields only well-formed messages, and is closed when they are too many."""
 
     def __init__(self, *args: Any, limits: Limits, **kwargs: Any) -> None:

@@ -73,7 +73,7 @@ class Trace:
         record = record_of(session, Beginning(until.run, begin))
         nothing = np.zeros(len(record.times))
         curves = [record.values[robot].get(self._quantity, nothing) for robot in ROBOTS]
-        new = np.nan_to_num(np.column_stack([record.times, *curves]))
+        new = np.nan_to_num(np.column_stack([record.times, *curves]), posinf=0.0, neginf=0.0)
         self._rows = np.concatenate([self._rows[self._rows[:, 0] < begin], new])
         self._until = Beginning(until.run, float(self._rows[-1, 0]) if len(self._rows) else begin)
 

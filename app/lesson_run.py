@@ -47,7 +47,7 @@ class LessonRun:
         self.verdicts: dict[str, list[Verdict]] = {}
         self._begin = Beginning(0, 0.0)
         self._frames = 0
-        self._playing = False
+        self._player: ScriptPlayer | None = None  # of what the step shows
         self._trace: Trace | None = None  # of what is played
         self._passed: dict[str, int] = {}  # the run in which a task was passed
         self.before: Setup | None = None
@@ -70,8 +70,14 @@ class LessonRun:
     @property
     def index(self) -> int:
         """Of the open step."""
-        lesson = self.lesson
-        return min(self.notes.step, len(lesson.steps) - 1) if lesson else 0
+        return self._left_at(self.progress.lesson)
+
+    def _left_at(self, name: str) -> int:
+        """The step of a lesson that was last open; 0 if there is no such lesson."""
+        if name not in self.course.lessons:
+            return 0
+        last = len(self.course.lesson(name, self.progress.language).steps) - 1
+        return min(self.progress.notes.get(name, Notes()).step, last)
 
     @property
     def step(self) -> Step | None:
@@ -108,7 +114,7 @@ class LessonRun:
     @property
     def playing(self) -> bool:
         """Whether the lab does by itself what the step shows."""
-        return self._playing
+        return self._player is not None
 
     def has_played(self) -> bool:
         """Whether the lab has done what the open step shows, now or earlier."""
@@ -122,12 +128,7 @@ class LessonRun:
         Raises:
             ValueError: there is no such lesson.
         """
-        if name not in self.course.lessons:
-            raise ValueError(f"no lesson {name!r}: there are {', '.join(self.course.lessons)}")
-        if self.lesson is None:
-            self.before = capture(session)
-        self.progress = replace(self.progress, lesson=name)
-        self._go(self.index, session)
+        self.open_at(name, self._left_at(name), session)
 
     def open_at(self, name: str, index: int, session: Session) -> None:
         """Open a step of a lesson, from anywhere, with the lab as that step expects to find it.
@@ -137,13 +138,13 @@ class LessonRun:
         """
         if name not in self.course.lessons:
             raise ValueError(f"no lesson {name!r}: there are {', '.join(self.course.lessons)}")
-        steps = self.course.lesson(name, self.progress.language).steps
-        if index not in range(len(steps)):
-            raise ValueError(f"no step {index + 1} in this lesson: it has {len(steps)}")
-        if self.lesson is None:
-            self.before = capture(session)
-        self.progress = replace(self.progress, lesson=name)
-        self._go(index, session)
+        lesson = self.course.lesson(name, self.progress.language)
+        if index not in range(len(lesson.steps)):
+            raise ValueError(f"no step {index + 1} in this lesson: it has {len(lesson.steps)}")
+        before = capture(session) if self.lesson is None else self.before
+        set_up(session, lesson, index)
+        self.progress, self.before = replace(self.progress, lesson=name), before
+        self._arrive(index, session)
 
     def resume(self, progress: Progress, before: Setup | None, session: Session) -> None:
         """Go on as it was kept, in a lab that is as it was left."""
@@ -160,18 +161,13 @@ class LessonRun:
             ValueError: see `restore`; then all is as it was.
         """
         restore(session, setup)
-        session.script, session.put_aside, session.running = None, None, True
-        self._playing, self._trace = False, None
-        self.verdicts, self._passed = {}, {}
-        self._begin = Beginning.now(session)
-        self._lock(session)
+        self._begin_again(session, running=True)
         self.version += 1
 
     def close(self, session: Session) -> None:
         """No lesson is open; the lab is as it was before."""
         self.progress = replace(self.progress, lesson="")
-        session.script, session.locked = None, ""
-        self._playing = False
+        self._begin_again(session, running=session.running)
         if self.before is not None:
             restore(session, self.before)
             session.running = True
@@ -228,7 +224,8 @@ class LessonRun:
         session.rate = rate  # may be slow motion; what happens is the same
         self._begin = Beginning.now(session)
         self._trace = Trace(quantity_of(found[1]), self._begin) if found else None
-        session.script, session.running, self._playing = ScriptPlayer(step.script), True, True
+        self._player = session.script = ScriptPlayer(step.script)
+        session.running = True
         self.version += 1
 
     def act(self, actions: tuple[Action, ...], session: Session) -> None:
@@ -271,12 +268,14 @@ class LessonRun:
     def follow(self, session: Session) -> None:
         """Look at the tasks now and then, and at the end of what a step shows; every frame."""
         self._frames += 1
-        if self._playing and session.script is None:
-            self._playing = False
-            self._note_truth(session)
+        if self._player is not None and session.script is not self._player:
+            ended, self._player = self._player, None
+            if ended.finished:
+                self._note_truth(session)
+            self.version += 1
         if self._frames % EVERY:
             return
-        if self._playing and self._trace is not None:
+        if self._player is not None and self._trace is not None:
             self._trace.follow(session)
         if self.step is not None and self.step.tasks():
             self._judge(session, self.step.tasks())
@@ -284,7 +283,7 @@ class LessonRun:
     def truth(self, session: Session) -> Truth | None:
         """What has happened of the predicted quantity: now, or when the step was last played."""
         found = self.prediction()
-        if found is None or not self._playing or self._trace is None:
+        if found is None or self._player is None or self._trace is None:
             return None if found is None else self.notes.truths.get(found[0])
         self._trace.follow(session)
         return self._trace.truth()
@@ -320,12 +319,15 @@ class LessonRun:
         lesson = self.lesson
         assert lesson is not None
         self._note(step=index, seen=max(self.notes.seen, index + 1))
-        session.script, session.put_aside = None, None
-        self._playing, self._trace = False, None
-        session.running = lesson.scene_at(index).running
-        self._lock(session)
+        self._begin_again(session, lesson.scene_at(index).running)
+
+    def _begin_again(self, session: Session, running: bool) -> None:
+        """Nothing is shown, has been done or can be undone from now on."""
+        session.script, session.put_aside, session.running = None, None, running
+        self._player = self._trace = None
         self.verdicts, self._passed = {}, {}
         self._begin = Beginning.now(session)
+        self._lock(session)
 
     def _lock(self, session: Session) -> None:
         """Time stands still until a prediction has been made or skipped."""

@@ -67,16 +67,16 @@ def return_to_present(session: Session) -> None:
 def go_on(session: Session) -> None:
     """Run on from the instant being looked at; what came after it is put aside."""
     stretch = None if session.viewing is None else session.history.at(session.viewing)
-    session.viewing = None
-    session.running = True
     if stretch is None:
+        session.viewing, session.running = None, True
         session.hush()
         return
     left = _timeline(session)
     _take(session, _branch(session, stretch))
     session.note("let_go")
     session.note("release")
-    session.put_aside = left
+    session.put_aside, session.script = left, None
+    session.viewing, session.running = None, True
     time, seconds = f"{stretch.time:.1f}", f"{left.time - stretch.time:.1f}"
     _say(session, session.lessons.words("say.went_on", time=time, seconds=seconds))
 
@@ -103,6 +103,7 @@ def _say(session: Session, message: str) -> None:
 
 
 def _timeline(session: Session) -> Timeline:
+    session.history.settle()  # its samples are of the parameters of now
     return Timeline(
         session.time,
         session.editor.curve,

@@ -26,6 +26,9 @@ class ScriptPlayer:
     Args:
         script: what to do.
         stop: pause the session at the script's end.
+
+    Attributes:
+        finished: whether it has come to its end, and not only been given up.
     """
 
     def __init__(self, script: Script, stop: bool = True) -> None:
@@ -34,6 +37,7 @@ class ScriptPlayer:
         self._stop = stop
         self._before = 0.0  # simulated before the last reset, [s]
         self._run: int | None = None
+        self.finished = False
 
     def play(self, session: Session) -> bool:
         """Do what is due; call it before every frame. True when it is over, or overtaken.
@@ -54,6 +58,7 @@ class ScriptPlayer:
             return False
         if self._stop:
             session.running = False
+        self.finished = True
         return True
 
     def _now(self, session: Session) -> float:

@@ -101,7 +101,7 @@ class FlexibleParameters(Parameters):
     plant: str = choice(
         "lagrangian",
         PLANTS,
-        "Lagrange's equations, or (20)-(21) read with ∫φ² = 1: the coupling's units do not fit",
+        "Lagrange's equations, or (20)-(21) read with ∫φ² = 1, whose coupling has odd units",
         group="robot",
         label="Plant",
         former=FORMER_PLANTS,

@@ -16,6 +16,7 @@ from models.parameters import Parameters
 from models.simulation import time_step
 
 Complex = NDArray[np.complex128]
+LEAST_DECAY = 1e-3  # [1/s]; what takes longer than a quarter of an hour does not die out
 NO_OVERSHOOT = 0.995  # damping beyond which a pair of poles counts as two equal real ones
 
 
@@ -79,7 +80,8 @@ def _channel(
     name: str, interval: float, ahead: float, gains: tuple[float, float, float], kept: str
 ) -> Channel:
     roots = _sampled(interval, ahead, gains, kept)
-    stable = bool(np.all(np.abs(roots) < 1 - 1e-9))
+    decay = np.log(np.abs(roots) + 1e-300) / interval
+    stable = bool(np.all(decay < -LEAST_DECAY))
     telling = roots[np.argsort(np.abs(roots))][1:]  # the first forgets the held acceleration
     poles: Complex = np.asarray(np.log(telling + 1e-300) / interval, dtype=np.complex128)
     return Channel(name, poles, stable)

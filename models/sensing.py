@@ -35,7 +35,8 @@ def look_ahead(
     """q and v half a tick later, by the controller's model under the torque held so far.
 
     A torque held over a tick acts, on average, half a tick late; meeting the robot there keeps
-    the path invariant to O(dt^2) and not only O(dt).
+    the path invariant to O(dt^2) and not only O(dt), if the controller acts every tick. At lower
+    control rates the torque is held longer, and half a tick is not enough.
     """
     inputs = [system.q, system.v, system.tau, system.parameters]
     slope = ca.Function("slope", inputs, [system.acceleration])

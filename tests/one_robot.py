@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -29,6 +30,8 @@ from models.translated_loop import translate_loop
 
 FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
 CURVE = circle(0.05)
+FAST = 6.28  # [rad/s], as lesson 5's scripts have it
+LENGTH = 2.2  # [s], of a hold
 
 
 @lru_cache
@@ -160,3 +163,23 @@ def largest(values: Array, begin: float, end: float) -> float:
 def at(values: Array, time: float) -> float:
     """At an instant, [s]."""
     return float(values[round(time / TICK)])
+
+
+@cache
+def way_round(law: str, **gains: Any) -> Array:
+    """theta of a robot that nobody holds, every millisecond of 5 s."""
+    return Driven(law, speed=FAST, **gains).run(5.0).log("theta")[:, 0]
+
+
+@cache
+def held_at(degrees: float, law: str = FOLLOWER, **gains: Any) -> Driven:
+    """Caught by the brake when it comes to a place, after at least 3 s."""
+    away = np.abs(np.exp(1j * way_round(law, **gains)[3000:]) - np.exp(1j * np.radians(degrees)))
+    begin = 3 + 1e-3 * int(np.argmax(away < 0.005))
+    return Driven(law, speed=FAST, **gains).run(begin).hold().run(begin + LENGTH)
+
+
+def most_and_rest(degrees: float, law: str = FOLLOWER, **gains: Any) -> tuple[float, float]:
+    """Largest distance while held, and that at the end, [mm]."""
+    distance = held_at(degrees, law, **gains).distance[-round(1e3 * LENGTH) :]
+    return float(distance.max()), float(distance[-1])

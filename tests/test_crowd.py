@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from websockets.datastructures import Headers
 from websockets.http11 import Request
 
-from app.crowd import Crowd, Holders, Proxies
+from app.crowd import Crowd, PerAddress, Proxies
 from app.hardening import Limits, make_server
 from app.protocol import SUBPROTOCOL
 from tests import waiting
@@ -145,6 +145,8 @@ def test_who_is_gone_before_the_request_is_looked_at_takes_no_room() -> None:
 @pytest.mark.parametrize(
     ("peer", "forwarded", "asker"),
     [
+        ("127.0.0.1", ["::ffff:203.0.113.7"], "203.0.113.7"),  # an IPv4 address in IPv6
+        ("::ffff:127.0.0.1", ["203.0.113.7"], "203.0.113.7"),
         ("203.0.113.7", [], "203.0.113.7"),
         ("203.0.113.7", ["198.51.100.9"], "203.0.113.7"),  # anybody can write that
         ("127.0.0.1", ["198.51.100.9"], "198.51.100.9"),
@@ -175,7 +177,7 @@ def test_a_proxy_that_cannot_be_is_refused() -> None:
 def test_nobody_holds_more_than_a_share_and_the_oldest_goes_first(
     steps: list[tuple[str, bool]],
 ) -> None:
-    holders, held = Holders[int](5, 3), list[tuple[int, str]]()
+    holders, held = PerAddress[int](5, 3), list[tuple[int, str]]()
     for number, (address, comes) in enumerate(steps):
         if comes:
             held.append((number, address))

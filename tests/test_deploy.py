@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from ipaddress import ip_network
 from typing import Any
 
 import pytest
@@ -75,7 +76,8 @@ def test_the_pod_starts_what_there_is_and_may_do_little(
 def test_proxies_say_who_asks_and_are_believed(container: dict[str, Any]) -> None:
     assert re.search(r"^\s+proxy_set_header X-Forwarded-For \$remote_addr;$", NGINX, re.MULTILINE)
     networks = container["args"][container["args"].index("--trusted-proxy") + 1]
-    assert Proxies((networks,)).asker("10.1.2.3", ["203.0.113.7"]) == "203.0.113.7"
+    pod = str(next(ip_network(networks).hosts()))
+    assert Proxies((networks,)).asker(pod, ["203.0.113.7"]) == "203.0.113.7"
 
 
 def test_browsers_stay_with_their_pod_and_websockets_stay_open(manifest: dict[str, Any]) -> None:

@@ -230,6 +230,22 @@ def test_resetting_by_hand_ends_what_is_shown(session: Session) -> None:
     assert session.script is None and not session.lessons.playing
 
 
+@pytest.mark.parametrize("command", [c.Reset(), c.ChoosePath("clover"), c.GoOn()])
+def test_what_is_given_up_half_way_has_not_been_seen(session: Session, command: object) -> None:
+    """Resetting, another robot's run, going on from the past: no truth, and not played."""
+    do(session, lc.GoToStep(1), lc.Predict(times=(0.0, 1.0), values=(0.0, 1.0)), lc.GoToStep(1))
+    do(session, lc.PlayStep())
+    run(session, 1.0)
+    if isinstance(command, c.GoOn):
+        do(session, c.View(0.5))
+    do(session, command)  # type: ignore[arg-type]
+    run(session, 3.0)
+    notes = session.lessons.notes
+    done = isinstance(command, c.ChoosePath)  # that one lets the script go on to its end
+    assert bool(notes.truths) is bool(notes.played) is done
+    assert not session.lessons.playing
+
+
 def test_progress_comes_back_from_json(session: Session, course: Course) -> None:
     do(session, lc.GoToStep(1), lc.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), lc.GoToStep(1))
     do(session, lc.SetPresenting(True), lc.ShowHint("hold"))

@@ -170,6 +170,13 @@ def test_codes_that_nobody_has_make_no_session_and_soon_are_refused_unasked() ->
 def test_presses_while_one_is_under_way_are_dropped() -> None:
     gate, begun, callbacks = Gate(), [], []
 
+    class Tab: ...
+
+    tab = Tab()
+
+    class Event:
+        client = tab
+
     class Button:
         def on_click(self, callback: Any) -> None:
             callbacks.append(callback)
@@ -181,9 +188,11 @@ def test_presses_while_one_is_under_way_are_dropped() -> None:
 
     def press() -> None:
         with pytest.raises(StopIteration):
-            callbacks[0](None).send(None)
+            callbacks[-1](Event()).send(None)
 
     on_slow_press(Button(), act)
+    press()
+    on_slow_press(Button(), act)  # another one of the same tab
     for _ in range(PRESSES):
         press()
     assert gate.reached.wait(WAIT) and len(begun) == 1

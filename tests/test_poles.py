@@ -143,7 +143,7 @@ def test_poles_are_told_as_the_words_have_it(values: dict[str, float], told: str
     assert ("±" in told) is ("no overshoot" not in across.words())
 
 
-@pytest.mark.parametrize("values", [{"K1": 0.0}, {"K1": 0.0, "K2": 0.0}])
+@pytest.mark.parametrize("values", [{"K1": 0.0}, {"K2": 0.0}, {"K1": 0.0, "K2": 0.0}])
 def test_an_error_that_stays_is_not_called_stable(values: dict[str, float]) -> None:
     across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]
     assert not across.stable and "stable" in across.words()

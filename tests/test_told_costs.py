@@ -59,7 +59,9 @@ def test_wrong_model_costs_some_millimetres() -> None:
 
 def test_more_gain_until_it_is_fatal() -> None:
     follower = shown("06", "More is better")["follower"]
-    told = said("06", "In the last second of each step, # mm on average, then #, then #:")
+    told = said(
+        "06", "In the last second of each step blue is # mm off on average, then #, then #:"
+    )
     assert_told(told, [float(follower.distance[a : a + 1000].mean()) for a in (1000, 3000, 5000)])
     low, high = said("06", "In the first step, from 1 s on, blue is # to # mm off")
     off = follower.distance[1000:2000]
@@ -126,7 +128,7 @@ def test_tracker_is_closer_from_the_second_lap_on() -> None:
     off = [follower.largest(1, 4), tracker.largest(1, 4)]
     assert_told(said("08", "| full speed, from 1 s | # mm | # mm |"), off)
     assert off[1] < off[0]
-    told = said("08", "starts by cutting the corner, up to # mm")
+    told = said("08", "begins by cutting the corner, and gets up to # mm off")
     assert_told(told, [tracker.largest(0, 1)])
 
 
@@ -165,9 +167,9 @@ def test_path_with_two_gentle_bulges() -> None:
         )["follower"].largest(0, 10)
         for k2 in (100, 200)
     ]
-    assert_told(said("08", "for ten seconds within # mm of the circle"), off[:1])
+    assert_told(said("08", "the follower, untouched, stays within # mm of the circle"), off[:1])
     assert_told(said("08", "With K2 = 200 it is about # mm"), off[1:])
-    assert_told(said("08", "K2 = 200 made about # mm out of #."), off[::-1])
+    assert_told(said("08", "K2 = 200 turned # mm into about # mm."), off)
 
 
 def test_course_on_one_page() -> None:
@@ -185,7 +187,9 @@ def test_course_on_one_page() -> None:
     assert_told(told, [float(lag), follower.largest(3, 5)])
     worst = said("08", "At other places it is up to # mm")
     assert_told(worst, [held(WORST).largest(3, 9)])
-    told = said("08", "a hand 30 mm to the right moves it # mm, with K1 = 1600 and K2 = 80 # mm")
+    told = said(
+        "08", "a hand 30 mm to the right moves it # mm, and only # mm with K1 = 1600 and K2 = 80"
+    )
     assert_told(told, [pulled(30.0).distance[-1], pulled(30.0, K1=1600, K2=80).distance[-1]])
 
 

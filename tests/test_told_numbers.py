@@ -14,6 +14,7 @@ from models.parameters import FiveBarParameters
 from models.poles import channels
 from models.system import Array
 from tests.conftest import jacobian
+from tests.one_robot import most_and_rest
 from tests.told import WORST, assert_told, held, numbers, play, said, shown, text, value
 
 RADIUS, TURN = 0.05, 2 * np.pi
@@ -83,7 +84,7 @@ def test_brake_feels_the_catch_and_then_the_lean() -> None:
     both = shown("01", "Held from 3 s to 5 s")
     lean = both["follower"].at(4.9, "force")
     press = float(both["tracker"].force[3100:5000].max())
-    quiz = "it leaned on the brake with # N, the tracker with up to # N. (To catch them took # N"
+    quiz = "it leaned on the brake with # N, the tracker with up to # N. (Catching them took # N"
     assert_told(said("01", "and leans on the brake with # N"), [lean])
     for robot in both.values():
         assert_told(said("01", quiz), [lean, press, float(robot.force[3000:5000].max())])
@@ -110,10 +111,12 @@ def test_nudge_depends_on_the_place() -> None:
     signs = np.sign([along_to_across(place) for place in circle])
     assert np.count_nonzero(np.diff(signs, append=signs[0])) == 4  # "At four places"
     assert held(3.15).across[-1] * held(3.16).across[-1] < 0  # one of the four lies between
-    holds = [held(at) for at in (WORST - 1 / 9, WORST - 1 / 36, WORST, WORST + 1 / 36, 3.3)]
-    told = max(hold.distance[-1] for hold in holds), max(hold.largest(3, 9) for hold in holds)
+    round_the_circle = [most_and_rest(degrees) for degrees in range(0, 360, 6)]
+    told = [max(column) for column in zip(*round_the_circle, strict=True)][::-1]
+    (near,) = said("01", "the follower comes to rest within # mm of it")
+    assert max(most_and_rest(degrees)[1] for degrees in (22, 113, 173, 243)) < value(near)
     sentence = "it comes to rest # mm off, and as the brake catches it, it even swings out to # mm"
-    assert_told(said("01", sentence), list(told))
+    assert_told(said("01", sentence), told)
 
 
 def test_leaning_less_on_the_brake_helps_at_rest() -> None:
@@ -163,14 +166,14 @@ def test_tip_lets_go() -> None:
 def test_torque_at_the_edge() -> None:
     follower = shown("03", "Pushed towards the edge")["follower"]
     peaks = [float(follower.torque[follower.during(a + 1, a + 3)].max()) for a in range(0, 15, 3)]
-    assert_told(said("03", "once the move is a second old: **#, #, #, #, # N m**"), peaks)
+    assert_told(said("03", "from one second after each move on: **#, #, #, #, # N m**"), peaks)
     reach = [333, 363, 383, 393, 397]
     for rho, peak in zip(reach, peaks, strict=True):
         assert_told(said("03", f"| {rho} mm | # | # | # |")[2:], [peak])
 
 
 def test_cosine_of_half_the_elbow() -> None:
-    text = "At # mm, # % of the full reach, the cosine is #. At # mm there is #, at # mm #, and"
+    text = "At # mm, # % of the full reach, the cosine is #. At # mm it is #, at # mm #, and"
     far, share, *rest = said("03", text)
     assert_told([share], [value(far) / 4])
     for rho, cosine in ((far, rest[0]), (rest[1], rest[2]), (rest[3], rest[4])):
@@ -228,7 +231,7 @@ def test_lab_shows_the_poles_of_the_table() -> None:
         shown_as = channels(FiveBarParameters(task="position"))[names[0] == "K4"].pole_words()
         assert [value(pole) for pole in shown_as.split(", ")] == [value(pole) for pole in table]
     fast, slow = said("04", "| K1 = 400, K2 = 200 | #, # |")[::-1]
-    sampled, exact = said("04", "a thousand times a second: # instead of #, the others as here")
+    sampled, exact = said("04", "a thousand times a second: # instead of #; the others are as here")
     told = channels(FiveBarParameters(K2=200))[0].pole_words().split(", ")
     assert exact == fast
     assert_told([sampled, slow], [float(pole) for pole in told])

@@ -182,7 +182,7 @@ def test_turning_round() -> None:
     assert turned(TRACKER, 2.0, 1.0) == turned(TRACKER, 2.0, 5.0)
     texts = said(
         LESSON,
-        "With K5 = 5 the tip goes # to # mm off in the turn, by where it turns."
+        "With K5 = 5 the tip goes # to # mm off in the turn, depending on where it turns."
         " The orange one: # to # mm, whatever K5 is.",
     )
     off = (follower[:, 0], tracker[:, 0])

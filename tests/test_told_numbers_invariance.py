@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -13,12 +12,11 @@ import pytest
 
 from models.experiments import experiments, run
 from models.system import Array
-from tests.one_robot import FOLLOWER, TRACKER, Driven, at, largest
+from tests.one_robot import FAST, FOLLOWER, TRACKER, Driven, at, held_at, largest, most_and_rest
 from tests.told import NUMBER, assert_told, said, value
 
-LESSON, FAST = "05", 6.28  # [rad/s], as the lesson's scripts have it
+LESSON = "05"
 README = Path(__file__).resolve().parent.parent / "README.md"
-LENGTH = 2.2  # [s], of a hold
 
 
 def told_in_readme(sentence: str) -> list[str]:
@@ -150,26 +148,6 @@ def test_the_paper_s_first_experiment() -> None:
 # Forces do ----------------------------------------------------------------------------------------
 
 
-@cache
-def way_round(law: str, **gains: Any) -> Array:
-    """theta of a robot that nobody holds, every millisecond of 5 s."""
-    return Driven(law, speed=FAST, **gains).run(5.0).log("theta")[:, 0]
-
-
-@cache
-def held_at(degrees: float, law: str = FOLLOWER, **gains: Any) -> Driven:
-    """Caught by the brake when it comes to a place, after at least 3 s."""
-    away = np.abs(np.exp(1j * way_round(law, **gains)[3000:]) - np.exp(1j * np.radians(degrees)))
-    begin = 3 + 1e-3 * int(np.argmax(away < 0.005))
-    return Driven(law, speed=FAST, **gains).run(begin).hold().run(begin + LENGTH)
-
-
-def most_and_rest(degrees: float, law: str = FOLLOWER, **gains: Any) -> tuple[float, float]:
-    """Largest distance while held, and that at the end, [mm]."""
-    distance = held_at(degrees, law, **gains).distance[-round(1e3 * LENGTH) :]
-    return float(distance.max()), float(distance[-1])
-
-
 def mobility(robot: Driven, q: Array) -> Array:
     """J M^-1 J^T, (2, 2), [1/kg]."""
     s = robot.robot.system
@@ -249,7 +227,8 @@ def test_at_four_places_a_push_along_the_path_gives_nothing_across() -> None:
 def test_round_the_circle() -> None:
     texts = said(
         LESSON,
-        "at those four places and # mm off at the worst one, after # mm while the brake caught it.",
+        "at those four places and # mm off at the worst one, having swung out to # mm as the brake"
+        " caught it.",
     )
     follower = [most_and_rest(degrees) for degrees in range(0, 360, 6)]
     most, rest = (max(column) for column in zip(*follower, strict=True))
@@ -275,7 +254,7 @@ def test_what_the_hint_says_of_k5_and_k1(degrees: int) -> None:
     said(
         LESSON,
         "brings blue to *rest* a fifth as far off, but takes only a quarter off the *largest*"
-        " distance, which is made while the brake catches the moving arm.",
+        " distance, which occurs while the brake catches the moving arm.",
     )
     said(
         LESSON,

@@ -6,6 +6,7 @@ import math
 import threading
 from collections.abc import Callable
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import viser
 
@@ -37,12 +38,15 @@ def on_press(handle: Any, act: Callable[[], None]) -> None:
     handle.on_click(pressed)
 
 
+_slow_presses: WeakKeyDictionary[Any, threading.Lock] = WeakKeyDictionary()
+"""By tab, on viser's event loop."""
+
+
 def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
     """Call `act()` when the button is pressed, in a thread of its own: it may wait, or build the
-    page anew. Presses while it is under way are dropped, so that nothing piles up."""
-    under_way = threading.Lock()
+    page anew. Presses of the same tab while it is under way are dropped: nothing piles up."""
 
-    def run() -> None:
+    def run(under_way: threading.Lock) -> None:
         try:
             act()
         except Exception as error:
@@ -50,9 +54,10 @@ def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
         finally:
             under_way.release()
 
-    async def pressed(_: viser.GuiEvent[Any]) -> None:
+    async def pressed(event: viser.GuiEvent[Any]) -> None:
+        under_way = _slow_presses.setdefault(event.client or handle, threading.Lock())
         if under_way.acquire(blocking=False):
-            threading.Thread(target=run, name="press", daemon=True).start()
+            threading.Thread(target=run, args=[under_way], name="press", daemon=True).start()
 
     handle.on_click(pressed)
 
