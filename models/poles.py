@@ -12,8 +12,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from models.parameters import Parameters
-from models.simulation import time_step
+from models.parameters import Parameters, time_step
 
 Complex = NDArray[np.complex128]
 NO_OVERSHOOT = 0.995  # damping beyond which a pair of poles counts as two equal real ones

@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from models.arrays import Array
 from models.catalogue import ROBOTS
 from models.curves import circle
 from models.distance import path_distance
@@ -24,7 +25,6 @@ from models.simulation import (
     kind_of,
     settings_vector,
 )
-from models.system import Array
 from models.translated_loop import translate_loop
 
 FOLLOWER, TRACKER = "path_following", "trajectory_tracking"

@@ -11,8 +11,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from models.arrays import Array
 from models.experiments import experiments, run
-from models.system import Array
 from tests.one_robot import FOLLOWER, TRACKER, Driven, at, largest
 from tests.told import NUMBER, assert_told, said, value
 
