@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from app.class_record import LETTERS, Distribution, tasks_passed
-from app.palette import FOLLOWER, TRACKER
+from app.palette import AMBER, FOLLOWER, GREEN, GREY, TRACKER
 from app.room import Member
 from lessons.course import Course
 from lessons.progress import MOST_POINTS as MOST_OF_TRUTH
@@ -20,7 +20,7 @@ from lessons.thinning import peaks
 from lessons.words import Words
 
 IDLE = 60.0  # [s] without a command
-GREEN, GREY, AMBER, INK = "#1d7a4f", "#667085", "#8a5a00", "#3f4a5a"
+INK = "#3f4a5a"
 WIDTH, HEIGHT, LEFT, BELOW = 640, 380, 50, 36  # of a plot, [px]
 MOST_POINTS = 40  # of a sketch on it
 

@@ -20,10 +20,10 @@ from app.lesson_run import LessonRun
 from app.recording import record_scene
 from app.session import Session
 from lessons.words import Words
+from models.arrays import Array
 from models.loops import InterpretedLoop
 from models.robots import Robot
 from models.simulation import kernel_of
-from models.system import Array
 from models.trajectory import Trajectory, join, record, write_csv
 
 log = logging.getLogger(__name__)

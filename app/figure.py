@@ -16,12 +16,12 @@ from app.history import Instant
 from app.per_thread import per_thread
 from app.samples import sample_layout
 from app.snapshot import END, Counts, FollowerName, RobotView, TrackerName
+from models.arrays import Array
 from models.buffered import Buffered
 from models.controllers import NAMES
 from models.curves import TABLE_SHAPE, Curve
 from models.projection import LocalCurve, basis
 from models.robots import Robot
-from models.system import Array
 
 AIMS = {TrackerName: "theta_ref", FollowerName: "theta"}
 """Where on the path each controller aims."""

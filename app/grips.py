@@ -8,11 +8,11 @@ from typing import Protocol
 import numpy as np
 
 from app.plant_run import PlantRun
+from models.arrays import Array
 from models.controllers import NAMES
 from models.curves import Curve
 from models.robots import Robot
 from models.simulation import FREE, Push, brake_at
-from models.system import Array
 
 REACH = 0.4  # [m], a hand's target stays within this of the middle
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from app.history import Drive, Stretch
 from lessons.words import Words
+from models.arrays import Array
 from models.identification import (
     BALANCE,
     DRY,
@@ -27,7 +28,6 @@ from models.loops import InterpretedLoop
 from models.parameters import Parameters, specs
 from models.robots import RigidFiveBar, Robot
 from models.simulation import kernel_of
-from models.system import Array
 
 if TYPE_CHECKING:
     from app.session import Session

@@ -5,13 +5,12 @@ from __future__ import annotations
 import html
 
 from app.lesson_run import LessonRun
-from app.palette import FOLLOWER
+from app.palette import AMBER, FOLLOWER, GREEN, GREY
 from lessons.checks import Verdict
 from lessons.record import QUANTITIES
 from lessons.schema import Choice, Lesson, Option, Quiz, Step, Task
 from lessons.words import Words
 
-GREEN, GREY, AMBER = "#1d7a4f", "#667085", "#8a5a00"
 LETTERS = "ABCDEFGH"
 STYLE = """<style>
 .op-text{padding:0 1em;font-size:1rem;line-height:1.55;color:#1f2937}

@@ -11,8 +11,8 @@ from lessons.progress import MOST_POINTS, Truth
 from lessons.record import ROBOTS, ROLES, Record
 from lessons.schema import RobotName
 from lessons.thinning import peaks
+from models.arrays import Array
 from models.layout import Layout
-from models.system import Array
 
 if TYPE_CHECKING:
     from app.session import Session

@@ -15,7 +15,8 @@ from app.loop import FRAME, Lab
 from app.moment import Moment, read_moment, take_over
 from app.session import MOST_TICKS, Session
 from models.controllers import NAMES
-from models.simulation import Push, time_step
+from models.parameters import time_step
+from models.simulation import Push
 
 BEHIND = 0.4  # [s] that it runs behind the latest moment
 FURTHEST = 2.0  # [s]; further behind, what lies between is left out

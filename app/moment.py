@@ -18,6 +18,7 @@ from app.plant_run import Diverged, PlantRun
 from app.samples import places
 from app.session import Session
 from app.setups import Word
+from models.arrays import Array
 from models.catalogue import ROBOTS, Entry
 from models.controllers import NAMES
 from models.curve_faults import Fault
@@ -26,7 +27,6 @@ from models.loop_vectors import log_layout, state_layout
 from models.parameters import Parameters, changed, specs
 from models.path_design import MOST_POINTS, PathDesign
 from models.simulation import Push
-from models.system import Array
 
 MOST_MARKS = 2000  # numbers
 INSTANT = 1e-6  # [s], shorter than any tick

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.snapshot import FollowerName, TrackerName
+from models.controllers import NAMES
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +47,8 @@ class Colour:
         return Colour(*mixed)
 
 
+GREEN, GREY, AMBER = "#1d7a4f", "#667085", "#8a5a00"
+"""Of words on a page."""
 WHITE = Colour(255, 255, 255)
 INK = Colour(31, 41, 55)
 
@@ -64,4 +66,4 @@ STEEL = Colour(118, 128, 142)
 FLOOR = Colour(244, 246, 248)
 GRID = Colour(222, 226, 232)
 
-CONTROLLERS = {TrackerName: TRACKER, FollowerName: FOLLOWER}
+CONTROLLERS: dict[str, Colour] = dict(zip(NAMES, (TRACKER, FOLLOWER), strict=True))

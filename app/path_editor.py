@@ -75,7 +75,7 @@ class PathEditor:
     def propose(self, design: PathDesign) -> bool:
         """Show an unfinished edit, and follow it if it is valid. Returns whether it is."""
         self.proposed = design
-        self.faults = curve_faults(self.robot, design.curve)
+        self.faults = curve_faults(self.robot.margin, design.curve)
         self.version += 1
         if not self.faults:
             self._blend_to(design.curve)

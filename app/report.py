@@ -12,9 +12,8 @@ from html import escape
 import numpy as np
 
 from app.codes import shown
-from app.lesson_html import AMBER, GREEN, GREY
 from app.lesson_run import LessonRun
-from app.palette import FOLLOWER, INK
+from app.palette import AMBER, FOLLOWER, GREEN, GREY, INK
 from app.report_facts import Chapter, chapters, predictions, quizzes
 from app.report_plot import draw_prediction, number
 from lessons.progress import Answer, Truth

@@ -7,11 +7,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from models.arrays import Array
 from models.layout import Layout
 from models.loop_vectors import log_layout
 from models.parameters import Parameters
 from models.robots import Robot
-from models.system import Array
 
 
 @lru_cache(maxsize=8)

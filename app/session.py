@@ -32,15 +32,14 @@ from app.snapshot import PathView
 from lessons.course import NO_LESSONS, Course
 from lessons.record import ROLES, Happening
 from lessons.schema import RobotName
+from models.arrays import Array
 from models.catalogue import FIVE_BAR, Entry
 from models.controllers import NAMES
 from models.curves import Curve
 from models.layout import Layout
-from models.parameters import Parameters
+from models.parameters import TICK, Parameters, time_step
 from models.path_design import PathDesign, presets
 from models.robots import Robot
-from models.simulation import TICK, time_step
-from models.system import Array
 
 log = logging.getLogger(__name__)
 

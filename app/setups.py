@@ -125,7 +125,7 @@ def restore(session: Session, setup: Setup) -> None:
     for name in (session.entry.name, *session._benches):
         wanted.setdefault(name, _wanted(name, Bench(), session.presets))
     for name, bench in wanted.items():
-        faults = curve_faults(bench.entry.make(bench.parameters), bench.design.curve)
+        faults = curve_faults(bench.entry.make(bench.parameters).margin, bench.design.curve)
         if faults:
             reasons = "; ".join(fault.reason for fault in faults)
             raise ValueError(f"{ROBOTS[name].label} cannot follow this path: {reasons}")

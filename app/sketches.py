@@ -7,7 +7,7 @@ import numpy as np
 from lessons.progress import Answer
 from lessons.schema import Sketch
 from lessons.thinning import peaks
-from models.system import Array
+from models.arrays import Array
 
 MOST_POINTS = 160
 

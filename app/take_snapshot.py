@@ -7,8 +7,8 @@ import numpy as np
 from app.figure import robot_views
 from app.session import Session
 from app.snapshot import PathView, Snapshot
+from models.arrays import Array
 from models.curves import Curve
-from models.system import Array
 
 TRACE = 1.6  # [s]
 TRACE_POINTS = 120

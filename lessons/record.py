@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lessons.schema import RobotName, Window
+from models.arrays import Array
 from models.parameters import Parameters
-from models.system import Array
 
 Mask = NDArray[np.bool_]
 ROBOTS: tuple[RobotName, ...] = ("tracker", "follower")

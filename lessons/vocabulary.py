@@ -133,7 +133,7 @@ def _path_faults(scene: Scene, entry: Entry) -> Iterator[str]:
         return
     for name, value in scene.set.items():
         parameters = changed(parameters, name, value)
-    for fault in curve_faults(entry.make(parameters), design.curve):
+    for fault in curve_faults(entry.make(parameters).margin, design.curve):
         yield f"path {scene.path!r}: {fault.reason}"
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from models.system import Array
+from models.arrays import Array
 
 MOST_MODES = 6
 

@@ -7,7 +7,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from models.system import Array
+from models.arrays import Array
 
 
 class Buffered:

@@ -7,13 +7,13 @@ is unique (section II.D), and nothing here works without it.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from models.arrays import Array
 from models.curves import Curve
-from models.robots import Robot
-from models.system import Array
 
 TUBE = 0.008  # [m], radius within which the closest point must be unique
 LEAST_MARGIN = 0.2  # of Robot.margin
@@ -33,13 +33,17 @@ class Fault:
     points: Array
 
 
-def curve_faults(robot: Robot, curve: Curve) -> list[Fault]:
-    """All that is wrong with a curve as a path for the robot; empty if it will do."""
+def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
+    """All that is wrong with a curve as a path for a robot; empty if it will do.
+
+    Args:
+        reach: the robot's `Robot.margin`.
+    """
     theta = curve.sample(SAMPLES)
     z, first = curve.at(theta), curve.at(theta, 1)
     if not np.all(np.isfinite(z)):
         return [Fault("the curve has points that are not numbers", np.zeros((0, 2)))]
-    margin = robot.margin(z)
+    margin = reach(z)
     checks = [
         (margin <= 0, "the path leaves the workspace: the arm cannot reach there"),
         (

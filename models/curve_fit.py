@@ -9,8 +9,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.interpolate import CubicSpline
 
+from models.arrays import Array
 from models.curves import HARMONICS, Curve, chebyshev_curve, fourier
-from models.system import Array
 
 SAMPLES = 256
 SHORTEST = 0.02  # [m], total length below which a stroke is no path

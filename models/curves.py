@@ -15,7 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from models.system import Array
+from models.arrays import Array
 
 HARMONICS = 12
 TERMS = 2 * HARMONICS + 1

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from models.arrays import Array
 from models.curves import Curve, local_minima
 from models.frames import Frame
-from models.system import Array
 
 CHUNK = 4096
 NEAR = 0.1  # [rad]; within it the Taylor polynomial stands for the curve

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from models.arrays import Array
 from models.catalogue import FIVE_BAR, FLEXIBLE
 from models.controllers import NAMES
 from models.curves import Curve, circle
@@ -31,7 +32,6 @@ from models.simulation import (
     settings_vector,
     time_step,
 )
-from models.system import Array
 from models.trajectory import Trajectory, record
 
 CHUNK = 200  # ticks between looks for a divergence

@@ -14,7 +14,8 @@ import casadi as ca
 import numpy as np
 
 from assets import asset_path
-from models.system import Array, MechanicalSystem, mechanical_system
+from models.arrays import Array
+from models.system import MechanicalSystem, mechanical_system
 
 GRAVITY = 9.81  # [m/s^2]
 HOME = np.array([np.pi / 2, np.pi])

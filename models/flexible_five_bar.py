@@ -15,8 +15,9 @@ import casadi as ca
 import numpy as np
 
 from assets import asset_path
+from models.arrays import Array
 from models.beam import BeamModes, beam_modes
-from models.system import Array, MechanicalSystem, mechanical_system
+from models.system import MechanicalSystem, mechanical_system
 
 PLANTS = ("lagrangian", "unit_modes")
 FORMER_PLANTS = {"as_printed": "unit_modes"}  # in share codes, kept labs and lessons of others

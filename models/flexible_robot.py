@@ -9,13 +9,14 @@ import casadi as ca
 import numpy as np
 
 from models import five_bar, flexible_five_bar
+from models.arrays import Array
 from models.beam import MOST_MODES, BeamModes, beam_modes
 from models.flexible_five_bar import FORMER_PLANTS, PLANTS, RIGID, FlexibleLinks
 from models.forces import Grip, SpringLimits
 from models.frames import Frame, SlantedPlane
 from models.parameters import Parameters, choice, number
 from models.robots import collapse, first_fault
-from models.system import Array, MechanicalSystem, conditioning, decoupling_matrix
+from models.system import MechanicalSystem, conditioning, decoupling_matrix
 from models.zero_dynamics import flexible_zero_dynamics
 
 MOST_BENT = 0.3  # of the beam's length: far beyond what small deflections allow

@@ -12,7 +12,7 @@ from typing import Protocol
 import casadi as ca
 import numpy as np
 
-from models.system import Array
+from models.arrays import Array
 
 
 class Frame(Protocol):

@@ -19,8 +19,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.polynomial import Polynomial
 from scipy.linalg import lstsq
 
+from models.arrays import Array
 from models.forces import DRY_VELOCITY
-from models.system import Array
 
 INERTIA = ("M11", "M22", "b1", "b2")  # what the controller's model has, eq. (12)
 DRY = ("c1", "c2")  # dry friction of the joints, [N m]

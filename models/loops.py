@@ -12,9 +12,9 @@ from typing import Protocol
 
 import numpy as np
 
+from models.arrays import Array
 from models.buffered import Buffered
 from models.kernel import Kernel
-from models.system import Array
 
 BLOCK = 16  # ticks per call of the interpreted loop, about one frame
 SHORT = 100  # ticks, for which a compiled loop keeps the interpreter's lock

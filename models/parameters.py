@@ -14,6 +14,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any
 
+TICK = 1e-3  # [s]
 NOTHING = 1e-9  # of any parameter; what is smaller is taken as 0, so that its inverse is finite
 
 
@@ -310,3 +311,8 @@ def changed(parameters: Parameters, name: str, value: Any) -> Parameters:
     if getattr(parameters, name) == value:
         return parameters
     return dataclasses.replace(parameters, **{name: value})
+
+
+def time_step(parameters: Parameters) -> float:
+    """Length of a tick, [s]: 1 ms, or less if the controller is faster."""
+    return min(TICK, 1 / parameters.control_rate)

@@ -9,9 +9,9 @@ from types import MappingProxyType
 
 import numpy as np
 
+from models.arrays import Array
 from models.curve_fit import closed_through, control_points, from_stroke, open_through
 from models.curves import Curve, aligned, circle, ellipse, fourier, segment
-from models.system import Array
 
 MOST_POINTS = 24
 REACH = 0.2  # [m], control points stay within this of the middle

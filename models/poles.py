@@ -12,8 +12,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from models.parameters import Parameters
-from models.simulation import time_step
+from models.parameters import Parameters, time_step
 
 Complex = NDArray[np.complex128]
 LEAST_DECAY = 1e-3  # [1/s]; what takes longer than a quarter of an hour does not die out

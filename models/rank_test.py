@@ -11,9 +11,10 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
+from models.arrays import Array
 from models.parameters import Parameters
 from models.robots import Robot
-from models.system import Array, conditioning, decoupling_matrix
+from models.system import conditioning, decoupling_matrix
 
 
 @lru_cache(maxsize=16)

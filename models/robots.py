@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models import five_bar
+from models.arrays import Array
 from models.forces import Grip
 from models.frames import Frame, Plane
 from models.parameters import FiveBarParameters, Parameters
-from models.system import Array, MechanicalSystem
+from models.system import MechanicalSystem
 
 FASTEST_JOINT = 100.0  # [rad/s], beyond it a run counts as diverged
 COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed

@@ -8,16 +8,15 @@ from functools import lru_cache
 import numpy as np
 
 from models import composite_control
+from models.arrays import Array
 from models.curves import Curve
 from models.kernel import Kernel, build_kernel
 from models.loop_kind import Kind
 from models.loop_vectors import GAINS
-from models.parameters import Parameters
+from models.parameters import TICK, Parameters, time_step
 from models.robots import Robot
-from models.system import Array
 
 NO_LIMIT = 1000.0  # [N m], a bound far beyond any motor, so that torques stay finite
-TICK = 1e-3  # [s]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,11 +61,6 @@ def kind_of(
 def kernel_of(robot: Robot, kind: Kind) -> Kernel:
     """The kernel of a robot and kind, built once."""
     return build_kernel(robot.system, robot.frame, kind, robot.substeps, robot.grip)
-
-
-def time_step(parameters: Parameters) -> float:
-    """Length of a tick, [s]: 1 ms, or less if the controller is faster."""
-    return min(TICK, 1 / parameters.control_rate)
 
 
 def settings_vector(

@@ -10,11 +10,11 @@ from typing import TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from models.arrays import Array
 from models.curves import Curve
 from models.distance import path_distance
 from models.layout import Layout
 from models.robots import Robot
-from models.system import Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -16,8 +16,9 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from models.arrays import Array
 from models.flexible_five_bar import flexible_five_bar
-from models.system import Array, MechanicalSystem
+from models.system import MechanicalSystem
 
 Complex = NDArray[np.complex128]
 HIGHEST_ALPHA = 1.5

@@ -21,7 +21,7 @@ from app.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from app.server import LabServer
 from app.session import Session
 from app.stages import stage_of
-from models.simulation import time_step
+from models.parameters import time_step
 from tests import waiting
 
 CHROMIUM = "/usr/bin/chromium"

@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from models.arrays import Array
 from models.curves import HARMONICS, Curve, fourier
 from models.five_bar import FiveBarLinks, five_bar, inverse_kinematics, load_links
 from models.frames import Plane
 from models.kernel import Kernel, build_kernel
 from models.loop_kind import Kind
 from models.loops import Loop
-from models.system import Array, MechanicalSystem
+from models.system import MechanicalSystem
 from models.translated_loop import translate_loop
 
 # How long an example takes is not what is tested. `make test` gives the same verdict every time;

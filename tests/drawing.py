@@ -7,7 +7,7 @@ from typing import Any
 
 import casadi as ca
 
-from models.system import Array
+from models.arrays import Array
 
 
 def evaluated(function: Callable[..., Any], *values: Any) -> list[Array]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh
 
-from models.system import Array
+from models.arrays import Array
 
 
 @dataclass(frozen=True)

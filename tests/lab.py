@@ -67,7 +67,7 @@ def assert_sound(session: Session) -> None:
         value = getattr(session.parameters, name)
         assert checked(spec, name, value) == value
     editor = session.editor
-    assert curve_faults(session.robot, editor.design.curve) == []
+    assert curve_faults(session.robot.margin, editor.design.curve) == []
     assert np.isfinite(editor.table).all() and np.isfinite(editor.points()).all()
     assert editor.selected is None or 0 <= editor.selected < len(editor.design.points)
     assert 0.125 <= session.rate <= 4

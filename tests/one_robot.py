@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from models.arrays import Array
 from models.catalogue import ROBOTS
 from models.curves import circle
 from models.distance import path_distance
@@ -25,7 +26,6 @@ from models.simulation import (
     kind_of,
     settings_vector,
 )
-from models.system import Array
 from models.translated_loop import translate_loop
 
 FOLLOWER, TRACKER = "path_following", "trajectory_tracking"

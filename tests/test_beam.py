@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from finite_elements import beam_of_elements
 
+from models.arrays import Array
 from models.beam import MOST_MODES, beam_modes, rigidity
-from models.system import Array
 
 LENGTH = 0.5
 # cos(beta) cosh(beta) = -1 to sixteen digits (Blevins, Formulas for natural frequency, table 8-1)

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from models import composite_control as composite
+from models.arrays import Array
 from models.beam import beam_modes
 from models.controllers import Gains, Task, linearization, path_following
 from models.curves import circle, nearest
 from models.flexible_five_bar import HOME, RIGID, end_point, flexible_five_bar, load_links
 from models.frames import SlantedPlane
 from models.projection import LocalCurve
-from models.system import Array
 from models.virtual_output import VirtualOutput, virtual_output
 
 LINKS, BEAM, FRAME, RADIUS = load_links(), beam_modes(3, 0.5), SlantedPlane(), 0.05

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from models.arrays import Array
 from models.curve_fit import closed_through, control_points, from_stroke, open_through
 from models.curves import (
     HARMONICS,
@@ -21,7 +22,6 @@ from models.curves import (
     ellipse,
     segment,
 )
-from models.system import Array
 
 THETA = np.linspace(-np.pi, np.pi, 41)
 

@@ -9,6 +9,7 @@ from conftest import Rig, jacobian
 from hypothesis import given
 from hypothesis import strategies as st
 
+from models.arrays import Array
 from models.five_bar import (
     GRAVITY,
     FiveBarLinks,
@@ -17,7 +18,7 @@ from models.five_bar import (
     singularity_margin,
     skeleton,
 )
-from models.system import Array, conditioning, decoupling_matrix, lagrange_bias
+from models.system import conditioning, decoupling_matrix, lagrange_bias
 from tests.drawing import drawn
 
 SEEDS = range(20)

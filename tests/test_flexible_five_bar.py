@@ -11,9 +11,10 @@ import pytest
 from finite_elements import beam_of_elements
 from scipy.linalg import eigh
 
+from models.arrays import Array
 from models.beam import beam_modes, rigidity
 from models.flexible_five_bar import HOME, PLANTS, RIGID, end_point, flexible_five_bar, load_links
-from models.system import Array, MechanicalSystem, conditioning, decoupling_matrix, lagrange_bias
+from models.system import MechanicalSystem, conditioning, decoupling_matrix, lagrange_bias
 
 LINKS = load_links()
 BEAM = beam_modes(3, LINKS.beam)

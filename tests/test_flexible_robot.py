@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from models.arrays import Array
 from models.catalogue import FLEXIBLE, ROBOTS
 from models.curves import circle
 from models.flexible_robot import (
@@ -20,7 +21,6 @@ from models.flexible_robot import (
 from models.loops import InterpretedLoop
 from models.parameters import FiveBarParameters
 from models.simulation import FREE, Push, first_state, kernel_of, kind_of, settings_vector
-from models.system import Array
 from models.translated_loop import translate_loop
 from tests.drawing import drawn
 

@@ -15,6 +15,7 @@ from app import commands as c
 from app.exports import replay
 from app.identify import MOST_TICKS, last_record
 from app.session import Session
+from models.arrays import Array
 from models.curves import Curve, circle
 from models.identification import (
     ALL,
@@ -28,7 +29,6 @@ from models.identification import (
     smooth_velocities,
 )
 from models.robots import RigidFiveBar
-from models.system import Array
 
 COULOMB = 0.04
 

@@ -13,13 +13,13 @@ from conftest import DEFAULTS, FOLLOWING, TRACKING, Rig
 from numpy.typing import NDArray
 from reference import reference_loop
 
+from models.arrays import Array
 from models.curves import Curve, chebyshev_curve, circle, ellipse, segment
 from models.five_bar import end_point, inverse_kinematics
 from models.frames import Plane
 from models.kernel import build_kernel
 from models.loop_kind import Kind
 from models.loops import InterpretedLoop
-from models.system import Array
 
 BOTH = pytest.mark.parametrize("kind", [FOLLOWING, TRACKING], ids=lambda kind: kind.controller)
 CIRCLE = circle(0.05)

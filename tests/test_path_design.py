@@ -21,7 +21,7 @@ CLOSED = [name for name in GOOD if presets()[name].curve.closed]
 
 
 def reasons(curve: Curve) -> list[str]:
-    return [fault.reason for fault in curve_faults(ROBOT, curve)]
+    return [fault.reason for fault in curve_faults(ROBOT.margin, curve)]
 
 
 def teardrop(sharpness: float) -> Curve:
@@ -41,7 +41,7 @@ def test_presets_are_good_paths(name: str) -> None:
 
 
 def test_figure_of_eight_is_refused_where_it_crosses() -> None:
-    found = curve_faults(ROBOT, presets()["figure of eight"].curve)
+    found = curve_faults(ROBOT.margin, presets()["figure of eight"].curve)
     assert len(found) == 1 and "crosses itself" in found[0].reason
     assert np.linalg.norm(found[0].points, axis=1).max() < 1e-6  # in the middle, and only there
 
@@ -51,7 +51,7 @@ def test_path_leaves_the_workspace_where_the_arm_ends(offset: float) -> None:
     # the arm, stretched, reaches a circle of 0.4 m about (-0.2, -0.2)
     middle = np.array([-0.2, -0.2]) + 0.4 * np.array([np.cos(0.8 + offset), np.sin(0.8 + offset)])
     outside = circle(0.02, centre=(float(middle[0]), float(middle[1])))
-    faults = curve_faults(ROBOT, outside)
+    faults = curve_faults(ROBOT.margin, outside)
     where = next(f.points for f in faults if "leaves the workspace" in f.reason)
     assert np.all(np.hypot(*(where + 0.2).T) >= 0.4 - 1e-9)
     theta = outside.sample(240)
@@ -77,7 +77,7 @@ def test_singular_configurations_are_kept_clear_of(angle: float, reach: float) -
 @pytest.mark.parametrize(("radius", "refused"), [(TUBE * 1.05, False), (TUBE * 0.95, True)])
 def test_bend_must_be_as_wide_as_the_tube(radius: float, refused: bool) -> None:
     for curve in (circle(radius), teardrop(radius)):
-        found = curve_faults(ROBOT, curve)
+        found = curve_faults(ROBOT.margin, curve)
         assert [("bends too sharply" in f.reason) for f in found] == [True] * refused
     if refused:  # at the sharp ends only
         where = found[0].points
@@ -90,7 +90,7 @@ def test_cusp_is_refused() -> None:
     cosine, sine = np.array([[2 * a, 0], [a, 0]]), np.array([[0, 2 * a], [0, -a]])
     found = {
         f.reason.split(",")[0]: f.points
-        for f in curve_faults(ROBOT, fourier(np.zeros(2), cosine, sine))
+        for f in curve_faults(ROBOT.margin, fourier(np.zeros(2), cosine, sine))
     }
     assert any("cusp" in reason for reason in found)
 

@@ -11,10 +11,10 @@ import pytest
 from models.controllers import NAMES
 from models.curves import circle
 from models.loops import InterpretedLoop
-from models.parameters import FiveBarParameters
+from models.parameters import FiveBarParameters, time_step
 from models.poles import Complex, channels
 from models.robots import rigid_five_bar
-from models.simulation import FREE, first_state, kernel_of, kind_of, settings_vector, time_step
+from models.simulation import FREE, first_state, kernel_of, kind_of, settings_vector
 
 RADIUS = 0.05
 

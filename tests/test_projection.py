@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from models.arrays import Array
 from models.curves import TABLE_SHAPE, Curve, chebyshev_curve, circle, segment
 from models.projection import LARGEST_STEP, LocalCurve, basis, wrap
-from models.system import Array
 
 CURVES, POINTS = 150, 25
 

@@ -201,7 +201,7 @@ def test_strange_data_is_refused(data: Any) -> None:
 def test_presets_that_are_offered_can_be_restored() -> None:
     session = new_session()
     for name in FOLLOWABLE:
-        assert not curve_faults(session.robot, PRESETS[name].curve)
+        assert not curve_faults(session.robot.margin, PRESETS[name].curve)
         assert capture_path(PRESETS[name], PRESETS) == Path(name)
         restore(session, own(name=name))
         assert session.editor.design is session.presets[name]

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from models.arrays import Array
 from models.beam import beam_modes
 from models.flexible_five_bar import HOME, load_links
-from models.system import Array
 from models.zero_dynamics import flexible_zero_dynamics
 from tests.test_told_numbers_invariance import told_in_readme
 from tests.told import agrees, assert_told, said

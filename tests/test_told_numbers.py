@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from lessons.schema import Action
+from models.arrays import Array
 from models.five_bar import inverse_kinematics, load_links
 from models.parameters import FiveBarParameters
 from models.poles import channels
-from models.system import Array
 from tests.conftest import jacobian
 from tests.one_robot import most_and_rest
 from tests.told import WORST, assert_told, held, numbers, play, said, shown, text, value

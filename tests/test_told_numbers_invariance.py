@@ -10,8 +10,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from models.arrays import Array
 from models.experiments import experiments, run
-from models.system import Array
 from tests.one_robot import FAST, FOLLOWER, TRACKER, Driven, at, held_at, largest, most_and_rest
 from tests.told import NUMBER, assert_told, said, value
 

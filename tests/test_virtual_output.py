@@ -8,10 +8,10 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from models.arrays import Array
 from models.curves import TABLE_SHAPE, Curve, circle, ellipse
 from models.frames import Frame, Plane, SlantedPlane
 from models.projection import LocalCurve, basis
-from models.system import Array
 from models.virtual_output import LevelSet, virtual_output
 
 H = 1e-3  # [s], step of the finite differences

@@ -224,7 +224,7 @@ def reasons() -> Iterator[str]:
     """Why runs stop and paths are refused."""
     robot = rigid_five_bar()
     for curve in (presets()["figure of eight"].curve, circle(0.19), circle(0.004), circle(0.3)):
-        yield from (fault.reason for fault in curve_faults(robot, curve))
+        yield from (fault.reason for fault in curve_faults(robot.margin, curve))
     v = np.zeros((1, 2))
     for q, rates in ((v * np.nan, v), (v, v + 1e4)):
         found = first_fault(q, rates)

@@ -12,12 +12,13 @@ import pytest
 from scipy.linalg import expm
 
 from app.zero_dynamics import SETTABLE, as_json, study
+from models.arrays import Array
 from models.beam import MOST_MODES, beam_modes
 from models.five_bar import five_bar
 from models.flexible_five_bar import HOME, load_links
 from models.flexible_robot import FlexibleParameters
 from models.parameters import changed, specs
-from models.system import Array, MechanicalSystem
+from models.system import MechanicalSystem
 from models.zero_dynamics import flexible_zero_dynamics, natural_rate, zero_dynamics
 
 LINKS = load_links()

@@ -22,7 +22,7 @@ from lessons.course import BUILT_IN
 from lessons.parse import read_lesson
 from lessons.record import ROLES
 from lessons.schema import Action, Lesson, RobotName, Script, Value
-from models.system import Array
+from models.arrays import Array
 from models.trajectory import Trajectory
 from tests.lab import run, store
 
