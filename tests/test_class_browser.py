@@ -124,7 +124,7 @@ def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None
     wait_for(lambda: teacher.page.get_by_text("Students in the class: 2").count() == 2)
     teacher.page.get_by_role("tab", name="Class").click()
     teacher.page.get_by_text("Whoever joins gets the set-up").wait_for()
-    teacher.press("No longer for those who join")
+    teacher.press("Stop sending this to those who join")
     wait_for(lambda: tabs.room.orders.push is None)
     teacher.page.get_by_text("Whoever joins gets").wait_for(state="hidden")
 
