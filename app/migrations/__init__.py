@@ -13,6 +13,7 @@ HEAD = "0001"
 REVISIONS = sa.Table(
     "alembic_version", sa.MetaData(), sa.Column("version_num", sa.String(32), primary_key=True)
 )
+logging.getLogger("alembic").setLevel(logging.WARNING)  # it tells of each of its plugins
 _alone = threading.Lock()  # Alembic keeps the migration under way in a global
 
 
@@ -38,7 +39,6 @@ def upgrade(connection: sa.Connection) -> None:
     config = Config()
     config.set_main_option("script_location", _folder().replace("%", "%%"))
     config.attributes["connection"] = connection
-    logging.getLogger("alembic").setLevel(logging.WARNING)
     with _alone:
         upgrade(config, "head")
 
