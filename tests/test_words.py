@@ -286,3 +286,11 @@ def test_a_german_lab_speaks_german() -> None:
 def test_a_parameter_without_words_has_those_of_its_declaration() -> None:
     spec = specs(FiveBarParameters)["K1"]
     assert label_of(ENGLISH, "K1", spec) == spec.label != label_of(Words("de"), "K1", spec)
+
+
+def test_plots_call_eta_what_the_paper_does() -> None:
+    """eta_2 is (theta, theta'), eta_1 the motion inside: neither is theta or its rate alone."""
+    for language in languages():
+        said = Words(language)
+        shown = [said(f"{kind}.{name}") for kind in ("plot", "axis") for name in ("place", "rate")]
+        assert all("θ" in text and "η" not in text for text in shown)
