@@ -1,7 +1,7 @@
-"""Asks newcomers what their browsers keep, and holds no thread while they think about it.
+"""Asks a new browser what it keeps in its local storage, without holding a thread meanwhile.
 
-A page answers at once; who does not is none, and stays outside. viser's own way to ask takes one
-of its 32 threads until the answer is here.
+viser's page answers at once; a client that does not answer gets no lab. viser's own call to read
+local storage blocks one of its 32 threads until the answer is here.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import viser
 from viser import _messages as wire
 from websockets.frames import CloseCode
 
-from app.crowd import PerAddress
+from app.connection_limits import PerAddress
 from app.error_log import log_error
 from app.gate import warn_once
 
@@ -23,12 +23,13 @@ MOST, MOST_EACH = 300, 100  # newcomers that have not answered, in all and of on
 
 
 class Arrivals:
-    """Newcomers that have not answered yet. On viser's event loop, but for `enter`.
+    """Clients that have not answered yet. Used on viser's event loop, except `enter`.
 
     Args:
         keys: what is asked for.
         enter: called in one of viser's threads, with what a browser keeps under those keys.
-        most, most_each: so many have not answered; of more, the oldest are turned away.
+        most, most_each: how many may be unanswered, in all and of one address; beyond that the
+            oldest is turned away.
     """
 
     def __init__(

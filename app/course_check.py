@@ -92,7 +92,7 @@ def _reference_faults(lesson: Lesson, file: Path, store: LoopStore) -> Iterator[
     for step in lesson.steps:
         for task in step.tasks():
             if task.id not in references:
-                continue  # said by read_references
+                continue  # reported by read_references
             scripts = references[task.id]
             for what, script in (("solution", scripts.solution), ("failure", scripts.failure)):
                 fault = _fault(lesson, step, script, task, store, what == "solution")

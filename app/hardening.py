@@ -28,7 +28,7 @@ from websockets.frames import CloseCode, Frame, Opcode
 from websockets.http11 import Request, Response
 
 from app.compression import share_compressors
-from app.crowd import Crowd, Proxies, Visitor
+from app.connection_limits import ConnectionLimits, CountedConnection, Proxies
 from app.error_log import log_error
 from app.gate import Gate, Limits, warn_once
 from app.listening import PortInUse, listen, listen_unix
@@ -82,7 +82,7 @@ def make_server(
     Args:
         allowed_origins: pages of other sites that may connect, "https://lab.example:8443". The
             server's own page always may, and so may a client that is no browser.
-        trusted_proxies: see `app.crowd.Proxies`.
+        trusted_proxies: see `app.connection_limits.Proxies`.
         share_port: other processes of this user may hold the same port, or listen on it.
         unix_socket: listen on this file alone, for a proxy of this user's that puts the page
             into a folder of its own.
@@ -94,7 +94,7 @@ def make_server(
         PortInUse: where viser alone would move on to the next port without a word.
         OSError: the address cannot be bound.
     """
-    crowd = Crowd(limits, Proxies(trusted_proxies))
+    connections = ConnectionLimits(limits, Proxies(trusted_proxies))
     _cache_icons()
     share_compressors()
     if listener is None:
@@ -102,7 +102,7 @@ def make_server(
     port = 0 if unix_socket else listener.getsockname()[1]
     local_only = is_loopback(host) and not unix_socket
     door = Door(allowed_origins, local_only=local_only, health=health)
-    with _guarded_serve(listener, door, limits, crowd, in_folder=unix_socket is not None):
+    with _guarded_serve(listener, door, limits, connections, in_folder=unix_socket is not None):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     harden(server, limits=limits)
     door.open = True
@@ -148,19 +148,19 @@ _patching = threading.Lock()
 
 @contextmanager
 def _guarded_serve(
-    listener: socket.socket, door: Door, limits: Limits, crowd: Crowd, in_folder: bool
+    listener: socket.socket, door: Door, limits: Limits, counts: ConnectionLimits, in_folder: bool
 ) -> Iterator[None]:
     """Lead the one call of websockets' `serve`, which viser makes on construction, to our gates."""
     library: Any = websockets.asyncio.server
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
-        async def knock(connection: Visitor, request: Request) -> Response | None:
+        async def knock(connection: CountedConnection, request: Request) -> Response | None:
             until = time.monotonic() + STARTING
             while not door.open and time.monotonic() < until:  # who asks is told when it is ready
                 await asyncio.sleep(0.02)
             if refusal := door.refusal(request):  # or health, whoever is here
                 return connection.respond(*refusal)
-            if not crowd.takes(connection, request):
+            if not counts.admits(connection, request):
                 return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
             if in_folder and request.path.partition("?")[0] == "/":
                 return _to_page(connection, request)
@@ -176,7 +176,7 @@ def _guarded_serve(
         options["max_size"] = limits.max_message_bytes
         options["ping_interval"] = options["ping_timeout"] = limits.silence
         options["close_timeout"] = limits.farewell
-        options["create_connection"] = partial(_Connection, limits=limits, crowd=crowd)
+        options["create_connection"] = partial(_Connection, limits=limits, connections=counts)
         return genuine(admit, sock=listener, process_request=knock, **options)
 
     with _patching:
@@ -193,7 +193,7 @@ def _forms(max_magnitude: float) -> WireForms:
     return WireForms(_FROM_BROWSER, max_magnitude)
 
 
-class _Connection(Visitor):
+class _Connection(CountedConnection):
     """A websocket that yields only well-formed messages, and is closed when they are too many."""
 
     def __init__(self, *args: Any, limits: Limits, **kwargs: Any) -> None:

@@ -12,7 +12,7 @@ import yaml
 from sqlalchemy import make_url
 
 from app.cli_serve import Serve
-from app.crowd import Proxies
+from app.connection_limits import Proxies
 from app.origin import HEALTH
 from tests.supervisor import ROOT
 
@@ -77,7 +77,7 @@ def test_proxies_say_who_asks_and_are_believed(container: dict[str, Any]) -> Non
     assert re.search(r"^\s+proxy_set_header X-Forwarded-For \$remote_addr;$", NGINX, re.MULTILINE)
     networks = container["args"][container["args"].index("--trusted-proxy") + 1]
     pod = str(next(ip_network(networks).hosts()))
-    assert Proxies((networks,)).asker(pod, ["203.0.113.7"]) == "203.0.113.7"
+    assert Proxies((networks,)).client_address(pod, ["203.0.113.7"]) == "203.0.113.7"
 
 
 def test_browsers_stay_with_their_pod_and_websockets_stay_open(manifest: dict[str, Any]) -> None:

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from websockets.datastructures import Headers
 from websockets.http11 import Request
 
-from app.crowd import Crowd, PerAddress, Proxies
+from app.connection_limits import ConnectionLimits, PerAddress, Proxies
 from app.hardening import Limits, make_server
 from app.protocol import SUBPROTOCOL
 from tests import waiting
@@ -126,20 +126,23 @@ def test_a_class_behind_one_address_and_a_proxy_fits() -> None:
         assert site.websocket(**home) == site.websocket() == 101
 
 
-class Visitor:
+class CountedConnection:
     """One end of a connection."""
 
     peer = address = ONE
 
 
 def test_who_is_gone_before_the_request_is_looked_at_takes_no_room() -> None:
-    crowd, request = Crowd(Limits(max_connections_each=1), Proxies()), Request("/", Headers())
-    hasty, patient = Visitor(), Visitor()
-    crowd.came(hasty)  # type: ignore[arg-type]
-    crowd.gone(hasty)  # type: ignore[arg-type]
-    assert not crowd.takes(hasty, request)  # type: ignore[arg-type]
-    crowd.came(patient)  # type: ignore[arg-type]
-    assert crowd.takes(patient, request)  # type: ignore[arg-type]
+    connections, request = (
+        ConnectionLimits(Limits(max_connections_each=1), Proxies()),
+        Request("/", Headers()),
+    )
+    hasty, patient = CountedConnection(), CountedConnection()
+    connections.opened(hasty)  # type: ignore[arg-type]
+    connections.closed(hasty)  # type: ignore[arg-type]
+    assert not connections.admits(hasty, request)  # type: ignore[arg-type]
+    connections.opened(patient)  # type: ignore[arg-type]
+    assert connections.admits(patient, request)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -165,7 +168,7 @@ def test_who_is_gone_before_the_request_is_looked_at_takes_no_room() -> None:
 def test_only_a_proxy_that_is_trusted_says_who_asks(
     peer: str, forwarded: list[str], asker: str
 ) -> None:
-    assert Proxies(("10.0.0.0/8",)).asker(peer, forwarded) == asker
+    assert Proxies(("10.0.0.0/8",)).client_address(peer, forwarded) == asker
 
 
 def test_a_proxy_that_cannot_be_is_refused() -> None:

@@ -1,7 +1,7 @@
-"""How many connections there may be of one address, so that nobody can hold them all.
+"""Limits on open connections, in all and of one address, so that no address can hold them all.
 
-Whoever has sent no whole request yet waits; of those that wait too many are cut off, the oldest
-first, so that one who comes and asks at once is always heard.
+A connection that has not sent a complete request yet is pending. When too many are pending, the
+oldest is cut off, so that a client that sends its request at once is always served.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 class PerAddress(Generic[T]):
-    """What addresses hold, the oldest first.
+    """Things counted by the address that holds them, the oldest first.
 
     Args:
         most, most_each: in all, and of one address.
@@ -61,10 +61,10 @@ class PerAddress(Generic[T]):
 
 
 class Proxies:
-    """Who asks, where a proxy asks for somebody: this machine's are believed, and those given.
+    """Proxies whose X-Forwarded-For is believed: those on this machine, and those given.
 
     Args:
-        networks: of the others, "10.0.0.0/8" or an address.
+        networks: of the proxies on other machines, "10.0.0.0/8" or a single address.
 
     Raises:
         ValueError: one of them is neither.
@@ -73,19 +73,19 @@ class Proxies:
     def __init__(self, networks: tuple[str, ...] = ()) -> None:
         self._networks = [ip_network(network) for network in networks]
 
-    def asker(self, peer: str, forwarded: list[str]) -> str:
-        """The address that counts.
+    def client_address(self, peer: str, forwarded: list[str]) -> str:
+        """The client's address, as the limits count it.
 
         Args:
             peer: at the other end of the connection; empty for a Unix socket.
             forwarded: what X-Forwarded-For says, the nearest last.
         """
-        asker = peer
+        client = peer
         for hop in reversed([each.strip() for each in ",".join(forwarded).split(",")]):
-            if not self._believes(asker) or not _is_address(hop):
+            if not self._believes(client) or not _is_address(hop):
                 break
-            asker = hop
-        return _household(asker)
+            client = hop
+        return _limited_part(client)
 
     def _believes(self, address: str) -> bool:
         if not address:
@@ -102,8 +102,8 @@ def _is_address(text: str) -> bool:
     return True
 
 
-def _household(address: str) -> str:
-    """One who has an address of IPv6 has 2^64 of them."""
+def _limited_part(address: str) -> str:
+    """What the limits of an address apply to: for IPv6 the /64 network, which one user owns."""
     if not address:
         return address
     there = _parsed(address)
@@ -117,47 +117,49 @@ def _parsed(address: str) -> IPv4Address | IPv6Address:
     return mapped or there
 
 
-class Crowd:
-    """Everybody who is connected. On one event loop."""
+class ConnectionLimits:
+    """Limits on open connections, in all and of one address. Used on one event loop."""
 
     def __init__(self, limits: Limits, proxies: Proxies) -> None:
         self._proxies = proxies
-        self._waiting = PerAddress[Visitor](limits.max_waiting, limits.max_waiting_each)
-        self._inside = PerAddress[Visitor](limits.max_connections, limits.max_connections_each)
+        self._waiting = PerAddress[CountedConnection](limits.max_waiting, limits.max_waiting_each)
+        self._inside = PerAddress[CountedConnection](
+            limits.max_connections, limits.max_connections_each
+        )
 
-    def came(self, visitor: Visitor) -> None:
-        """Somebody has connected."""
-        surplus = self._waiting.add(visitor, self._proxies.asker(visitor.peer, []))
+    def opened(self, connection: CountedConnection) -> None:
+        """Count a new connection; the oldest one without a request is cut off if it is too many."""
+        surplus = self._waiting.add(connection, self._proxies.client_address(connection.peer, []))
         if surplus is not None:
             self._waiting.discard(surplus)
             surplus.transport.abort()
 
-    def takes(self, visitor: Visitor, request: Request) -> bool:
-        """Whether there is room for one whose request is here, if it is still there itself."""
+    def admits(self, connection: CountedConnection, request: Request) -> bool:
+        """Whether there is room for a connection that has sent its request and is still open."""
         forwarded = request.headers.get_all("X-Forwarded-For")
-        visitor.address = self._proxies.asker(visitor.peer, forwarded)
-        if visitor in self._waiting and self._inside.has_room(visitor.address):
-            self._waiting.discard(visitor)
-            self._inside.add(visitor, visitor.address)
-        return visitor in self._inside
+        connection.address = self._proxies.client_address(connection.peer, forwarded)
+        if connection in self._waiting and self._inside.has_room(connection.address):
+            self._waiting.discard(connection)
+            self._inside.add(connection, connection.address)
+        return connection in self._inside
 
-    def gone(self, visitor: Visitor) -> None:
-        """Somebody has left."""
-        self._waiting.discard(visitor)
-        self._inside.discard(visitor)
+    def closed(self, connection: CountedConnection) -> None:
+        """Count it no longer."""
+        self._waiting.discard(connection)
+        self._inside.discard(connection)
 
 
-class Visitor(ServerConnection):
-    """A connection of a crowd.
+class CountedConnection(ServerConnection):
+    """A connection that counts towards the limits.
 
     Attributes:
         peer: the address at its other end, which may be a proxy's.
-        address: whose it is.
+        address: the client's, as the limits count it.
     """
 
-    def __init__(self, *args: Any, crowd: Crowd, **kwargs: Any) -> None:
+    def __init__(self, *args: Any, connections: ConnectionLimits, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self._crowd = crowd
+        self._connections = connections
         self.peer = self.address = ""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -165,9 +167,9 @@ class Visitor(ServerConnection):
         super().connection_made(transport)
         name = transport.get_extra_info("peername")
         self.peer = self.address = name[0] if isinstance(name, tuple) else ""
-        self._crowd.came(self)
+        self._connections.opened(self)
 
     def connection_lost(self, exc: Exception | None) -> None:
         """See `asyncio.Protocol`."""
-        self._crowd.gone(self)
+        self._connections.closed(self)
         super().connection_lost(exc)
