@@ -9,8 +9,8 @@ from functools import singledispatch
 import msgspec
 import numpy as np
 
-from lessons.record import QUANTITIES, Mask, Record
-from lessons.schema import (
+from onpath.lessons.record import QUANTITIES, Mask, Record
+from onpath.lessons.schema import (
     Bound,
     Check,
     Compare,
@@ -22,8 +22,8 @@ from lessons.schema import (
     Task,
     Window,
 )
-from lessons.words import Words
-from models.parameters import specs
+from onpath.lessons.words import Words
+from onpath.models.systems.parameters import specs
 
 TINY = 1e-9
 INSTANT = 1e-6  # [s], shorter than any tick

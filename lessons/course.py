@@ -9,10 +9,10 @@ from pathlib import Path
 
 import msgspec
 
-from lessons.parse import LessonError, Problem, read_lesson
-from lessons.schema import Lesson, Reference, Step
-from lessons.vocabulary import script_faults
-from lessons.words import DEFAULT
+from onpath.lessons.parse import LessonError, Problem, read_lesson
+from onpath.lessons.schema import Lesson, Reference, Step
+from onpath.lessons.vocabulary import script_faults
+from onpath.lessons.words import DEFAULT
 
 BUILT_IN = Path(__file__).parent / "course"
 REFERENCE = "reference.toml"

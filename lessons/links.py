@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from urllib.parse import unquote
 
-from lessons.schema import Action, Value
+from onpath.lessons.schema import Action, Value
 
 SCHEME = "lab:"
 SIMPLE = {

@@ -12,10 +12,10 @@ from typing import Any, TypeVar, get_args
 import msgspec
 from markdown_it.token import Token
 
-from lessons import vocabulary
-from lessons.formulas import FormulaError, embedded, reader, render, to_html
-from lessons.links import read_link
-from lessons.schema import (
+from onpath.lessons import vocabulary
+from onpath.lessons.formulas import FormulaError, embedded, reader, render, to_html
+from onpath.lessons.links import read_link
+from onpath.lessons.schema import (
     Block,
     Choice,
     Front,

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from lessons.schema import RobotName, Window
-from models.arrays import Array
-from models.parameters import Parameters
+from onpath.lessons.schema import RobotName, Window
+from onpath.models.arrays import Array
+from onpath.models.systems.parameters import Parameters
 
 Mask = NDArray[np.bool_]
 ROBOTS: tuple[RobotName, ...] = ("tracker", "follower")

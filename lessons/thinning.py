@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from models.arrays import Array
+from onpath.models.arrays import Array
 
 
 def peaks(curves: Sequence[Array], most: int) -> NDArray[np.intp]:

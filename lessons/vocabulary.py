@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import get_args
 
-from lessons.record import PLOTS, QUANTITIES
-from lessons.schema import (
+from onpath.lessons.record import PLOTS, QUANTITIES
+from onpath.lessons.schema import (
     Action,
     Bound,
     Check,
@@ -23,10 +23,10 @@ from lessons.schema import (
     Task,
     Value,
 )
-from models.catalogue import ROBOTS, Entry
-from models.curve_faults import curve_faults
-from models.parameters import changed, specs, unknown_name
-from models.path_design import presets
+from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS, Entry
+from onpath.models.systems.parameters import changed, specs, unknown_name
 
 CONTROLS = (
     *("hold", "path", "editor", "gains", "plots", "past", "robot", "copy", "flexible", "identify"),

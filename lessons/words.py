@@ -7,7 +7,7 @@ import tomllib
 from functools import lru_cache
 from typing import Any
 
-from assets import asset_path
+from onpath.assets import asset_path
 
 DEFAULT = "en"
 SENTENCE = "sentence."

@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 
-from models.arrays import Array
+from onpath.models.arrays import Array
 
 Fields = dict[str, ca.SX]
 """A symbolic vector's fields by name, each (size, 1)."""

@@ -4,22 +4,14 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import settings
 
-from models.arrays import Array
-from models.curves import HARMONICS, Curve, fourier
-from models.five_bar import FiveBarLinks, five_bar, inverse_kinematics, load_links
-from models.frames import Plane
-from models.kernel import Kernel, build_kernel
-from models.loop_kind import Kind
-from models.loops import Loop
-from models.system import MechanicalSystem
-from models.translated_loop import translate_loop
+from onpath.models.paths.curves import HARMONICS, Curve, fourier
+from onpath.models.systems.five_bar import five_bar, load_links
+from tests.support.rig import Rig
 
 # How long an example takes is not what is tested. `make test` gives the same verdict every time;
 # `make fuzz` searches at random, and what it finds becomes an @example.
@@ -28,92 +20,6 @@ settings.register_profile("fuzz", deadline=None, print_blob=True)
 settings.load_profile("laws")
 signal.signal(signal.SIGINT, signal.default_int_handler)  # servers started from here heed it, too,
 # when a shell has started the tests in the background
-
-FOLLOWING, TRACKING = Kind("path_following"), Kind("trajectory_tracking")
-DEFAULTS: dict[str, Any] = {
-    "K1": 400,
-    "K2": 40,
-    "K3": 0,
-    "K4": 25,
-    "K5": 10,
-    "position": 0,
-    "target": 0,
-    "speed": 2 * np.pi,
-    "level_centre": (0, 0),
-    "level_weights": (1, 1),
-    "level_constant": 0.05**2,
-    "torque_limit": 1e3,
-    "coulomb": 0,
-    "hold_ticks": 1,
-    "dt": 1e-3,
-    "encoder_step": 1e-3,
-    "encoder_filter": 5e-3,
-    "hand_active": 0,
-    "hand_target": (0, 0),
-    "hold_active": 0,
-    "hold_anchor": (0, 0),
-    "hold_tangent": (0, 1),
-}
-
-
-@dataclass
-class Rig:
-    """The rigid five-bar with every kind of closed loop around it, built once."""
-
-    links: FiveBarLinks
-    system: MechanicalSystem
-    kernels: dict[Kind, Kernel] = field(default_factory=dict[Kind, Kernel])
-    loops: dict[Kind, Loop] = field(default_factory=dict[Kind, Loop])
-
-    @property
-    def balanced(self) -> Array:
-        return self.system.parameter_vector(self.links.lumped())
-
-    @property
-    def spoiled(self) -> Array:
-        return self.system.parameter_vector(self.links.spoiled(0.6, 0.1).lumped())
-
-    def kernel(self, kind: Kind) -> Kernel:
-        if kind not in self.kernels:
-            self.kernels[kind] = build_kernel(self.system, Plane(), kind)
-        return self.kernels[kind]
-
-    def loop(self, kind: Kind) -> Loop:
-        """What the lab runs: the laws must hold in it."""
-        if kind not in self.loops:
-            self.loops[kind] = translate_loop(self.kernel(kind))
-        return self.loops[kind]
-
-    def settings(self, kind: Kind, **changes: Any) -> Array:
-        values = {"plant": self.balanced, "model": self.balanced, **DEFAULTS, **changes}
-        return self.kernel(kind).settings.pack(values)
-
-    def state(self, kind: Kind, y: Array, y_rate: Array | None = None, **changes: Any) -> Array:
-        """The end-point at y moving with y_rate, the memory of the controller empty."""
-        q = inverse_kinematics(np.asarray(y, dtype=float), 0.2, 0.2)
-        v = np.zeros(2) if y_rate is None else np.linalg.solve(jacobian(q), y_rate)
-        values: dict[str, Any] = {"q": q, "v": v, "theta": 0, "theta_rate": 0, "theta_ref": 0}
-        values |= {"integral": (0, 0), "u": (0, 0), "phase": 0}
-        values |= {"encoder": q, "encoder_rate": v}
-        return self.kernel(kind).state.pack({**values, **changes})
-
-    def on_path(self, kind: Kind, curve: Curve, theta: float, rate: float, **changes: Any) -> Array:
-        """On the curve at theta, moving along it."""
-        at = np.array(theta)
-        start = {"theta": theta, "theta_rate": rate, "theta_ref": theta, **changes}
-        return self.state(kind, curve.at(at), rate * curve.at(at, 1), **start)
-
-    def run(
-        self, kind: Kind, curve: Curve, state: Array, ticks: int, **changes: Any
-    ) -> dict[str, Array]:
-        """The log, by name."""
-        rows = self.loop(kind).run(state, self.settings(kind, **changes), curve.table(), ticks)[1]
-        return self.kernel(kind).log.unpack(rows)
-
-
-def jacobian(q: Array) -> Array:
-    """dh/dq of the default linkage, by hand."""
-    return 0.2 * np.array([[-np.sin(q[0]), np.sin(q[1])], [np.cos(q[0]), -np.cos(q[1])]])
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent
+from tests.support.checkout import ROOT
+
 TOLD = sorted(
     file
     for pattern in ("*.md", "*.py", "*.toml", "*.svg")

@@ -11,10 +11,10 @@ import pytest
 import yaml
 from sqlalchemy import make_url
 
-from app.cli_serve import Serve
-from app.connection_limits import Proxies
-from app.origin import HEALTH
-from tests.supervisor import ROOT
+from onpath.app.cli.serve import Serve
+from onpath.app.viser_adapter.connection_limits import Proxies
+from onpath.app.viser_adapter.request_filter import HEALTH
+from tests.support.checkout import ROOT
 
 DEPLOY = ROOT / "assets" / "deploy"
 NGINX = (DEPLOY / "nginx.conf").read_text()

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-ROOT = Path(__file__).parents[1]
+from tests.support.checkout import ROOT
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="needs make")
-@pytest.mark.parametrize("fails", ["ignore-glob", "tests/test_", "nothing", "every"])
+@pytest.mark.parametrize("fails", ["--ignore=tests", "tests/in_browser ", "nothing", "every"])
 def test_both_parts_run_whatever_the_other_says(tmp_path: Path, fails: str) -> None:
     pytest_of_ours = tmp_path / "pytest"
     pytest_of_ours.write_text(

@@ -1,0 +1,1 @@
+"""Measures a running lab: time per tick, clients, delay of the mouse."""

@@ -1,0 +1,92 @@
+"""viser's wire format from the browser's side, for simulated browsers. Pure functions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import msgspec
+import numpy as np
+import viser
+
+from onpath.app.viser_adapter.compression import decompress
+
+SUBPROTOCOL = f"viser-v{viser.__version__}"
+CAMERA = {
+    "wxyz": [1.0, 0.0, 0.0, 0.0],
+    "position": [0.0, -2.0, 1.0],
+    "fov": 0.8,
+    "near": 0.01,
+    "far": 1000.0,
+    "image_height": 600,
+    "image_width": 800,
+    "look_at": [0.0, 0.0, 0.0],
+    "up_direction": [0.0, 0.0, 1.0],
+}
+"""Fields of a camera message; the first one announces a browser."""
+
+
+def packed(kind: str, **fields: Any) -> bytes:
+    """A message to the server."""
+    return msgspec.msgpack.encode({"type": kind, **fields})
+
+
+def answer(message: dict[str, Any], stored: Mapping[str, str] | None = None) -> bytes | None:
+    """What a page that somebody sees answers at once, if anything.
+
+    Args:
+        stored: what the browser keeps.
+    """
+    match message:
+        case {"type": "LocalStorageGetItemRequestMessage", "request_uuid": number, "key": key}:
+            value = (stored or {}).get(key)
+            kind = "LocalStorageGetItemResponseMessage"
+            return packed(kind, request_uuid=number, value=value, error=None)
+        case {"type": "SetCameraUpDirectionMessage", "initial": False, "position": up}:
+            return packed("ViewerCameraMessage", **{**CAMERA, "up_direction": up})
+    return None
+
+
+class Told(msgspec.Struct):
+    """What a message is and of which node, if of any."""
+
+    type: str
+    name: Any = ""
+
+
+class _Window(msgspec.Struct):
+    messages: list[Told]
+
+
+_window = msgspec.msgpack.Decoder(_Window)
+
+
+def told(raw: bytes) -> list[Told]:
+    """Of the messages of one frame from the server only that, which takes less than `unpacked`."""
+    end = 16 + int.from_bytes(raw[8:16], "little")
+    return _window.decode(decompress(raw[16:end])).messages
+
+
+def unpacked(raw: bytes) -> list[dict[str, Any]]:
+    """The messages of one frame from the server, with their arrays.
+
+    A frame is two lengths, compressed msgpack, then the arrays, each at a multiple of 8 bytes.
+    """
+    end = 16 + int.from_bytes(raw[8:16], "little")
+    window = msgspec.msgpack.decode(decompress(raw[16:end]))
+    buffers: list[bytes] = []
+    for length in window.get("binaryBufferLengths", ()):
+        start = end + -end % 8
+        end = start + length
+        buffers.append(raw[start:end])
+    return [_with_arrays(message, buffers) for message in window["messages"]]
+
+
+def _with_arrays(value: Any, buffers: list[bytes]) -> Any:
+    if isinstance(value, list):
+        return [_with_arrays(each, buffers) for each in value]
+    if not isinstance(value, dict):
+        return value
+    if "__binary_index" in value:
+        return np.frombuffer(buffers[value["__binary_index"]], dtype=value["dtype"])
+    return {key: _with_arrays(each, buffers) for key, each in value.items()}

@@ -1,0 +1,192 @@
+"""How a server bears a crowd: simulated browsers in a process of their own, a row for each crowd.
+
+The server is a process too, with folders of its own. What is measured begins when every browser is
+shown moving robots.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import nan
+from pathlib import Path
+
+import msgspec
+
+from onpath.app.bench.server_process import Server, serving
+from onpath.app.bench.simulated_browser import Seen
+from onpath.app.server.workers import MOST as MOST_WORKERS
+from onpath.app.simulation.metrics import LONGEST, Vitals
+from onpath.app.viser_adapter.message_filter import Limits
+
+MOST = Limits().max_connections_each  # clients: to the server they are of one address
+SHORTEST = 1.0  # [s]
+HEAD = """\
+clients settled  sim slow  display [Hz]  frames late [ms] >50ms       CPU [%]        for each  labs
+            [s] [Hz]  lab slowest median  p50   p95   p99   [%] server load stolen  [MB] [kB/s]"""
+PROCESSOR = Path("/proc/stat")  # Linux alone
+
+
+@dataclass(frozen=True, slots=True)
+class Crowd:
+    """What to measure.
+
+    Attributes:
+        clients, workers: how many.
+        seconds: measured, for each row.
+        rows: one after the other, of the same crowd.
+
+    Raises:
+        ValueError: that makes no sense.
+    """
+
+    clients: int
+    workers: int = 1
+    seconds: float = 15.0
+    rows: int = 1
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.clients <= MOST:
+            raise ValueError(f"--clients {self.clients}: expected 1 to {MOST}")
+        if not 1 <= self.workers <= MOST_WORKERS:
+            raise ValueError(f"--workers {self.workers}: expected 1 to {MOST_WORKERS}")
+        if not SHORTEST <= self.seconds <= LONGEST:
+            raise ValueError(f"--seconds {self.seconds:g}: expected {SHORTEST:g} to {LONGEST:g}")
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """What came of it.
+
+    Attributes:
+        seen: by the browsers.
+        settled: after so long all were shown moving robots, [s].
+        labs: at each worker.
+        simulation_hz: frames per second of the simulation, of the slowest worker.
+        slowest_lab: simulated seconds per second.
+        late_ms: frames; three quantiles, of the worst worker each.
+        overdue: share of the frames more than 50 ms late, of the worst worker.
+        cpu: of all workers, of a core.
+        stolen: share of this machine's time that its host gave to others; nan if unknown.
+        memory_mb: more than without clients, of all workers, for each client; nan if unknown.
+    """
+
+    seen: Seen
+    settled: float
+    labs: tuple[int, ...]
+    simulation_hz: float
+    slowest_lab: float
+    late_ms: tuple[float, float, float]
+    overdue: float
+    cpu: float
+    stolen: float
+    memory_mb: float
+
+    def __str__(self) -> str:
+        seen, labs = self.seen, "+".join(map(str, self.labs))
+        p50, p95, p99 = self.late_ms
+        return (
+            f"{seen.clients:7d}{self.settled:8.1f}{self.simulation_hz:5.1f}{self.slowest_lab:5.2f}"
+            f"{seen.slowest_hz:8.1f}{seen.median_hz:7.1f}{p50:5.1f}{p95:6.1f}{p99:6.1f}"
+            f"{100 * self.overdue:6.2f}{100 * self.cpu:7.0f}{100 * seen.cpu:5.0f}"
+            f"{100 * self.stolen:7.1f}{self.memory_mb:6.2f}{seen.bytes_per_s / 1e3:7.1f} {labs}"
+        )
+
+
+def measured(crowd: Crowd, environment: Mapping[str, str]) -> Iterator[Row]:
+    """Rows, each as soon as it is known.
+
+    Args:
+        environment: of the server, beside this process's: where its folders are.
+
+    Raises:
+        ValueError: the server does not serve all of them.
+    """
+    with serving(environment, crowd.workers, max(crowd.clients, 64)) as server:
+        alone = server.at_rest()
+        with _load(server, crowd.clients, crowd.seconds) as seen:
+            settled = next(seen).seconds
+            before, spent = server.vitals(), _processor()
+            for _ in range(crowd.rows):
+                during = next(seen)
+                after, now = server.vitals(crowd.seconds), _processor()
+                stolen = (now[0] - spent[0]) / max(now[1] - spent[1], 1.0)
+                yield _row(during, settled, stolen, alone, before, after)
+                before, spent = after, now
+
+
+def folders(folder: Path, name: str) -> dict[str, str]:
+    """An environment with data of its own."""
+    return {"XDG_DATA_HOME": str(folder / name)}
+
+
+@contextmanager
+def _load(server: Server, clients: int, seconds: float) -> Iterator[Iterator[Seen]]:
+    """What a crowd sees: first when it has settled, then every so many seconds."""
+    command = [
+        sys.executable,
+        "-m",
+        "onpath.app.bench.simulated_browser",
+        *map(str, (server.port, clients, seconds)),
+    ]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdout=pipe, stderr=pipe, start_new_session=True) as process:
+        try:
+            yield _lines(process)
+        finally:
+            process.kill()
+
+
+def _lines(process: subprocess.Popen[bytes]) -> Iterator[Seen]:
+    assert process.stdout is not None and process.stderr is not None
+    for line in process.stdout:
+        yield msgspec.json.decode(line, type=Seen)
+    said = process.stderr.read().decode(errors="replace").strip()
+    raise ValueError(said.rpartition("\n")[2] or "the simulated browsers have ended")
+
+
+def _row(
+    seen: Seen,
+    settled: float,
+    stolen: float,
+    alone: dict[int, Vitals],
+    before: dict[int, Vitals],
+    after: dict[int, Vitals],
+) -> Row:
+    if not alone.keys() == before.keys() == after.keys():
+        raise ValueError("a worker has ended meanwhile")
+    pairs = [(before[pid], after[pid]) for pid in after]
+    p50, p95, p99 = (max(late) for late in zip(*(v.late_ms for v in after.values()), strict=True))
+    grown = [(v.rss_mb or nan) - (alone[pid].rss_mb or nan) for pid, v in after.items()]
+    return Row(
+        seen=seen,
+        settled=settled,
+        labs=tuple(v.labs for v in after.values()),
+        simulation_hz=min(v.frames_per_s for v in after.values()),
+        slowest_lab=min((speed for a, b in pairs for speed in _speeds(a, b)), default=nan),
+        late_ms=(p50, p95, p99),
+        overdue=max(v.overdue for v in after.values()),
+        cpu=sum((b.cpu_s - a.cpu_s) / (b.clock - a.clock) for a, b in pairs),
+        stolen=stolen,
+        memory_mb=sum(grown) / max(seen.clients, 1),
+    )
+
+
+def _processor() -> tuple[float, float]:
+    """Of all cores since the start: time that the host gave to others, and all of it, [ticks]."""
+    try:
+        spent = [float(word) for word in PROCESSOR.read_text().split()[1:9]]
+    except OSError:
+        return nan, nan
+    return spent[7], sum(spent)
+
+
+def _speeds(before: Vitals, after: Vitals) -> list[float]:
+    """Simulated seconds per second of each lab; unknown when one has come or gone."""
+    if before.labs != after.labs:
+        return [nan]
+    times = zip(before.simulated_s, after.simulated_s, strict=True)
+    return [(b - a) / (after.clock - before.clock) for a, b in times]

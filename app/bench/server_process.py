@@ -1,0 +1,118 @@
+"""A real server for the bench: started as a user would, asked how it fares, stopped."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from http.client import HTTPConnection, HTTPException
+from typing import IO
+
+import msgspec
+
+from onpath.app.server.lazy_imports import REST
+from onpath.app.simulation.metrics import WINDOW, Vitals
+from onpath.app.viser_adapter.request_filter import HEALTH
+
+PATIENCE = 60.0  # [s] for all workers to answer
+LAST_WORDS = 20.0  # [s] to stop
+STILL = 0.5  # [MB] by which a server at rest may grow
+
+
+@dataclass(frozen=True, slots=True)
+class Server:
+    """A server that runs.
+
+    Attributes:
+        begun: when it was started, by `time.monotonic`, [s].
+        said: what it has written, viser's banners too.
+    """
+
+    port: int
+    workers: int
+    begun: float
+    process: subprocess.Popen[bytes]
+    said: IO[bytes]
+
+    def vitals(self, seconds: float = WINDOW) -> dict[int, Vitals]:
+        """How each worker fares, by process. Whoever has fewest connections answers, so some are
+        held until all have.
+
+        Raises:
+            ValueError: they do not.
+        """
+        with ExitStack() as held:
+            return self._vitals(seconds, held)
+
+    def _vitals(self, seconds: float, held: ExitStack) -> dict[int, Vitals]:
+        told: dict[int, Vitals] = {}
+        until, trouble = time.monotonic() + PATIENCE, ""
+        while len(told) < self.workers:
+            if self.process.poll() is not None:
+                self.said.seek(0)
+                said = self.said.read().decode(errors="replace").strip()
+                raise ValueError("the server has ended: " + said.rpartition("\n")[2])
+            if time.monotonic() > until:
+                raise ValueError(f"{len(told)} of {self.workers} workers say how they are{trouble}")
+            try:
+                vitals = self._ask(seconds)
+                if vitals.pid in told:
+                    held.enter_context(socket.create_connection(("127.0.0.1", self.port)))
+                told[vitals.pid] = vitals
+            except (OSError, HTTPException, msgspec.DecodeError) as error:
+                trouble = f": {error}"
+                time.sleep(0.05)
+        return told
+
+    def _ask(self, seconds: float) -> Vitals:
+        connection = HTTPConnection("127.0.0.1", self.port, timeout=10.0)
+        try:
+            connection.request("GET", f"{HEALTH}?seconds={seconds:g}")
+            return msgspec.json.decode(connection.getresponse().read(), type=Vitals)
+        finally:
+            connection.close()
+
+    def at_rest(self) -> dict[int, Vitals]:
+        """How it fares before anybody comes, with all ready that `warm_up` makes ready."""
+        sizes: list[tuple[float, float]] = []
+        while True:
+            vitals, now = self.vitals(), time.monotonic()
+            sizes.append((now, sum(each.rss_mb or 0.0 for each in vitals.values())))
+            lately = [size for when, size in sizes if when > now - REST - 1.0]
+            if len(lately) < len(sizes) and max(lately) - min(lately) < STILL:
+                return vitals
+            time.sleep(0.3)
+
+
+@contextmanager
+def serving(environment: Mapping[str, str], workers: int = 1, most: int = 64) -> Iterator[Server]:
+    """A server, `most` clients of which each worker takes."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = int(probe.getsockname()[1])
+    command = [sys.executable, "-m", "onpath", "serve", "--port", str(port)]
+    command += ["--workers", str(workers), "--most-clients", str(most), "--log-level", "error"]
+    with tempfile.TemporaryFile() as said:
+        begun = time.monotonic()
+        process = subprocess.Popen(
+            command, env={**os.environ, **environment}, stdout=said, stderr=said
+        )
+        try:
+            yield Server(port, workers, begun, process, said)
+        finally:
+            _stop(process)
+
+
+def _stop(process: subprocess.Popen[bytes]) -> None:
+    process.terminate()
+    try:
+        process.wait(LAST_WORDS)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()

@@ -1,0 +1,264 @@
+"""Simulated browsers: they read everything that a lab sends, pull at it and move its sliders.
+
+`python -m onpath.app.bench.simulated_browser PORT CLIENTS SECONDS` writes what they see, a line of
+JSON at a time; see `crowd`. They lower their own priority, since elsewhere they would take no time
+from the server.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import os
+import sys
+import time
+from collections.abc import AsyncGenerator
+from contextlib import aclosing, suppress
+from dataclasses import dataclass, field
+from http import HTTPStatus
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import msgspec
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
+from websockets.typing import Subprotocol
+
+from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, told, unpacked
+
+LAST = 19  # of all priorities
+TOGETHER = Path("/proc/self/autogroup")  # the priority of a whole session, on Linux
+EVERY = 0.05  # [s] between a hand's messages; no browser sends more often
+CYCLE = 4.0  # [s]: pull, rest, move a slider, rest
+MOVING = "/links"
+STEADY = 10  # poses shown to a browser that has settled
+ANSWERED = {"LocalStorageGetItemRequestMessage", "SetCameraUpDirectionMessage"}
+ANSWERED |= {"GuiSliderMessage", "BatchedMeshesMessage"}
+
+
+class Unserved(Exception):
+    """A server does not serve all of a crowd; the message says what happened."""
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What a crowd has seen during a while.
+
+    Attributes:
+        seconds: how long that was.
+        clients: that are still connected.
+        slowest_hz, median_hz: new poses per second of the slowest browser, of the median one.
+        bytes_per_s: that each received.
+        cpu: that the crowd itself needed, of a core.
+    """
+
+    seconds: float
+    clients: int
+    slowest_hz: float
+    median_hz: float
+    bytes_per_s: float
+    cpu: float
+
+
+@dataclass
+class Browser:
+    """One simulated tab.
+
+    Attributes:
+        number: sets it apart in time from the others.
+        shown: when it was told new poses, [s].
+        received: [B].
+    """
+
+    port: int
+    number: int
+    shown: list[float] = field(default_factory=list)
+    received: int = 0
+    _slider: str = ""
+    _owner: str = ""
+
+    async def browse(self, seconds: float) -> None:
+        """Use the lab for a while, or until it closes the connection.
+
+        Raises:
+            OSError, WebSocketException: no connection, or one that broke.
+        """
+        address = f"ws://127.0.0.1:{self.port}"
+        options: dict[str, Any] = {"max_size": None, "compression": None}
+        options |= {"open_timeout": None, "ping_interval": None}  # a browser waits
+        async with connect(address, subprotocols=[Subprotocol(SUBPROTOCOL)], **options) as socket:
+            await socket.send(packed("ViewerCameraMessage", **CAMERA))
+            until = time.monotonic() + seconds
+            tasks = [
+                asyncio.create_task(do) for do in (self._read(socket), self._use(socket, until))
+            ]
+            try:
+                done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+                for task in done:
+                    task.result()
+            finally:
+                for task in tasks:
+                    task.cancel()
+                await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _read(self, socket: ClientConnection) -> None:
+        async for raw in socket:
+            assert isinstance(raw, bytes)
+            self.received += len(raw)
+            messages = told(raw)
+            if any(message.type in ANSWERED for message in messages):
+                for message in unpacked(raw):
+                    await self._answer(socket, message)
+            if any(m.name == MOVING and m.type == "SceneNodeUpdateMessage" for m in messages):
+                self.shown.append(time.monotonic())
+
+    async def _answer(self, socket: ClientConnection, message: dict[str, Any]) -> None:
+        kind = message["type"]
+        if reply := answer(message):
+            await socket.send(reply)
+        elif kind == "GuiSliderMessage" and message["props"]["label"].startswith("K1"):
+            self._slider = message["uuid"]
+        elif kind == "BatchedMeshesMessage" and message["name"] == "/grips":
+            self._owner = message["owner"]
+
+    async def _use(self, socket: ClientConnection, until: float) -> None:
+        while not self._slider and time.monotonic() < until:
+            await asyncio.sleep(EVERY)
+        held = False
+        while (now := time.monotonic()) < until:
+            phase, rest = (now + 0.37 * self.number) % CYCLE, EVERY
+            pulls = phase < 1.0
+            if pulls or held:
+                step = ("update" if held else "start") if pulls else "end"
+                await socket.send(self._pull(step, phase))
+                held = pulls
+            elif 2.0 < phase < 3.0:
+                value = {"value": 400.0 + 10 * round(10 * (phase - 2.0))}
+                await socket.send(packed("GuiUpdateMessage", uuid=self._slider, updates=value))
+            else:
+                rest = max(rest, (2.0 if phase < 2.0 else CYCLE) - phase)
+            await asyncio.sleep(rest)
+
+    def _pull(self, step: str, phase: float) -> bytes:
+        there = [-0.06 + 0.05 * math.cos(6 * phase), 0.0, 0.2 + 0.05 * math.sin(6 * phase)]
+        return packed(
+            "SceneNodeDragMessage",
+            phase=step,
+            name="/grips",
+            instance_index=0,
+            start_position=there,
+            start_screen_pos=[0.5, 0.5],
+            end_position=there,
+            end_screen_pos=[0.5, 0.5],
+            button="left",
+            modifier=None,
+            owner=self._owner,
+        )
+
+
+async def first_poses(port: int) -> None:
+    """Return when a browser that comes now is shown a moving robot.
+
+    Raises:
+        WebSocketException: refused for another reason than that the server is not ready yet.
+    """
+    browser = Browser(port, 0)
+    while not browser.shown:
+        browsing = asyncio.create_task(browser.browse(60.0))
+        while not browsing.done() and not browser.shown:
+            await asyncio.sleep(0.002)
+        browsing.cancel()
+        (error,) = await asyncio.gather(browsing, return_exceptions=True)
+        if not browser.shown and isinstance(error, Exception) and not _is_early(error):
+            raise error
+        await asyncio.sleep(0.01)
+
+
+def _is_early(error: Exception) -> bool:
+    """Whether a server that is starting answers in this way."""
+    if isinstance(error, InvalidStatus):
+        return error.response.status_code == HTTPStatus.SERVICE_UNAVAILABLE
+    return isinstance(error, OSError | EOFError | InvalidMessage | ConnectionClosed)
+
+
+async def crowd(
+    port: int, clients: int, seconds: float, patience: float | None = None
+) -> AsyncGenerator[Seen]:
+    """What some browsers see, at once: first until each is shown moving robots, then again and
+    again for some seconds.
+
+    Args:
+        patience: with the first of these, [s].
+
+    Raises:
+        Unserved: some are not shown any.
+    """
+    browsers = [Browser(port, number) for number in range(clients)]
+    tasks = [asyncio.create_task(browser.browse(math.inf)) for browser in browsers]
+    begun, cpu = time.monotonic(), time.process_time()
+    try:
+        await _settle(browsers, tasks, patience or 30.0 + 3.0 * clients)
+        while True:
+            now, spent = time.monotonic(), time.process_time()
+            there = sum(not task.done() for task in tasks)
+            yield _seen(browsers, there, now - begun, spent - cpu)
+            begun, cpu = now, spent
+            await asyncio.sleep(seconds)
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+
+async def _settle(
+    browsers: list[Browser], tasks: list[asyncio.Task[None]], patience: float
+) -> None:
+    until, clients = time.monotonic() + patience, len(browsers)
+    while (ready := sum(len(browser.shown) >= STEADY for browser in browsers)) < clients:
+        for task in tasks:
+            if task.done():
+                error = task.exception() or "the server has closed the connection"
+                raise Unserved(f"one of {clients} clients was turned away: {error}")
+        if time.monotonic() > until:
+            raise Unserved(
+                f"only {ready} of {clients} clients were shown moving robots in {patience:g} s"
+            )
+        await asyncio.sleep(0.02)
+
+
+def _seen(browsers: list[Browser], there: int, seconds: float, cpu: float) -> Seen:
+    """What they have seen since they were asked last."""
+    rates = [len(browser.shown) / seconds for browser in browsers]
+    received = sum(browser.received for browser in browsers) / len(browsers)
+    for browser in browsers:
+        browser.shown.clear()
+        browser.received = 0
+    return Seen(seconds, there, min(rates), median(rates), received / seconds, cpu / seconds)
+
+
+async def _report(port: int, clients: int, seconds: float) -> None:
+    async with aclosing(crowd(port, clients, seconds)) as seen:
+        async for each in seen:
+            sys.stdout.write(msgspec.json.encode(each).decode() + "\n")
+            sys.stdout.flush()
+
+
+def _stand_back() -> None:
+    """Leave the processor to the server.
+
+    Linux may share it among sessions first: the priority of a process counts within its own only.
+    """
+    if hasattr(os, "nice"):
+        os.nice(LAST)
+    if os.name == "posix" and os.getsid(0) == os.getpid():
+        with suppress(OSError):
+            TOGETHER.write_text(str(LAST))
+
+
+if __name__ == "__main__":
+    _stand_back()
+    try:
+        asyncio.run(_report(int(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])))
+    except Unserved as unserved:
+        sys.exit(str(unserved))

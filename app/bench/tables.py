@@ -1,0 +1,182 @@
+"""How fast the lab is: closed loops, frames under load, start-up, mouse to picture."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import platform
+import signal
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, redirect_stdout
+from dataclasses import replace
+from functools import partial
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from onpath.app.bench.crowd import HEAD, Crowd, folders, measured
+from onpath.app.bench.mouse_latency import find_browser, mouse_latency
+from onpath.app.bench.server_process import serving
+from onpath.app.bench.simulated_browser import first_poses
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.server.lab_server import LabServer
+from onpath.models.closed_loop.loops import InterpretedLoop, Loop
+from onpath.models.closed_loop.simulation import (
+    FREE,
+    first_state,
+    kernel_of,
+    kind_of,
+    settings_vector,
+)
+from onpath.models.closed_loop.translated_loop import translate_loop
+from onpath.models.control.laws import NAMES
+from onpath.models.paths.curves import circle
+from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, Entry
+from onpath.models.systems.flexible_robot import FlexibleParameters
+from onpath.models.systems.parameters import Parameters
+
+TICKS = 160  # per timed call
+
+
+def bench(quick: bool = False) -> None:
+    """Print all tables; `quick` leaves out what needs clients or a browser."""
+    _begin()
+    with tempfile.TemporaryDirectory() as folder:
+        _loops(Path(folder), 20 if quick else 60)
+        _modes(Path(folder), 10 if quick else 30)
+    _making(3 if quick else 9)
+    if not quick:
+        _crowds([Crowd(1), Crowd(20), Crowd(20, workers=2)])
+        _start_up()
+        _mouse()
+
+
+def _loops(folder: Path, repeats: int) -> None:
+    """Microseconds per simulated millisecond, medians, tiers interleaved."""
+    print(f"{'robot':10s} {'controller':20s} {'pushed':7s} {'tier':12s} {'µs/ms':>8s}")
+    for entry in (FIVE_BAR, FLEXIBLE):
+        for controller in NAMES:
+            for lean in (True, False):
+                _row(entry, controller, lean, folder, repeats)
+    print()
+
+
+def _row(entry: Entry, controller: str, lean: bool, folder: Path, repeats: int) -> None:
+    times = _per_tick(_prepared(entry, entry.parameters(), controller, lean, folder), repeats)
+    for tier, value in times.items():
+        pushed = "no" if lean else "may be"
+        print(f"{entry.name:10s} {controller:20s} {pushed:7s} {tier:12s} {value:8.2f}")
+
+
+def _prepared(
+    entry: Entry, parameters: Parameters, controller: str, lean: bool, folder: Path
+) -> dict[str, Callable[[], object]]:
+    """The calls to time, of `TICKS` ticks."""
+    robot, curve = entry.make(parameters), circle(0.05)
+    kernel = kernel_of(robot, kind_of(controller, parameters, curve, FREE if lean else None))
+    start = robot.rest(robot.frame.lift(curve.at(np.array(0.0))))
+    loops: dict[str, Loop] = {
+        "interpreted": InterpretedLoop(kernel),
+        "compiled": translate_loop(kernel),
+    }
+    settings = settings_vector(robot, kernel, parameters, curve, FREE)
+    state = first_state(robot, kernel, curve, start)
+    call = state, settings, curve.table(), TICKS
+    return {name: partial(loop.run, *call) for name, loop in loops.items()}
+
+
+def _per_tick(calls: Mapping[str, Callable[[], object]], repeats: int) -> dict[str, float]:
+    """Median microseconds."""
+    return {name: 1e6 / TICKS * took for name, took in _interleaved(calls, repeats).items()}
+
+
+def _interleaved(calls: Mapping[str, Callable[[], object]], repeats: int) -> dict[str, float]:
+    """Median seconds of each, taken in turn so that drift hits all alike."""
+    times: dict[str, list[float]] = {name: [] for name in calls}
+    for _ in range(repeats):
+        for name, call in calls.items():
+            begin = time.perf_counter()
+            call()
+            times[name].append(time.perf_counter() - begin)
+    return {name: float(np.median(values)) for name, values in times.items()}
+
+
+def _modes(folder: Path, repeats: int) -> None:
+    """Cost of the flexible follower against the number of modes."""
+    for modes in range(1, 7):
+        parameters = replace(FlexibleParameters(), modes=modes)
+        calls = _prepared(FLEXIBLE, parameters, "path_following", True, folder)
+        times = _per_tick(calls, repeats)
+        shown = ", ".join(f"{tier} {value:.2f} µs" for tier, value in times.items())
+        print(f"flexible, {modes} modes: {shown}")
+    print()
+
+
+def _making(repeats: int) -> None:
+    """How long it takes to make machine code of a follower."""
+    for entry in (FIVE_BAR, FLEXIBLE):
+        parameters = entry.parameters()
+        kind = kind_of("path_following", parameters, circle(0.05))
+        kernel = kernel_of(entry.make(parameters), kind)
+        took = _interleaved({"compiled": partial(translate_loop, kernel)}, repeats)["compiled"]
+        print(f"{entry.name}, a loop is compiled in {1e3 * took:.0f} ms")
+    print()
+
+
+@contextmanager
+def _quiet_lab() -> Iterator[LabServer]:
+    """A server in this process, without viser's banner."""
+    with redirect_stdout(StringIO()):
+        lab = LabServer("127.0.0.1", 0, LoopStore())
+    try:
+        yield lab
+    finally:
+        with redirect_stdout(StringIO()):
+            lab.stop()
+
+
+def bench_crowds(crowds: list[Crowd]) -> None:
+    """Print the table of crowds: a row for each, or as many as it asks for."""
+    _begin()
+    _crowds(crowds)
+
+
+def _begin() -> None:
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # the servers are to end as well
+    load = os.getloadavg()[0]
+    print(f"{platform.platform()}, {os.cpu_count()} cores, load {load:.1f}\n", flush=True)
+
+
+def _crowds(crowds: list[Crowd]) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        print(HEAD, flush=True)
+        for number, crowd in enumerate(crowds):
+            for row in measured(crowd, folders(Path(folder), f"data{number}")):
+                print(row, flush=True)
+    print()
+
+
+def _start_up() -> None:
+    """From the start of the process to the first picture."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("the first time", "again"):
+            with serving(folders(Path(folder), "data")) as server:
+                asyncio.run(asyncio.wait_for(first_poses(server.port), 30.0))
+                took = time.monotonic() - server.begun
+                print(f"start-up, {name}: {took:.2f} s to the first picture")
+
+
+def _mouse() -> None:
+    """From a mouse move in Chromium to the changed pose that comes back."""
+    browser = find_browser()
+    if browser is None:
+        print("mouse to picture: not measured, it needs Chromium and Playwright")
+        return
+    for draws, how in ((False, "drawing no triangles, as if there were a GPU"), (True, "drawing")):
+        with _quiet_lab() as lab:
+            delays = mouse_latency(lab, browser, 20, draws) * 1e3
+        shown = f"median {np.median(delays):.0f} ms, worst {delays.max():.0f} ms"
+        print(f"mouse to changed pose, {how}: {shown}")

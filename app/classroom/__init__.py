@@ -1,0 +1,1 @@
+"""A class: who is in it, what they predicted, what the teacher wants."""

@@ -1,0 +1,81 @@
+"""Between the class and the labs of this process: who stands where, and what the teacher wants.
+
+It looks several times a second; labs are asked by commands, and only immutable parts of them are
+read, so it may do so from a thread of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from onpath.app.classroom.classroom import Room
+from onpath.app.common.periodic import Rounds
+from onpath.app.lab.class_commands import Freeze
+from onpath.app.lab.session import Session
+
+EVERY = 0.25  # [s]
+
+
+Find = Callable[[str], tuple[Session, bool] | None]
+"""The lab of a session code, and whether somebody looks at it; None when it is not here."""
+
+
+class Attendance:
+    """Keeps a class and its students' labs together.
+
+    Args:
+        find: labs of this process.
+
+    Attributes:
+        rounds: looks, from their start to their stop.
+    """
+
+    def __init__(self, classroom: Room, find: Find) -> None:
+        self._class, self._find = classroom, find
+        self._asked: dict[str, int] = {}
+        self._bound: dict[str, Session] = {}
+        self.rounds = Rounds("class", EVERY, self.look)
+
+    def look(self) -> None:
+        """Once: take orders to the labs, and news of them to the class."""
+        self._class.look()
+        members = self._class.members()
+        for code in [code for code in self._bound if code not in members]:
+            self._let_go(code)
+        for code in members:
+            self._follow(code)
+
+    def _let_go(self, code: str) -> None:
+        """Who has left is not held."""
+        lab = self._bound.pop(code)
+        self._asked.pop(code, None)
+        if lab.frozen:
+            lab.post(Freeze(False))
+
+    def _follow(self, code: str) -> None:
+        member = self._class.member(code)
+        found = None if self._class.is_elsewhere(code) else self._find(code)
+        if member is None:
+            return
+        if found is None:
+            if member.connected:
+                self._class.note(code, connected=False)
+            return
+        lab, connected = found
+        self._bound[code] = lab
+        changes: dict[str, object] = {}
+        if lab.lessons.progress is not member.progress:
+            changes["progress"] = lab.lessons.progress
+        if connected != member.connected:
+            changes["connected"] = connected
+        if lab.asked != self._asked.get(code):
+            self._asked[code], changes["active"] = lab.asked, self._class.clock()
+        orders = self._class.orders
+        if orders.pushes > member.taken:
+            changes["taken"] = orders.pushes
+            if orders.push is not None:
+                lab.post(orders.push)
+        if orders.frozen != lab.frozen:
+            lab.post(Freeze(orders.frozen))
+        if changes:
+            self._class.note(code, **changes)

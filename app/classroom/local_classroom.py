@@ -1,0 +1,123 @@
+"""The class of a server with one process, forgotten when that ends. No viser in it; any thread."""
+
+from __future__ import annotations
+
+import hmac
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from onpath.app.classroom.admission import Door, new_class_code, new_pass
+from onpath.app.classroom.classroom import Member, Orders, Push, noted, seated
+from onpath.app.common.access_codes import new_code
+
+
+@dataclass(slots=True)
+class Classroom:
+    """See `app.classroom.classroom.Room`.
+
+    Attributes:
+        key: what the teacher types, as `app.common.access_codes` keeps it.
+    """
+
+    clock: Callable[[], float] = time.monotonic
+    code: str = ""
+    key: str = field(default_factory=new_code, repr=False)
+    _members: dict[str, Member] = field(default_factory=dict)
+    _orders: Orders = field(default_factory=Orders)
+    _joined: int = 0
+    _passes: set[str] = field(default_factory=set)
+    _lock: threading.RLock = field(default_factory=threading.RLock)
+    _door: Door = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.code = self.code or new_class_code()
+        self._door = Door(self.clock)
+
+    # Who may teach
+
+    def admit(self, typed: str, who: str) -> str:
+        """See `Room.admit`."""
+        self._door.check_key(typed, self.key, who)
+        new = new_pass()
+        with self._lock:
+            self._passes.add(new)
+        return new
+
+    def is_pass(self, shown: str | None) -> bool:
+        """See `Room.is_pass`."""
+        given = (shown or "")[:100].encode(errors="replace")
+        with self._lock:
+            return any([hmac.compare_digest(given, own.encode()) for own in self._passes])
+
+    def revoke(self, shown: str | None) -> None:
+        """See `Room.revoke`."""
+        with self._lock:
+            self._passes.discard(shown or "")
+
+    # Who is in it
+
+    def join(self, session: str, typed: str, name: str) -> Member:
+        """See `Room.join`."""
+        self._door.check_code(typed, self.code, session)
+        with self._lock:
+            new = Member(self._joined + 1, "", active=self.clock())
+            member = self._members[session] = seated(self._members, session, name, new)
+            self._joined = max(self._joined, member.number)
+            return member
+
+    def leave(self, session: str) -> None:
+        """See `Room.leave`."""
+        with self._lock:
+            self._members.pop(session, None)
+
+    def member(self, session: str) -> Member | None:
+        """See `Room.member`."""
+        return self._members.get(session)
+
+    def members(self) -> dict[str, Member]:
+        """See `Room.members`."""
+        with self._lock:
+            return dict(self._members)
+
+    def look(self) -> None:
+        """Everything is here."""
+
+    def is_elsewhere(self, session: str) -> bool:
+        """There is no elsewhere."""
+        return False
+
+    def note(self, session: str, **changes: object) -> None:
+        """See `Room.note`."""
+        with self._lock:
+            old = self._members.get(session)
+            if old is not None:
+                self._members[session] = noted(old, changes)
+
+    # What the teacher wants
+
+    @property
+    def orders(self) -> Orders:
+        """See `Room.orders`."""
+        return self._orders
+
+    def freeze(self, on: bool) -> None:
+        """See `Room.freeze`."""
+        with self._lock:
+            self._orders = replace(self._orders, frozen=on)
+
+    def push(self, push: Push | None) -> None:
+        """See `Room.push`."""
+        with self._lock:
+            count = self._orders.pushes + (push is not None)
+            self._orders = replace(self._orders, pushes=count, push=push)
+
+    def end(self) -> int:
+        """See `Room.end`."""
+        with self._lock:
+            count = len(self._members)
+            self._members.clear()
+            self._orders = replace(self._orders, frozen=False, push=None)
+            self.code = new_class_code()
+            return count

@@ -1,0 +1,128 @@
+"""A student's lab that lives in another process, as it is shown in this one.
+
+It is told how the lab is several times a second, and runs a little behind: from one moment that
+it knows exactly to the next, by the same loop under the same pushes, and never beyond the last.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from onpath.app.classroom.moment import Moment, read_moment, take_over
+from onpath.app.common.error_log import log_warning
+from onpath.app.lab.session import MOST_TICKS, Session
+from onpath.app.simulation.simulation_thread import FRAME, Lab
+from onpath.models.closed_loop.simulation import Push
+from onpath.models.control.laws import NAMES
+from onpath.models.systems.parameters import time_step
+
+BEHIND = 0.4  # [s] that it runs behind the latest moment
+FURTHEST = 2.0  # [s]; further behind, what lies between is left out
+GAIN = 0.5  # how much faster it runs when it is twice as far behind
+MOST = 50  # moments waiting
+
+
+class Mirror(Lab):
+    """One lab. It is nobody's hands: no command of a page reaches the student's.
+
+    Args:
+        session: a new one, which nobody else has.
+        text: the first moment, see `app.classroom.moment`.
+
+    Raises:
+        ValueError: that is none.
+    """
+
+    def __init__(self, session: Session, text: str) -> None:
+        super().__init__(session)
+        self._now, self._text = read_moment(text), text
+        self._coming: deque[Moment] = deque([self._now], MOST)
+        self._taken: Moment | None = None
+        self._owed = 0.0  # [s]
+
+    def tell(self, text: str) -> None:
+        """How the lab is now; from any thread. What cannot be read is left out."""
+        if text == self._text:
+            return
+        self._text = text
+        try:
+            self._now = read_moment(text)
+        except ValueError as error:
+            log_warning("a student's lab cannot be shown: %s", error)
+            return
+        self._coming.append(self._now)
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether the student's browser draws it."""
+        return self._now.is_seen
+
+    @property
+    def achieved(self) -> float:
+        """See `Lab.achieved`."""
+        return self._now.achieved
+
+    def keep_up(self) -> None:
+        """One frame; on the simulation thread, by the page that shows it."""
+        self._take_over_due()
+        self._owed += self._step()
+        while self._coming and self._runs():
+            if not self._run_towards(self._coming[0]):
+                return
+            self._take_over_due()
+        self._owed = 0.0
+
+    def _runs(self) -> bool:
+        return self._taken is not None and self._taken.moves
+
+    def _take_over_due(self) -> None:
+        while self._coming and self._is_due(self._coming[0]):
+            new = self._coming.popleft()
+            take_over(self.session, new, self._taken)
+            self._taken = new
+
+    def _step(self) -> float:
+        """How far to go in this frame: faster the further behind, [s]."""
+        if not self._coming:
+            return 0.0
+        rate = self.session.rate
+        behind = (self._coming[-1].time - self.session.time) / (BEHIND * rate)
+        return FRAME * rate * float(np.clip(1 + GAIN * (behind - 1), 0.5, 2.0))
+
+    def _is_due(self, new: Moment) -> bool:
+        old = self._taken
+        return (
+            old is None
+            or not old.moves
+            or (new.robot, new.run) != (old.robot, old.run)
+            or new.time < old.time
+            or new.time < self.session.time + time_step(self.session.parameters) / 2
+            or self._coming[-1].time - self.session.time > FURTHEST * new.rate
+        )
+
+    def _run_towards(self, new: Moment) -> bool:
+        """As far as this frame goes; returns whether that is all the way to a moment."""
+        session, dt = self.session, time_step(self.session.parameters)
+        there = max(1, round((new.time - session.time) / dt))
+        ticks = min(int(self._owed / dt + 1e-9), there, MOST_TICKS)
+        if ticks < 1:
+            return False
+        self._owed = min(self._owed - ticks * dt, FRAME * session.rate)
+        self._move_hands(new, session.time + ticks * dt)
+        session.simulate(ticks)
+        if ticks == there:
+            session.time = new.time
+        return ticks == there
+
+    def _move_hands(self, new: Moment, time: float) -> None:
+        """A hand moves more often than it is told."""
+        old = self._taken
+        assert old is not None
+        pushes = self.session.grips.pushes
+        passed = (time - old.time) / (new.time - old.time)
+        for name, this, that in zip(NAMES, old.robots, new.robots, strict=True):
+            if this.hand and that.hand and this.hand != that.hand:
+                at = (1 - passed) * np.array(this.hand) + passed * np.array(that.hand)
+                pushes[name] = Push(at, pushes[name].hold)

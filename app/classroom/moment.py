@@ -1,0 +1,276 @@
+"""A lab at one instant, as another process shows it: told, checked when it is read, taken over.
+
+Unlike a set-up it holds where the robots are and who pulls at them, exactly, so that a lab that
+has taken it over moves on as the first one does.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import msgspec
+import numpy as np
+
+from onpath.app.lab.closed_loop_run import Diverged, PlantRun
+from onpath.app.lab.commands import EXAGGERATIONS, RATES
+from onpath.app.lab.path_editor import Blend, PathEditor
+from onpath.app.lab.plot_samples import places
+from onpath.app.lab.session import Session
+from onpath.app.lab.setup import Word
+from onpath.app.simulation.simulation_thread import Lab
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loop_vectors import log_layout, state_layout
+from onpath.models.closed_loop.simulation import Push
+from onpath.models.control.laws import NAMES
+from onpath.models.paths.curve_faults import Fault
+from onpath.models.paths.curves import TERMS, Curve, from_terms, terms_of
+from onpath.models.paths.path_design import MOST_POINTS, PathDesign
+from onpath.models.systems.catalogue import ROBOTS, Entry
+from onpath.models.systems.parameters import Parameters, changed, specs
+
+MOST_MARKS = 2000  # numbers
+INSTANT = 1e-6  # [s], shorter than any tick
+Text = Annotated[str, msgspec.Meta(max_length=2000)]
+Vector = Annotated[tuple[float, ...], msgspec.Meta(max_length=200)]
+Series = Annotated[tuple[float, ...], msgspec.Meta(max_length=2 * TERMS)]
+Points = Annotated[tuple[float, ...], msgspec.Meta(max_length=2 * MOST_POINTS)]
+Marks = Annotated[tuple[float, ...], msgspec.Meta(max_length=MOST_MARKS)]
+
+
+class Line(msgspec.Struct, frozen=True):
+    """A curve: its terms, x and y in turn, [m]."""
+
+    closed: bool
+    terms: Series
+
+
+class Followed(msgspec.Struct, frozen=True):
+    """A path as it is edited and followed; see `app.lab.path_editor`."""
+
+    name: Word
+    target: Line
+    before: Line | None
+    progress: Annotated[float, msgspec.Meta(ge=0, le=1)]
+    points: Points
+    selected: int | None
+    marks: Marks
+
+
+class Robot(msgspec.Struct, frozen=True):
+    """One robot.
+
+    Attributes:
+        sample: see `app.lab.plot_samples`.
+        diverged: why it stands still, and since when.
+        hand, anchor, tangent: who pulls at it, in output coordinates; none if nobody does.
+    """
+
+    state: Vector
+    sample: Vector
+    max_distance: float
+    diverged: tuple[Text, float] | None
+    hand: Vector
+    anchor: Vector
+    tangent: Vector
+
+
+class Moment(msgspec.Struct, frozen=True):
+    """A lab as it is seen, now or at the past instant that is being looked at.
+
+    Attributes:
+        run: how often the robots have been set back to the start.
+        moves: whether simulated time runs.
+        is_seen: whether the student's tab draws.
+        achieved: simulated seconds per second.
+    """
+
+    robot: Word
+    parameters: Annotated[dict[Word, int | float | Word], msgspec.Meta(max_length=100)]
+    run: int
+    time: float
+    running: bool
+    moves: bool
+    rate: Annotated[float, msgspec.Meta(ge=RATES[0], le=RATES[-1])]
+    exaggeration: Annotated[float, msgspec.Meta(ge=EXAGGERATIONS[0], le=EXAGGERATIONS[-1])]
+    held: Annotated[tuple[Word, ...], msgspec.Meta(max_length=2)]
+    grabbed: Word | None
+    message: Text
+    level: Word
+    language: Word
+    path: Followed
+    robots: Annotated[tuple[Robot, ...], msgspec.Meta(min_length=2, max_length=2)]
+    is_seen: bool
+    achieved: float
+
+
+def tell(lab: Lab) -> Moment:
+    """How a lab is; on the simulation thread, and quickly."""
+    session = lab.session
+    past = None if session.viewing is None else session.history.at(session.viewing)
+    instant = session.instant() if past is None else past.instant()
+    own, base = session.parameters, session.entry.lab
+    values = {name: getattr(own, name) for name in specs(own)}
+    robots = tuple(
+        _robot(
+            session.runs[name],
+            session.grips.pushes[name],
+            instant.states[number],
+            instant.sample[number],
+            instant.max_distances[number],
+        )
+        for number, name in enumerate(NAMES)
+    )
+    return Moment(
+        robot=session.entry.name,
+        parameters={n: value for n, value in values.items() if value != getattr(base, n)},
+        run=session.run_number,
+        time=instant.time if session.viewing is None else session.viewing,
+        running=session.running,
+        moves=session.running and not session.frozen,
+        rate=session.rate,
+        exaggeration=session.exaggeration,
+        held=tuple(session.grips.held),
+        grabbed=session.grips.grabbed,
+        message=session.message[:2000],
+        level=session.message_level,
+        language=session.lessons.words.language,
+        path=_path(session.editor, past and past.curve),
+        robots=robots,
+        is_seen=lab.is_seen,
+        achieved=lab.achieved,
+    )
+
+
+def _robot(run: PlantRun, push: Push, state: Array, sample: Array, most: float) -> Robot:
+    anchor, tangent = push.hold or (np.zeros(0), np.zeros(0))
+    return Robot(
+        state=tuple(state.tolist()),
+        sample=tuple(np.nan_to_num(sample).tolist()),
+        max_distance=float(most),
+        diverged=run.diverged and (run.diverged.reason, run.diverged.time),
+        hand=() if push.hand is None else tuple(push.hand.tolist()),
+        anchor=tuple(anchor.tolist()),
+        tangent=tuple(tangent.tolist()),
+    )
+
+
+def _path(editor: PathEditor, past: Curve | None) -> Followed:
+    followed = editor.blend if past is None else Blend(past)
+    points, faults = (editor.points(), editor.faults) if past is None else (np.zeros(0), ())
+    marks = [number for fault in faults for number in fault.points.ravel().tolist()]
+    return Followed(
+        name=(editor.proposed or editor.design).name,
+        target=_line(followed.target),
+        before=None if followed.before is None else _line(followed.before),
+        progress=followed.progress,
+        points=tuple(points.ravel().tolist()),
+        selected=editor.selected,
+        marks=tuple(marks[:MOST_MARKS]),
+    )
+
+
+def _line(curve: Curve) -> Line:
+    return Line(curve.closed, tuple(curve.terms().ravel().tolist()))
+
+
+def read_moment(text: str) -> Moment:
+    """What `tell` told, from JSON.
+
+    Raises:
+        ValueError: it is no moment of a lab that exists.
+    """
+    moment = msgspec.json.decode(text, type=Moment)
+    if moment.robot not in ROBOTS:
+        raise ValueError(f"no robot {moment.robot!r}")
+    entry = ROBOTS[moment.robot]
+    robot = entry.make(parameters_of(moment))
+    samples, fields = places(robot), state_layout(robot.system)
+    for line in (moment.path.target, moment.path.before):
+        if line is not None:
+            _numbers(line.terms, 2 * terms_of(line.closed))
+    for numbers in (moment.path.points, moment.path.marks):
+        _numbers(numbers, 2 * (len(numbers) // 2))
+    for each in moment.robots:
+        _numbers(each.state, fields.size)
+        _numbers(each.sample, len(samples))
+        for pull in (each.hand, each.anchor, each.tangent):
+            _numbers(pull, robot.system.p if pull else 0)
+        if bool(each.anchor) != bool(each.tangent):
+            raise ValueError("half a brake")
+    most = [each.max_distance for each in moment.robots]
+    _numbers((moment.time, moment.achieved, *most), 4)
+    if not {*moment.held, moment.grabbed} <= {*NAMES, None}:
+        raise ValueError("somebody else is held")
+    return moment
+
+
+def parameters_of(moment: Moment) -> Parameters:
+    """The parameters of a lab.
+
+    Raises:
+        ValueError: an unknown name or a bad value.
+    """
+    parameters = ROBOTS[moment.robot].lab
+    for name, value in moment.parameters.items():
+        parameters = changed(parameters, name, value)
+    return parameters
+
+
+def _numbers(numbers: tuple[float, ...], size: int) -> None:
+    if len(numbers) != size or not np.isfinite(numbers).all():
+        raise ValueError(f"expected {size} finite numbers, got {len(numbers)}")
+
+
+def take_over(session: Session, new: Moment, old: Moment | None) -> None:
+    """Make a session what a lab was; on the simulation thread.
+
+    Args:
+        new, old: checked ones; this one and the one that was taken over before.
+    """
+    entry: Entry = ROBOTS[new.robot]
+    session.choose_robot(entry)
+    if old is None or (new.robot, new.parameters) != (old.robot, old.parameters):
+        session.set_parameters(parameters_of(new))
+    if old is None or (new.robot, new.path) != (old.robot, old.path):
+        _take_path(session.editor, new.path)
+    if old is None or new.run != old.run or new.time < session.time - INSTANT:
+        session.history.clear()
+    if new.language != session.lessons.words.language:
+        session.lessons.set_language(new.language)
+    session.time, session.running, session.rate = new.time, new.running, new.rate
+    session.exaggeration, grips = new.exaggeration, session.grips
+    grips.grabbed, grips.held = new.grabbed, {*new.held}
+    session.say(new.message, new.level)
+    for name, robot in zip(NAMES, new.robots, strict=True):
+        grips.pushes[name] = _push(robot)
+        _take_robot(session, session.runs[name], robot)
+
+
+def _take_path(editor: PathEditor, path: Followed) -> None:
+    target, before = _curve(path.target), path.before and _curve(path.before)
+    points = np.array(path.points).reshape(-1, 2)
+    marks = [Fault("", np.array(path.marks).reshape(-1, 2))] if path.marks else []
+    shown = PathDesign(path.name, target, points)
+    editor.show(shown, Blend(target, before, path.progress), marks)
+    editor.select(path.selected)
+
+
+def _curve(line: Line) -> Curve:
+    return from_terms(line.closed, np.array(line.terms).reshape(-1, 2))
+
+
+def _push(robot: Robot) -> Push:
+    hold = (np.array(robot.anchor), np.array(robot.tangent)) if robot.anchor else None
+    return Push(np.array(robot.hand) if robot.hand else None, hold)
+
+
+def _take_robot(session: Session, run: PlantRun, robot: Robot) -> None:
+    fields, log = session.sample_layout.slices, log_layout(session.robot.system)
+    run.state = np.array(robot.state)
+    now, row = run.fields(), np.zeros(log.size)
+    sample, known = np.array(robot.sample), places(session.robot)
+    row[known[known > 0]] = sample[known > 0]
+    log.unpack(row)["q"][:], log.unpack(row)["v"][:] = now["q"], now["v"]
+    run.row, run.distance = row, float(sample[fields["distance"].start])
+    run.max_distance = robot.max_distance
+    run.diverged = None if robot.diverged is None else Diverged(*robot.diverged)

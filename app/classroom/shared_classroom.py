@@ -1,0 +1,237 @@
+"""The class of several processes that share a database. No viser in it; any thread.
+
+What pages and labs read is at hand. What they want of all is written when the class is looked at
+next, several times a second, so that neither the simulation nor the network waits for a database.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any, TypeVar
+
+import sqlalchemy as sa
+from sqlalchemy import exc
+
+from onpath.app.classroom.admission import Door, new_pass
+from onpath.app.classroom.class_ledger import Ledger, Now, Seen
+from onpath.app.classroom.class_rows import push_text
+from onpath.app.classroom.classroom import Member, Orders, Push, noted
+from onpath.app.common.error_log import log_warning
+from onpath.app.storage.records import NotKept, Records
+from onpath.app.storage.schema import classes
+
+LIVELY = 5.0  # [s] that others may not know of a student's latest deed
+Result = TypeVar("Result")
+
+
+class SharedClassroom:
+    """See `app.classroom.classroom.Room`.
+
+    Whoever has the teacher's key and the database has the same class.
+
+    Args:
+        key: as `app.common.access_codes` keeps it.
+        wall: seconds since 1970, roughly the same for all processes.
+
+    Attributes:
+        id: of the class in the database; it does not tell the key.
+
+    Raises:
+        NotKept: the database does not work.
+    """
+
+    def __init__(
+        self,
+        records: Records,
+        key: str,
+        clock: Callable[[], float] = time.monotonic,
+        wall: Callable[[], float] = time.time,
+    ) -> None:
+        self.clock, self.key, self._wall = clock, key, wall
+        self.id = hashlib.scrypt(key.encode(), salt=b"onpath", n=2**14, r=8, p=1, dklen=20).hex()
+        self._records, self._door = records, Door(clock)
+        self._ledger = Ledger(self.id, records.owner)
+        self._database = threading.RLock()  # held while the database is waited for
+        self._lock = threading.Lock()
+        self._seen = Seen()
+        self._notes: dict[str, dict[str, Any]] = {}
+        self._wanted: list[dict[str, Any]] = []
+        self._told: dict[str, float] = {}
+        self._transact(lambda connection: self._ledger.forget_old(connection, self._now()))
+
+    # What is at hand
+
+    @property
+    def code(self) -> str:
+        """See `Room.code`."""
+        return self._seen.code
+
+    @property
+    def orders(self) -> Orders:
+        """See `Room.orders`."""
+        return self._seen.orders
+
+    def member(self, session: str) -> Member | None:
+        """See `Room.member`."""
+        return self._seen.members.get(session)
+
+    def members(self) -> dict[str, Member]:
+        """See `Room.members`."""
+        return dict(self._seen.members)
+
+    def is_elsewhere(self, session: str) -> bool:
+        """See `Room.is_elsewhere`."""
+        return session in self._seen.elsewhere
+
+    # What is written at the next look
+
+    def note(self, session: str, **changes: object) -> None:
+        """See `Room.note`. Who is connected is not noted, it stands in the leases."""
+        changes.pop("connected", None)
+        with self._lock:
+            old = self._seen.members.get(session)
+            if old is None or not changes:
+                return
+            new = noted(old, changes)
+            self._seen = replace(self._seen, members={**self._seen.members, session: new})
+            if {*changes} == {"active"} and new.active - self._told.get(session, -LIVELY) < LIVELY:
+                return
+            self._told[session] = new.active
+            self._notes.setdefault(session, {}).update(changes)
+
+    def freeze(self, on: bool) -> None:
+        """See `Room.freeze`."""
+        with self._lock:
+            self._wanted.append({"frozen": int(on)})
+            self._seen = replace(self._seen, orders=replace(self._seen.orders, frozen=on))
+
+    def push(self, push: Push | None) -> None:
+        """See `Room.push`."""
+        sent = {} if push is None else {"pushes": classes.c.pushes + 1}
+        with self._lock:
+            self._wanted.append({**sent, "push": push_text(push)})
+
+    def look(self) -> None:
+        """See `Room.look`. When the database does not work, all stays as it is."""
+        try:
+            self._transact(lambda _: None)
+        except NotKept as error:
+            log_warning("the class cannot be looked at: %s", error)
+
+    # What is done at once
+
+    def admit(self, typed: str, who: str) -> str:
+        """See `Room.admit`."""
+        self._door.check_key(typed, self.key, who)
+        new = new_pass()
+        self._transact(lambda connection: self._ledger.add_pass(connection, _hash(new)))
+        return new
+
+    def is_pass(self, shown: str | None) -> bool:
+        """See `Room.is_pass`."""
+        with self._records.transaction() as connection:
+            return self._ledger.has_pass(connection, _hash(shown or ""))
+
+    def revoke(self, shown: str | None) -> None:
+        """See `Room.revoke`."""
+        self._transact(lambda connection: self._ledger.remove_pass(connection, _hash(shown or "")))
+
+    def join(self, session: str, typed: str, name: str) -> Member:
+        """See `Room.join`."""
+        self._door.check_code(typed, self.code, session)
+        return self._transact(
+            lambda connection: self._ledger.enter(
+                connection, session, name, self._seen, self._now()
+            )
+        )
+
+    def leave(self, session: str) -> None:
+        """See `Room.leave`."""
+        if session in self._seen.members:
+            self._transact(lambda connection: self._ledger.leave(connection, session, self._now()))
+
+    def end(self) -> int:
+        """See `Room.end`."""
+        return self._transact(lambda connection: self._ledger.end(connection, self._now()))
+
+    def dissolve(self) -> None:
+        """Nothing is kept of the class; who goes on with it begins another."""
+        with self._records.transaction() as connection:
+            self._ledger.forget(connection)
+
+    # The database
+
+    def _now(self) -> Now:
+        return Now(self.clock(), self._wall())
+
+    def _transact(self, act: Callable[[sa.Connection], Result]) -> Result:
+        """Write what is waiting, act, and look."""
+        with self._database:
+            with self._lock:
+                notes, self._notes = self._notes, {}
+                wanted, self._wanted = self._wanted, []
+            try:
+                result, seen = self._written(notes, wanted, act)
+            except BaseException:
+                with self._lock:
+                    for session, changes in notes.items():
+                        self._notes[session] = changes | self._notes.get(session, {})
+                    self._wanted = [*wanted, *self._wanted]
+                raise
+            with self._lock:
+                self._seen = self._with_waiting(seen)
+            return result
+
+    def _written(
+        self,
+        notes: Mapping[str, dict[str, Any]],
+        wanted: list[dict[str, Any]],
+        act: Callable[[sa.Connection], Result],
+    ) -> tuple[Result, Seen]:
+        for last in (False, True):
+            try:
+                with self._records.transaction() as connection:
+                    self._write(connection, notes, wanted)
+                    result = act(connection)
+                    return result, self._ledger.look(connection, self._seen, self._now())
+            except exc.IntegrityError:  # another process began the class at the same time
+                if last:
+                    raise NotKept("the class cannot be begun") from None
+        raise AssertionError
+
+    def _write(
+        self,
+        connection: sa.Connection,
+        notes: Mapping[str, dict[str, Any]],
+        wanted: list[dict[str, Any]],
+    ) -> None:
+        now = self._now()
+        for values in wanted:
+            self._ledger.change(connection, now, **values)
+        if not notes:
+            return
+        changed = self._ledger.change(connection, now).changes
+        for session, changes in notes.items():
+            values = dict(changes)
+            if "active" in values:
+                values["active"] += now.wall - now.here
+            self._ledger.write(connection, session, changed, **values)
+
+    def _with_waiting(self, seen: Seen) -> Seen:
+        """A class as it will be when what has come meanwhile is written."""
+        orders, there = seen.orders, dict(seen.members)
+        for values in self._wanted:
+            if "frozen" in values:
+                orders = replace(orders, frozen=bool(values["frozen"]))
+        for session, changes in self._notes.items():
+            if session in there:
+                there[session] = noted(there[session], changes)
+        return replace(seen, orders=orders, members=there)
+
+
+def _hash(shown: str) -> str:
+    return hashlib.sha256(shown[:100].encode(errors="replace")).hexdigest()

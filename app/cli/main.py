@@ -1,0 +1,176 @@
+"""The command line: `onpath` serves the lab, its subcommands run without a browser."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import tyro
+
+from onpath.app.cli.experiment import Experiment, ZeroDynamics
+from onpath.app.cli.serve import Serve
+
+if TYPE_CHECKING:
+    from onpath.lessons.course import Course
+    from onpath.lessons.parse import Problem
+
+COMMANDS = ("serve", "experiment", "zero-dynamics", "lessons", "bench", "forget")
+INTERRUPTED = 130
+
+
+@dataclass(frozen=True)
+class Lessons:
+    """List the lessons, or check lessons of your own: read them, play what they say."""
+
+    do: Annotated[Literal["list", "check"], tyro.conf.Positional]
+    """list or check."""
+    folder: Annotated[Path | None, tyro.conf.Positional] = None
+    """A folder of lessons; the built-in ones if there is none."""
+
+    def run(self) -> int:
+        """Print; exit code 1 when something is wrong."""
+        from onpath.lessons.course import BUILT_IN, read_course
+
+        folder = self.folder or BUILT_IN
+        course, problems = read_course([folder])
+        if self.do == "list":
+            for name, versions in course.lessons.items():
+                facts = course.lesson(name, "en").front
+                print(f"{name:30s} {facts.minutes:3d} min  {','.join(versions):8s} {facts.title}")
+        elif not problems:
+            problems = self._played(course, folder)
+        for problem in problems:
+            print(problem, file=sys.stderr)
+        return 1 if problems else 0
+
+    def _played(self, course: Course, folder: Path) -> list[Problem]:
+        from onpath.app.lab.course_check import play_course
+        from onpath.app.lab.loop_cache import LoopStore
+
+        problems = list(play_course(course, folder, LoopStore()))
+        if not problems:
+            lessons = list(course.lessons.values())
+            tasks = sum(len(next(iter(versions.values())).tasks()) for versions in lessons)
+            count = f"{len(lessons)} lesson{'s' if len(lessons) != 1 else ''}"
+            print(f"{count}, {tasks} solutions and failures played, nothing wrong")
+        return problems
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Measure the speed of the closed loops and of the lab."""
+
+    quick: bool = False
+    """Fewer repetitions, no clients."""
+    clients: tuple[int, ...] = ()
+    """Only this: how a server bears so many simulated browsers; several numbers, one by one."""
+    workers: int = 1
+    """So many processes serve them."""
+    seconds: float = 15.0
+    """So long is measured, once all browsers are shown moving robots."""
+    minutes: int = 0
+    """A row every minute for so long, to see whether memory stays flat."""
+
+    def run(self) -> None:
+        """Print the table."""
+        from onpath.app.bench.crowd import Crowd
+        from onpath.app.bench.tables import bench, bench_crowds
+
+        if self.minutes < 0:
+            raise ValueError(f"--minutes {self.minutes}: expected 1 or more")
+        if not self.clients and (self.workers, self.seconds, self.minutes) != (1, 15.0, 0):
+            raise ValueError("--workers, --seconds and --minutes go with --clients")
+        if self.clients and self.quick:
+            raise ValueError("--quick leaves out what --clients asks for")
+        seconds, rows = (60.0, self.minutes) if self.minutes else (self.seconds, 1)
+        crowds = [Crowd(clients, self.workers, seconds, rows) for clients in self.clients]
+        if crowds:
+            bench_crowds(crowds)
+        else:
+            bench(quick=self.quick)
+
+
+@dataclass(frozen=True)
+class Forget:
+    """Delete every lab that is kept. There is no way back."""
+
+    database: str | None = None
+    """URL of the database; the file in your data folder if not given."""
+
+    def run(self) -> None:
+        """Delete, and say how much."""
+        from onpath.app.storage.forget import forget
+
+        gone = forget(self.database)
+        print(f"deleted: {gone.labs} labs, {len(gone.files)} files moved aside as broken")
+
+
+def main() -> None:
+    """Entry point of `onpath`."""
+    sys.exit(run_command(sys.argv[1:]))
+
+
+def run_command(arguments: list[str]) -> int:
+    """Run one command line; returns the exit code.
+
+    That is 0, or 2 with one line on standard error, 1 for lessons with something wrong, or what
+    shells say of a command that was interrupted.
+    """
+    if not arguments or arguments[0] not in (*COMMANDS, "-h", "--help"):
+        if arguments and not arguments[0].startswith("-"):
+            print(f"onpath: {unknown_command(arguments[0])}", file=sys.stderr)
+            return 2
+        arguments = ["serve", *arguments]
+    try:
+        return _parse(arguments).run() or 0
+    except BrokenPipeError:
+        return 0
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except (ValueError, OSError) as error:
+        print(f"onpath: {_one_line(str(error))}", file=sys.stderr)
+        return 2
+
+
+def unknown_command(name: str) -> str:
+    """What to say to a command that does not exist."""
+    return f"unknown command {name!r}: there are {', '.join(COMMANDS)}"
+
+
+def _parse(arguments: list[str]) -> Serve | Experiment | ZeroDynamics | Lessons | Bench | Forget:
+    complaint = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(complaint):
+            return tyro.cli(
+                Annotated[Serve, tyro.conf.subcommand("serve")]
+                | Annotated[Experiment, tyro.conf.subcommand("experiment")]
+                | Annotated[ZeroDynamics, tyro.conf.subcommand("zero-dynamics")]
+                | Annotated[Lessons, tyro.conf.subcommand("lessons")]
+                | Annotated[Bench, tyro.conf.subcommand("bench")]
+                | Annotated[Forget, tyro.conf.subcommand("forget")],
+                prog="onpath",
+                description=__doc__,
+                args=arguments,
+            )
+    except SystemExit as stop:
+        if stop.code in (0, None):
+            raise
+        raise ValueError(_unboxed(complaint.getvalue())) from None
+
+
+def _unboxed(text: str) -> str:
+    """A framed message without its frame, title and pointers to the help, on one line."""
+    _, *sections = re.split(r"[\u2500-]{5,}", re.sub(r"\x1b\[[0-9;]*m", "", text))
+    lines = [_one_line(re.sub(r"[\u2500-\u257f]", " ", section)) for section in sections]
+    pointers = ("For full helptext", "Argument helptext")
+    kept = [line for line in lines if line and not line.startswith(pointers)]
+    return " ".join(kept) or _one_line(text)
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())

@@ -1,0 +1,117 @@
+"""`onpath serve`, which is what `onpath` alone does."""
+
+from __future__ import annotations
+
+import logging
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import tyro
+
+if TYPE_CHECKING:
+    from onpath.app.classroom.classroom import Room
+    from onpath.app.storage.records import Records
+
+
+@dataclass(frozen=True)
+class Serve:
+    """Serve the lab in the browser."""
+
+    host: str = "127.0.0.1"
+    """Address to listen on; 0.0.0.0 lets other machines in."""
+    port: int = 8080
+    """Port to listen on."""
+    open: bool = False
+    """Open the lab in the default browser."""
+    lessons: Path | None = None
+    """A folder with lessons of your own, shown after the built-in ones."""
+    database: str | None = None
+    """URL of a database that keeps the labs; a file in your data folder if not given."""
+    classroom: bool = False
+    """Open a class: prints a code for the students and a key for the teacher."""
+    origin: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """Address of the page behind a proxy, https://lab.example.org; repeat for more."""
+    trusted_proxy: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """A proxy on another machine, 10.0.0.7 or 10.0.0.0/8, that says who asks; repeat for more."""
+    socket: Path | None = None
+    """Listen on this Unix socket instead, for a proxy of your own such as Jupyter's."""
+    most_clients: int = 64
+    """So many browsers at once in each process; the next ones are told to wait."""
+    workers: int = 1
+    """So many processes, which share the port and the database."""
+    successive_ports: bool = False
+    """Each worker has a port of its own, from --port on, for a proxy in front."""
+    log_level: Literal["debug", "info", "warning", "error"] = "info"
+    """How much to log."""
+
+    def run(self) -> None:
+        """Serve until Ctrl-C."""
+        if self.most_clients < 1:
+            raise ValueError(f"--most-clients {self.most_clients}: expected 1 or more")
+        from onpath.app.server.workers import is_worker
+
+        if self.workers != 1:
+            self._supervise()
+            return
+        from onpath.app.server.handing import handed
+        from onpath.app.server.lab_server import serve
+
+        worker = is_worker()
+        level = getattr(logging, self.log_level.upper())
+        logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
+        logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
+        serve(
+            self.host,
+            self.port,
+            self.lessons,
+            self.database,
+            open_browser=self.open,
+            open_class=_opener(silent=worker) if self.classroom else None,
+            most_clients=self.most_clients,
+            allowed_origins=self.origin,
+            trusted_proxies=self.trusted_proxy,
+            unix_socket=self.socket,
+            share_port=worker,
+            listener=handed(self.host, self.port),
+        )
+
+    def _supervise(self) -> None:
+        from onpath.app.server.workers import check, supervise
+
+        check(self)
+        if not self.classroom:
+            supervise(self)
+            return
+        from onpath.app.classroom.class_opening import KEY, class_of_workers
+
+        with class_of_workers(self.database) as (room, is_new):
+            _print_class(room.code, room.key if is_new else None)
+            supervise(self, {KEY: room.key})
+
+
+def _opener(silent: bool) -> Callable[[Records], Room]:
+    """What opens a class in a database; it prints code and key unless somebody else does."""
+    from onpath.app.classroom.class_opening import given_key, open_class
+
+    key = given_key()
+
+    def opened(records: Records) -> Room:
+        room = open_class(records, key)
+        if not silent:
+            _print_class(room.code, room.key if key is None else None)
+        return room
+
+    return opened
+
+
+def _print_class(code: str, key: str | None) -> None:
+    """What to tell students and teacher, whatever is logged; a key that was given is known."""
+    from onpath.app.common.access_codes import shown
+
+    print(f"class code:    {code.upper()}     for the students, under Class")
+    if key is not None:
+        print(f"teacher's key: {shown(key)}     under Class, Teacher; tell it nobody")
+    sys.stdout.flush()

@@ -1,0 +1,69 @@
+"""The colours of the lab: one meaning, one colour, in the scene, the plots and the figures.
+
+The controllers' colours are Okabe and Ito's vermillion and blue, which stay apart for every common
+form of colour blindness and on a pale projector.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from onpath.models.control.laws import NAMES
+
+
+@dataclass(frozen=True, slots=True)
+class Colour:
+    """An sRGB colour, each channel from 0 to 255."""
+
+    red: int
+    green: int
+    blue: int
+
+    @property
+    def rgb(self) -> tuple[int, int, int]:
+        """As a tuple, for the scene."""
+        return (self.red, self.green, self.blue)
+
+    @property
+    def linear(self) -> np.ndarray:
+        """As linear light, shape (3,), uint8.
+
+        viser takes the colours of instances and of vertices as linear, all others as sRGB.
+        """
+        s = np.array(self.rgb) / 255.0
+        light = np.where(s <= 0.04045, s / 12.92, ((s + 0.055) / 1.055) ** 2.4)
+        return np.round(255.0 * light).astype(np.uint8)
+
+    @property
+    def hex(self) -> str:
+        """As `#rrggbb`, for plots, figures and HTML."""
+        return f"#{self.red:02x}{self.green:02x}{self.blue:02x}"
+
+    def toward(self, other: Colour, share: float) -> Colour:
+        """This colour with `share` (0 to 1) of another mixed in."""
+        mixed = (round(a + (b - a) * share) for a, b in zip(self.rgb, other.rgb, strict=True))
+        return Colour(*mixed)
+
+
+GREEN, GREY, AMBER = "#1d7a4f", "#667085", "#8a5a00"
+"""Of words on a page."""
+WHITE = Colour(255, 255, 255)
+INK = Colour(31, 41, 55)
+
+TRACKER = Colour(213, 94, 0)
+FOLLOWER = Colour(0, 114, 178)
+PATH = Colour(71, 80, 95)
+FORCE = Colour(154, 30, 122)
+WARNING = Colour(196, 18, 48)
+SELECTED = Colour(240, 180, 20)
+CONTROL_POINT = Colour(90, 100, 116)
+
+FRAME = Colour(196, 202, 210)
+MOTOR = Colour(66, 74, 88)
+STEEL = Colour(118, 128, 142)
+FLOOR = Colour(244, 246, 248)
+GRID = Colour(222, 226, 232)
+
+CONTROLLERS: dict[str, Colour] = dict(zip(NAMES, (TRACKER, FOLLOWER), strict=True))

@@ -1,0 +1,137 @@
+"""Pictures of runs, in the manner of the paper's figures 2, 3 and 5, by matplotlib."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from onpath.app.common.palette import CONTROLLERS
+from onpath.lessons.words import ENGLISH, Words
+from onpath.models.closed_loop.trajectory import Trajectory
+from onpath.models.paths.curves import circle
+from onpath.models.studies.experiments import Experiment
+from onpath.models.systems.flexible_robot import FlexibleFiveBar
+
+
+def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) -> None:
+    """End-point in output space, and distance, xi, eta, speed and torque over time."""
+    panels = _panels()
+    robot = experiment.robot()
+    if isinstance(robot, FlexibleFiveBar):
+        panels.insert(1, _deflection(robot))
+    figure = Figure(figsize=(13, 2.1 * len(panels)), layout="constrained")
+    axes = figure.subplot_mosaic([["space", name] for name, _, _ in panels], width_ratios=(1, 1.25))
+    figure.suptitle(experiment.title, fontsize=15)
+    _draw_space(axes["space"], experiment, runs)
+    for name, label, column in panels:
+        for run in runs:
+            _draw_column(axes[name], run, *column(run))
+        axes[name].set_ylabel(label)
+        axes[name].grid(alpha=0.25)
+        _shade_held(axes[name], runs)
+    for name, _, _ in panels[:-1]:
+        axes[name].tick_params(labelbottom=False)
+        axes[name].sharex(axes[panels[-1][0]])
+    axes[panels[-1][0]].set_xlabel("t  [s]")
+    save(figure, path)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """To a file, the same bytes for the same figure."""
+    with matplotlib.rc_context({"svg.hashsalt": "onpath"}):  # else its names are drawn by lot
+        figure.savefig(path, metadata=_reproducible(path), dpi=110)
+
+
+def draw_history(runs: dict[str, Trajectory], words: Words = ENGLISH) -> bytes:
+    """The lab's plots over the last minute, as PNG."""
+    panels = _panels(words)
+    figure = Figure(figsize=(11, 2.2 * len(panels)), layout="constrained")
+    axes = figure.subplots(len(panels), 1, sharex=True)
+    for axis, (_, label, column) in zip(axes, panels, strict=True):
+        for run in runs.values():
+            _draw_column(axis, run, *column(run))
+        axis.set_ylabel(label)
+        axis.grid(alpha=0.25)
+    for name, run in runs.items():
+        title = words(f"controller.{name}.title")
+        axes[0].plot([], [], color=CONTROLLERS[run.controller].hex, label=title)
+    axes[0].legend(loc="upper right")
+    axes[-1].set_xlabel("t  [s]")
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=110)
+    return file.getvalue()
+
+
+def _panels(words: Words = ENGLISH):
+    """(axes name, label, run -> (values, lines' styles)) from top to bottom."""
+    return [
+        ("distance", words("figure.distance"), lambda r: (1e3 * r.distance[:, None],)),
+        ("xi", r"$\xi_1$  [mm]", lambda r: (1e3 * r.fields["xi"],)),
+        ("eta1", r"$\eta_2^1=\theta$  [rad]", lambda r: (_wrapped(r.fields["theta"]),)),
+        ("eta2", r"$\eta_2^2=\dot\theta$  [rad/s]", lambda r: (r.fields["theta_rate"],)),
+        ("u", words("figure.torque"), lambda r: (r.fields["u"],)),
+    ]
+
+
+def _deflection(robot: FlexibleFiveBar):
+    def column(run: Trajectory) -> tuple[np.ndarray]:
+        return (1e3 * robot.deflection(run.fields["q"])[:, None],)
+
+    return "w", "deflection of\nthe tip  [mm]", column
+
+
+def _wrapped(theta: np.ndarray) -> np.ndarray:
+    """Angles in (-pi, pi], broken where they jump."""
+    wrapped = np.angle(np.exp(1j * theta))
+    jumps = np.abs(np.diff(wrapped, axis=0)) > np.pi
+    wrapped[1:][jumps] = np.nan
+    return wrapped
+
+
+def _draw_column(axes: Axes, run: Trajectory, values: np.ndarray) -> None:
+    styles = ("-", "--", ":")
+    for column, style in zip(values.T, styles, strict=False):
+        axes.plot(run.t, column, style, color=CONTROLLERS[run.controller].hex, linewidth=1.5)
+
+
+def _shade_held(axes: Axes, runs: list[Trajectory]) -> None:
+    times = runs[0].t[runs[0].held]
+    if times.size:
+        axes.axvspan(times[0], times[-1], color="0.5", alpha=0.15, linewidth=0)
+
+
+def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> None:
+    frame = experiment.robot().frame
+    curve = circle(experiment.schedule.r)
+    path = 1e3 * curve.at(np.linspace(-np.pi, np.pi, 400))
+    axes.plot(*path.T, color="0.75", linewidth=6, solid_capstyle="round", label="path")
+    for run in runs:
+        z = 1e3 * frame.planar(run.fields["y"])
+        axes.plot(
+            *z.T,
+            color=CONTROLLERS[run.controller].hex,
+            linewidth=1.6,
+            label=ENGLISH(f"controller.{run.controller}.title"),
+        )
+        axes.plot(*z[0], "o", color=CONTROLLERS[run.controller].hex, markersize=6)
+        axes.plot(*z[-1], "s", color=CONTROLLERS[run.controller].hex, markersize=7)
+    axes.plot([], [], "o", color="0.3", label="start")
+    axes.plot([], [], "s", color="0.3", label="end")
+    if any(run.held.any() for run in runs):
+        axes.plot([], [], color="0.5", alpha=0.3, linewidth=10, label="held back (right)")
+    axes.set_aspect("equal", adjustable="datalim")
+    first = 1 if frame.p == 2 else 2
+    axes.set_xlabel(f"$y_{first}$  [mm]")
+    axes.set_ylabel(f"$y_{first + 1}$  [mm]")
+    axes.grid(alpha=0.25)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=2, frameon=False)
+
+
+def _reproducible(path: Path) -> dict[str, None] | None:
+    """Metadata without the date, so that the same run gives the same bytes."""
+    return {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix)

@@ -1,0 +1,100 @@
+"""The scene of the last seconds as one HTML page that plays in any browser, without a server."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import threading
+import time
+
+import numpy as np
+import viser
+from viser import _messages as wire
+from viser._viser import InitialCameraConfig
+from viser.infra import WebsockServer
+from viser.infra._async_message_buffer import AsyncMessageBuffer
+
+from onpath.app.lab.history import Stretch
+from onpath.app.lab.plot_samples import sample_layout
+from onpath.app.lab.robot_geometry import robot_views
+from onpath.app.lab.snapshot import PathView, Snapshot
+from onpath.app.lab.take_snapshot import CURVE_POINTS
+from onpath.app.scene.scene import Scene
+from onpath.app.scene.stage import set_initial_camera
+from onpath.app.scene.stage_catalogue import stage_of
+from onpath.lessons.words import ENGLISH, Words
+from onpath.models.systems.robots import Robot
+
+RATE = 30.0  # [Hz]
+
+
+class Studio(viser.ViserServer):
+    """The scene of a server without the server: no socket, no thread, nobody is connected.
+
+    What the scene is told is kept in the queue that nobody empties, and can be serialized.
+    Written against viser 1.1.1; a test plays a film made with it.
+    """
+
+    def __init__(self) -> None:
+        loop = asyncio.new_event_loop()
+        loop.close()  # there is nobody to wake
+        self._websock_server = WebsockServer("", 0, wire.Message)
+        self._websock_server._broadcast_buffer = AsyncMessageBuffer(loop, persistent_messages=True)
+        self._initial_camera = InitialCameraConfig(self._websock_server.queue_message)
+        self._scene_lifecycle_lock = threading.RLock()
+        self.scene = viser.SceneApi(self, thread_executor=None, event_loop=loop)  # type: ignore[arg-type]
+        self.scene.reset()
+        self.scene.set_up_direction("+z")
+
+
+def record_scene(
+    robot: Robot, history: list[Stretch], words: Words = ENGLISH, until: float = math.inf
+) -> bytes:
+    """A standalone page that replays the history.
+
+    The scene is built once more in a studio of its own.
+
+    Args:
+        until: when to give up, by `time.monotonic`, [s].
+
+    Raises:
+        TimeoutError: it takes longer.
+    """
+    frames = _frames(history)
+    studio, stage = Studio(), stage_of(robot)
+    set_initial_camera(studio, stage)
+    scene = Scene(studio, stage=stage, words=words)  # type: ignore[arg-type]  # has scene, atomic()
+    scene.build(_snapshot(robot, frames[0], 0, []))
+    serializer = studio.get_scene_serializer()
+    for number, stretch in enumerate(frames):
+        if time.monotonic() > until:
+            raise TimeoutError("the recording takes too long")
+        snapshot = _snapshot(robot, stretch, number, frames[max(0, number - 45) : number])
+        scene.update(snapshot)
+        scene.update_path(snapshot)
+        if number % 3 == 0:
+            scene.update_traces(snapshot)
+        serializer.insert_sleep(1 / RATE)
+    return serializer.as_html().encode()
+
+
+def _frames(history: list[Stretch]) -> list[Stretch]:
+    """Stretches at about the film's rate."""
+    times = np.array([s.time for s in history])
+    wanted = np.arange(times[0], times[-1] + 1e-9, 1 / RATE)
+    return [history[i] for i in np.searchsorted(times, wanted).clip(max=len(times) - 1)]
+
+
+def _snapshot(robot: Robot, stretch: Stretch, number: int, before: list[Stretch]) -> Snapshot:
+    where = sample_layout(robot).slices["y"]
+    traces = np.array([s.sample[:, where] for s in [*before, stretch]], dtype=float)
+    views = robot_views(robot, stretch.curve, stretch.instant(), traces[:-1])
+    theta = np.linspace(-np.pi, np.pi, CURVE_POINTS)
+    path = PathView(
+        version=id(stretch.curve),
+        points=robot.place(robot.frame.lift(stretch.curve.at(theta))),
+        control_points=np.zeros((0, 3)),
+        selected=None,
+        refused=np.zeros((0, 3)),
+    )
+    return Snapshot(stretch.time, True, 1.0, views, path, False, None, "", "info")

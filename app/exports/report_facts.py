@@ -1,0 +1,114 @@
+"""What is kept of a student's lessons, as far as it still fits the lessons."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from msgspec.structs import replace
+
+from onpath.app.lab.lesson_run import LessonRun
+from onpath.lessons.progress import Answer, Notes, Truth
+from onpath.lessons.schema import Choice, Lesson, Prediction, Quiz, Sketch
+
+
+@dataclass(frozen=True, slots=True)
+class Chapter:
+    """One lesson and what the student has done in it.
+
+    Attributes:
+        number: in the course, from 1.
+        notes: those that fit the lesson.
+        opened: whether the student has opened it.
+        strange: how many notes do not fit it.
+    """
+
+    number: int
+    lesson: Lesson
+    notes: Notes
+    opened: bool
+    strange: int
+
+    def happened(self, key: str) -> bool:
+        """Whether what a prediction is about has been seen."""
+        return key in self.notes.truths
+
+    def chosen(self) -> list[bool]:
+        """Whether it was right, of each choice whose truth has been seen."""
+        asked = predictions(self.lesson)
+        return [
+            block.options[answer.option].right
+            for key, answer in self.notes.answers.items()
+            if isinstance(block := asked[key], Choice)
+            and answer.option is not None
+            and self.happened(key)
+        ]
+
+
+def chapters(run: LessonRun) -> list[Chapter]:
+    """All lessons of the course, in the student's language where they are written in it."""
+    progress, found = run.progress, list[Chapter]()
+    for number, name in enumerate(run.course.lessons, start=1):
+        lesson = run.course.lesson(name, progress.language)
+        notes, strange = fitting(lesson, progress.notes.get(name, Notes()))
+        found.append(Chapter(number, lesson, notes, name in progress.notes, strange))
+    return found
+
+
+def predictions(lesson: Lesson) -> dict[str, Prediction]:
+    """By the keys of the notes: a step asks for its first one."""
+    steps = ((str(i), step.predictions()) for i, step in enumerate(lesson.steps))
+    return {key: asked[0] for key, asked in steps if asked}
+
+
+def quizzes(lesson: Lesson) -> dict[str, Quiz]:
+    """By the keys of the notes: step and block."""
+    return {
+        f"{i}.{j}": block
+        for i, step in enumerate(lesson.steps)
+        for j, block in enumerate(step.blocks)
+        if isinstance(block, Quiz)
+    }
+
+
+def fitting(lesson: Lesson, notes: Notes) -> tuple[Notes, int]:
+    """The notes that fit a lesson, which may have been changed since, and how many do not."""
+    asked, questions = predictions(lesson), quizzes(lesson)
+    tasks = {task.id for task in lesson.tasks()}
+    kept: dict[str, dict[str, Any]] = {
+        "answers": _kept(notes.answers, lambda k, a: k in asked and _answers(asked[k], a)),
+        "truths": _kept(notes.truths, lambda k, t: k in asked and _is_true_of(asked[k], t)),
+        "tasks": _kept(notes.tasks, lambda k, best: k in tasks and bool(np.isfinite(best))),
+        "quiz": _kept(
+            notes.quiz, lambda k, i: k in questions and 0 <= i < len(questions[k].options)
+        ),
+    }
+    strange = sum(len(getattr(notes, name)) - len(kept[name]) for name in kept)
+    return replace(notes, seen=min(notes.seen, len(lesson.steps)), **kept), strange
+
+
+def _kept(notes: dict[str, Any], fits: Callable[[str, Any], bool]) -> dict[str, Any]:
+    return {key: note for key, note in notes.items() if fits(key, note)}
+
+
+def _answers(prediction: Prediction, answer: Answer) -> bool:
+    if answer.skipped:
+        return True
+    if isinstance(prediction, Sketch):
+        return answer.option is None and _are_curves(answer.times, answer.values)
+    return answer.option is not None and 0 <= answer.option < len(prediction.options)
+
+
+def _is_true_of(prediction: Prediction, truth: Truth) -> bool:
+    if isinstance(prediction, Choice):
+        return True
+    curves = _are_curves(truth.times, truth.tracker, truth.follower)
+    return truth.quantity == prediction.quantity and curves
+
+
+def _are_curves(*columns: tuple[float, ...]) -> bool:
+    """Equally many points, two at least, all of them numbers."""
+    lengths = {len(column) for column in columns}
+    return len(lengths) == 1 and min(lengths) > 1 and bool(np.isfinite(columns).all())

@@ -1,0 +1,80 @@
+"""A sketched prediction and the truth on the same axes, as a picture for a page."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Sequence
+from threading import Lock
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from onpath.app.common.palette import FOLLOWER, SELECTED, TRACKER
+from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.record import QUANTITIES
+from onpath.lessons.schema import Sketch
+from onpath.lessons.words import Words
+
+SIZE = (6.6, 2.9)  # [in]
+ONE_AT_A_TIME = Lock()  # rc_context changes what all threads see
+
+
+def number(value: float, words: Words) -> str:
+    """Three digits, as they are written in a language."""
+    text = f"{float(f'{value:.3g}') + 0.0:g}"
+    return text.replace("-", "−").replace(".", words("report.point"))
+
+
+def draw_prediction(
+    sketch: Sketch, answer: Answer | None, truth: Truth | None, words: Words
+) -> str:
+    """A data URI of an SVG: what was drawn, thick; both robots, full and dashed."""
+    figure = Figure(figsize=SIZE, layout="constrained")
+    axes = figure.subplots()
+    if answer is not None and answer.times:
+        style = {"color": SELECTED.hex, "linewidth": 4.5, "solid_capstyle": "round"}
+        _draw(axes, sketch, answer.times, answer.values, label=words("lesson.yours"), **style)
+    if truth is not None:
+        lines = (
+            ("tracker", TRACKER, "-", truth.tracker),
+            ("follower", FOLLOWER, "--", truth.follower),
+        )
+        for robot, colour, dashes, values in lines:
+            style = {"color": colour.hex, "linestyle": dashes, "linewidth": 1.8}
+            _draw(axes, sketch, truth.times, values, label=words(f"robot.{robot}"), **style)
+    _dress(axes, sketch, words)
+    return _data_uri(figure)
+
+
+def _draw(
+    axes: Axes, sketch: Sketch, times: Sequence[float], values: Sequence[float], **style: Any
+) -> None:
+    """A curve; what lies far outside of the axes is brought nearer, as it is not seen anyway."""
+    span = sketch.top - sketch.bottom
+    shown = np.clip(values, sketch.bottom - span, sketch.top + span)
+    axes.plot(np.clip(times, -sketch.seconds, 2 * sketch.seconds), shown, **style)
+
+
+def _dress(axes: Axes, sketch: Sketch, words: Words) -> None:
+    axes.set_xlim(0.0, sketch.seconds)
+    axes.set_ylim(sketch.bottom, sketch.top)
+    axes.set_xlabel("t [s]")
+    quantity = words(f"quantity.{sketch.quantity}")
+    axes.set_ylabel(f"{quantity}\n[{QUANTITIES[sketch.quantity]}]")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(lambda value, _: number(value, words))
+    axes.grid(alpha=0.3)
+    axes.spines[["top", "right"]].set_visible(False)
+    if axes.lines:
+        axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, frameon=False)
+
+
+def _data_uri(figure: Figure) -> str:
+    file = io.BytesIO()
+    with ONE_AT_A_TIME, matplotlib.rc_context({"svg.hashsalt": "onpath"}):
+        figure.savefig(file, format="svg", metadata={"Date": None})
+    return "data:image/svg+xml;base64," + base64.b64encode(file.getvalue()).decode()

@@ -1,0 +1,148 @@
+"""What `onpath zero-dynamics` computes and prints: exponents against alpha and number of modes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from onpath.models.systems.beam import MOST_MODES, beam_modes
+from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
+from onpath.models.systems.parameters import changed, specs
+from onpath.models.systems.zero_dynamics import HIGHEST_ALPHA, flexible_zero_dynamics, natural_rate
+
+TABLE_ALPHAS = (-1.0, 0.0, 0.5, 0.7, 0.8, 0.9, 1.0)
+REACH = 0.1  # [m], half-width of the map of critical alpha
+SETTABLE = ("plant", "rho", "frequency", "zeta")
+"""What the internal dynamics depend on; the table is over alpha and modes."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Study:
+    """Internal dynamics of the flexible link with the controlled output held still.
+
+    Attributes:
+        parameters: plant, rho, frequency, zeta; their alpha and modes do not matter.
+        at: (y2, y3) of the straight link's tip, [m].
+        unit: sqrt(EI / rho) / l^2, [1/s].
+        alphas: shape (a,).
+        fastest: largest real part for 1 to 6 modes, shape (6, a), [1/s].
+        critical: alpha from which it is positive, shape (6,); infinity if it never is.
+    """
+
+    parameters: FlexibleParameters
+    at: tuple[float, float]
+    unit: float
+    alphas: np.ndarray
+    fastest: np.ndarray
+    critical: np.ndarray
+
+
+def changed_all(assignments: dict[str, str]) -> FlexibleParameters:
+    """The default parameters with values set by name.
+
+    Raises:
+        ValueError: an unknown name, one that would change nothing, or a bad value; the message
+            says which.
+    """
+    parameters: Any = FlexibleParameters()
+    for name, text in assignments.items():
+        if name in specs(parameters) and name not in SETTABLE:
+            hint = f"there are {', '.join(SETTABLE)}"
+            raise ValueError(f"the internal dynamics have no setting {name!r}: {hint}")
+        parameters = changed(parameters, name, text)
+    return parameters
+
+
+def study(
+    parameters: FlexibleParameters,
+    at: tuple[float, float],
+    alphas: np.ndarray | None = None,
+) -> Study:
+    """For every number of modes.
+
+    Raises:
+        ValueError: the tip cannot be there.
+    """
+    alphas = np.array(TABLE_ALPHAS) if alphas is None else alphas
+    rows, critical = list[np.ndarray](), list[float]()
+    for modes in range(1, MOST_MODES + 1):
+        own = replace(parameters, modes=modes)
+        robot, zero = robot_for(own), flexible_zero_dynamics(modes, own.plant)
+        q, plant = robot.rest(robot.frame.lift(np.array(at))), robot.plant(own)
+        rows.append(zero.exponents(q, zero.with_alpha(plant, alphas))[:, 0].real)
+        critical.append(critical_alpha(own, at))
+    robot = robot_for(parameters)
+    values = dict(zip(robot.system.parameter_names, robot.plant(parameters), strict=True))
+    unit = natural_rate(values, float(beam_modes(1, 1.0).roots[0]))
+    return Study(parameters, at, unit, alphas, np.array(rows), np.array(critical))
+
+
+def critical_alpha(parameters: FlexibleParameters, at: tuple[float, float]) -> float:
+    """Alpha from which the inside is unstable at rest; infinity if it never is."""
+    robot = robot_for(parameters)
+    zero = flexible_zero_dynamics(parameters.modes, parameters.plant)
+    q = robot.rest(robot.frame.lift(np.array(at)))
+    return zero.critical_alpha(q, robot.plant(parameters), highest(parameters))
+
+
+def highest(parameters: FlexibleParameters) -> float:
+    """Up to where alpha is looked at: unit_modes act as if it were rho times alpha."""
+    return HIGHEST_ALPHA / (parameters.rho if parameters.plant == "unit_modes" else 1.0)
+
+
+def critical_map(parameters: FlexibleParameters, count: int = 13) -> tuple[np.ndarray, np.ndarray]:
+    """Critical alpha over the path's plane.
+
+    Returns:
+        y2 and y3 of a grid's lines, (count,), [m]; alpha, (count, count), rows along y3.
+    """
+    lines = np.linspace(-REACH, REACH, count)
+    values = [[critical_alpha(parameters, (y2, y3)) for y2 in lines] for y3 in lines]
+    return lines, np.array(values)
+
+
+def as_json(result: Study) -> dict[str, Any]:
+    """For `--json`; numbers to nine digits, null where nothing is unstable."""
+
+    def finite(value: float) -> float | None:
+        return float(f"{value:.9g}") if math.isfinite(value) else None
+
+    rows = zip(result.critical, result.fastest, strict=True)
+    return {
+        "plant": result.parameters.plant,
+        "rho_kg_m": result.parameters.rho,
+        "at_m": list(result.at),
+        "unit_1_s": finite(result.unit),
+        "modes": {
+            str(modes): {
+                "critical_alpha": finite(critical),
+                "largest_real_part_1_s": {
+                    f"{alpha:g}": finite(value)
+                    for alpha, value in zip(result.alphas, fastest, strict=True)
+                },
+            }
+            for modes, (critical, fastest) in enumerate(rows, start=1)
+        },
+    }
+
+
+def as_table(result: Study) -> str:
+    """For a reader."""
+    own, (y2, y3) = result.parameters, result.at
+    lines = [
+        f"internal dynamics of the flexible link, output held at y2 = {y2 * 1e3:g} mm,"
+        f" y3 = {y3 * 1e3:g} mm",
+        f"plant {own.plant.replace('_', ' ')}, rho = {own.rho:g} kg/m,"
+        f" first frequency {own.frequency:g} Hz, zeta = {own.zeta:g} in every mode",
+        f"largest real part of the exponents [1/s]; above 0 the inside is unstable"
+        f" (sqrt(EI/rho)/l^2 = {result.unit:.3f} 1/s)",
+        "",
+        "modes  critical alpha" + "".join(f"{f'alpha={a:g}':>12s}" for a in result.alphas),
+    ]
+    for modes, (critical, row) in enumerate(zip(result.critical, result.fastest, strict=True), 1):
+        limit = f"{critical:.4f}" if math.isfinite(critical) else "none"
+        lines.append(f"{modes:5d}  {limit:>14s}" + "".join(f"{value:12.2f}" for value in row))
+    return "\n".join(lines)

@@ -1,0 +1,1 @@
+"""One user's lab, without viser, threads or databases."""

@@ -1,0 +1,122 @@
+"""Plays lessons without a browser: does each script run, does each task tell right from wrong?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from onpath.app.lab.lesson_record import Beginning, record_of
+from onpath.app.lab.lesson_scene import set_up
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.script_player import ScriptPlayer
+from onpath.app.lab.session import Session
+from onpath.lessons.checks import Verdict, judge
+from onpath.lessons.course import REFERENCE, Course, read_references
+from onpath.lessons.parse import Problem
+from onpath.lessons.schema import Lesson, Script, Step, Task
+from onpath.lessons.words import DEFAULT, Words
+
+FRAME = 1 / 60  # [s]
+LOOKS = 0.1  # [s] between looks at a task's checks
+
+
+def play_course(course: Course, folder: Path, store: LoopStore) -> Iterator[Problem]:
+    """What is wrong with the scripts, solutions and failures of a folder's lessons.
+
+    Args:
+        course: what was read from the folder.
+        folder: where the lessons' own folders are.
+        store: where the closed loops come from.
+    """
+    for name in course.lessons:
+        lesson = course.lesson(name, DEFAULT)
+        home = folder / name
+        for step in lesson.steps:
+            yield from _script_faults(lesson, step, home / f"{lesson.language}.md", store)
+        yield from _reference_faults(lesson, home / REFERENCE, store)
+
+
+def lab_at(lesson: Lesson, step: Step, store: LoopStore) -> Session:
+    """A lab set up for a step of a lesson."""
+    session = Session(store)
+    set_up(session, lesson, lesson.steps.index(step))
+    return session
+
+
+def play(session: Session, script: Script, task: Task | None = None) -> Iterator[list[Verdict]]:
+    """Play a script to its end; the verdicts on a task, ten times a second.
+
+    Raises:
+        ValueError: the lab refuses what the script does; the message says why.
+    """
+    begin, words = Beginning.now(session), Words()
+    session.script, session.running = ScriptPlayer(script), True
+    for _ in range(round(3 * script.until / LOOKS)):
+        for _ in range(round(LOOKS / FRAME)):
+            session.drain()
+            session.advance(session.rate * FRAME)
+        if session.message_level == "warning":
+            raise ValueError(session.message)
+        if task is not None:
+            yield judge(task, record_of(session, begin), words)
+        if session.script is None:
+            return
+    raise ValueError(f"the script does not reach its end at {script.until:g} s")
+
+
+def solved(session: Session, script: Script, task: Task) -> tuple[bool, list[Verdict]]:
+    """Whether a script ever passes a task, and the last verdicts.
+
+    Raises:
+        ValueError: see `play`.
+    """
+    last: list[Verdict] = []
+    passed = False
+    for last in play(session, script, task):
+        passed |= all(verdict.passed for verdict in last)
+    return passed, last
+
+
+def _script_faults(lesson: Lesson, step: Step, file: Path, store: LoopStore) -> Iterator[Problem]:
+    if step.script is None:
+        return
+    try:
+        for _ in play(lab_at(lesson, step, store), step.script):
+            pass
+    except ValueError as error:
+        yield Problem(str(file), step.line, f"the script of step {step.title!r}: {error}")
+
+
+def _reference_faults(lesson: Lesson, file: Path, store: LoopStore) -> Iterator[Problem]:
+    references = read_references(lesson, file)[0]
+    for step in lesson.steps:
+        for task in step.tasks():
+            if task.id not in references:
+                continue  # reported by read_references
+            scripts = references[task.id]
+            for what, script in (("solution", scripts.solution), ("failure", scripts.failure)):
+                fault = _fault(lesson, step, script, task, store, what == "solution")
+                if fault:
+                    heading = f"{task.id}.{what}"
+                    yield Problem(str(file), _line_of(heading, file), f"{heading} {fault}")
+
+
+def _fault(
+    lesson: Lesson, step: Step, script: Script, task: Task, store: LoopStore, right: bool
+) -> str:
+    """Why a script is not the solution, or not the failure, that it should be."""
+    try:
+        passed, last = solved(lab_at(lesson, step, store), script, task)
+    except ValueError as error:
+        return f"cannot be played: {error}"
+    if passed == right:
+        return ""
+    if passed:
+        return "passes the task, which it should not"
+    missing = "; ".join(verdict.words for verdict in last if not verdict.passed)
+    return f"does not pass the task. At its end: {missing}"
+
+
+def _line_of(heading: str, file: Path) -> int:
+    lines = file.read_text("utf-8-sig").split("\n")
+    return next((i for i, line in enumerate(lines, 1) if line.strip() == f"[{heading}]"), 1)

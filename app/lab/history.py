@@ -1,0 +1,319 @@
+"""The last minute of a session: checkpoints to rewind to, samples to plot, inputs to replay.
+
+A stretch keeps the states at its beginning and all inputs of the loop, so that every millisecond
+can be computed again, exactly, when somebody wants it as a file.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from operator import is_
+from typing import Any
+
+import numpy as np
+
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.paths.curves import Curve
+
+SECONDS = 60.0
+LONGEST = 17  # ticks in a stretch at most
+RECENT = 12.0  # [s], at the full rate; what is older is thinned out
+COARSE = 4 * LONGEST  # ticks in an older stretch at most
+MOST = 7200
+BATCH = 16  # frames that wait at most to be put in together, which is much quicker
+FIRST = 256  # stretches that there is room for at first
+FULL = 0.9  # of the room, when more is needed
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Input:
+    """What drives one robot; the same object while nothing changes.
+
+    Attributes:
+        kind: which loop.
+        settings: of the loop.
+        frozen: whether the robot has diverged and stands still.
+    """
+
+    kind: Kind
+    settings: np.ndarray
+    frozen: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Inputs:
+    """All inputs of some stretches.
+
+    Attributes:
+        curve: the path.
+        dt: length of a tick, [s].
+        of: each robot's, by controller.
+    """
+
+    curve: Curve
+    dt: float
+    of: dict[str, Input]
+
+    def are(self, curve: Curve, dt: float, of: Iterable[Input]) -> bool:
+        """Whether they are these."""
+        same = self.curve is curve and self.dt == dt
+        return same and all(map(is_, self.of.values(), of))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drive:
+    """One robot's part of a stretch.
+
+    Attributes:
+        kind: which loop drives it.
+        state: at the beginning.
+        settings: of the loop during the stretch.
+        frozen: whether it has diverged and stands still.
+        max_distance: from the path since reset, [m].
+    """
+
+    kind: Kind
+    state: np.ndarray
+    settings: np.ndarray
+    frozen: bool
+    max_distance: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Instant:
+    """Both robots at one time.
+
+    Attributes:
+        time: [s].
+        states: one for each robot.
+        max_distances: since reset, shape (robots,), [m].
+        sample: what the plots show, shape (robots, fields).
+    """
+
+    time: float
+    states: Sequence[np.ndarray]
+    max_distances: Sequence[float]
+    sample: np.ndarray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """What has just been simulated.
+
+    Attributes:
+        time: at the beginning, [s].
+        ticks: how many.
+        inputs: the same object while nothing changes.
+        states: of each robot, at the beginning; nobody changes them any more.
+        max_distances: of each, at the beginning, [m].
+        rows: of the log, of each, at the beginning.
+        distances: of each, at the beginning, [m].
+    """
+
+    time: float
+    ticks: int
+    inputs: Inputs
+    states: Sequence[np.ndarray]
+    max_distances: Sequence[float]
+    rows: Sequence[np.ndarray]
+    distances: Sequence[float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stretch:
+    """Some ticks with the same inputs.
+
+    Attributes:
+        time: at the beginning, [s].
+        dt: length of a tick, [s].
+        curve: the path during the stretch.
+        drives: by controller.
+        sample: what the plots show, at the beginning, shape (robots, fields).
+    """
+
+    time: float
+    ticks: int
+    dt: float
+    curve: Curve
+    drives: dict[str, Drive]
+    sample: np.ndarray
+
+    def instant(self) -> Instant:
+        """Its beginning."""
+        drives = self.drives.values()
+        states, most = [d.state for d in drives], [d.max_distance for d in drives]
+        return Instant(self.time, states, most, self.sample.astype(float))
+
+
+class History:
+    """Stretches of the last minute, oldest first, as columns: all of one kind in one array.
+
+    The columns' rows from `_begin` to `_end` are in use; when they reach the columns' end they
+    move to the front, and older ones are joined, four frames of the lab to one. The latest frames
+    wait outside until somebody looks.
+
+    Args:
+        sample: what the plots show of some frames, shape (frames, robots, fields).
+    """
+
+    def __init__(self, sample: Callable[[Sequence[Frame]], np.ndarray]) -> None:
+        self._sample = sample
+        self._lock = threading.Lock()  # a page that is being built looks at it, too
+        self.clear()
+
+    def __len__(self) -> int:
+        self.settle()
+        return self._end - self._begin
+
+    def clear(self) -> None:
+        """Forget everything."""
+        with self._lock:
+            self._waiting: list[Frame] = []
+            self._columns: dict[str, np.ndarray] = {}
+            self._list: list[Stretch] | None = None
+            self._begin = self._end = 0
+            self._before = 0  # rows that have been moved out at the front, ever
+
+    def append(self, frame: Frame) -> None:
+        """Add what has just been simulated; what is older than a minute is dropped in time."""
+        with self._lock:
+            waiting = self._waiting
+            if waiting and waiting[-1].inputs is frame.inputs:
+                together = waiting[-1].ticks + frame.ticks
+                if together <= LONGEST:
+                    waiting[-1] = replace(waiting[-1], ticks=together)
+                    return
+            waiting.append(frame)
+        if len(waiting) >= BATCH:
+            self.settle()
+
+    def settle(self) -> None:
+        """Put in what waits, before anything changes that samples depend on."""
+        if self._waiting:
+            with self._lock:
+                frames, self._waiting = self._waiting, []
+                if frames:  # no other thread has been here
+                    self._put(frames)
+
+    def _put(self, frames: Sequence[Frame]) -> None:
+        self._list, samples = None, self._sample(frames)
+        if not self._columns or self._end + len(frames) > len(self._columns["time"]):
+            self._make_room(frames, samples)
+        columns, rows = self._columns, slice(self._end, self._end + len(frames))
+        columns["time"][rows] = [frame.time for frame in frames]
+        columns["ticks"][rows] = [frame.ticks for frame in frames]
+        columns["inputs"][rows] = [frame.inputs for frame in frames]
+        columns["state"][rows] = [frame.states for frame in frames]
+        columns["most"][rows] = [frame.max_distances for frame in frames]
+        columns["sample"][rows] = samples
+        self._end = rows.stop
+        reached = self._find(frames[-1].time - SECONDS, "right") - 1
+        self._begin = max(self._begin, reached, self._end - MOST)
+
+    def all(self) -> list[Stretch]:
+        """Everything, oldest first; the same objects until something changes."""
+        self.settle()
+        if self._list is None:
+            self._list = [self._stretch(row) for row in range(self._begin, self._end)]
+        return list(self._list)
+
+    def span(self) -> float:
+        """How far back it reaches, [s]."""
+        if not len(self):
+            return 0.0
+        return float(self._ends(self._end - 1) - self._columns["time"][self._begin])
+
+    def at(self, time: float) -> Stretch | None:
+        """The stretch during which it was `time`, or the nearest one; None if there is none."""
+        if not len(self):
+            return None
+        return self._stretch(max(self._find(time, "right") - 1, self._begin))
+
+    def before(self, stretch: Stretch) -> History:
+        """A copy of what came before `stretch`."""
+        self.settle()
+        copy = History(self._sample)
+        with self._lock:
+            copy._columns = {name: column.copy() for name, column in self._columns.items()}
+            copy._begin, copy._end = self._begin, self._find(stretch.time, "left")
+            copy._before = self._before
+        return copy
+
+    def samples(
+        self, begin: float, end: float, most: int, fields: slice = slice(None)
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Times (n,) and samples (n, robots, fields) with begin <= time <= end, n <= most."""
+        self.settle()
+        low, high = self._find(begin, "left"), self._find(end, "right")
+        if low >= high:
+            return np.zeros(0), np.zeros((0, 0, 0))
+        step = max(1, -(-(high - low) // most))
+        first = low + (-low - self._before) % step  # the same ones from call to call
+        chosen, columns = slice(first, high, step), self._columns
+        return columns["time"][chosen].copy(), columns["sample"][chosen, :, fields].copy()
+
+    def _find(self, time: float, side: Any) -> int:
+        """Where `time` would have to be put in."""
+        if self._begin == self._end:
+            return self._end
+        times = self._columns["time"][self._begin : self._end]
+        return self._begin + int(times.searchsorted(time, side))
+
+    def _stretch(self, row: int) -> Stretch:
+        columns = self._columns
+        inputs: Inputs = columns["inputs"][row]
+        states, most = columns["state"][row].copy(), columns["most"][row]
+        drives = {
+            name: Drive(one.kind, state, one.settings, one.frozen, float(distance))
+            for (name, one), state, distance in zip(inputs.of.items(), states, most, strict=True)
+        }
+        time, ticks = float(columns["time"][row]), int(columns["ticks"][row])
+        return Stretch(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())
+
+    def _make_room(self, frames: Sequence[Frame], samples: np.ndarray) -> None:
+        """Columns with free rows at their end: thinned out, and larger if that is not enough."""
+        kept, old, size = self._kept(), self._columns, len(self._columns.get("time", ()))
+        if len(kept):
+            old["ticks"][kept] = np.add.reduceat(old["ticks"][: self._end], kept)
+        if len(kept) + len(frames) > FULL * size:
+            rows, states = max(2 * size, FIRST), frames[0].states
+            robots = len(states)
+            self._columns = {
+                "time": np.empty(rows),
+                "ticks": np.empty(rows, dtype=int),
+                "inputs": np.empty(rows, dtype=object),
+                "state": np.empty((rows, robots, len(states[0]))),
+                "most": np.empty((rows, robots)),
+                "sample": np.empty((rows, *samples.shape[1:]), dtype=np.float32),
+            }
+        for name, column in old.items():
+            self._columns[name][: len(kept)] = column[kept]
+        self._columns["inputs"][len(kept) :] = None  # let go of what nobody needs
+        self._before += self._end - len(kept)
+        self._begin, self._end = 0, len(kept)
+
+    def _kept(self) -> np.ndarray:
+        """Rows that stay: all recent ones, and older ones unless they join the one before."""
+        if self._begin == self._end:
+            return np.zeros(0, dtype=int)
+        inside, inputs = slice(self._begin, self._end), self._columns["inputs"]
+        times, ticks = (self._columns[name][inside].tolist() for name in ("time", "ticks"))
+        kept, joined = list[int](), 0
+        for row, (time, more) in enumerate(zip(times, ticks, strict=True), self._begin):
+            joins = kept and time < times[-1] - RECENT and inputs[row] is inputs[kept[-1]]
+            if not joins or joined + more > COARSE or self._jumps(row):
+                kept.append(row)
+                joined = 0
+            joined += more
+        return np.array(kept)
+
+    def _jumps(self, row: int) -> bool:
+        """Whether a row does not begin where the one before ends."""
+        return abs(self._columns["time"][row] - self._ends(row - 1)) > 1e-6
+
+    def _ends(self, row: int) -> float:
+        """When a row ends, [s]."""
+        columns = self._columns
+        return columns["time"][row] + columns["ticks"][row] * columns["inputs"][row].dt

@@ -1,0 +1,182 @@
+"""The lab's "identify": the model from what the path follower has just done."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from functools import lru_cache
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onpath.app.lab.history import Drive, Stretch
+from onpath.lessons.words import Words
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.simulation import kernel_of
+from onpath.models.studies.identification import (
+    BALANCE,
+    DRY,
+    INERTIA,
+    Identified,
+    Record,
+    joint_torques,
+    simplest,
+    smooth_velocities,
+)
+from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.robots import RigidFiveBar, Robot
+
+if TYPE_CHECKING:
+    from onpath.app.lab.session import Session
+
+MOST_TICKS = 3000  # of the past, so that the lab does not stop for it
+FOLLOWER = "path_following"
+PLANT = ("plant", "coulomb", "encoder_step")  # as long as these stay, it is the same robot
+UNITS = {"M": "kg m²", "b": "N m s", "c": "N m", "G": "N m"}
+POOR = 0.05  # of the torque, unexplained: worth a word
+
+
+def identify_model(session: Session) -> None:
+    """Give the controllers the model that the follower's last seconds tell, and say it.
+
+    Raises:
+        ValueError: another robot, nothing to learn from, or too poor a motion.
+    """
+    robot, parameters = session.robot, session.parameters
+    if not isinstance(robot, RigidFiveBar):
+        raise ValueError(session.lessons.words("identified.other_robot"))
+    found, duration = _learned(robot, tuple(_same_robot(robot, session.history.all())))
+    session.set_parameters(believing(robot, parameters, found))
+    words = session.lessons.words
+    session.say(_sentence(robot, parameters, session.parameters, found, duration, words))
+
+
+@lru_cache(maxsize=4)  # whoever keeps the button down learns nothing new
+def _learned(robot: RigidFiveBar, stretches: tuple[Stretch, ...]) -> tuple[Identified, float]:
+    """What the stretches say, and how long they are, [s]."""
+    record = last_record(robot, list(stretches))
+    return simplest(record), len(record.q) * record.dt
+
+
+def last_record(robot: RigidFiveBar, history: list[Stretch]) -> Record:
+    """What the follower's sensors saw in the last seconds, while the robot was as it is now.
+
+    Raises:
+        ValueError: there is nothing.
+    """
+    stretches = _same_robot(robot, history)
+    if not stretches:
+        raise ValueError("there is nothing to learn from yet: let it run for a few seconds first")
+    drive, dt = stretches[-1].drives[FOLLOWER], stretches[-1].dt
+    log = kernel_of(robot, drive.kind).log.unpack(_rows(robot, stretches))
+    q, v = log["q"], log["v"]
+    lengths = robot.links.link1.length, robot.links.link4.length
+    torque = log["u"] + joint_torques(q, log["force"], *lengths)
+    if drive.kind.encoder:
+        step = float(_setting(robot, drive, "encoder_step")[0])
+        q = step * np.floor(q / step + 0.5)
+        v = smooth_velocities(q, dt)
+    return Record(dt, q, v, torque)
+
+
+def believing(robot: RigidFiveBar, parameters: Parameters, found: Identified) -> Parameters:
+    """The same with the controllers' model as found, as far as its sliders go."""
+    built, known = robot.links.lumped(), specs(parameters)
+    changes = dict[str, float]()
+    for name in INERTIA:
+        spec = known[f"error_{name}"]
+        error = round(100 * (found.values[name] / built[name] - 1), 2)
+        changes[f"error_{name}"] = min(max(error, spec.low), spec.high) + 0.0  # no -0
+    return dataclasses.replace(parameters, **changes)
+
+
+def _same_robot(robot: Robot, history: list[Stretch]) -> list[Stretch]:
+    """The last stretches without a stop or a change of the plant or of its sensors."""
+    found, ticks = list[Stretch](), 0
+    for stretch in reversed(history):
+        ticks += stretch.ticks
+        later = found[-1] if found else stretch
+        drive, next_drive = stretch.drives[FOLLOWER], later.drives[FOLLOWER]
+        if ticks > MOST_TICKS or drive.frozen or stretch.dt != later.dt:
+            break
+        if not _alike(robot, drive, next_drive):
+            break
+        found.append(stretch)
+    return found[::-1]
+
+
+def _alike(robot: Robot, one: Drive, other: Drive) -> bool:
+    if one.settings is other.settings:
+        return True
+    return one.kind.encoder == other.kind.encoder and all(
+        np.array_equal(_setting(robot, one, name), _setting(robot, other, name)) for name in PLANT
+    )
+
+
+def _setting(robot: Robot, drive: Drive, name: str) -> Array:
+    return drive.settings[kernel_of(robot, drive.kind).settings.slices[name]]
+
+
+def _rows(robot: Robot, stretches: list[Stretch]) -> Array:
+    """Log rows of the follower, computed again; what goes on with the same inputs, at once."""
+    rows = list[Array]()
+    runs = groupby(stretches, lambda s: (id(s.drives[FOLLOWER].settings), id(s.curve)))
+    for _, group in runs:
+        members = list(group)
+        drive, table = members[0].drives[FOLLOWER], members[0].curve.table()
+        ticks = sum(member.ticks for member in members)
+        loop = _loop(robot, drive.kind)
+        rows.append(loop.run(drive.state, drive.settings, table, ticks)[1])
+    return np.concatenate(rows)
+
+
+@lru_cache(maxsize=16)
+def _loop(robot: Robot, kind: Kind) -> InterpretedLoop:
+    """For the simulation thread, the only one that applies commands."""
+    return InterpretedLoop(kernel_of(robot, kind))
+
+
+def _sentence(
+    robot: RigidFiveBar,
+    before: Parameters,
+    after: Parameters,
+    found: Identified,
+    duration: float,
+    words: Words,
+) -> str:
+    """What was found, believed, and left out."""
+    believed = dict(zip(robot.system.parameter_names, robot.model(before), strict=True))
+    values = "; ".join(
+        words("identified.value", value=_value(found, name), before=f"{believed[name]:.4f}")
+        for name in INERTIA
+    )
+    text = words("identified.found", seconds=f"{duration:.1f}", values=values)
+    limited = [name for name in INERTIA if _at_end(after, name)]
+    if limited:
+        text += words("identified.limited", names=words("identified.and").join(limited))
+    further = [name for name in (*DRY, *BALANCE) if _matters(found, name)]
+    if further:
+        values = ", ".join(_value(found, name) for name in further)
+        text += words("identified.also", values=values)
+    if found.unexplained > POOR:
+        text += words("identified.unexplained", percent=f"{100 * found.unexplained:.0f}")
+    return text
+
+
+def _value(found: Identified, name: str) -> str:
+    """As in "M11 = 0.0226 (±0.0001) kg m²"; errors are rounded up."""
+    error = math.ceil(found.errors[name] * 1e4 - 1e-3) / 1e4
+    return f"{name} = {found.values[name]:.4f} (±{max(error, 1e-4):.4f}) {UNITS[name[0]]}"
+
+
+def _at_end(parameters: Parameters, name: str) -> bool:
+    spec = specs(parameters)[f"error_{name}"]
+    return getattr(parameters, f"error_{name}") in (spec.low, spec.high)
+
+
+def _matters(found: Identified, name: str) -> bool:
+    value = abs(found.values.get(name, 0.0))
+    return value > 5e-4 and value > 2 * found.errors[name]

@@ -1,0 +1,117 @@
+"""From a session to the record that the lessons' checks look at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onpath.lessons.progress import MOST_POINTS, Truth
+from onpath.lessons.record import ROBOTS, ROLES, Record
+from onpath.lessons.schema import RobotName
+from onpath.lessons.thinning import peaks
+from onpath.models.arrays import Array
+from onpath.models.layout import Layout
+
+if TYPE_CHECKING:
+    from onpath.app.lab.session import Session
+
+MOST_SAMPLES = 3600
+
+
+@dataclass(frozen=True, slots=True)
+class Beginning:
+    """When a step began: the run, and the simulated time in it, [s]."""
+
+    run: int
+    time: float
+
+    @staticmethod
+    def now(session: Session) -> Beginning:
+        """At this instant; what has happened before is forgotten."""
+        session.happenings.clear()
+        return Beginning(session.run_number, session.time)
+
+
+def record_of(session: Session, since: Beginning) -> Record:
+    """What has happened since a step began or, if later, since the last reset."""
+    begin = since.time if since.run == session.run_number else 0.0
+    times, samples = session.history.samples(begin, session.time, MOST_SAMPLES)
+    return Record(
+        times=times,
+        values=_values(session, samples.astype(float)) if len(times) else _nothing(session),
+        happenings=tuple(session.happenings),
+        run=session.run_number,
+        parameters=session.parameters,
+        end=session.time,
+        path=session.editor.design.name,
+        robot=session.entry.name,
+    )
+
+
+class Trace:
+    """A quantity of both robots since a step began, at every frame.
+
+    The lab's own past is thinned out after some seconds, and the peaks with it.
+
+    Args:
+        quantity: one of lessons.record.QUANTITIES.
+        begin: when the step began.
+    """
+
+    def __init__(self, quantity: str, begin: Beginning) -> None:
+        self._quantity, self._until = quantity, begin
+        self._rows = np.zeros((0, 1 + len(ROBOTS)))
+
+    def follow(self, session: Session) -> None:
+        """Take in what has happened since the last time; a reset begins anew."""
+        until = self._until
+        if until.run != session.run_number:
+            until, self._rows = Beginning(session.run_number, 0.0), self._rows[:0]
+        begin = min(until.time, session.time)  # the last instant may have been half a one
+        record = record_of(session, Beginning(until.run, begin))
+        nothing = np.zeros(len(record.times))
+        curves = [record.values[robot].get(self._quantity, nothing) for robot in ROBOTS]
+        new = np.nan_to_num(np.column_stack([record.times, *curves]), posinf=0.0, neginf=0.0)
+        self._rows = np.concatenate([self._rows[self._rows[:, 0] < begin], new])
+        self._until = Beginning(until.run, float(self._rows[-1, 0]) if len(self._rows) else begin)
+
+    def truth(self) -> Truth:
+        """What has happened so far."""
+        times, *curves = self._rows.T
+        kept = peaks(curves, MOST_POINTS)
+        columns = [tuple(np.round(column[kept], 4).tolist()) for column in (times, *curves)]
+        return Truth(self._quantity, *columns)
+
+
+def _nothing(session: Session) -> dict[RobotName, dict[str, Array]]:
+    return {ROLES[name]: {} for name in session.runs}
+
+
+def _values(session: Session, samples: Array) -> dict[RobotName, dict[str, Array]]:
+    """Of samples, shape (n, robots, fields): see lessons.record.QUANTITIES."""
+    layout, names = session.sample_layout, list(session.runs)
+    timetable = names.index(next(name for name in names if ROLES[name] == "tracker"))
+    running = layout.unpack(samples[:, timetable])["theta_ref"][:, 0]
+    point = session.robot.frame.lift(session.editor.curve.at(running))
+    return {ROLES[name]: _of(layout, samples[:, i], point) for i, name in enumerate(names)}
+
+
+def _of(layout: Layout, samples: Array, point: Array) -> dict[str, Array]:
+    fields = layout.unpack(samples)
+    values = {
+        "distance": fields["distance"][:, 0] * 1e3,
+        "lag": np.linalg.norm(fields["y"] - point, axis=1) * 1e3,
+        "speed": fields["speed"][:, 0] * 1e3,
+        "rate": fields["theta_rate"][:, 0],
+        "place": fields["theta"][:, 0],
+        "across": fields["xi"][:, 0] * 1e3,
+        "across_rate": fields["xi_rate"][:, 0] * 1e3,
+        "torque": np.abs(fields["u"]).max(axis=1),
+        "force": np.linalg.norm(fields["force"], axis=1),
+    }
+    if "deflection" in fields:
+        values["deflection"] = fields["deflection"][:, 0] * 1e3
+        values["energy"] = fields["internal_energy"][:, 0] * 1e3
+    return values

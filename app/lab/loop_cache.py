@@ -1,0 +1,59 @@
+"""Where sessions get their loops: interpreted at once, compiled as soon as that is ready."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from concurrent.futures import Future, ThreadPoolExecutor
+
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
+from onpath.models.closed_loop.simulation import kernel_of
+from onpath.models.closed_loop.translated_loop import translate_loop
+from onpath.models.systems.robots import Robot
+
+log = logging.getLogger(__name__)
+Key = tuple[Robot, Kind]
+
+
+class LoopStore:
+    """Loops by robot and kind. `get` never waits for one to be compiled."""
+
+    def __init__(self) -> None:
+        self._compiled: dict[Key, CompiledLoop] = {}
+        self._interpreted: dict[Key, InterpretedLoop] = {}
+        self._wanted: dict[Key, Future[None]] = {}
+        self._pool: ThreadPoolExecutor | None = ThreadPoolExecutor(1, "compile")
+        self._lock = threading.Lock()
+
+    def get(self, robot: Robot, kind: Kind) -> Loop:
+        """The fastest loop there is now. Call from the simulation thread only."""
+        key = (robot, kind)
+        ready = self._compiled.get(key)
+        if ready is not None:
+            return ready
+        if key not in self._interpreted:
+            self._interpreted[key] = InterpretedLoop(kernel_of(robot, kind))
+        self.prepare(robot, kind)
+        return self._interpreted[key]
+
+    def prepare(self, robot: Robot, kind: Kind) -> None:
+        """Compile a loop in the background, unless that has been asked for before."""
+        key = (robot, kind)
+        with self._lock:
+            if self._pool is not None and key not in self._wanted:
+                self._wanted[key] = self._pool.submit(self._compile, key)
+
+    def close(self) -> None:
+        """Give up what is still to be compiled."""
+        with self._lock:
+            pool, self._pool = self._pool, None
+        if pool is not None:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+    def _compile(self, key: Key) -> None:
+        try:
+            self._compiled[key] = translate_loop(kernel_of(*key))
+        except Exception as error:  # whatever it is, the lab goes on without
+            log.warning("cannot compile a loop, the interpreted one goes on: %s", error)
+            self.close()  # the next ones would fail, too

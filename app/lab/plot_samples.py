@@ -1,0 +1,61 @@
+"""What is kept of each robot at every frame, for plots and for looking back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loop_vectors import log_layout
+from onpath.models.layout import Layout
+from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import Robot
+
+
+@lru_cache(maxsize=8)
+def sample_layout(robot: Robot) -> Layout:
+    """Fields of a sample; names and units as in the log of models/closed_loop/kernel.py."""
+    p, m = robot.system.p, robot.system.m
+    return Layout(
+        (
+            ("distance", 1),  # of the actual end-point, [m]
+            ("speed", 1),  # along the path, [m/s]
+            ("theta", 1),
+            ("theta_rate", 1),
+            ("theta_ref", 1),
+            ("xi", p - 1),
+            ("xi_rate", p - 1),
+            ("u", m),
+            ("force", p),
+            ("y", p),
+            *robot.extra_fields,
+        )
+    )
+
+
+@lru_cache(maxsize=8)
+def places(robot: Robot) -> np.ndarray:
+    """Where a sample's entries lie in a log row; 0 for those that are not in it."""
+    log, found = log_layout(robot.system), list[int]()
+    for name, size in sample_layout(robot).fields:
+        where = log.slices.get(name)
+        found.extend([0] * size if where is None else range(where.start, where.stop))
+    return np.array(found)
+
+
+def samples_of(
+    robot: Robot, parameters: Parameters, rows: Sequence[Array], distances: Sequence[float]
+) -> Array:
+    """What is kept of some rows of the log and the distances at them, shape (n, fields)."""
+    layout = sample_layout(robot)
+    samples = np.concatenate(rows).reshape(len(rows), -1).take(places(robot), axis=1)
+    samples[:, layout.slices["distance"].start] = distances
+    if robot.extra_fields:
+        log = log_layout(robot.system)
+        for sample, row in zip(samples, rows, strict=True):
+            there = log.unpack(row)
+            for name, value in robot.extras(there["q"], there["v"], parameters).items():
+                sample[layout.slices[name]] = value
+    return samples

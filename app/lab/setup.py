@@ -1,0 +1,223 @@
+"""A lab's set-up as plain data: to be kept, shared and put back.
+
+It holds what differs from a new lab, so a new lab is `Setup()`. Lengths of a path are whole
+micrometres and numbers have six digits: what comes back is captured as the same set-up again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+import msgspec
+import numpy as np
+
+from onpath.app.lab.commands import EXAGGERATIONS, RATES
+from onpath.app.lab.path_editor import BLEND
+from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.curve_fit import closed_through, control_points, open_through
+from onpath.models.paths.curves import TERMS, from_terms, terms_of
+from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, presets
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, Entry
+from onpath.models.systems.parameters import NOTHING, Parameters, Spec, changed, specs, unknown_name
+
+if TYPE_CHECKING:
+    from onpath.app.lab.session import Session
+
+UNIT = 1e-6  # [m]
+DIGITS = 6
+EDITED, DRAWN = "edited", "drawn"  # the names of paths that are no presets
+DRAWN_POINTS = {True: 10, False: 6}  # control points of a closed and an open stroke, as in `drawn`
+
+Word = Annotated[str, msgspec.Meta(max_length=40, pattern=r"^[A-Za-z0-9_ -]*$")]
+Length = Annotated[int, msgspec.Meta(ge=-1_000_000, le=1_000_000)]
+Lengths = Annotated[tuple[Length, ...], msgspec.Meta(max_length=2 * max(TERMS, MOST_POINTS))]
+
+
+class Path(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Which path.
+
+    Attributes:
+        name: of a preset, or "edited" or "drawn".
+        closed: of an edited or drawn one.
+        numbers: x and y in turn, [UNIT]: an edited one's control points, a drawn one's
+            coefficients in the order of `Curve.series`; none for a preset.
+    """
+
+    name: Word = "circle"
+    closed: bool = True
+    numbers: Lengths = ()
+
+
+class Bench(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One robot's parameters, where they differ from those the lab starts with, and its path."""
+
+    parameters: Annotated[dict[Word, int | float | Word], msgspec.Meta(max_length=100)] = {}
+    path: Path = Path()
+
+
+class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A whole lab: the robot in use, what is set for each, and the lab's own switches."""
+
+    robot: Word = FIVE_BAR.name
+    benches: Annotated[dict[Word, Bench], msgspec.Meta(max_length=100)] = {}
+    rate: float = 1.0
+    copy: bool = True
+    exaggeration: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Wanted:
+    """A bench as a session takes it."""
+
+    entry: Entry
+    parameters: Parameters
+    design: PathDesign
+
+
+def to_data(value: Any) -> Any:
+    """A set-up as JSON has it, without what is as in a new lab."""
+    if isinstance(value, msgspec.Struct):
+        new = type(value)()
+        own = {name: getattr(value, name) for name in value.__struct_fields__}
+        return {n: to_data(v) for n, v in own.items() if v != getattr(new, n)}
+    if isinstance(value, Mapping):
+        return {name: to_data(item) for name, item in value.items()}
+    return list(value) if isinstance(value, tuple) else value
+
+
+def from_data(data: Any) -> Setup:
+    """The inverse of `to_data`, for data that anybody may have written.
+
+    Raises:
+        ValueError: it is no set-up of a lab that exists.
+    """
+    setup = msgspec.convert(data, Setup)
+    planned(setup, presets())
+    return setup
+
+
+def capture(session: Session) -> Setup:
+    """The set-up of a session as it is now; a path being dragged counts when it is let go."""
+    benches = {name: (own, editor.design) for name, (own, editor) in session._benches.items()}
+    benches[session.entry.name] = session.parameters, session.editor.design
+    found = {
+        name: Bench(_differences(ROBOTS[name].lab, own), capture_path(design, session.presets))
+        for name, (own, design) in sorted(benches.items())
+    }
+    return Setup(
+        robot=session.entry.name,
+        benches={name: bench for name, bench in found.items() if bench != Bench()},
+        rate=_rounded(session.rate),
+        copy=session.copy,
+        exaggeration=_rounded(session.exaggeration),
+    )
+
+
+def restore(session: Session, setup: Setup) -> None:
+    """Set a lab up, both robots at the start of the path; the old path is one undo away.
+
+    Raises:
+        ValueError: something in it is impossible; then the session is as it was.
+    """
+    wanted = planned(setup, session.presets)
+    for name in (session.entry.name, *session._benches):
+        wanted.setdefault(name, _wanted(name, Bench(), session.presets))
+    for name, bench in wanted.items():
+        faults = curve_faults(bench.entry.make(bench.parameters).margin, bench.design.curve)
+        if faults:
+            reasons = "; ".join(fault.reason for fault in faults)
+            raise ValueError(f"{ROBOTS[name].label} cannot follow this path: {reasons}")
+    session.rate, session.copy = setup.rate, setup.copy
+    session.exaggeration = setup.exaggeration
+    for name in sorted(wanted, key=lambda name: name == setup.robot):
+        bench = wanted[name]
+        session.choose_robot(bench.entry)
+        session.set_parameters(bench.parameters)
+        session.editor.commit(bench.design)
+        session.editor.advance(BLEND)
+    session.reset()
+
+
+def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
+    """The benches that a set-up names, by robot; whether a robot can follow its path is not asked.
+
+    Args:
+        paths: the presets.
+
+    Raises:
+        ValueError: an unknown name, a number out of range, points that make no path.
+    """
+    msgspec.convert(to_data(setup), Setup)  # one made by hand was never looked at
+    _within("speed", setup.rate, RATES)
+    _within("exaggeration", setup.exaggeration, EXAGGERATIONS)
+    names = dict.fromkeys((*setup.benches, setup.robot))
+    return {name: _wanted(name, setup.benches.get(name, Bench()), paths) for name in names}
+
+
+def _wanted(name: str, bench: Bench, paths: Mapping[str, PathDesign]) -> Wanted:
+    if name not in ROBOTS:
+        raise unknown_name(name, list(ROBOTS), "robot")
+    parameters = ROBOTS[name].lab
+    for field, value in bench.parameters.items():
+        tiny = isinstance(value, float) and abs(value) <= NOTHING
+        parameters = changed(parameters, field, 0.0 if tiny else value)
+    return Wanted(ROBOTS[name], parameters, _design(bench.path, paths))
+
+
+def _within(what: str, value: float, bounds: tuple[float, ...]) -> None:
+    if not bounds[0] <= value <= bounds[-1]:
+        raise ValueError(f"{what} {value:g}: between {bounds[0]:g} and {bounds[-1]:g}")
+
+
+def _differences(lab: Parameters, own: Parameters) -> dict[str, int | float | str]:
+    found: dict[str, int | float | str] = {}
+    for name, spec in specs(own).items():
+        value, default = getattr(own, name), getattr(lab, name)
+        if value != default and kept(spec, value) != default:
+            found[name] = kept(spec, value)
+    return found
+
+
+def kept(spec: Spec, value: Any) -> int | float | str:
+    """A parameter's value as a set-up has it."""
+    return value if spec.options else min(max(_rounded(value), spec.low), spec.high)
+
+
+def _rounded(value: float) -> float:
+    return 0.0 if abs(value) <= NOTHING else float(f"{value:.{DIGITS}g}")
+
+
+def capture_path(design: PathDesign, paths: Mapping[str, PathDesign]) -> Path:
+    """A path as data, given the presets."""
+    if design.name in paths:
+        return Path(design.name)
+    closed = design.curve.closed
+    if design.name == EDITED:
+        return Path(EDITED, closed, _lengths(design.points))
+    return Path(DRAWN, closed, _lengths(design.curve.terms()))
+
+
+def _design(path: Path, paths: Mapping[str, PathDesign]) -> PathDesign:
+    if path.name not in (EDITED, DRAWN):
+        if path.name not in paths:
+            raise unknown_name(path.name, [*paths, EDITED, DRAWN], "path")
+        if path.numbers:
+            raise ValueError(f"the path {path.name!r} takes no numbers")
+        return paths[path.name]
+    if len(path.numbers) % 2:
+        raise ValueError("half a point: a path needs as many x as y")
+    z = UNIT * np.array(path.numbers, dtype=float).reshape(-1, 2)
+    if path.name == EDITED:
+        if not 2 <= len(z) <= MOST_POINTS or np.abs(z).max(initial=0.0) > REACH + UNIT / 2:
+            raise ValueError(f"2 to {MOST_POINTS} points, within {REACH:g} m of the middle")
+        return PathDesign(EDITED, (closed_through if path.closed else open_through)(z), z)
+    if len(z) != terms_of(path.closed):
+        raise ValueError(f"a drawn path has {terms_of(path.closed)} coefficients, not {len(z)}")
+    curve = from_terms(path.closed, z)
+    return PathDesign(DRAWN, curve, control_points(curve, DRAWN_POINTS[path.closed]))
+
+
+def _lengths(z: np.ndarray) -> tuple[int, ...]:
+    return tuple(int(n) for n in np.rint(z / UNIT).ravel())

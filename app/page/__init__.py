@@ -1,0 +1,1 @@
+"""The panels and plots of one browser tab."""

@@ -1,0 +1,76 @@
+"""A prediction and the truth on the same axes."""
+
+from __future__ import annotations
+
+import numpy as np
+import viser
+from viser import uplot
+
+from onpath.app.common.palette import FOLLOWER, SELECTED, TRACKER
+from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.record import QUANTITIES
+from onpath.lessons.schema import Sketch
+from onpath.lessons.words import Words
+
+
+class PredictionChart:
+    """One uPlot chart."""
+
+    def __init__(
+        self, gui: viser.GuiApi, sketch: Sketch, answer: Answer | None, words: Words
+    ) -> None:
+        self._sketch, self._answer = sketch, answer
+        self._shown: Truth | None = None
+        unit = QUANTITIES[sketch.quantity]
+        lines = (
+            uplot.Series(label=words("robot.tracker"), stroke=TRACKER.hex, width=2),
+            uplot.Series(label=words("robot.follower"), stroke=FOLLOWER.hex, width=2),
+            uplot.Series(label=words("lesson.yours"), stroke=SELECTED.hex, width=4),
+        )
+        self._handle = gui.add_uplot(
+            self._data(None),
+            (uplot.Series(label=words("plots.time")), *lines),
+            title=f"{words(f'quantity.{sketch.quantity}')} [{unit}]",
+            scales={
+                "x": uplot.Scale(time=False, auto=False, range=(0.0, sketch.seconds)),
+                "y": uplot.Scale(auto=False, range=(sketch.bottom, sketch.top)),
+            },
+            legend=uplot.Legend(live=False),
+            height=230,
+        )
+
+    def show(self, truth: Truth | None) -> None:
+        """Draw what has happened so far."""
+        if truth is not None and truth != self._shown:
+            self._shown = truth
+            self._handle.data = self._data(truth)
+
+    def remove(self) -> None:
+        """Take it off the page."""
+        self._handle.remove()
+
+    def _data(self, truth: Truth | None) -> tuple[np.ndarray, ...]:
+        """Times and three curves, NaN where there is nothing yet."""
+        answer = self._answer
+        return together(
+            self._sketch.seconds,
+            (truth.times, truth.tracker) if truth else ((), ()),
+            (truth.times, truth.follower) if truth else ((), ()),
+            (answer.times, answer.values) if answer else ((), ()),
+        )
+
+
+Curve = tuple[tuple[float, ...], tuple[float, ...]]
+"""Times and values."""
+
+
+def together(seconds: float, *curves: Curve) -> tuple[np.ndarray, ...]:
+    """Curves at the times of all of them and the axis's ends: each has all its own points."""
+    at = np.unique(np.concatenate([[0.0, seconds], *[times for times, _ in curves]]))
+    return (at, *[_resampled(at, times, values) for times, values in curves])
+
+
+def _resampled(at: np.ndarray, times: tuple[float, ...], values: tuple[float, ...]) -> np.ndarray:
+    if len(times) < 2:
+        return np.full(len(at), np.nan)
+    return np.interp(at, times, values, left=np.nan, right=np.nan)

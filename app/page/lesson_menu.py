@@ -1,0 +1,57 @@
+"""The overview of all lessons, with ticks; language, and large type for a projector."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import viser
+
+from onpath.app.lab import lesson_commands as c
+from onpath.app.lab.session import Session
+from onpath.app.page import lesson_html as page
+from onpath.app.page.panels.widgets import Post, on_press, on_user_update
+from onpath.lessons.words import languages
+
+
+class LessonMenu:
+    """The button near the top, and its window."""
+
+    def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
+        self._gui, self._session, self._post = gui, session, post
+        words = session.lessons.words
+        button = gui.add_button(words("lesson.lessons"), icon=viser.Icon.SCHOOL, color="green")
+        on_press(button, self._open)
+
+    def _open(self) -> None:
+        run, gui = self._session.lessons, self._gui
+        with gui.add_modal(run.words("lesson.choose")) as modal:
+            for number, name in enumerate(run.course.lessons, start=1):
+                lesson = run.course.lesson(name, run.words.language)
+                gui.add_html(page.entry(lesson, run, number))
+                begun = name in run.progress.notes
+                open_it = gui.add_button(
+                    run.words("lesson.continue" if begun else "lesson.open"),
+                    color=None if begun else "gray",
+                    hint=lesson.front.title,
+                )
+                on_press(open_it, self._then(modal.close, c.OpenLesson(name)))
+            self._add_choices(modal.close)
+
+    def _add_choices(self, close: Callable[[], None]) -> None:
+        run, gui = self._session.lessons, self._gui
+        names = {run.words(f"language.{code}"): code for code in languages()}
+        language = gui.add_dropdown(
+            run.words("lesson.language"),
+            list(names),
+            initial_value=run.words(f"language.{run.words.language}"),
+        )
+        on_user_update(language, lambda name: self._chosen(close, c.SetLanguage(names[name])))
+        large = gui.add_checkbox(run.words("lesson.presenting"), run.progress.presenting)
+        on_user_update(large, lambda on: self._chosen(close, c.SetPresenting(on)))
+
+    def _chosen(self, close: Callable[[], None], command: c.LessonCommand) -> None:
+        close()
+        self._post(command)
+
+    def _then(self, close: Callable[[], None], command: c.LessonCommand) -> Callable[[], None]:
+        return lambda: self._chosen(close, command)

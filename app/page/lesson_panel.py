@@ -1,0 +1,306 @@
+"""The open lesson's page, docked on the left: text, prediction, tasks, and the way on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import viser
+
+from onpath.app.lab import lesson_commands as c
+from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.lab.session import Session
+from onpath.app.page import lesson_html as page
+from onpath.app.page.lesson_chart import PredictionChart
+from onpath.app.page.panels.widgets import Post, on_press, on_user_update
+from onpath.app.scene.scene import Scene
+from onpath.app.scene.stage_catalogue import stage_of
+from onpath.lessons.schema import Choice, Prediction, Quiz, Sketch, Step, Task, Text
+
+if TYPE_CHECKING:
+    from onpath.app.scene.sketch_board import SketchBoard
+
+WIDTH, WIDE = 400, 560  # [px]
+NUMBERS = 6  # sliders that draw a sketch
+
+
+class LessonPanel:
+    """Shows the open step; draws it anew when the session's lessons have changed.
+
+    Args:
+        submit: runs something in another thread.
+        tab: where to put it; a panel of its own on the left if there is none.
+    """
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        session: Session,
+        post: Post,
+        scene: Scene,
+        submit: Callable[[Callable[[], None]], None],
+        tab: viser.GuiTabHandle | None = None,
+    ) -> None:
+        self._client, self._gui, self._post, self._submit = client, client.gui, post, submit
+        self._scene = scene
+        self._handles: list[Any] = []
+        self._tasks: list[tuple[Task, viser.GuiHtmlHandle]] = []
+        self._chart: PredictionChart | None = None
+        self._board: SketchBoard | None = None
+        self._draft = c.Predict()
+        self._busy, self._version, self._reading = False, -1, -1
+        words = session.lessons.words
+        self._panel = None
+        if tab is None:
+            self._panel = self._gui.add_panel(order=0)
+            tab = self._panel.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
+            self._panel.dock_left()
+        self._tab = tab
+        self._width = 0
+        on = self._gui.add_command(words("lesson.next"), hotkey="pagedown")
+        on.on_trigger(_turns(post, 1))
+        back = self._gui.add_command(words("lesson.back"), hotkey="pageup")
+        back.on_trigger(_turns(post, -1))
+        self._build(session)
+
+    def follow(self, session: Session) -> None:
+        """Draw anew what has changed; what is measured, always."""
+        if self._busy:
+            return
+        run = session.lessons
+        if run.version != self._version:
+            self._busy = True
+            self._submit(lambda: self._rebuild(session))
+            return
+        for task, handle in self._tasks:
+            content = page.task(task, run.verdicts.get(task.id, []), run)
+            if handle.content != content:
+                handle.content = content
+        if self._chart is not None and run.playing:
+            self._chart.show(run.truth(session))
+        board = self._board  # another thread may take it away
+        if board is not None:
+            board.draw()
+
+    def _rebuild(self, session: Session) -> None:
+        try:
+            if session.lessons.lesson is not None:
+                self._clear()
+                self._build(session)
+        finally:
+            self._busy = False
+
+    def _clear(self) -> None:
+        for handle in self._handles:
+            handle.remove()
+        self._handles, self._tasks, self._chart = [], [], None
+        if self._board is not None:
+            self._board.remove()
+            self._board = None
+            self._scene.show_titles(True)
+
+    def _build(self, session: Session) -> None:
+        run = session.lessons
+        self._version = run.version
+        lesson, step = run.lesson, run.step
+        assert lesson is not None and step is not None
+        width = WIDE if run.progress.presenting else WIDTH
+        if self._panel is not None and width != self._width:
+            self._width = width
+            self._panel.set_width(width)
+        with self._tab:
+            self._html(page.heading(lesson, step, run))
+            if step.kind == "run":
+                self._add_run(session)
+            if step.kind != "run" or run.has_played() or self._reading == run.index:
+                for number, block in enumerate(step.blocks):
+                    self._add(number, block, session)
+            else:
+                self._add_reading(run)
+            self._add_ways(step, run)
+
+    def _add_reading(self, run: LessonRun) -> None:
+        """The text tells what happens; who wants to read it first, may."""
+
+        def read() -> None:
+            self._reading, self._version = run.index, -1
+
+        button = self._gui.add_button(run.words("lesson.read"), color="gray", icon=viser.Icon.BOOK)
+        on_press(button, read)
+        self._handles.append(button)
+
+    def _add(self, number: int, block: object, session: Session) -> None:
+        run = session.lessons
+        if isinstance(block, Text):
+            self._html(page.text(block.html))
+            for link in block.links:
+                self._button(link.label, c.Act(link.actions), "gray", viser.Icon.POINTER)
+        elif isinstance(block, Task):
+            self._add_task(block, run)
+        elif isinstance(block, Quiz):
+            chosen = run.notes.quiz.get(f"{run.index}.{number}")
+            self._html(page.question(block, chosen, chosen is not None, run.words))
+            self._add_letters(block, lambda option: self._post(c.AnswerQuiz(number, option)))
+        elif isinstance(block, Choice | Sketch):
+            self._add_prediction(block, session)
+
+    def _add_task(self, task: Task, run: LessonRun) -> None:
+        verdicts = run.verdicts.get(task.id, [])
+        self._tasks.append((task, self._html(page.task(task, verdicts, run))))
+        left = len(task.hints) - run.notes.hints.get(task.id, 0)
+        if left > 0:
+            label = run.words("lesson.hint", left=left)
+            self._button(label, c.ShowHint(task.id), "gray", viser.Icon.BULB)
+
+    def _add_prediction(self, block: Prediction, session: Session) -> None:
+        run, answer = session.lessons, session.lessons.answer()
+        if isinstance(block, Sketch):
+            self._html(page.box(f"<p><b>{block.question}</b></p>"))
+            if answer is None:
+                self._add_sketching(block, session)
+            else:
+                self._add_chart(block, session)
+            return
+        chosen = answer.option if answer else None
+        self._html(page.question(block, chosen, False, run.words))
+        if answer is None:
+            commit = self._commit_button(run)
+            letters = self._add_letters(block, lambda option: self._choose(option, commit, run))
+            commit.order = letters.order + 0.5
+
+    def _choose(self, option: int, commit: viser.GuiButtonHandle, run: LessonRun) -> None:
+        self._draft = c.Predict(option=option)
+        commit.label = f"{run.words('lesson.commit')}: {page.LETTERS[option]}"
+        commit.disabled = False
+
+    def _commit_button(self, run: LessonRun) -> viser.GuiButtonHandle:
+        commit = self._gui.add_button(run.words("lesson.commit"), icon=viser.Icon.LOCK)
+        commit.disabled = True
+        self._draft = c.Predict()
+        on_press(commit, lambda: self._post(self._draft))
+        self._handles.append(commit)
+        return commit
+
+    def _add_letters(self, block: Choice | Quiz, act: Callable[[int], None]) -> Any:
+        letters = page.LETTERS[: len(block.options)]
+        group = self._gui.add_button_group("", list(letters))
+        on_press(group, lambda: act(letters.index(group.value)))
+        self._handles.append(group)
+        return group
+
+    def _add_sketching(self, block: Sketch, session: Session) -> None:
+        """The board, its keyboard twin, and the button that commits."""
+        words = session.lessons.words
+        said = self._html(page.text(f"<p>{words('lesson.draw_first')}</p>"))
+        from onpath.app.scene.sketch_board import SketchBoard  # see app/server/lazy_imports.py
+
+        commit = self._commit_button(session.lessons)
+
+        def drawn(times: np.ndarray, values: np.ndarray) -> None:
+            self._draft = c.Predict(None, tuple(times.tolist()), tuple(values.tolist()))
+            commit.disabled = False
+            said.content = page.text(f"<p>{words('lesson.drawn')}</p>")
+
+        title = f"{words(f'robot.{block.robot}')}: {words(f'quantity.{block.quantity}')}"
+        stage = stage_of(session.robot)
+        self._scene.show_titles(False)
+        self._board = SketchBoard(self._client.scene, stage, block, title, drawn)
+        self._add_numbers(block, session.lessons, self._board, drawn)
+
+    def _add_numbers(
+        self,
+        block: Sketch,
+        run: LessonRun,
+        board: SketchBoard,
+        drawn: Callable[[np.ndarray, np.ndarray], None],
+    ) -> None:
+        times = np.linspace(0.0, block.seconds, NUMBERS)
+        sliders: list[Any] = []
+
+        def moved(_: object) -> None:
+            values = np.array([slider.value for slider in sliders], dtype=float)
+            board.show(times, values)
+            drawn(times, values)
+
+        folder = self._gui.add_folder(run.words("lesson.numbers"), expand_by_default=False)
+        self._handles.append(folder)
+        with folder:
+            for time in times:
+                unit = page.QUANTITIES[block.quantity]
+                label = run.words("lesson.at", time=f"{time:g}", unit=unit)
+                step = (block.top - block.bottom) / 100
+                slider = self._gui.add_slider(label, block.bottom, block.top, step, block.bottom)
+                on_user_update(slider, moved)
+                sliders.append(slider)
+
+    def _add_run(self, session: Session) -> None:
+        """What was predicted beside what happens, and the button that lets it happen."""
+        run, step, found = session.lessons, session.lessons.step, session.lessons.prediction()
+        assert step is not None
+        truth = run.truth(session)
+        if run.playing:
+            self._html(page.text(f"<p><i>{run.words('lesson.playing')}</i></p>"))
+        else:
+            label = run.words("lesson.replay" if truth else "lesson.play")
+            button = self._button(label, c.PlayStep(), "green", viser.Icon.PLAYER_PLAY)
+            button.disabled = run.waits
+        if found is None:
+            return
+        if run.waits:
+            self._html(page.text(f"<p><i>{run.words('lesson.predict_before')}</i></p>"))
+        block, answer = found[1], run.answer()
+        if answer is not None and answer.skipped:
+            self._html(page.text(f"<p><i>{run.words('lesson.skipped')}</i></p>"))
+        if isinstance(block, Sketch):
+            self._add_chart(block, session)
+        elif truth is not None and not run.playing:
+            chosen = answer.option if answer else None
+            self._html(page.question(block, chosen, True, run.words))
+
+    def _add_chart(self, block: Sketch, session: Session) -> None:
+        run = session.lessons
+        self._chart = PredictionChart(self._gui, block, run.answer(), run.words)
+        self._handles.append(self._chart)
+        self._chart.show(run.truth(session))
+
+    def _add_ways(self, step: Step, run: LessonRun) -> None:
+        """Back, on, set up again, away."""
+        lesson = run.lesson
+        assert lesson is not None
+        last = run.index == len(lesson.steps) - 1
+        if last:
+            self._button(run.words("lesson.finish"), c.CloseLesson(), None, viser.Icon.CHECK)
+        else:
+            unseen = step.script is not None and not run.has_played()
+            label, colour = run.words("lesson.next"), None
+            if run.waits or unseen:
+                colour = "gray"
+                label = run.words("lesson.skip" if run.waits else "lesson.next_unseen")
+            self._button(label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)
+        keys = ["back", "again", "close"][0 if run.index else 1 :]
+        commands = {"back": c.GoToStep(-1), "again": c.BeginStepAnew(), "close": c.CloseLesson()}
+        asked = {run.words(f"lesson.{key}"): commands[key] for key in keys}
+        group = self._gui.add_button_group("", list(asked))
+        on_press(group, lambda: self._post(asked[group.value]))
+        self._handles.append(group)
+
+    def _html(self, content: str) -> viser.GuiHtmlHandle:
+        handle = self._gui.add_html(content)
+        self._handles.append(handle)
+        return handle
+
+    def _button(
+        self, label: str, command: c.LessonCommand, colour: Any, icon: viser.IconName | None
+    ) -> viser.GuiButtonHandle:
+        button = self._gui.add_button(label, color=colour, icon=icon)
+        on_press(button, lambda: self._post(command))
+        self._handles.append(button)
+        return button
+
+
+def _turns(post: Post, by: int) -> Callable[[Any], Coroutine[Any, Any, None]]:
+    async def turn(_: Any) -> None:
+        post(c.GoToStep(by))
+
+    return turn

@@ -1,0 +1,89 @@
+"""Keys for all that a mouse can do, and the window that lists them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import viser
+from viser._messages import HotkeyKey, KeyModifier
+
+from onpath.app.lab import commands as c
+from onpath.app.page.panels.widgets import Post
+from onpath.lessons.words import Words
+
+NUDGE = 0.001  # [m], of a control point
+TUG = 0.005  # [m], of the hand
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """One key.
+
+    Attributes:
+        name: of what it does, in the catalogue.
+        hotkey: viser's name for it.
+        written: how it is written, key by key.
+        command: to the lab; without one it resets the view, which is the tab's own.
+    """
+
+    name: str
+    hotkey: HotkeyKey
+    written: str
+    command: c.Command | None
+    modifier: KeyModifier | None = None
+
+    def does(self, words: Words) -> str:
+        """What it does."""
+        return words(f"key.{self.name}")
+
+    def shown(self, words: Words) -> str:
+        """How it is written on a keyboard of that language."""
+        return " ".join(words.get(f"keyname.{key}", key) for key in self.written.split())
+
+
+KEYS = (
+    Key("run", "space", "space", c.SetRunning()),
+    Key("right", "arrowright", "→", c.Arrow(NUDGE, 0.0)),
+    Key("left", "arrowleft", "←", c.Arrow(-NUDGE, 0.0)),
+    Key("up", "arrowup", "↑", c.Arrow(0.0, NUDGE)),
+    Key("down", "arrowdown", "↓", c.Arrow(0.0, -NUDGE)),
+    Key("reset", "R", "R", c.Reset()),
+    Key("hold", "H", "H", c.Hold()),
+    Key("next", "N", "N", c.SelectNext()),
+    Key("none", "escape", "Esc", c.SelectPoint(None)),
+    Key("add", "insert", "Ins", c.AddPoint()),
+    Key("remove", "delete", "Del", c.RemovePoint()),
+    Key("undo", "Z", "Ctrl Z", c.Undo(), "cmd/ctrl"),
+    Key("redo", "Y", "Ctrl Y", c.Redo(), "cmd/ctrl"),
+    Key("pull_left", "A", "A", c.Tug(-TUG, 0.0)),
+    Key("pull_right", "D", "D", c.Tug(TUG, 0.0)),
+    Key("pull_up", "W", "W", c.Tug(0.0, TUG)),
+    Key("pull_down", "S", "S", c.Tug(0.0, -TUG)),
+    Key("let_go", "X", "X", c.Release()),
+    Key("back", "B", "B", c.LookBack(1.0)),
+    Key("forward", "F", "F", c.LookBack(-1.0)),
+    Key("go_on", "G", "G", c.GoOn()),
+    Key("undo_go_on", "U", "U", c.UndoGoOn()),
+    Key("view", "home", "Home", None),
+)
+
+
+def add_keys(gui: viser.GuiApi, words: Words, post: Post, reset_view: Callable[[], None]) -> None:
+    """Make the keys work; they are also in viser's command palette."""
+    for key in KEYS:
+        handle = gui.add_command(key.does(words), hotkey=key.hotkey, modifier=key.modifier)
+
+        async def triggered(_: object, command: c.Command | None = key.command) -> None:
+            if command is None:
+                reset_view()
+            else:
+                post(command)
+
+        handle.on_trigger(triggered)
+
+
+def help_text(words: Words) -> str:
+    """The help window's text."""
+    rows = [f"| **{key.shown(words)}** | {key.does(words)} |" for key in KEYS]
+    return words("help.text") + "\n".join(rows)

@@ -1,0 +1,64 @@
+"""The last minute: look back, go on from there, take it home as files."""
+
+from __future__ import annotations
+
+import viser
+
+from onpath.app.exports.exporter import Exporter
+from onpath.app.lab import commands as c
+from onpath.app.lab.session import Session
+from onpath.app.page.panels.widgets import Post, on_press, on_user_update
+
+REACH = 60.0
+
+
+class PastPanel:
+    """Rewind and export."""
+
+    def __init__(self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter) -> None:
+        words = session.lessons.words
+        with gui.add_folder(words("past.title"), expand_by_default=False):
+            self._ago = gui.add_slider(
+                words("past.ago"),
+                min=0.0,
+                max=REACH,
+                step=0.1,
+                initial_value=0.0,
+                hint=words("past.ago_hint"),
+            )
+            self._go_on = gui.add_button(
+                words("past.go_on"),
+                icon=viser.Icon.PLAYER_TRACK_NEXT,
+                disabled=True,
+                hint=words("past.go_on_hint"),
+            )
+            self._undo = gui.add_button(
+                words("past.undo"),
+                icon=viser.Icon.ARROW_BACK_UP,
+                color="gray",
+                disabled=True,
+                hint=words("past.undo_hint"),
+            )
+        with gui.add_folder(words("export.title"), expand_by_default=False):
+            table = gui.add_button(words("export.table"), icon=viser.Icon.TABLE)
+            picture = gui.add_button(words("export.picture"), icon=viser.Icon.PHOTO)
+            film = gui.add_button(words("export.film"), icon=viser.Icon.MOVIE)
+        on_user_update(self._ago, lambda ago: post(c.View(ago)))
+        on_press(self._go_on, lambda: post(c.GoOn()))
+        on_press(self._undo, lambda: post(c.UndoGoOn()))
+        on_press(table, exporter.csv)
+        on_press(picture, exporter.picture)
+        on_press(film, exporter.recording)
+
+    def follow(self, session: Session) -> None:
+        """The slider stands at the instant that is shown, however one has come there."""
+        viewing = session.viewing
+        for button, useless in (
+            (self._go_on, viewing is None),
+            (self._undo, session.put_aside is None),
+        ):
+            if button.disabled != useless:
+                button.disabled = useless
+        ago = 0.0 if viewing is None else round(session.time - viewing, 1)
+        if self._ago.value != ago:
+            self._ago.value = ago

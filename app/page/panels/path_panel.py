@@ -1,0 +1,109 @@
+"""The path: presets, freehand, control points with their keyboard twins, undo and redo."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import viser
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.session import Session
+from onpath.app.page.panels.widgets import Post, on_press, on_user_update
+from onpath.models.control.rank_test import rank_map
+
+
+class PathChoice:
+    """The preset in use; one of the first controls a user sees."""
+
+    def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
+        words = session.lessons.words
+        self._shown = {name: words.get(f"path.{name}", name) for name in session.presets}
+        self._own = words("design.own")
+        names = {shown: name for name, shown in self._shown.items()}
+        self._choice = gui.add_dropdown(
+            words("design.path"),
+            [*names, self._own],
+            initial_value=self._shown.get(session.editor.design.name, self._own),
+            hint=words("design.path_hint"),
+        )
+        on_user_update(
+            self._choice, lambda shown: post(c.ChoosePath(names[shown])) if shown in names else None
+        )
+
+    def follow(self, session: Session) -> None:
+        """Show which one it is."""
+        shown = self._shown.get(session.editor.design.name, self._own)
+        if self._choice.value != shown:
+            self._choice.value = shown
+
+
+class PathPanel:
+    """Everything else about the path."""
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        session: Session,
+        post: Post,
+        draw: Callable[[], None],
+        show_zone: Callable[[bool], None],
+    ) -> None:
+        self._version, self._words = -1, session.lessons.words
+        words, planar = self._words, session.robot.frame.p == 2
+        drawing = gui.add_button(
+            words("design.draw"), icon=viser.Icon.PENCIL, hint=words("design.draw_hint")
+        )
+        on_press(drawing, draw)
+        undoing = {words("design.undo"): c.Undo(), words("design.redo"): c.Redo()}
+        edit = gui.add_button_group(words("design.edit"), list(undoing))
+        on_press(edit, lambda: post(undoing[edit.value]))
+        adding = {words("design.add"): c.AddPoint(), words("design.remove"): c.RemovePoint()}
+        points = gui.add_button_group(words("design.point"), list(adding))
+        on_press(points, lambda: post(adding[points.value]))
+        self._add_coordinates(gui, post, ("y1", "y2") if planar else ("y2", "y3"))
+        gui.add_markdown(words("design.arrows"))
+        self._design: object = None
+        self._rank = gui.add_markdown("")
+        zone = gui.add_checkbox(words("design.zone"), False, hint=words("design.zone_hint"))
+        zone.visible = planar  # it is drawn about the base pivot, in the robot's own plane
+        on_user_update(zone, show_zone)
+
+    def _add_coordinates(self, gui: viser.GuiApi, post: Post, names: tuple[str, str]) -> None:
+        """The selected point, by number."""
+        words = self._words
+        self._which = gui.add_number(
+            words("design.selected"), 0.0, min=0, max=24, step=1, hint=words("design.selected_hint")
+        )
+        self._first, self._second = (
+            gui.add_number(
+                words("design.coordinate", name=name), 0.0, min=-200.0, max=200.0, step=0.5
+            )
+            for name in names
+        )
+        on_user_update(self._which, lambda n: post(c.SelectPoint(int(n) - 1 if n else None)))
+        on_user_update(self._first, lambda mm: post(c.PlacePoint(first=mm / 1e3)))
+        on_user_update(self._second, lambda mm: post(c.PlacePoint(second=mm / 1e3)))
+
+    def follow(self, session: Session) -> None:
+        """Show the selected point's coordinates."""
+        editor = session.editor
+        if editor.version == self._version:
+            return
+        self._version = editor.version
+        if editor.design is not self._design:
+            self._design = editor.design
+            z = editor.design.curve.at(editor.design.curve.sample(32))
+            number = float(np.min(rank_map(session.robot, session.parameters, z)))
+            self._rank.content = self._words("design.rank", number=f"{number:.2f}")
+        selected = editor.selected
+        self._set(self._which, 0 if selected is None else selected + 1)
+        if selected is not None and selected < len(editor.points()):
+            z = editor.points()[selected] * 1e3
+            self._set(self._first, round(float(z[0]), 1))
+            self._set(self._second, round(float(z[1]), 1))
+
+    @staticmethod
+    def _set(handle: viser.GuiInputHandle[float], value: float) -> None:
+        if handle.value != value:
+            handle.value = value

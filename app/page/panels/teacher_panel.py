@@ -1,0 +1,262 @@
+"""The class on the teacher's left: who is where, what was predicted, what is taken home."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable
+
+import viser
+
+from onpath.app.classroom import class_html as page
+from onpath.app.classroom.results import class_csv, distribution, prediction_at, truth_of
+from onpath.app.lab import lesson_commands as c
+from onpath.app.lab.class_commands import TakeStep
+from onpath.app.lab.session import Session
+from onpath.app.page.panels.widgets import on_press, on_user_update
+from onpath.app.page.teacher_context import Teaching
+
+WIDTH, WIDE = 480, 760  # [px]; wide for a projector
+EVERY = 1.0  # [s] between two looks at the class
+
+Submit = Callable[[Callable[[], None]], None]
+
+
+class TeacherPanel:
+    """Three tabs; the second one names nobody, for the projector.
+
+    Args:
+        own: the teacher's session: its language, its course.
+        submit: runs something in another thread.
+    """
+
+    def __init__(
+        self, client: viser.ClientHandle, own: Session, teaching: Teaching, submit: Submit
+    ) -> None:
+        self._client, self._gui, self._submit = client, client.gui, submit
+        self._teaching, self._class, self._chosen = teaching, teaching.classroom, teaching.chosen
+        self._course, self._words, self._own = own.lessons.course, own.lessons.words, own
+        self._next, self._busy = 0.0, False
+        self._codes: list[viser.GuiHtmlHandle] = []
+        words, self._large = self._words, own.lessons.progress.presenting
+        panel = self._gui.add_panel(order=0)
+        with panel.add_tab(words("class.title"), viser.Icon.USERS):
+            self._build_class()
+        if self._course.lessons:
+            with panel.add_tab(words("class.predictions"), viser.Icon.CHALKBOARD):
+                self._build_predictions()
+        with panel.add_tab(words("class.record"), viser.Icon.FILE_TEXT):
+            self._build_record()
+        panel.dock_left()
+        panel.set_width(WIDE if self._large else WIDTH)
+        self._panel = panel
+
+    def follow(self, session: Session) -> None:
+        """Once a second, in another thread: the class may be large."""
+        now = self._class.clock()
+        if now >= self._next and not self._busy:
+            self._next, self._busy = now + EVERY, True
+            self._submit(self._refresh)
+
+    def _refresh(self) -> None:
+        try:
+            members = self._class.members()
+            now = self._class.clock()
+            for code in self._codes:
+                _show(code, page.class_code(self._class.code, len(members), self._words))
+            _show(self._table, page.table(members.values(), self._course, now, self._words))
+            self._show_names()
+            still = self._teaching.why_still(self._words)
+            _show(self._still, _text(still) if still else "")
+            self._show_standing()
+            if self._course.lessons:
+                _show(self._prediction, self._prediction_view())
+        finally:
+            self._busy = False
+
+    # Who is where
+
+    def _build_class(self) -> None:
+        self._codes.append(self._gui.add_html(""))
+        self._table = self._gui.add_html("")
+        self._names = self._gui.add_dropdown(
+            self._words("class.follow"), [self._words("class.own_lab")]
+        )
+        on_user_update(self._names, self._choose_followed)
+        self._still = self._gui.add_html("")
+        self._standing = self._gui.add_html("")
+        self._clear = self._gui.add_button(self._words("class.push_end"), color="gray")
+        on_press(self._clear, lambda: self._class.push(None))
+        self._show_names()
+        self._show_standing()
+
+    def _followable(self) -> dict[str, str]:
+        """Session codes by what is shown of them."""
+        members = self._class.members().items()
+        return {f"{member.number}. {member.name}": code for code, member in members}
+
+    def _show_names(self) -> None:
+        names = self._followable()
+        options = (self._words("class.own_lab"), *names)
+        shown = next((n for n, c in names.items() if c == self._chosen.followed), options[0])
+        if tuple(self._names.options) != options:
+            self._names.options = options
+        if self._names.value != shown:
+            self._names.value = shown
+
+    def _show_standing(self) -> None:
+        """What whoever joins now gets, and the button that ends it."""
+        push = self._class.orders.push
+        self._clear.visible = push is not None
+        if push is None:
+            said = ""
+        elif isinstance(push, TakeStep):
+            title = {name: label for label, name in self._lessons().items()}.get(push.lesson, "")
+            said = self._words("class.standing_step", lesson=title, step=push.step + 1)
+        else:
+            said = self._words("class.standing_setup")
+        _show(self._standing, _text(said) if said else "")
+
+    def _choose_followed(self, name: str) -> None:
+        self._chosen.followed = self._followable().get(name, "")
+        self._look_again()
+
+    # What was predicted
+
+    def _build_predictions(self) -> None:
+        words, gui, chosen = self._words, self._gui, self._chosen
+        if chosen.lesson not in self._course.lessons:
+            chosen.lesson, chosen.step = next(iter(self._course.lessons)), 0
+        lessons, steps = self._lessons(), self._steps()
+        own = next(label for label, name in lessons.items() if name == chosen.lesson)
+        self._codes.append(gui.add_html(""))
+        lesson = gui.add_dropdown(words("class.lesson"), list(lessons), initial_value=own)
+        self._step = gui.add_dropdown(
+            words("class.step_head"), steps, initial_value=steps[chosen.step]
+        )
+        push = gui.add_button(words("class.push_step"), icon=viser.Icon.SEND)
+        self._sent = gui.add_html("")
+        reveal = gui.add_checkbox(words("class.truth"), chosen.revealed)
+        large = gui.add_checkbox(words("lesson.presenting"), self._large)
+        self._prediction = gui.add_html("")
+        on_user_update(lesson, lambda label: self._choose_lesson(lessons[label]))
+        on_user_update(self._step, self._choose_step)
+        on_user_update(reveal, self._reveal)
+        on_user_update(large, self._present)
+        on_press(push, self._push_step)
+
+    def _lessons(self) -> dict[str, str]:
+        """Names by titles."""
+        course, language = self._course, self._words.language
+        return {
+            f"{number}. {course.lesson(name, language).front.title}": name
+            for number, name in enumerate(course.lessons, start=1)
+        }
+
+    def _steps(self) -> list[str]:
+        lesson = self._course.lesson(self._chosen.lesson, self._words.language)
+        return [
+            f"{number}. {self._words(f'kind.{step.kind}')}: {step.title}"
+            for number, step in enumerate(lesson.steps, start=1)
+        ]
+
+    def _choose_lesson(self, name: str) -> None:
+        self._chosen.lesson, self._chosen.step = name, 0
+        self._step.options = self._steps()
+        self._step.value = self._step.options[0]
+        self._look_again()
+
+    def _choose_step(self, label: str) -> None:
+        self._chosen.step = self._steps().index(label)
+        self._look_again()
+
+    def _reveal(self, on: bool) -> None:
+        self._chosen.revealed = on
+        self._look_again()
+
+    def _present(self, on: bool) -> None:
+        self._large = on
+        self._own.post(c.SetPresenting(on))
+        self._panel.set_width(WIDE if on else WIDTH)
+        self._look_again()
+
+    def _look_again(self) -> None:
+        self._next = 0.0
+
+    def _push_step(self) -> None:
+        self._class.push(TakeStep(self._chosen.lesson, self._chosen.step))
+        said = self._words("class.sent", count=len(self._class.members()))
+        self._sent.content = _text(said)
+
+    def _prediction_view(self) -> str:
+        words, chosen = self._words, self._chosen
+        lesson = self._course.lesson(chosen.lesson, words.language)
+        found = prediction_at(lesson, min(chosen.step, len(lesson.steps) - 1))
+        if found is None:
+            return _text(words("class.no_prediction"))
+        at, block = found
+        ways = [member.progress for member in self._class.members().values()]
+        truth = truth_of(chosen.lesson, at, [*ways, self._own.lessons.progress])
+        counted = distribution(block, chosen.lesson, at, ways)
+        view = page.prediction_view(block, counted, truth, chosen.revealed, words, self._large)
+        missing = chosen.revealed and not counted.counts and truth is None
+        return view + (_text(words("class.no_truth")) if missing else "")
+
+    # What is taken home, and what is forgotten
+
+    def _build_record(self) -> None:
+        words, gui = self._words, self._gui
+        gui.add_html(_text(words("class.record_text")))
+        export = gui.add_button(words("class.export"), icon=viser.Icon.FILE_EXPORT)
+        end = gui.add_button(words("class.end"), color="gray", icon=viser.Icon.DOOR_EXIT)
+        forget = gui.add_button(words("class.forget"), color="red", icon=viser.Icon.TRASH)
+        self._told = gui.add_html("")
+        on_press(export, lambda: self._submit(self._export))
+        on_press(end, lambda: self._ask(words("class.end"), words("class.end_sure"), self._end))
+        on_press(
+            forget,
+            lambda: self._ask(words("class.forget"), words("class.forget_sure"), self._forget),
+        )
+
+    def _export(self) -> None:
+        members = self._class.members().values()
+        data = class_csv(members, self._course, self._words.language)
+        self._client.send_file_download("onpath-class.csv", data, save_immediately=True)
+
+    def _end(self) -> None:
+        try:
+            said = self._words("class.ended", count=self._class.end())
+        except OSError as error:
+            said = str(error)
+        self._told.content = _text(said)
+        self._look_again()
+
+    def _forget(self) -> None:
+        try:
+            said = self._words("class.forgotten", count=self._teaching.forget())
+        except OSError as error:
+            said = str(error)
+        self._told.content = _text(said)
+        self._look_again()
+
+    def _ask(self, title: str, question: str, act: Callable[[], None]) -> None:
+        """Do it only after a yes."""
+        with self._gui.add_modal(title) as modal:
+            self._gui.add_html(_text(question))
+            yes = self._gui.add_button(self._words("class.yes"), color="red")
+            no = self._gui.add_button(self._words("class.no"), color="gray")
+
+        def agreed() -> None:
+            modal.close()
+            self._submit(act)
+
+        on_press(yes, agreed)
+        on_press(no, modal.close)
+
+
+def _show(handle: viser.GuiHtmlHandle, content: str) -> None:
+    if handle.content != content:
+        handle.content = content
+
+
+def _text(said: str) -> str:
+    return f'<div role="note" style="padding:0.4em 0.9em">{html.escape(said)}</div>'

@@ -1,0 +1,165 @@
+"""Widgets built from parameter metadata, and small helpers that every panel uses."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import viser
+
+from onpath.app.common.error_log import log_error
+from onpath.app.lab.commands import Command, SetParameter
+from onpath.app.lab.session import Session
+from onpath.lessons.words import Words
+from onpath.models.systems.parameters import Parameters, Spec, specs
+
+Post = Callable[[Command], None]
+
+
+def on_user_update(handle: Any, act: Callable[[Any], None]) -> None:
+    """Call `act(value)` when the browser changes the widget, not when Python does."""
+
+    async def changed(event: viser.GuiEvent[Any]) -> None:
+        if event.client is not None:
+            act(handle.value)
+
+    handle.on_update(changed)
+
+
+def on_press(handle: Any, act: Callable[[], None]) -> None:
+    """Call `act()` when the button is pressed."""
+
+    async def pressed(_: viser.GuiEvent[Any]) -> None:
+        act()
+
+    handle.on_click(pressed)
+
+
+_slow_presses: WeakKeyDictionary[Any, threading.Lock] = WeakKeyDictionary()
+"""By tab, on viser's event loop."""
+
+
+def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
+    """Call `act()` when the button is pressed, in a thread of its own: it may wait, or build the
+    page anew. Presses of the same tab while it is under way are dropped: nothing piles up."""
+
+    def run(under_way: threading.Lock) -> None:
+        try:
+            act()
+        except Exception as error:
+            log_error(error)
+        finally:
+            under_way.release()
+
+    async def pressed(event: viser.GuiEvent[Any]) -> None:
+        under_way = _slow_presses.setdefault(event.client or handle, threading.Lock())
+        if under_way.acquire(blocking=False):
+            threading.Thread(target=run, args=[under_way], name="press", daemon=True).start()
+
+    handle.on_click(pressed)
+
+
+def label_of(words: Words, name: str, spec: Spec) -> str:
+    """A parameter's name on a widget."""
+    return words.get(f"parameter.{name}.label", spec.label)
+
+
+def help_of(words: Words, name: str, spec: Spec) -> str:
+    """A line about a parameter."""
+    return words.get(f"parameter.{name}.help", spec.help)
+
+
+def option_of(words: Words, name: str, option: Any) -> str:
+    """One of a parameter's options, as a list shows it."""
+    return words.get(f"parameter.{name}.option.{option}", str(option))
+
+
+class ParameterWidgets:
+    """Widgets of some parameters: they post changes and follow the session's values.
+
+    Args:
+        gui: where to put them.
+        names: fields of the session's parameters, in order.
+        post: takes the commands.
+    """
+
+    def __init__(self, gui: viser.GuiApi, session: Session, names: list[str], post: Post) -> None:
+        self._handles: dict[str, Any] = {}
+        self._post, self._words = post, session.lessons.words
+        self._specs = specs(session.parameters)
+        for name in names:
+            shown = self._shown(name, session.parameters)
+            make = self._add_choice if self._specs[name].options else self._add_slider
+            self._handles[name] = make(gui, name, shown)
+
+    def follow(self, parameters: Parameters) -> None:
+        """Show the session's values where they differ."""
+        for name, handle in self._handles.items():
+            shown = self._shown(name, parameters)
+            if handle.value != shown:
+                handle.value = shown
+
+    def _add_choice(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
+        spec, words = self._specs[name], self._words
+        options = {option_of(words, name, option): option for option in spec.options}
+        handle = gui.add_dropdown(
+            label_of(words, name, spec),
+            list(options),
+            initial_value=shown,
+            hint=help_of(words, name, spec),
+        )
+        on_user_update(handle, lambda new: self._post(SetParameter(name, options[new])))
+        return handle
+
+    def _add_slider(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
+        spec, words = self._specs[name], self._words
+        unit = f" [{words.get(f'parameter.{name}.unit', spec.unit)}]" if spec.unit else ""
+        handle = gui.add_slider(
+            label_of(words, name, spec) + unit,
+            min=spec.low,
+            max=spec.high,
+            step=spec.step,
+            initial_value=shown,
+            hint=help_of(words, name, spec),
+        )
+        on_user_update(handle, lambda new: self._post(SetParameter(name, new)))
+        return handle
+
+    def _shown(self, name: str, parameters: Parameters) -> Any:
+        """As the widget holds it: options in words, numbers to the slider's step or finer."""
+        spec, value = self._specs[name], getattr(parameters, name)
+        if spec.options:
+            return option_of(self._words, name, value)
+        digits = max(0, 2 - math.floor(math.log10(spec.step) + 1e-9)) - 1
+        return round(float(value), digits)
+
+
+class SwitchedParameter(ParameterWidgets):
+    """A parameter that is off at 0: a checkbox that shows its slider while on."""
+
+    def __init__(self, gui: viser.GuiApi, session: Session, name: str, post: Post) -> None:
+        words, spec = session.lessons.words, specs(session.parameters)[name]
+        self._name, self._on = name, spec.on
+        on = getattr(session.parameters, name) != 0
+        self._switch = gui.add_checkbox(
+            label_of(words, name, spec), initial_value=on, hint=help_of(words, name, spec)
+        )
+        super().__init__(gui, session, [name], post)
+        self._slider = self._handles[name]
+        self._slider.visible = on
+        on_user_update(self._switch, self._turn)
+
+    def follow(self, parameters: Parameters) -> None:
+        """Show the session's value, and the slider only while on."""
+        super().follow(parameters)
+        on = getattr(parameters, self._name) != 0
+        if self._switch.value != on:
+            self._switch.value = on
+        if self._slider.visible != on:
+            self._slider.visible = on
+
+    def _turn(self, on: bool) -> None:
+        self._post(SetParameter(self._name, self._on if on else 0.0))

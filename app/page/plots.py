@@ -1,0 +1,162 @@
+"""Live plots of one client: the distance, always there, and one more on demand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import viser
+from viser import uplot
+
+from onpath.app.common.palette import CONTROLLERS
+from onpath.app.lab.session import Session
+from onpath.app.viser_adapter.frame_channel import update_gui
+from onpath.lessons.words import Words
+
+WINDOW = 10.0  # [s]
+POINTS = 160
+LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and third line
+
+
+@dataclass(frozen=True, slots=True)
+class Plot:
+    """What is drawn over time.
+
+    Attributes:
+        name: in the catalogue and in lessons.
+        field: of the session's samples.
+        scale: from SI to what is shown.
+        lines: names of the field's entries; one name for a single line.
+        least: what is shown at least, of what is nearly nothing when all goes well: a ripple of a
+            micrometre is not to look like a swing. None for as much as there is.
+    """
+
+    name: str
+    field: str
+    scale: float
+    lines: Callable[[Session], list[str]]
+    least: tuple[float, float] | None = None
+
+
+def _numbered(symbol: str, field: str) -> Callable[[Session], list[str]]:
+    def names(session: Session) -> list[str]:
+        size = dict(session.sample_layout.fields)[field]
+        return [f"{symbol}{i + 1}" for i in range(size)] if size > 1 else [""]
+
+    return names
+
+
+def _alone(_: Session) -> list[str]:
+    """A single line is named after its robot."""
+    return [""]
+
+
+DISTANCE = Plot("distance", "distance", 1e3, _alone, least=(0.0, 1.0))
+MORE = {
+    plot.name: plot
+    for plot in (
+        Plot("speed", "speed", 1.0, _alone),
+        Plot("torques", "u", 1.0, _numbered("u", "u")),
+        Plot("across", "xi", 1e3, _numbered("ξ", "xi"), least=(-1.0, 1.0)),
+        Plot("across_rate", "xi_rate", 1e3, _numbered("ξ'", "xi_rate"), least=(-10.0, 10.0)),
+        Plot("place", "theta", 1.0, _alone),
+        Plot("rate", "theta_rate", 1.0, _alone),
+        Plot("modes", "modes", 1e3, _numbered("f", "modes")),
+        Plot("deflection", "deflection", 1e3, _alone),
+        Plot("energy", "internal_energy", 1e3, _alone),
+        Plot("force", "force", 1.0, _numbered("F", "force")),
+    )
+}
+
+
+def _at_least(limits: tuple[float, float] | None) -> uplot.Scale:
+    """Grows with the data, but shows no less than this."""
+    if limits is None:
+        return uplot.Scale()
+    low, high = ({"pad": 0.1, "soft": limit, "mode": 1} for limit in limits)
+    return uplot.Scale(range={"min": low, "max": high})
+
+
+class LivePlot:
+    """One uPlot chart."""
+
+    def __init__(self, gui: viser.GuiApi, session: Session, plot: Plot, height: int) -> None:
+        self._plot = plot
+        self._shown = -1.0
+        words = session.lessons.words
+        series = [uplot.Series(label=words("plots.time"))]
+        names = plot.lines(session)
+        for robot in session.runs:
+            for name, dash in zip(names, LINES, strict=False):
+                label = f"{words(f'controller.{robot}.short')} {name}".rstrip()
+                line = uplot.Series(label=label, stroke=CONTROLLERS[robot].hex, width=2)
+                if dash is not None:
+                    line["dash"] = dash
+                series.append(line)
+        self._lines = min(len(names), len(LINES))
+        self._handle = gui.add_uplot(
+            tuple(np.zeros(2) for _ in series),
+            tuple(series),
+            title=words(f"axis.{plot.name}"),
+            scales={"x": uplot.Scale(time=False), "y": _at_least(plot.least)},
+            legend=uplot.Legend(live=False),
+            height=height,
+        )
+
+    def follow(self, session: Session) -> None:
+        """Draw the last seconds, up to the instant that is shown."""
+        now = session.time if session.viewing is None else session.viewing
+        if now == self._shown:
+            return
+        self._shown = now
+        begin = session.sample_layout.slices[self._plot.field].start
+        fields = slice(begin, begin + self._lines)
+        times, samples = session.history.samples(now - WINDOW, now, POINTS, fields)
+        if len(times) < 2:
+            return
+        values = samples.astype(float) * self._plot.scale
+        lines = np.vstack([times, values.reshape(len(times), -1).T])
+        finite = lines if np.isfinite(lines).all() else np.nan_to_num(lines)
+        update_gui(self._handle, "data", tuple(finite))
+
+    def remove(self) -> None:
+        """Take it off the page."""
+        self._handle.remove()
+
+
+def _shown(session: Session, words: Words) -> dict[str, Plot | None]:
+    """What this robot has something for, by name as shown; first of all none."""
+    fields = dict(session.sample_layout.fields)
+    some = {words(f"plot.{p.name}"): p for p in MORE.values() if p.field in fields}
+    return {words("plots.none"): None, **some}
+
+
+class MorePlots:
+    """A plot to choose."""
+
+    def __init__(self, gui: viser.GuiApi, session: Session) -> None:
+        self._gui = gui
+        self._plot: LivePlot | None = None
+        words = session.lessons.words
+        self._plots = _shown(session, words)
+        self._folder = gui.add_folder(words("plots.more"), expand_by_default=False)
+        with self._folder:
+            self._choice = gui.add_dropdown(
+                words("plots.show"), list(self._plots), hint=words("plots.show_hint")
+            )
+        self._drawn: Plot | None = None
+
+    def follow(self, session: Session) -> None:
+        """Draw the chosen plot."""
+        chosen = self._plots[self._choice.value]
+        if chosen is not self._drawn:
+            self._drawn = chosen
+            if self._plot is not None:
+                self._plot.remove()
+                self._plot = None
+            if chosen is not None:
+                with self._folder:
+                    self._plot = LivePlot(self._gui, session, chosen, height=200)
+        if self._plot is not None:
+            self._plot.follow(session)

@@ -1,0 +1,61 @@
+"""The controls that the open step speaks of; others are made when another step is opened."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import viser
+
+from onpath.app.lab.session import Session
+from onpath.app.page.panel_factory import Controls, Part
+from onpath.lessons.schema import Scene
+
+
+class StepControls:
+    """A folder that is filled anew for every step.
+
+    Args:
+        submit: runs something in another thread.
+    """
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        tab: viser.GuiTabHandle,
+        session: Session,
+        controls: Controls,
+        submit: Callable[[Callable[[], None]], None],
+    ) -> None:
+        self._gui, self._controls, self._submit = gui, controls, submit
+        self._tab, self._title = tab, session.lessons.words("lesson.controls")
+        self._folder: viser.GuiFolderHandle | None = None
+        self._scene: Scene | None = None
+        self._parts: list[Part] = []
+        self._fill(_scene_of(session))
+
+    def follow(self, session: Session) -> None:
+        """Show the open step's controls, and what they stand at."""
+        scene = _scene_of(session)
+        if scene != self._scene:
+            self._scene, self._parts = scene, []
+            self._submit(lambda: self._fill(scene))
+        for part in self._parts:
+            part.follow(session)
+
+    def _fill(self, scene: Scene) -> None:
+        if self._folder is not None:
+            self._folder.remove()
+        self._scene = scene
+        with self._tab:
+            self._folder = self._gui.add_folder(self._title)
+        with self._folder:
+            self._parts = self._controls.of_step(scene)
+
+
+EMPTY = Scene()
+
+
+def _scene_of(session: Session) -> Scene:
+    """Of the open step."""
+    run = session.lessons
+    return EMPTY if run.lesson is None else run.lesson.scene_at(run.index)

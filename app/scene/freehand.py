@@ -1,0 +1,78 @@
+"""Drawing a path with the mouse on a sheet in front of the robots."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onpath.app.common import palette
+from onpath.app.scene import meshes
+from onpath.app.scene.ink import Ink
+from onpath.app.scene.pointer_projection import pointer_on_plane
+from onpath.app.scene.stage import Stage, add_copies
+
+if TYPE_CHECKING:
+    import viser
+
+CLOSEST = 0.002
+"""Two points of a stroke are at least this far apart [m]."""
+
+
+class Freehand:
+    """Sheets that take one stroke. Removes itself at the stroke's end.
+
+    Args:
+        scene: the client's scene.
+        stage: where the robots stand.
+        on_stroke: called with the points in the robot's frame, shape (n, 3), [m].
+    """
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        stage: Stage,
+        on_stroke: Callable[[np.ndarray], None],
+    ) -> None:
+        self._scene = scene
+        self._bases = stage.origins
+        self._plane = stage.path_plane
+        self._on_stroke = on_stroke
+        self._base = self._bases[0]  # of the robot before which is drawn
+        look = (palette.INK, 0.003)
+        self._ink = Ink(scene, "/freehand/ink", look, CLOSEST, self._before_the_robot)
+        self.active = True
+        sheet = meshes.sheet(*stage.sheet)
+        self._sheets = add_copies(
+            scene, "/freehand/sheet", sheet, self._bases, palette.SELECTED, opacity=0.1
+        )
+        self._sheets.on_drag("left")(self._dragged)
+
+    def cancel(self) -> None:
+        """Takes the sheets away; without effect when they are gone."""
+        if self.active:
+            self.active = False
+            self._sheets.remove()
+            self._ink.remove()
+
+    def draw(self) -> None:
+        """Show how far the stroke is; at about 10 Hz."""
+        self._ink.draw()
+
+    async def _dragged(self, event: viser.SceneNodeDragEvent[viser.BatchedMeshHandle]) -> None:
+        if not self.active or event.instance_index is None:
+            return
+        self._base = self._bases[event.instance_index]
+        camera = event.client.camera.position
+        seen = [event.start_position] if event.phase == "start" else []
+        for pointer in (*seen, event.end_position):
+            point = pointer_on_plane(camera, np.array(pointer), self._base, self._plane)
+            if point is not None:
+                self._ink.add(point)
+        if event.phase == "end":
+            self.cancel()
+            self._on_stroke(self._ink.points.reshape(-1, 3))
+
+    def _before_the_robot(self, points: np.ndarray) -> np.ndarray:
+        return points + self._base - [0.0, 0.004, 0.0]

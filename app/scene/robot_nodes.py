@@ -1,0 +1,238 @@
+"""The nodes of both machines that move: links, bearings, pens, markers, grips, forces, traces."""
+
+from __future__ import annotations
+
+from math import hypot
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onpath.app.common import palette
+from onpath.app.lab.snapshot import RobotView, TrackerName
+from onpath.app.scene import meshes
+from onpath.app.scene.poses import Poses, difference, trace_segments
+from onpath.app.scene.stage import IDENTITY, Stage, add_copies, add_text, set_text
+from onpath.app.viser_adapter.frame_channel import update_node
+from onpath.lessons.words import ENGLISH, Words
+
+if TYPE_CHECKING:
+    import trimesh
+    import viser
+
+FORCE_SHOWN = 0.05
+"""Smallest force that is drawn [N]."""
+LINKS = 4
+"""Bars of a robot that are machined links; further ones are pieces of a strip that bends."""
+TRACE_SEGMENTS = 120
+TRACE_DEPTHS = (0.012, 0.002)
+"""Behind the path, and older laps behind newer ones [m]."""
+
+# Scales of the bearing's mesh, which also serves as pen and as the discs of a marker.
+BEARING = (1.0, 1.0, 1.0)
+PEN = (0.42, 0.5, 0.42)
+EXTRA = (0.4, 0.1, 0.4)
+RING = ((0.85, 0.06, 0.85), (0.55, 0.06, 0.55))
+DOT = ((0.62, 0.06, 0.62), (0.42, 0.06, 0.42))
+
+
+def fading(colour: palette.Colour, count: int = TRACE_SEGMENTS) -> np.ndarray:
+    """Linear colours from nearly white to `colour` along a trace, shape (count, 2, 3), uint8."""
+    shares = 0.92 * (1.0 - np.linspace(0.0, 1.0, count + 1))
+    line = np.stack([colour.toward(palette.WHITE, share).linear for share in shares])
+    return np.stack([line[:-1], line[1:]], axis=1)
+
+
+def link_scales(lengths: np.ndarray) -> np.ndarray:
+    """Per-axis scales of the link's mesh, shape (n, 3)."""
+    return np.column_stack([lengths, np.ones_like(lengths), np.ones_like(lengths)])
+
+
+def link_colours(name: str) -> list[np.ndarray]:
+    """Linear colours of a robot's links: links 1 and 3, which lie behind, are darker."""
+    front = palette.CONTROLLERS[name]
+    back = front.toward(palette.INK, 0.25)
+    return [c.linear for c in (back, front, back, front)]
+
+
+def part_looks(name: str, robot: RobotView) -> tuple[list[tuple[float, ...]], list[np.ndarray]]:
+    """Scales and linear colours of a robot's bearings, pen, marker and extra points.
+
+    The tracker's moving reference is a ring, the follower's closest point a dot with a white rim:
+    either is two discs, one before the other.
+    """
+    joints, extras = robot.counts.joints, robot.counts.marks
+    dark = palette.CONTROLLERS[name].toward(palette.INK, 0.45)
+    discs, inks = (RING, (dark, palette.WHITE)) if name == TrackerName else (
+        DOT, (palette.WHITE, dark)
+    )  # fmt: skip
+    colours = [*[palette.STEEL] * joints, palette.INK, *inks, *[palette.STEEL] * extras]
+    return [*[BEARING] * joints, PEN, *discs, *[EXTRA] * extras], [c.linear for c in colours]
+
+
+def _add_traces(scene: viser.SceneApi, names: list[str]) -> viser.LineSegmentsHandle:
+    return scene.add_line_segments(
+        "/traces",
+        np.zeros((TRACE_SEGMENTS * len(names), 2, 3)),
+        np.concatenate([fading(palette.CONTROLLERS[name]) for name in names]),
+        thickness=0.006,
+    )
+
+
+def _trace_origins(origins: np.ndarray) -> np.ndarray:
+    """Where the segments of all robots' traces have their origins, shape (count, 1, 3), [m]."""
+    depths = np.zeros((TRACE_SEGMENTS, 3))
+    depths[:, 1] = np.linspace(*TRACE_DEPTHS, TRACE_SEGMENTS)
+    return (origins[:, None] + depths).reshape(-1, 1, 3)
+
+
+class Bars:
+    """Some of the bars as copies of one mesh along x from 0 to 1.
+
+    Args:
+        which: of all bars: booleans, shape (n,), or a slice.
+        colours: of those, linear, shape (k, 3).
+    """
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        name: str,
+        mesh: trimesh.Trimesh,
+        which: np.ndarray | slice,
+        colours: np.ndarray,
+        poses: Poses,
+    ) -> None:
+        self._which = which
+        self._lengths = poses.lengths[which]
+        scales = link_scales(self._lengths)
+        self._node = add_copies(scene, name, mesh, poses.bars[which], colours, scales=scales)
+
+    def update(self, poses: Poses) -> None:
+        """One message."""
+        which, lengths = self._which, poses.lengths[self._which]
+        arrays = {"batched_positions": poses.bars[which], "batched_wxyzs": poses.quaternions[which]}
+        if difference(lengths, self._lengths) > 1e-4:
+            self._lengths = lengths
+            arrays["batched_scales"] = link_scales(lengths)
+        update_node(self._node, **arrays)
+
+
+class Machine:
+    """Nodes for all robots together, as few as can be.
+
+    Args:
+        scene: the client's scene.
+        stage: where the robots stand.
+        robots: as they are at first, in the same order.
+        poses: of them.
+        words: for what is written beside them.
+    """
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        stage: Stage,
+        robots: list[RobotView],
+        poses: Poses,
+        words: Words = ENGLISH,
+    ) -> None:
+        self._words = words
+        self._bases = bases = stage.bases
+        self._force_scale = stage.force_scale
+        self._drawn = poses
+        self._bars = self._add_bars(scene, robots, poses)
+        self._parts = self._add_parts(scene, robots, poses)
+        self._turns = np.tile(IDENTITY, (len(poses.turns), 1))
+        self.grips = add_copies(
+            scene,
+            "/grips",
+            meshes.grip(),
+            poses.tips,
+            np.stack([palette.CONTROLLERS[name].linear for name in bases]),
+            opacity=0.22,
+        )
+        self._traces = _add_traces(scene, list(bases))
+        self._trace_origins = _trace_origins(stage.origins)
+        self._traced = self._trace_origins
+        self._add_force(scene, stage)
+        self._draw(poses)
+
+    def _add_bars(self, scene: viser.SceneApi, robots: list[RobotView], poses: Poses) -> list[Bars]:
+        is_link = np.concatenate([np.arange(robot.counts.bars) < LINKS for robot in robots])
+        links = np.stack([colour for name in self._bases for colour in link_colours(name)])
+        if is_link.all():
+            return [Bars(scene, "/links", meshes.link(), slice(None), links, poses)]
+        bars = [Bars(scene, "/links", meshes.link(), is_link, links, poses)]
+        pieces = [robot.counts.bars - LINKS for robot in robots]
+        front = np.repeat(links[LINKS - 1 :: LINKS], pieces, axis=0)
+        bars.append(Bars(scene, "/beams", meshes.blade(), ~is_link, front, poses))
+        return bars
+
+    def _add_parts(
+        self, scene: viser.SceneApi, robots: list[RobotView], poses: Poses
+    ) -> viser.BatchedMeshHandle:
+        named = zip(self._bases, robots, strict=True)
+        looks = [part_looks(name, robot) for name, robot in named]
+        return add_copies(
+            scene,
+            "/parts",
+            meshes.bearing(),
+            poses.parts,
+            np.stack([colour for _, colours in looks for colour in colours]),
+            scales=np.array([scale for scales, _ in looks for scale in scales]),
+        )
+
+    def update(self, poses: Poses) -> None:
+        """Three messages, one more with a force, one with a strip, none when nothing has moved."""
+        if poses.is_news(self._drawn):
+            self._drawn = poses
+            self._draw(poses)
+
+    def _draw(self, poses: Poses) -> None:
+        for bars in self._bars:
+            bars.update(poses)
+        parts = {"batched_positions": poses.parts}
+        if difference(poses.turns, self._turns) > 1e-3:
+            self._turns = parts["batched_wxyzs"] = poses.turns
+        update_node(self._parts, **parts)
+        update_node(self.grips, batched_positions=poses.tips)
+        acts = max(map(abs, poses.forces.ravel().tolist())) > FORCE_SHOWN
+        if acts:
+            tails = poses.tips - [0.0, 0.01, 0.0]
+            arrows = np.stack([tails, tails + self._force_scale * poses.forces], axis=1)
+            update_node(self._arrows, points=arrows)
+        if self._arrows.visible != acts:
+            self._arrows.visible = acts
+
+    def update_traces(self, robots: list[RobotView]) -> None:
+        """Redraws the traces if they are others, and says how large each force is."""
+        lines = [trace_segments(robot.trace, TRACE_SEGMENTS) for robot in robots]
+        points = np.concatenate(lines) + self._trace_origins
+        if 0.0 < difference(points, self._traced) < np.inf:  # not if there is a NaN
+            self._traced = points
+            update_node(self._traces, points=points)
+        for robot, label in zip(robots, self._force_labels, strict=True):
+            set_text(label, self._force_words(hypot(*robot.force.tolist())))
+
+    def _force_words(self, force: float) -> str:
+        """How large a force is, [N]; empty when none is drawn."""
+        if force > FORCE_SHOWN:
+            return self._words("scene.force", force=f"{force:.{int(force < 1.0)}f}")
+        return ""
+
+    def _add_force(self, scene: viser.SceneApi, stage: Stage) -> None:
+        self._arrows = scene.add_arrows(
+            "/force",
+            np.zeros((len(self._bases), 2, 3)),
+            palette.FORCE.linear,
+            shaft_radius=0.0032,
+            head_radius=0.0085,
+            head_length=0.018,
+            visible=False,
+        )
+        self._force_labels = [
+            add_text(scene, f"/force_labels/{name}", "", base + stage.force)
+            for name, base in stage.bases.items()
+        ]
+        for label in self._force_labels:
+            label.visible = False

@@ -1,0 +1,271 @@
+"""The 3D scene of one client: what it shows of a session, and what its mouse tells.
+
+Cost follows the number of property assignments, not their size, so both robots share their nodes
+(machine.py, path_nodes.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onpath.app.common import palette
+from onpath.app.lab.snapshot import PathView, RobotView, Snapshot
+from onpath.app.scene import meshes
+from onpath.app.scene.freehand import Freehand
+from onpath.app.scene.path_nodes import PathNodes
+from onpath.app.scene.pointer_projection import Plane, pointer_on_plane
+from onpath.app.scene.poses import poses_of
+from onpath.app.scene.robot_nodes import Machine
+from onpath.app.scene.stage import (
+    FIELD_OF_VIEW,
+    Insets,
+    Stage,
+    add_copies,
+    add_text,
+    build_stage,
+    set_text,
+    view_of,
+)
+from onpath.app.scene.stage_catalogue import RIGID
+from onpath.lessons.words import ENGLISH, Words
+
+if TYPE_CHECKING:
+    import viser
+
+    DragEvent = viser.SceneNodeDragEvent[viser.BatchedMeshHandle]
+    ClickEvent = viser.SceneNodePointerEvent[viser.BatchedMeshHandle]
+
+ZONE_DEPTH = 0.052
+"""y of the shading of singular places [m]: behind the links."""
+WITHIN = 0.01
+"""How near a control point [m] one must press to take it, where the end-point covers it."""
+
+
+def _ignore(*_: object) -> None:
+    """A hook that nobody set."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hooks:
+    """What the scene tells; called on viser's event loop, so they must only enqueue.
+
+    Attributes:
+        on_grab: the end-point of the named robot is pulled to a target, shape (3,), in the robot's
+            frame [m]; called again whenever the target moves.
+        on_release: the named robot is let go.
+        on_point_dragged: a control point is at a new place, shape (3,), in the robot's frame [m].
+        on_point_drag_end: the control point is let go.
+        on_point_selected: a control point was clicked or grabbed.
+    """
+
+    on_grab: Callable[[str, np.ndarray], None] = _ignore
+    on_release: Callable[[str], None] = _ignore
+    on_point_dragged: Callable[[int, np.ndarray], None] = _ignore
+    on_point_drag_end: Callable[[int], None] = _ignore
+    on_point_selected: Callable[[int], None] = _ignore
+
+
+class Scene:
+    """The 3D scene of one client.
+
+    Args:
+        client: whose scene it is; nothing here touches another client or the server's scene.
+        hooks: what the scene tells.
+        stage: where the robots stand.
+        words: for what is written in it.
+
+    Attributes:
+        pull: name of the plane in which an end-point is pulled, one of the stage's.
+        path_first: whether a press where an end-point covers a control point takes that; the
+            selected one is always taken.
+    """
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        hooks: Hooks | None = None,
+        stage: Stage = RIGID,
+        words: Words = ENGLISH,
+    ) -> None:
+        self._client = client
+        self._stage, self._words = stage, words
+        self._names = list(stage.bases)
+        self._origins = stage.origins
+        self._hooks = hooks or Hooks()
+        self.pull = next(iter(stage.pulls))
+        self.path_first = False
+        self._snapshot: Snapshot | None = None
+        self._grip: tuple[Plane, np.ndarray] | None = None
+        self._path: PathView | None = None
+        self._path_nodes = PathNodes(client.scene, self._origins, self._connect_points)
+        self._point_offset = np.zeros(3)
+        self._covered: int | None = None
+        self._freehand: Freehand | None = None
+        self._zone: viser.BatchedMeshHandle | None = None
+
+    def build(self, snapshot: Snapshot) -> None:
+        """Creates every node, once, with as many bars, joints and points as the snapshot has."""
+        robots = self._robots(snapshot)
+        self._titles = build_stage(self._client.scene, self._stage, self._words)
+        poses = poses_of(self._stage, robots)
+        self._machine = Machine(self._client.scene, self._stage, robots, poses, self._words)
+        self._machine.grips.on_drag("left")(self._tip_dragged)
+        self._snapshot = snapshot
+        scale = self._words("scene.true_scale")
+        self._notes = [
+            add_text(self._client.scene, f"/notes/{name}", scale, base + self._stage.note)
+            for name, base in self._stage.bases.items()
+        ]
+        self.update_path(snapshot)
+        self.update_traces(snapshot)
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Moves everything that moves; at about 30 Hz. What is not finite is not drawn."""
+        self._snapshot = snapshot
+        self._machine.update(poses_of(self._stage, self._robots(snapshot)))
+
+    def update_traces(self, snapshot: Snapshot) -> None:
+        """Redraws the end-points' traces, the forces' labels and a stroke; at 5 to 10 Hz."""
+        self._machine.update_traces(self._robots(snapshot))
+        freehand = self._freehand  # another thread may end it
+        if freehand is not None:
+            freehand.draw()
+        for note in self._notes:
+            set_text(note, snapshot.note)
+
+    def update_path(self, snapshot: Snapshot) -> None:
+        """Redraws the path and its control points if the path's version changed."""
+        path = snapshot.path
+        if self._path is None or path.version != self._path.version:
+            self._path = path
+            self._path_nodes.draw(path)
+
+    def show_singular_zone(
+        self, inner_radius: float, outer_radius: float, margin: float, visible: bool = True
+    ) -> None:
+        """Shades what lies within `margin` of the singular circles about the base pivot, [m]."""
+        if self._zone is not None:
+            self._zone.remove()
+            self._zone = None
+        if not visible:
+            return
+        half = float(np.ptp(self._origins[:, 0])) / 2 or 0.6
+        middle = float(self._stage.low[0] + self._stage.high[0]) / 2
+        box = ((middle - half, -meshes.FLOOR_DEPTH), (middle + half, 0.6))
+        inside = max(0.0, inner_radius - margin)
+        core = meshes.ring(inside, inner_radius + margin, *box, ZONE_DEPTH)
+        rim = meshes.ring(outer_radius - margin, outer_radius, *box, ZONE_DEPTH)
+        zone = meshes.joined(core, rim)
+        self._zone = add_copies(
+            self._client.scene, "/zone", zone, self._origins, palette.WARNING, opacity=0.16
+        )
+
+    def show_titles(self, visible: bool) -> None:
+        """The robots' names; they would be seen through whatever is before them."""
+        for title in self._titles:
+            title.visible = visible
+
+    def frame_camera(self, insets: Insets | None = None) -> None:
+        """Points the client's camera so that both robots fill what panels leave of the canvas."""
+        camera = self._client.camera
+        size = (max(camera.image_width, 1), max(camera.image_height, 1))
+        pose = view_of(self._stage, size, insets or Insets())
+        camera.fov = float(FIELD_OF_VIEW)
+        camera.up_direction = (0.0, 0.0, 1.0)
+        camera.position = pose.position
+        camera.look_at = pose.look_at
+
+    def begin_freehand(self, on_stroke: Callable[[np.ndarray], None]) -> None:
+        """Lets the user draw one stroke on a robot's plane; calls back with (n, 3), [m]."""
+        self.end_freehand()
+        self._freehand = Freehand(self._client.scene, self._stage, on_stroke)
+
+    def end_freehand(self) -> None:
+        """Gives up drawing; without effect when nothing is being drawn."""
+        if self._freehand is not None:
+            self._freehand.cancel()
+            self._freehand = None
+
+    def _robots(self, snapshot: Snapshot) -> list[RobotView]:
+        return [snapshot.robots[name] for name in self._names]
+
+    # What the mouse does. Coroutines without await: viser runs those in order.
+
+    async def _tip_dragged(self, event: DragEvent) -> None:
+        if event.instance_index is None:
+            return
+        name = self._names[event.instance_index]
+        if event.phase == "start":
+            self._covered = self._covered_point(event, name)
+        if self._covered is not None:
+            self._drag_point(event, name, self._covered)
+            return
+        if event.phase == "end":
+            self._hooks.on_release(name)
+            return
+        if event.phase == "start" or self._grip is None:
+            self._grip = self._grip_of(name)
+        plane, offset = self._grip
+        target = self._on_plane(event, event.end_position, name, plane)
+        if target is not None:
+            self._hooks.on_grab(name, target + offset)
+
+    def _grip_of(self, name: str) -> tuple[Plane, np.ndarray]:
+        """The plane of a pull that begins, and from the drawn end-point to the actual one, [m]."""
+        assert self._snapshot is not None
+        robot = self._snapshot.robots[name]
+        normal = self._stage.pulls[self.pull].normal
+        return Plane(robot.tip, normal), robot.end - robot.tip
+
+    def _covered_point(self, event: DragEvent, name: str) -> int | None:
+        """The control point that a press on an end-point means instead of it, if any."""
+        path, pressed = self._path, self._on_plane(event, event.start_position, name)
+        if path is None or pressed is None or not len(path.control_points):
+            return None
+        distances = np.linalg.norm(path.control_points - pressed, axis=1)
+        nearest = int(distances.argmin())
+        meant = self.path_first or nearest == path.selected
+        return nearest if meant and distances[nearest] < WITHIN else None
+
+    def _connect_points(self, points: viser.BatchedMeshHandle) -> None:
+        points.on_drag("left")(self._point_dragged)
+        points.on_click()(self._point_clicked)
+
+    async def _point_dragged(self, event: DragEvent) -> None:
+        path = self._path
+        if event.instance_index is None or path is None or not len(path.control_points):
+            return
+        robot, index = divmod(event.instance_index, len(path.control_points))
+        self._drag_point(event, self._names[robot], index)
+
+    def _drag_point(self, event: DragEvent, name: str, index: int) -> None:
+        if event.phase == "start":  # pressed beside the centre: keep that offset, do not jump
+            assert self._path is not None
+            pressed = self._on_plane(event, event.start_position, name)
+            centre = self._path.control_points[index]
+            self._point_offset = np.zeros(3) if pressed is None else centre - pressed
+            self._hooks.on_point_selected(index)
+        target = self._on_plane(event, event.end_position, name)
+        if target is not None:
+            self._hooks.on_point_dragged(index, target + self._point_offset)
+        if event.phase == "end":
+            self._hooks.on_point_drag_end(index)
+
+    async def _point_clicked(self, event: ClickEvent) -> None:
+        if event.instance_index is not None and self._path is not None:
+            self._hooks.on_point_selected(event.instance_index % len(self._path.control_points))
+
+    def _on_plane(
+        self,
+        event: DragEvent,
+        pointer: tuple[float, float, float],
+        name: str,
+        plane: Plane | None = None,
+    ) -> np.ndarray | None:
+        """Where a pointer is, in a robot's frame, on the path's plane unless another is given."""
+        camera, base = event.client.camera.position, self._stage.bases[name]
+        return pointer_on_plane(camera, np.array(pointer), base, plane or self._stage.path_plane)

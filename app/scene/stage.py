@@ -1,0 +1,224 @@
+"""Where the two robots stand: floor, machine parts that never move, labels, and the camera."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+import trimesh
+
+from onpath.app.common import palette
+from onpath.app.scene import meshes
+from onpath.app.scene.pointer_projection import Plane
+from onpath.lessons.words import ENGLISH, Words
+
+if TYPE_CHECKING:
+    import viser
+
+FIELD_OF_VIEW = np.radians(15.0)
+NARROW = 0.6  # width to height: a telephone, where the panel lies over the lower part
+IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
+TITLE = (("title", 0.0, 0.036), ("does", 0.047, 0.026))
+"""Words of a controller, how far below the title's place, and how high, [m]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stage:
+    """Where a kind of robot stands and how it is looked at. Points in the robot's own frame, [m].
+
+    Attributes:
+        bases: origins of the robots' frames in the world, [m], by controller name.
+        low, high: opposite corners of what the camera shows of a robot, shape (3,).
+        elevation, azimuth: the camera looks down, and comes from the right, by these, [rad].
+        path_plane: where the path lies and control points are dragged.
+        pulls: planes through the end-point in which it is pulled, by name, the usual one first;
+            their own points do not matter.
+        away: horizontal direction across the links, away from the camera, shape (3,).
+        depths: along it of links 1 and 3, of links 2 and 4, of the bearings' middle and of the pen.
+        title: where the title is, and the second line below it by a third of its height.
+        note: where the drawing says that it is not to scale.
+        force: where the force's size is written.
+        force_scale: length of the force's arrow [m/N].
+        sheet: low and high corner (x, z), and y, of the sheet that takes a freehand stroke.
+        parts: what never moves, with colours.
+    """
+
+    bases: dict[str, np.ndarray]
+    low: np.ndarray
+    high: np.ndarray
+    elevation: float
+    azimuth: float
+    path_plane: Plane
+    pulls: dict[str, Plane]
+    away: np.ndarray
+    depths: tuple[float, float, float, float]
+    title: np.ndarray
+    note: np.ndarray
+    force: np.ndarray
+    force_scale: float
+    sheet: tuple[tuple[float, float], tuple[float, float], float]
+    parts: Callable[[], list[tuple[str, trimesh.Trimesh, palette.Colour]]]
+
+    @property
+    def origins(self) -> np.ndarray:
+        """The bases, shape (k, 3), [m]."""
+        return np.stack(list(self.bases.values()))
+
+    @property
+    def corners(self) -> np.ndarray:
+        """Of all robots' boxes, in the world, shape (8 k, 3), [m]."""
+        box = np.array(list(product(*np.stack([self.low, self.high], axis=1))))
+        return (self.origins[:, None] + box).reshape(-1, 3)
+
+
+@dataclass(frozen=True, slots=True)
+class Insets:
+    """How much of the canvas panels cover at each side [px]."""
+
+    left: float = 0.0
+    right: float = 0.0
+    top: float = 0.0
+    bottom: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A camera's position and the point it looks at, shape (3,) each, [m]."""
+
+    position: np.ndarray
+    look_at: np.ndarray
+
+
+def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
+    """The camera that shows all robots as large as the uncovered part of the canvas allows.
+
+    Args:
+        size: width and height of the canvas [px].
+        insets: what panels cover.
+    """
+    width, height = size
+    ce, se = np.cos(stage.elevation), np.sin(stage.elevation)
+    ca, sa = np.cos(stage.azimuth), np.sin(stage.azimuth)
+    right = np.array([ca, sa, 0.0])
+    forward = np.array([-sa * ce, ca * ce, -se])
+    up = np.array([-sa * se, ca * se, ce])
+    corners = stage.corners
+    centre = (corners.min(0) + corners.max(0)) / 2
+    reach_x, reach_y, reach_z = np.abs((corners - centre) @ np.stack([right, up, forward], 1)).max(
+        0
+    )
+    tan_y = np.tan(FIELD_OF_VIEW / 2)
+    tan_x = tan_y * width / height
+    free_x = max(width - insets.left - insets.right, 0.2 * width) / width
+    free_y = max(height - insets.top - insets.bottom, 0.2 * height) / height
+    distance = reach_z + max(reach_x / (tan_x * free_x), reach_y / (tan_y * free_y))
+    aside = (insets.left - insets.right) / width * tan_x * distance
+    above = (insets.bottom - insets.top) / height * tan_y * distance
+    target = centre - aside * right - above * up
+    return Pose(target - distance * forward, target)
+
+
+def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
+    """Makes a new client open on the robots, before its own size is known."""
+    pose = view_of(stage, (1400, 800), Insets())
+    server.initial_camera.fov = FIELD_OF_VIEW
+    server.initial_camera.position = pose.position
+    server.initial_camera.look_at = pose.look_at
+
+
+def build_stage(
+    scene: viser.SceneApi, stage: Stage, words: Words = ENGLISH
+) -> list[viser.LabelHandle]:
+    """Adds floor, lights, machine bases and titles to a client's scene; returns the titles."""
+    middle = (stage.low[0] + stage.high[0]) / 2
+    scene.configure_environment_map(None)
+    scene.add_light_ambient("/stage/ambient", intensity=1.9)
+    scene.add_light_directional("/stage/front", intensity=1.5, position=(-0.4, -1.0, 0.7))
+    scene.add_grid(
+        "/stage/floor",
+        width=2.4,
+        height=1.6,
+        cell_size=0.05,
+        section_size=0.2,
+        cell_color=palette.GRID.rgb,
+        section_color=palette.GRID.toward(palette.INK, 0.12).rgb,
+        plane_color=palette.FLOOR.rgb,
+        plane_opacity=1.0,
+        shadow_opacity=0.18,
+        position=stage.origins.mean(0) + [middle, 0.05, -meshes.FLOOR_DEPTH],
+    )
+    for part, mesh, colour in stage.parts():
+        add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
+    return [
+        add_text(
+            scene,
+            f"/stage/{name}/{part}",
+            words(f"controller.{name}.{part}"),
+            base + stage.title,
+            size,
+            below,
+        )
+        for name, base in stage.bases.items()
+        for part, below, size in TITLE
+    ]
+
+
+def add_text(
+    scene: viser.SceneApi,
+    name: str,
+    text: str,
+    position: np.ndarray,
+    size: float = 0.026,
+    below: float = 0.0,
+) -> viser.LabelHandle:
+    """Words in the scene, `size` high and `below` lower than a position, [m]."""
+    return scene.add_label(
+        name,
+        text,
+        position=position - [0.0, 0.0, below],
+        font_size_mode="scene",
+        font_scene_height=size,
+        anchor="center-center",
+    )
+
+
+def set_text(label: viser.LabelHandle, text: str) -> None:
+    """Other words in the scene, or none."""
+    if text and label.text != text:
+        label.text = text
+    if label.visible != bool(text):
+        label.visible = bool(text)
+
+
+def add_copies(
+    scene: viser.SceneApi,
+    name: str,
+    mesh: trimesh.Trimesh,
+    positions: np.ndarray,
+    colour: palette.Colour | np.ndarray,
+    *,
+    scales: np.ndarray | None = None,
+    opacity: float | None = None,
+    shadow: bool = True,
+) -> viser.BatchedMeshHandle:
+    """Copies of one mesh at positions, shape (n, 3), [m], as one node, turned as it is.
+
+    `colour` is one for all, or linear colours of shape (n, 3), uint8.
+    """
+    return scene.add_batched_meshes_simple(
+        name,
+        np.asarray(mesh.vertices),
+        np.asarray(mesh.faces),
+        np.tile(IDENTITY, (len(positions), 1)),
+        positions,
+        batched_scales=scales,
+        batched_colors=colour.linear if isinstance(colour, palette.Colour) else colour,
+        opacity=opacity,
+        side="front" if opacity is None else "double",
+        lod="off",
+        cast_shadow=shadow and opacity is None,
+        receive_shadow=shadow and opacity is None,
+    )

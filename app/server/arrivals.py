@@ -1,0 +1,91 @@
+"""Asks a new browser what it keeps in its local storage, without holding a thread meanwhile.
+
+viser's page answers at once; a client that does not answer gets no lab. viser's own call to read
+local storage blocks one of its 32 threads until the answer is here.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from uuid import uuid4
+
+import viser
+from viser import _messages as wire
+from websockets.frames import CloseCode
+
+from onpath.app.common.error_log import log_error
+from onpath.app.viser_adapter.connection_limits import PerAddress
+from onpath.app.viser_adapter.message_filter import warn_once
+
+Kept = dict[str, str | None]
+MOST, MOST_EACH = 300, 100  # newcomers that have not answered, in all and of one address
+
+
+class Arrivals:
+    """Clients that have not answered yet. Used on viser's event loop, except `enter`.
+
+    Args:
+        keys: what is asked for.
+        enter: called in one of viser's threads, with what a browser keeps under those keys.
+        most, most_each: how many may be unanswered, in all and of one address; beyond that the
+            oldest is turned away.
+    """
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        keys: list[str],
+        enter: Callable[[viser.ClientHandle, Kept], None],
+        most: int = MOST,
+        most_each: int = MOST_EACH,
+    ) -> None:
+        self._keys, self._enter = keys, enter
+        self._threads = server._thread_executor
+        self._sockets = server._websock_server._live_connections
+        self._silent = PerAddress[int](most, most_each)
+        self._farewells: set[asyncio.Task[None]] = set()
+        server.on_client_connect(self._greet)
+        server.on_client_disconnect(self._forget)
+
+    async def _greet(self, client: viser.ClientHandle) -> None:
+        socket = self._sockets.get(client.client_id)
+        if socket is None:  # gone already
+            return
+        surplus = self._silent.add(client.client_id, getattr(socket, "address", ""))
+        if surplus is not None:
+            self._turn_away(surplus)
+        connection = client._websock_connection
+        waits = {uuid4().hex: key for key in self._keys}
+        kept = Kept()
+
+        def answered(_: int, message: wire.LocalStorageGetItemResponseMessage) -> None:
+            key = waits.pop(message.request_uuid, None)
+            if key is not None:
+                kept[key] = message.value
+                if not waits and self._silent.discard(client.client_id):
+                    self._threads.submit(self._let_in, client, kept)
+
+        connection.register_handler(wire.LocalStorageGetItemResponseMessage, answered)
+        for question, key in waits.items():
+            connection.queue_message(wire.LocalStorageGetItemRequestMessage(key, question))
+        client.flush()
+
+    async def _forget(self, client: viser.ClientHandle) -> None:
+        self._silent.discard(client.client_id)
+
+    def _let_in(self, client: viser.ClientHandle, kept: Kept) -> None:
+        try:
+            self._enter(client, kept)
+        except Exception as error:
+            log_error(error)
+
+    def _turn_away(self, number: int) -> None:
+        """The page may come back; then it is the newest."""
+        self._silent.discard(number)
+        socket = self._sockets.get(number)
+        if socket is not None:
+            warn_once(socket, "a newcomer that answers nothing")
+            farewell = asyncio.ensure_future(socket.close(CloseCode.TRY_AGAIN_LATER))
+            self._farewells.add(farewell)
+            farewell.add_done_callback(self._farewells.discard)

@@ -1,0 +1,152 @@
+"""Between the server and the class: who gets which page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import viser
+
+from onpath.app.classroom.class_sync import Attendance
+from onpath.app.classroom.classroom import Room
+from onpath.app.classroom.relay import Relay
+from onpath.app.classroom.shared_classroom import SharedClassroom
+from onpath.app.classroom.watches import Watches
+from onpath.app.lab.class_commands import Tell
+from onpath.app.lab.session import Session
+from onpath.app.page.page_context import Seat
+from onpath.app.page.teacher_context import Chosen, Teaching
+from onpath.app.server.lab_registry import Sessions
+from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.storage.lab_state import keep
+from onpath.app.storage.records import Records
+from onpath.app.storage.write_behind import Keeper
+
+TEACHER_KEY = "onpath_teacher"  # in the browser's storage
+
+
+class ClassDesk:
+    """The class of one server process.
+
+    Args:
+        records, keeper: what forgets when the teacher says so.
+    """
+
+    def __init__(
+        self,
+        classroom: Room,
+        sessions: Sessions,
+        records: Records | None = None,
+        keeper: Keeper | None = None,
+    ) -> None:
+        self._class, self._sessions = classroom, sessions
+        self._records, self._keeper = records, keeper
+        self._teachers: dict[int, tuple[str, Chosen]] = {}
+        self._attendance = Attendance(classroom, self._student)
+        self._attendance.rounds.start()
+        self._relay: Relay | None = None
+        if isinstance(classroom, SharedClassroom) and records is not None:
+            watches = Watches(records, classroom.id)
+            self._relay = Relay(watches, self._here, self._wanted, sessions.make)
+            self._relay.rounds.start()
+
+    def stop(self) -> None:
+        """The server ends."""
+        self._attendance.rounds.stop()
+        if self._relay is not None:
+            self._relay.rounds.stop()
+
+    def greet(self, client: viser.ClientHandle, shown: str | None) -> None:
+        """A browser that was a teacher's is one again.
+
+        Args:
+            shown: what it keeps under `TEACHER_KEY`.
+        """
+        try:
+            if shown is not None and self._class.is_pass(shown):
+                self._teachers[client.client_id] = (shown, Chosen())
+        except OSError:
+            return  # a student's page is open to everybody
+
+    def gone(self, client: int) -> None:
+        """A browser has left."""
+        self._teachers.pop(client, None)
+
+    def seat(self, client: viser.ClientHandle, code: str, reopen: Callable[[], None]) -> Seat:
+        """A lab's place in the class.
+
+        Args:
+            code: of its session.
+            reopen: build the client's page anew.
+        """
+
+        def name() -> str:
+            member = self._class.member(code)
+            return member.name if member else ""
+
+        def teach(key: str) -> None:
+            shown = self._class.admit(key, code)
+            self._class.leave(code)
+            self._teachers[client.client_id] = (shown, Chosen())
+            client.local_storage.set_item(TEACHER_KEY, shown)
+            reopen()
+
+        def join(typed: str, nickname: str) -> None:
+            self._class.join(code, typed, nickname)
+            entry, keeper = self._sessions.find(code), self._keeper
+            if entry is not None and keeper is not None:  # to be found again by another process
+                submit = partial(keeper.submit, code)
+                entry.lab.session.post(Tell(lambda session: keep(session, submit)))
+
+        return Seat(
+            name=name,
+            join=join,
+            leave=lambda: self._class.leave(code),
+            teach=teach,
+        )
+
+    def teaching(self, client: viser.ClientHandle, reopen: Callable[[], None]) -> Teaching | None:
+        """For a teacher's page; None for everybody else."""
+        teacher = self._teachers.get(client.client_id)
+        if teacher is None:
+            return None
+        shown, chosen = teacher
+
+        def stop() -> None:
+            self._teachers.pop(client.client_id, None)
+            client.local_storage.remove_item(TEACHER_KEY)
+            reopen()
+            self._class.revoke(shown)
+
+        lab = partial(self._lab, client.client_id)
+        return Teaching(self._class, chosen, lab, self._forget, stop)
+
+    def _student(self, code: str) -> tuple[Session, bool] | None:
+        entry = self._sessions.find(code)
+        return None if entry is None else (entry.lab.session, entry.client is not None)
+
+    def _lab(self, client: int, code: str) -> Lab | None:
+        """For a teacher's page."""
+        here = self._here(code)
+        if here is None and self._relay is not None:
+            return self._relay.mirror(client, code)
+        return here
+
+    def _here(self, code: str) -> Lab | None:
+        """A lab that lives in this process."""
+        entry = self._sessions.find(code)
+        return None if entry is None or self._class.is_elsewhere(code) else entry.lab
+
+    def _wanted(self) -> dict[int, str]:
+        """The labs of others that the teachers in this process look at, by client."""
+        chosen = {client: chosen.followed for client, (_, chosen) in [*self._teachers.items()]}
+        there = self._class.members()
+        return {c: code for c, code in chosen.items() if code in there and not self._here(code)}
+
+    def _forget(self) -> int:
+        self._class.end()
+        if self._records is None:
+            return 0
+        if self._keeper is None:
+            return self._records.delete_all()
+        return self._keeper.forget(self._records.delete_all)

@@ -1,0 +1,241 @@
+"""Composition root: server, simulation thread, and a lab for every browser tab."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import threading
+import webbrowser
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import viser
+
+from onpath.app.classroom.classroom import Room
+from onpath.app.common.access_codes import normalised
+from onpath.app.common.error_log import log_error
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.session import Session
+from onpath.app.page.build_queue import Newcomers
+from onpath.app.page.page import LabView
+from onpath.app.page.page_context import Desk
+from onpath.app.page.teacher_view import TeacherView
+from onpath.app.scene.stage import set_initial_camera
+from onpath.app.scene.stage_catalogue import RIGID
+from onpath.app.server.admission_queue import WaitingRoom
+from onpath.app.server.arrivals import Arrivals, Kept
+from onpath.app.server.class_service import TEACHER_KEY, ClassDesk
+from onpath.app.server.lab_registry import Entry, Sessions
+from onpath.app.server.lazy_imports import warm_up
+from onpath.app.server.tab_visibility import Onlookers
+from onpath.app.simulation.metrics import asked_vitals
+from onpath.app.simulation.simulation_thread import SimulationThread
+from onpath.app.storage.leases import Leases
+from onpath.app.storage.records import Records
+from onpath.app.storage.write_behind import Keeper
+from onpath.app.viser_adapter.secure_server import make_server
+from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.parse import LessonError
+from onpath.models.systems.catalogue import FIVE_BAR
+
+log = logging.getLogger(__name__)
+STORAGE_KEY = "onpath_sessions"
+MOST_CLIENTS = 64
+
+
+class LabServer:
+    """A running lab server.
+
+    Args:
+        host, port: where to listen; port 0 takes a free one.
+        store: where the loops come from.
+        course: the lessons; the built-in ones if there is none.
+        records: where labs are kept; nowhere if there is none.
+        classroom: the class that students may join; none if there is none.
+        most_clients: so many at once; the next are told to wait. A teacher always gets in.
+        listening: what else `make_server` takes.
+
+    Raises:
+        OSError: the address cannot be had; the message says why and the way out.
+    """
+
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        store: LoopStore,
+        course: Course | None = None,
+        records: Records | None = None,
+        classroom: Room | None = None,
+        most_clients: int = MOST_CLIENTS,
+        **listening: Any,
+    ) -> None:
+        self._store = store
+        self._room = WaitingRoom(most_clients)
+        lessons = course or read_course([BUILT_IN])[0]
+        self.simulation = SimulationThread()
+        health = partial(asked_vitals, self.simulation)
+        self.server = make_server(host, port, label="OnPath", health=health, **listening)
+        self._records = records
+        self._leases = Leases(records) if records else None
+        self._keeper = Keeper(self._leases) if self._leases else None
+        self.sessions = Sessions(self.simulation, lambda: Session(store, FIVE_BAR, lessons))
+        if records is not None:
+            self.sessions.load, self.sessions.keeper = records.load, self._keeper
+            self.sessions.leases = self._leases
+        self._class: ClassDesk | None = None
+        if classroom is not None:
+            self._class = ClassDesk(classroom, self.sessions, records, self._keeper)
+        self._views: dict[int, LabView] = {}
+        self._newcomers, self._onlookers = Newcomers(self.server), Onlookers(self.server)
+        set_initial_camera(self.server, RIGID)
+        self._arrivals = Arrivals(self.server, [STORAGE_KEY, TEACHER_KEY], self._connected)
+        self.server.on_client_disconnect(self._disconnected)
+        self.simulation.start()
+        if self._leases is not None:
+            self._leases.keep(self.sessions.held, self._lost)
+
+    @property
+    def address(self) -> str:
+        """What to type into a browser."""
+        host = self.server.get_host()
+        shown = "localhost" if host in ("127.0.0.1", "0.0.0.0", "::") else host
+        return f"http://{shown}:{self.server.get_port()}"
+
+    def stop(self) -> None:
+        """Stop everything."""
+        self._newcomers.stop()
+        if self._class is not None:
+            self._class.stop()
+        self.simulation.stop()
+        self._store.close()
+        self.server.stop()
+        if self._keeper is not None and self._records is not None:
+            self._keeper.close()
+            if self._leases is not None:
+                self._leases.close()
+            self._records.close()
+
+    def _connected(self, client: viser.ClientHandle, kept: Kept) -> None:
+        if self._class is not None:
+            self._class.greet(client, kept[TEACHER_KEY])
+        teaches = self._class and self._class.teaching(client, lambda: None)
+        enter = partial(self._entered, client, kept[STORAGE_KEY])
+        self._room.admit(client, enter, always=bool(teaches))
+        if client.client_id not in self.server.get_clients():
+            self._disconnected(client)
+
+    def _entered(self, client: viser.ClientHandle, known: str | None) -> None:
+        """There is a place for a client, if it is still there."""
+        if client.client_id in self.server.get_clients():
+            entry = self.sessions.join(client.client_id, known)
+            self._newcomers.submit(client, partial(self._show, client, entry, known))
+
+    def _show(self, client: viser.ClientHandle, entry: Entry, known: str | None) -> None:
+        """A client's page is that of a session, if both are still there."""
+        if client.client_id not in self.server.get_clients():
+            self._disconnected(client)
+            return
+        if self.sessions.find(entry.code) is not entry or entry.client != client.client_id:
+            return  # lost to another process meanwhile
+        try:
+            client.local_storage.set_item(STORAGE_KEY, self.sessions.remembered(entry.code, known))
+            view = self._view(client, entry)
+        except Exception as error:
+            log_error(error)
+            self.sessions.leave(client.client_id)
+            return
+        self._views[client.client_id] = view
+        self._onlookers.watch(client, entry.lab, view)
+        if client.client_id not in self.server.get_clients():
+            self._disconnected(client)
+
+    def _view(self, client: viser.ClientHandle, entry: Entry) -> LabView:
+        """The page of a lab, or the teacher's."""
+        reopen = partial(self._reopen, client, entry)
+        taught = self._class and self._class.teaching(client, reopen)
+        seat = self._class.seat(client, entry.code, reopen) if self._class else None
+        desk = Desk(entry.code, self._records is not None, partial(self._enter, client), seat)
+        session = entry.lab.session
+        if taught:
+            return TeacherView(client, session, desk, taught)
+        return LabView(client, session, desk)
+
+    def _enter(self, client: viser.ClientHandle, text: str) -> None:
+        """Another session for a client, by a code that was typed.
+
+        Raises:
+            ValueError: it is no code, there is no such session, or it is in use.
+        """
+        self._reopen(client, self.sessions.enter(client.client_id, normalised(text)))
+
+    def _lost(self, code: str) -> None:
+        """Another process has taken a lab: this one must have slept, its student is there."""
+        number = self.sessions.lose(code)
+        client = self.server.get_clients().get(-1 if number is None else number)
+        if client is not None:
+            self._reopen(client, self.sessions.join(client.client_id, None))
+
+    def _reopen(self, client: viser.ClientHandle, entry: Entry) -> None:
+        """A client's page anew, with a session that is its own already."""
+        self._onlookers.leave(client.client_id)
+        view = self._views.pop(client.client_id, None)
+        if view is not None:
+            view.close()
+        client.scene.reset()
+        client.gui.reset()
+        self._show(client, entry, None)
+
+    def _disconnected(self, client: viser.ClientHandle) -> None:
+        self._onlookers.forget(client.client_id)
+        self.sessions.leave(client.client_id)
+        if self._class is not None:
+            self._class.gone(client.client_id)
+        view = self._views.pop(client.client_id, None)
+        if view is not None:
+            view.close()
+        self._room.leave(client.client_id)
+
+
+def serve(
+    host: str,
+    port: int,
+    lessons: Path | None = None,
+    database: str | None = None,
+    open_browser: bool = False,
+    open_class: Callable[[Records], Room] | None = None,
+    **listening: Any,
+) -> None:
+    """Serve the lab until Ctrl-C or SIGTERM.
+
+    Args:
+        lessons: a folder of lessons of one's own.
+        database: URL of the one that keeps the labs; a file of the user's if there is none.
+        open_class: opens the class that students may join; none if there is none.
+        listening: what else `LabServer` takes.
+
+    Raises:
+        LessonError: one of those is not all right.
+    """
+    course, problems = read_course([BUILT_IN, *([lessons] if lessons else [])])
+    if problems:
+        raise LessonError(problems)
+    records = Records(database)
+    if records.warning:
+        log.warning("%s", records.warning)
+    store = LoopStore()
+    classroom = open_class(records) if open_class else None
+    lab = LabServer(host, port, store, course, records, classroom, **listening)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    warm_up(store)
+    log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
+    if open_browser:
+        webbrowser.open(lab.address)
+    try:
+        threading.Event().wait()
+    except KeyboardInterrupt:
+        log.info("stopping")
+    finally:
+        lab.stop()

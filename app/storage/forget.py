@@ -1,0 +1,52 @@
+"""Deletes everything that the lab keeps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import sqlalchemy as sa
+
+from onpath.app.storage.records import NotKept, Records, default_file
+
+
+@dataclass(frozen=True, slots=True)
+class Forgotten:
+    """What there was.
+
+    Attributes:
+        labs: records deleted.
+        files: broken databases that had been moved aside; deleted too.
+    """
+
+    labs: int
+    files: tuple[Path, ...]
+
+
+def forget(url: str | None = None) -> Forgotten:
+    """Delete all labs of a database, of the user's file if there is no URL.
+
+    Raises:
+        ValueError: the URL makes no sense.
+        OSError: something could not be deleted.
+    """
+    records = Records(url)
+    try:
+        if records.warning:
+            raise NotKept(records.warning)
+        labs = records.delete_all()
+    finally:
+        records.close()
+    files = tuple(sorted(_broken(url)))
+    for file in files:
+        file.unlink()
+    return Forgotten(labs, files)
+
+
+def _broken(url: str | None) -> list[Path]:
+    """See `Records`: what was in a broken file is kept as well."""
+    parsed = sa.make_url(url) if url else None
+    if parsed is not None and (parsed.get_backend_name() != "sqlite" or not parsed.database):
+        return []
+    file = default_file() if parsed is None else Path(parsed.database or "")
+    return [part for part in file.parent.iterdir() if part.name.startswith(f"{file.name}.broken-")]

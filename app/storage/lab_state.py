@@ -1,0 +1,74 @@
+"""What is kept of a lab: its set-up and the way through the lessons."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+
+from onpath.app.lab.session import Session
+from onpath.app.lab.setup import Setup, capture, from_data, restore, to_data
+from onpath.lessons.progress import Progress, read_progress
+
+EVERY = 60  # frames between two looks at what has changed
+State = dict[str, Any]
+NEW = (Setup(), Progress(), None)
+
+
+class Watch:
+    """Called by a session at every frame; submits what has changed, once a second.
+
+    Args:
+        submit: takes a function that makes the state, to be called in another thread.
+        seen: what is kept already.
+    """
+
+    def __init__(
+        self, submit: Callable[[Callable[[], State]], None], session: Session | None = None
+    ) -> None:
+        self._submit = submit
+        self._seen = NEW if session is None else _now(session)
+        self._frames = 0
+
+    def __call__(self, session: Session) -> None:
+        """See `Session.watch`."""
+        self._frames += 1
+        if self._frames % EVERY:
+            return
+        now = _now(session)
+        if now != self._seen:
+            self._seen = now
+            self._submit(lambda: _state(*now))
+
+
+def keep(session: Session, submit: Callable[[Callable[[], State]], None]) -> None:
+    """Keep a lab even if nothing in it has changed; on the simulation thread. See `Watch`."""
+    now = _now(session)
+    submit(lambda: _state(*now))
+
+
+def put_back(session: Session, state: State) -> None:
+    """Make a new session what was kept.
+
+    Raises:
+        ValueError: it cannot be read; then the session is as new as it was.
+    """
+    setup = from_data(state.get("setup"))
+    progress = read_progress(state.get("lessons"))
+    before = state.get("before")
+    earlier = from_data(before) if before else None
+    restore(session, setup)
+    session.lessons.resume(progress, earlier, session)
+
+
+def _now(session: Session) -> tuple[Setup, Progress, Setup | None]:
+    return capture(session), session.lessons.progress, session.lessons.before
+
+
+def _state(setup: Setup, progress: Progress, before: Setup | None) -> State:
+    return {
+        "setup": to_data(setup),
+        "lessons": msgspec.to_builtins(progress),
+        "before": None if before is None else to_data(before),
+    }

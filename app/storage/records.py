@@ -1,0 +1,194 @@
+"""What is kept of every lab, by session code: SQLite in the user's folder, or a database by URL.
+
+A file that cannot be used never stops the lab: `Records.warning` says in words what is wrong, and
+records live as long as the process. `database_engine.py` opens it.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+import msgspec
+import platformdirs
+import sqlalchemy as sa
+from sqlalchemy import exc
+
+from onpath.app.storage.engine import (
+    VERSION,
+    NotKept,
+    opened_file,
+    opened_memory,
+    opened_server,
+    parsed,
+    words,
+)
+from onpath.app.storage.schema import LONGEST_CODE, labs, leases, meta, metadata
+
+log = logging.getLogger(__name__)
+
+LARGEST = 1_000_000  # [B], of one state
+
+_of = sa.bindparam("of")  # a code; statements made once take half the time
+# who had a lab last; nobody else can take it before the transaction ends
+_OWNER = sa.select(leases.c.owner).where(leases.c.code == _of).with_for_update()
+_CHANGE = (
+    sa.update(labs)
+    .where(labs.c.code == _of, labs.c.version <= VERSION)
+    .values({name: sa.bindparam(name) for name in ("version", "updated", "state")})
+)
+
+
+class HeldElsewhere(Exception):
+    """Another process has the lab now: what is known of it here is old."""
+
+
+def default_file() -> Path:
+    """Where records are kept unless a URL says otherwise."""
+    return Path(platformdirs.user_data_dir("onpath")) / "onpath.db"
+
+
+def file_url(file: Path) -> sa.URL:
+    """The URL of an SQLite file."""
+    return sa.URL.create("sqlite", database=str(file))
+
+
+class Records:
+    """States by session code; from any thread.
+
+    Args:
+        url: of the database as SQLAlchemy takes it, "postgresql+psycopg://user@host/onpath"; None
+            for `default_file`.
+        clock: seconds since 1970.
+
+    Attributes:
+        owner: a name for these records' process among those that share the database.
+        warning: why nothing outlives this process, in words; empty when all is well.
+
+    Raises:
+        ValueError: the URL makes no sense, or its driver is not installed.
+        NotKept: a database that is no SQLite file cannot be used: better not to start at all
+            than to keep what others never see.
+    """
+
+    def __init__(
+        self, url: str | sa.URL | None = None, clock: Callable[[], float] = time.time
+    ) -> None:
+        self._clock, self.owner = clock, uuid4().hex
+        self._lock = threading.Lock()
+        self._url = parsed(url) if url else file_url(default_file())
+        self.warning = ""
+        self._engine = self._opened()
+
+    def load(self, code: str) -> dict[str, Any] | None:
+        """The state of a lab; None if there is none that this version can read.
+
+        Raises:
+            NotKept: the database cannot say; whoever gets this must not save under this code.
+        """
+        wanted = sa.select(labs.c.state, labs.c.version).where(labs.c.code == code)
+        with self.transaction() as connection:
+            row = connection.execute(wanted).first()
+        if row is None:
+            return None
+        if row.version > VERSION:
+            raise NotKept("this lab was kept by a newer OnPath")
+        try:
+            return msgspec.json.decode(row.state, type=dict[str, Any])
+        except (ValueError, RecursionError):
+            raise NotKept("what was kept of this lab cannot be read") from None
+
+    def save(self, code: str, state: dict[str, Any], owner: str | None = None) -> None:
+        """Keep a state instead of the one before.
+
+        Args:
+            owner: who saves; nothing is saved under a code that somebody else has leased.
+
+        Raises:
+            ValueError: too large, not what JSON can say, or no code.
+            NotKept: it is not kept: the disk is full, the database away; the old one still is.
+            HeldElsewhere: another owner has it.
+        """
+        text = _text(code, state)
+        values = {"version": VERSION, "updated": self._clock(), "state": text}
+        for last in (False, True):
+            try:
+                with self.transaction() as connection:
+                    if owner is not None:
+                        leased = connection.execute(_OWNER, {"of": code}).scalar()
+                        if leased not in (None, owner):
+                            raise HeldElsewhere
+                    changed = connection.execute(_CHANGE, {"of": code, **values})
+                    if not changed.rowcount:
+                        connection.execute(sa.insert(labs).values(code=code, **values))
+                return
+            except exc.IntegrityError:  # another process was quicker, or is newer
+                if last:
+                    raise NotKept("this lab was kept by a newer OnPath") from None
+
+    def delete_all(self) -> int:
+        """Forget every lab and every class. Returns how many labs there were.
+
+        Raises:
+            NotKept: they could not be deleted.
+        """
+        with self.transaction() as connection:
+            for table in metadata.tables.values():
+                if table not in (meta, labs):
+                    connection.execute(sa.delete(table))
+            return connection.execute(sa.delete(labs)).rowcount
+
+    @property
+    def is_shared(self) -> bool:
+        """Whether other processes with the same URL have the same."""
+        return not self.warning and self._url.database not in (None, "", ":memory:")
+
+    def close(self) -> None:
+        """Let the database go."""
+        self._engine.dispose()
+
+    @contextmanager
+    def transaction(self) -> Iterator[sa.Connection]:
+        """All or nothing, alone in SQLite.
+
+        Raises:
+            NotKept: nothing.
+            sqlalchemy.exc.IntegrityError: nothing; another process was quicker.
+        """
+        try:
+            with self._lock, self._engine.begin() as connection:
+                yield connection
+        except exc.IntegrityError:
+            raise
+        except (exc.SQLAlchemyError, UnicodeDecodeError) as error:
+            raise NotKept(words(error)) from error
+
+    def _opened(self) -> sa.Engine:
+        if self._url.get_backend_name() != "sqlite":
+            return opened_server(self._url)
+        try:
+            return opened_file(self._url, self._clock)
+        except OSError as error:
+            reason = error.strerror or error
+            self.warning = f"Nothing outlives the server: {self._url.database}: {reason}."
+            log.warning("%s", self.warning)
+        return opened_memory()
+
+
+def _text(code: str, state: dict[str, Any]) -> str:
+    if not 0 < len(code) <= LONGEST_CODE:
+        raise ValueError(f"a session code has up to {LONGEST_CODE} characters, not {len(code)}")
+    try:
+        text = msgspec.json.encode(state).decode()
+    except (TypeError, ValueError, RecursionError) as error:
+        raise ValueError(f"this cannot be kept: {error}") from error
+    if len(text) > LARGEST:
+        size = f"{len(text) / 1e6:.1f} MB, at most {LARGEST / 1e6:g} MB"
+        raise ValueError(f"there is too much in this lab to be kept: {size}")
+    return text

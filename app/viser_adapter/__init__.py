@@ -1,0 +1,1 @@
+"""Everything that touches viser's private parts, and the checks on what a browser sends."""

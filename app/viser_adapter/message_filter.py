@@ -1,0 +1,135 @@
+"""Decides which of a browser's messages, once decoded, reach viser's handlers. See `hardening`."""
+
+from __future__ import annotations
+
+import dataclasses
+import weakref
+from dataclasses import dataclass
+from typing import Any
+
+import viser
+from viser import _gui_handles
+from viser import _messages as wire
+from viser.infra import ClientId, WebsockMessageHandler
+from websockets.asyncio.server import ServerConnection
+
+from onpath.app.common.error_log import log_warning
+from onpath.app.viser_adapter.widget_validation import Refused, accepted_value
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What one browser may send.
+
+    Attributes:
+        max_message_bytes: of one websocket message, [B]; a larger one closes that connection.
+        messages_per_second: sustained; more closes that connection.
+        message_burst: messages at once; each 4 kB of a long one counts as one more.
+        max_text_length: of a text widget, [characters]; the rest is cut off.
+        max_magnitude: of any number in a drag, pointer, gizmo or camera message.
+        max_upload_bytes: of a file, one file at a time, [B]; 0 refuses all.
+        max_connections: of all browsers together, also those that ask for a file.
+        max_connections_each: of one address; sixty students behind one have five each.
+        max_waiting: connections that have sent no whole request yet, besides those.
+        max_waiting_each: of one address.
+        silence: after which a browser is asked whether it is there, and how long it may take to
+            answer that, [s].
+        farewell: how long it may take to answer that it is being closed, [s].
+    """
+
+    max_message_bytes: int = 1_000_000
+    messages_per_second: float = 500.0
+    message_burst: float = 1000.0
+    max_text_length: int = 2000
+    max_magnitude: float = 1e9
+    max_upload_bytes: int = 0
+    max_connections: int = 700  # with those that wait below 1024 files, a usual limit
+    max_connections_each: int = 300
+    max_waiting: int = 250
+    max_waiting_each: int = 200
+    silence: float = 20.0
+    farewell: float = 2.0
+
+
+class Gate:
+    """Stands before viser's handlers of one scope: the whole server's, or one client's own."""
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        scope: WebsockMessageHandler,
+        gui: viser.GuiApi,
+        limits: Limits,
+    ) -> None:
+        self._connections = server._websock_server._live_connections
+        self._gui = gui
+        self._limits = limits
+        self._deliver = scope._handle_incoming_message
+        scope._handle_incoming_message = self._receive
+
+    async def _receive(self, client_id: ClientId, message: Any) -> None:
+        # Every message comes to both scopes; the one that does not know its widget says nothing.
+        widget = self._gui._gui_input_handle_from_uuid.get(getattr(message, "uuid", ""))
+        match message:
+            case wire.GuiUpdateMessage():
+                if widget is not None:
+                    await self._update(client_id, widget, message)
+                return
+            case wire.GuiButtonHoldMessage():
+                passes = widget is not None and not widget.disabled
+            case wire.GuiFormDirtyMessage():
+                form = self._gui._container_handle_from_uuid.get(message.uuid)
+                passes = isinstance(form, _gui_handles.GuiFormHandle)
+            case wire.FileTransferStartUpload():
+                passes = self._takes_file(client_id, message)
+            case wire.FileTransferPart():
+                passes = self._takes_part(message)
+            case _:
+                passes = True
+        if passes:
+            await self._deliver(client_id, message)
+
+    async def _update(self, client_id: ClientId, widget: Any, message: Any) -> None:
+        asked = message.updates.get("value")
+        accepted = None
+        try:
+            if message.updates.keys() != {"value"}:
+                raise Refused("expected no other property")
+            accepted = accepted_value(widget, asked, self._limits.max_text_length)
+            update = dataclasses.replace(message, updates={"value": accepted})
+            await self._deliver(client_id, update)
+        except Refused as refused:
+            what = f"an update of a {type(widget).__name__} ({refused})"
+            warn_once(self._connections.get(client_id), what)
+        finally:
+            as_asked = accepted == (tuple(asked) if isinstance(asked, list) else asked)
+            if not as_asked and not widget._impl.removed:
+                truth = wire.GuiUpdateMessage(message.uuid, {"value": widget.value})
+                self._gui._websock_interface.queue_message(truth)
+
+    def _takes_file(self, client_id: ClientId, message: Any) -> bool:
+        widget: Any = self._gui._gui_input_handle_from_uuid.get(message.source_component_uuid)
+        under_way = self._gui._current_file_upload_states.values()
+        return (
+            isinstance(widget, viser.GuiUploadButtonHandle)
+            and not widget.disabled
+            and not any(state["client_id"] == client_id for state in under_way)
+            and 0 <= message.part_count <= message.size_bytes <= self._limits.max_upload_bytes
+        )
+
+    def _takes_part(self, message: Any) -> bool:
+        state = self._gui._current_file_upload_states.get(message.transfer_uuid)
+        if state is None:
+            return False
+        return state["transferred_bytes"] + len(message.content) <= state["total_bytes"]
+
+
+_warned: weakref.WeakSet[Any] = weakref.WeakSet()
+
+
+def warn_once(connection: ServerConnection | None, what: str) -> None:
+    """Log what has been dropped of a browser, the first time."""
+    if connection is not None and connection not in _warned:
+        _warned.add(connection)
+        client = connection.remote_address
+        log_warning("client %s: dropped %s; what else of it is not logged", client, what)

@@ -1,0 +1,262 @@
+"""Protects a viser server from an untrusted browser.
+
+What a browser sends passes the handshake (`origin`), the websocket (`_Connection`: size and rate;
+`wire_form`) and the gate (`gate`: which widget; `widget_values`). What a callback raises is logged
+(`error_log`). Written against viser 1.1.1; a test pins the private names.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache, partial
+from http import HTTPStatus
+from pathlib import Path
+from typing import Any
+
+import viser
+import websockets.asyncio.server
+from viser import _gui_api, _gui_handles, _icons, _scene_api, _viser
+from viser import _messages as wire
+from viser.infra import WebsockClientConnection
+from websockets.asyncio.server import ServerConnection
+from websockets.frames import CloseCode, Frame, Opcode
+from websockets.http11 import Request, Response
+
+from onpath.app.common.error_log import log_error
+from onpath.app.viser_adapter.compression import share_compressors
+from onpath.app.viser_adapter.connection_limits import ConnectionLimits, CountedConnection, Proxies
+from onpath.app.viser_adapter.message_filter import Gate, Limits, warn_once
+from onpath.app.viser_adapter.message_schema import WireForms
+from onpath.app.viser_adapter.page_scripts import add_scripts
+from onpath.app.viser_adapter.request_filter import Door, is_loopback, well
+from onpath.app.viser_adapter.sockets import PortInUse, listen, listen_unix
+
+__all__ = ["Limits", "PortInUse", "harden", "make_server"]
+
+_SUBPROTOCOL = f"viser-v{viser.__version__}"
+_FROM_BROWSER: tuple[type[Any], ...] = (
+    wire.ViewerCameraMessage,
+    wire.ScenePointerMessage,
+    wire.SceneNodeClickMessage,
+    wire.SceneNodeDragMessage,
+    wire.TransformControlsDragStartMessage,
+    wire.TransformControlsUpdateMessage,
+    wire.TransformControlsDragEndMessage,
+    wire.GuiUpdateMessage,
+    wire.GuiButtonHoldMessage,
+    wire.GuiFormDirtyMessage,
+    wire.GuiFormSubmitMessage,
+    wire.CommandTriggerMessage,
+    wire.GetRenderResponseMessage,
+    wire.LocalStorageGetItemResponseMessage,
+    wire.FileTransferStartUpload,
+    wire.FileTransferPart,
+)
+_SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
+
+
+STARTING = 8.0  # [s] that a request waits at most for the guards; websockets gives up after 10
+
+
+def make_server(
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    *,
+    label: str | None = None,
+    limits: Limits = Limits(),
+    allowed_origins: tuple[str, ...] = (),
+    trusted_proxies: tuple[str, ...] = (),
+    share_port: bool = False,
+    unix_socket: Path | None = None,
+    listener: socket.socket | None = None,
+    health: Callable[[str], str] = well,
+    verbose: bool = False,
+) -> viser.ViserServer:
+    """A hardened server that listens on exactly this address; port 0 takes a free one.
+
+    Args:
+        allowed_origins: pages of other sites that may connect, "https://lab.example:8443". The
+            server's own page always may, and so may a client that is no browser.
+        trusted_proxies: see `app.viser_adapter.connection_limits.Proxies`.
+        share_port: other processes of this user may hold the same port, or listen on it.
+        unix_socket: listen on this file alone, for a proxy of this user's that puts the page
+            into a folder of its own.
+        listener: listen with this instead.
+        health: see `Door`.
+
+    Raises:
+        ValueError: there can be no such proxy.
+        PortInUse: where viser alone would move on to the next port without a word.
+        OSError: the address cannot be bound.
+    """
+    connections = ConnectionLimits(limits, Proxies(trusted_proxies))
+    _cache_icons()
+    share_compressors()
+    if listener is None:
+        listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
+    port = 0 if unix_socket else listener.getsockname()[1]
+    local_only = is_loopback(host) and not unix_socket
+    door = Door(allowed_origins, local_only=local_only, health=health)
+    with _guarded_serve(listener, door, limits, connections, in_folder=unix_socket is not None):
+        server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
+    harden(server, limits=limits)
+    door.open = True
+    return server
+
+
+def _cache_icons() -> None:
+    """viser reads its archive of icons anew for every button, 25 ms each; once is enough."""
+    if not hasattr(_icons.svg_from_icon, "cache_info"):
+        cached: Any = cache(_icons.svg_from_icon)
+        for module in (_icons, _gui_api, _gui_handles):
+            setattr(module, "svg_from_icon", cached)  # noqa: B010, the module's own function
+
+
+def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
+    """Guard what viser has decoded, of all clients to come; once, before the first one.
+
+    `make_server` does this and adds the gates before decoding, which need the construction.
+    """
+    websock = server._websock_server
+    for message in _SHARE_TUNNEL:
+        websock.unregister_handler(message)
+    _log_errors_of_callbacks(server)
+
+    def guard(connection: WebsockClientConnection) -> None:
+        handler: Any = connection._incoming_handlers[wire.GuiUpdateMessage][0]
+        Gate(server, connection, handler.__self__, limits)
+
+    Gate(server, websock, server.gui, limits)
+    websock.on_client_connect(guard)
+
+
+def _to_page(connection: ServerConnection, request: Request) -> Response:
+    """viser's page opens its websocket at its own address without the last slash: in a proxy's
+    folder that is not the lab's, but a file's address is."""
+    response = connection.respond(HTTPStatus.FOUND, "")
+    response.headers["Location"] = "index.html" + request.path[1:]
+    return response
+
+
+_patching = threading.Lock()
+
+
+@contextmanager
+def _guarded_serve(
+    listener: socket.socket, door: Door, limits: Limits, counts: ConnectionLimits, in_folder: bool
+) -> Iterator[None]:
+    """Lead the one call of websockets' `serve`, which viser makes on construction, to our gates."""
+    library: Any = websockets.asyncio.server
+
+    def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
+        async def knock(connection: CountedConnection, request: Request) -> Response | None:
+            until = time.monotonic() + STARTING
+            while not door.open and time.monotonic() < until:  # who asks is told when it is ready
+                await asyncio.sleep(0.02)
+            if refusal := door.refusal(request):  # or health, whoever is here
+                return connection.respond(*refusal)
+            if not counts.admits(connection, request):
+                return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
+            if in_folder and request.path.partition("?")[0] == "/":
+                return _to_page(connection, request)
+            return add_scripts(process_request(connection, request))
+
+        async def admit(connection: ServerConnection) -> None:
+            if connection.subprotocol == _SUBPROTOCOL:
+                await handler(connection)
+            else:  # before viser, which would print what it was told
+                reason = "this page is of another version of the server: reload it"
+                await connection.close(CloseCode.PROTOCOL_ERROR, reason)
+
+        options["max_size"] = limits.max_message_bytes
+        options["ping_interval"] = options["ping_timeout"] = limits.silence
+        options["close_timeout"] = limits.farewell
+        options["create_connection"] = partial(_Connection, limits=limits, connections=counts)
+        return genuine(admit, sock=listener, process_request=knock, **options)
+
+    with _patching:
+        genuine = library.serve  # read in here: outside it may be another thread's replacement
+        library.serve = serve
+        try:
+            yield
+        finally:
+            library.serve = genuine
+
+
+@cache
+def _forms(max_magnitude: float) -> WireForms:
+    return WireForms(_FROM_BROWSER, max_magnitude)
+
+
+class _Connection(CountedConnection):
+    """A websocket that yields only well-formed messages, and is closed when they are too many."""
+
+    def __init__(self, *args: Any, limits: Limits, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._limits, self._forms = limits, _forms(limits.max_magnitude)
+        self._allowance = limits.message_burst
+        self._counted_at = time.monotonic()
+        self._closing: asyncio.Task[None] | None = None
+
+    def process_event(self, event: Any) -> None:
+        """Count frames as they arrive, pings and fragments too; drop what exceeds the rate."""
+        if isinstance(event, Frame) and event.opcode is not Opcode.CLOSE:
+            if self._closing is None and not self._affords(event):
+                warn_once(self, "a flood of messages")
+                reason = f"more than {self._limits.messages_per_second:g} messages per second"
+                self._closing = self.loop.create_task(
+                    self.close(CloseCode.POLICY_VIOLATION, reason)
+                )
+            if self._closing is not None:
+                return
+        super().process_event(event)
+
+    def _affords(self, frame: Frame) -> bool:
+        now = time.monotonic()
+        earned = (now - self._counted_at) * self._limits.messages_per_second
+        self._allowance = min(self._allowance + earned, self._limits.message_burst)
+        self._counted_at = now
+        self._allowance -= 1 + len(frame.data) / 4096
+        return self._allowance >= 0
+
+    async def recv(self, decode: bool | None = None) -> Any:
+        while True:
+            raw = await super().recv(decode)
+            wrong = self._forms.fault(raw)
+            if wrong is None:
+                return raw
+            warn_once(self, wrong)
+
+
+def _log_outcome(done: Any) -> None:
+    if not done.cancelled() and done.exception() is not None:
+        log_error(done.exception())
+
+
+def _log_errors_of_callbacks(server: viser.ViserServer) -> None:
+    """viser prints each traceback; the replaced functions are the process's, hence all servers'."""
+    for module in (_gui_api, _gui_handles, _scene_api, _viser):
+        for name, log in _PRINTERS.items():
+            if hasattr(module, name):
+                setattr(module, name, log)
+
+    def log_unhandled(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        error = context.get("exception")
+        if error is None:
+            loop.default_exception_handler(context)
+        else:
+            log_error(error)
+
+    server._event_loop.set_exception_handler(log_unhandled)
+
+
+_PRINTERS = {
+    "print_threadpool_errors": _log_outcome,
+    "print_task_error": _log_outcome,
+    "print_awaited_callback_error": log_error,
+}

@@ -1,0 +1,1 @@
+"""One control tick as one function, interpreted or compiled, and its record."""

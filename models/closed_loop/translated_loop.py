@@ -1,0 +1,138 @@
+"""A kernel compiled to machine code in this process.
+
+The instructions of a tick are translated one by one to LLVM's language, which LLVM compiles. Each
+rounds as it does in CasADi's virtual machine: both loops agree to the last bit.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+
+import casadi as ca
+
+from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.loops import CompiledLoop
+
+_LIBRARY = ("sin", "cos")  # what LLVM leaves to the library of C
+OPERATIONS = {
+    ca.OP_ADD: "{v} = fadd double {0}, {1}",
+    ca.OP_SUB: "{v} = fsub double {0}, {1}",
+    ca.OP_MUL: "{v} = fmul double {0}, {1}",
+    ca.OP_DIV: "{v} = fdiv double {0}, {1}",
+    ca.OP_NEG: "{v} = fneg double {0}",
+    ca.OP_INV: "{v} = fdiv double 1.0, {0}",
+    ca.OP_SQ: "{v} = fmul double {0}, {0}",
+    ca.OP_TWICE: "{v} = fadd double {0}, {0}",
+    ca.OP_SQRT: "{v} = call double @llvm.sqrt.f64(double {0})",
+    ca.OP_SIN: "{v} = call double @llvm.sin.f64(double {0})",
+    ca.OP_COS: "{v} = call double @llvm.cos.f64(double {0})",
+    ca.OP_FABS: "{v} = call double @llvm.fabs.f64(double {0})",
+    ca.OP_FLOOR: "{v} = call double @llvm.floor.f64(double {0})",
+    ca.OP_FMIN: "{v} = call double @llvm.minnum.f64(double {0}, double {1})",
+    ca.OP_FMAX: "{v} = call double @llvm.maxnum.f64(double {0}, double {1})",
+    ca.OP_LT: "{v}.is = fcmp olt double {0}, {1}\n  {v} = uitofp i1 {v}.is to double",
+    ca.OP_LE: "{v}.is = fcmp ole double {0}, {1}\n  {v} = uitofp i1 {v}.is to double",
+    ca.OP_EQ: "{v}.is = fcmp oeq double {0}, {1}\n  {v} = uitofp i1 {v}.is to double",
+    ca.OP_NE: "{v}.is = fcmp une double {0}, {1}\n  {v} = uitofp i1 {v}.is to double",
+    ca.OP_NOT: "{v}.is = fcmp oeq double {0}, 0.0\n  {v} = uitofp i1 {v}.is to double",
+    ca.OP_IF_ELSE_ZERO: "{v}.is = fcmp une double {0}, 0.0\n"
+    "  {v} = select i1 {v}.is, double {1}, double 0.0",
+}
+_LOOP = """
+define void @onpath_run(ptr noalias %settings, ptr noalias %curve, ptr noalias %state,
+                        ptr noalias %log, i64 %ticks) {{
+before:
+  %any = icmp sgt i64 %ticks, 0
+  br i1 %any, label %tick, label %after
+tick:
+  %k = phi i64 [0, %before], [%later, %tick]
+  %offset = mul i64 %k, {width}
+  %row = getelementptr double, ptr %log, i64 %offset
+  {tick}
+  %later = add i64 %k, 1
+  %again = icmp slt i64 %later, %ticks
+  br i1 %again, label %tick, label %after
+after:
+  ret void
+}}
+"""
+
+
+def translate(kernel: Kernel) -> str:
+    """The loop around the kernel's tick in LLVM's language, `onpath_run`; see `CompiledLoop`.
+
+    Raises:
+        NotImplementedError: the tick has an operation without a translation; the message has it.
+    """
+    tick = instructions(kernel.tick(), ("%state", "%settings", "%curve"), ("%state", "%row"))
+    return _LOOP.format(width=kernel.log.size, tick="\n  ".join(tick))
+
+
+def instructions(function: ca.Function, inputs: Sequence[str], outputs: Sequence[str]) -> list[str]:
+    """The scalar instructions of an SX function.
+
+    All is read before anything is written, so that an output may overwrite an input.
+
+    Args:
+        inputs, outputs: names of pointers to dense matrices, by columns.
+
+    Raises:
+        NotImplementedError: see `translate`.
+    """
+    reads, works, writes = list[str](), list[str](), list[str]()
+    values = dict[int, str]()  # what the function's registers hold
+    for i in range(function.n_instructions()):
+        code, into = function.instruction_id(i), function.instruction_output(i)
+        operands, v = function.instruction_input(i), f"%v{i}"
+        if code == ca.OP_CONST:
+            values[into[0]] = _literal(function.instruction_constant(i))
+        elif code == ca.OP_INPUT:
+            reads += [_place(v, inputs[operands[0]], operands[1]), f"{v} = load double, ptr {v}.at"]
+            values[into[0]] = v
+        elif code == ca.OP_OUTPUT:
+            value = values[operands[0]]
+            writes += [_place(v, outputs[into[0]], into[1]), f"store double {value}, ptr {v}.at"]
+        else:
+            given = [values[operand] for operand in operands]
+            works.append(_operation(code).format(*given, v=v))
+            values[into[0]] = v
+    return [*reads, *works, *writes]
+
+
+def _place(v: str, matrix: str, index: int) -> str:
+    return f"{v}.at = getelementptr double, ptr {matrix}, i64 {index}"
+
+
+def _literal(value: float) -> str:
+    """Every bit of it."""
+    return f"0x{struct.pack('>d', value).hex()}"
+
+
+def _operation(code: int) -> str:
+    if code not in OPERATIONS:
+        names = (name for name, value in vars(ca).items() if value == code and name[:3] == "OP_")
+        raise NotImplementedError(f"{next(names, code)} has no translation to LLVM")
+    return OPERATIONS[code]
+
+
+def translate_loop(kernel: Kernel) -> CompiledLoop:
+    """Translate a kernel and compile it for this processor, within some tenths of a second.
+
+    Raises:
+        NotImplementedError: see `translate`.
+        RuntimeError: LLVM does not know this machine.
+    """
+    import llvmlite.binding as llvm  # takes 0.1 s: not before the first picture
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    machine = llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten()
+    )
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(translate(kernel)), machine)
+    missing = [name for name in _LIBRARY if llvm.address_of_symbol(name) is None]
+    if missing:  # or LLVM would end the process
+        raise RuntimeError(f"not found in this process: {', '.join(missing)}")
+    engine.finalize_object()
+    return CompiledLoop(kernel, engine.get_function_address("onpath_run"), engine)

@@ -1,0 +1,1 @@
+"""Virtual outputs, control laws, and what can be said of them."""

@@ -1,0 +1,1 @@
+"""Curves, how a user makes one, and the closest point on it."""

@@ -1,0 +1,80 @@
+"""Distance of end-points to the path in the output space, apart from any controller."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.paths.curves import Curve, local_minima
+from onpath.models.paths.frames import Frame
+
+CHUNK = 4096
+NEAR = 0.1  # [rad]; within it the Taylor polynomial stands for the curve
+
+
+def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> Array:
+    """Euclidean distance by global search, shape (n, p) -> (n,), [m].
+
+    An open curve goes on along its end tangents.
+    """
+    grid = curve.sample(samples)
+    points, step = frame.lift(curve.at(grid)), float(grid[1] - grid[0])
+    distances = np.empty(len(y))
+    for begin in range(0, len(y), CHUNK):
+        some = y[begin : begin + CHUNK]
+        theta = grid[local_minima(((some[:, None, :] - points) ** 2).sum(-1))]
+        each, theta = some.repeat(theta.shape[1], axis=0), theta.ravel()
+        for _ in range(3):
+            theta = _refined(frame, curve, each, theta, step)[0]
+        found = np.linalg.norm(frame.lift(curve.at(theta)) - each, axis=1)
+        distances[begin : begin + CHUNK] = found.reshape(len(some), -1).min(axis=1)
+    return distances if curve.closed else np.minimum(distances, _beyond_the_ends(frame, curve, y))
+
+
+def _beyond_the_ends(frame: Frame, curve: Curve, y: Array) -> Array:
+    """Distance to the two tangents on which an open curve goes on, shape (n,), [m]."""
+    ends = np.array([-np.pi, np.pi])
+    points = frame.lift(curve.at(ends))
+    tangents = frame.lift(curve.at(ends, 1)) - frame.lift(np.zeros(2))
+    away = tangents * np.sign(ends)[:, None]
+    gaps = y[:, None, :] - points
+    along = np.maximum((gaps * away).sum(-1), 0.0) / (away**2).sum(-1)
+    return np.linalg.norm(gaps - along[..., None] * away, axis=-1).min(axis=1)
+
+
+def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:
+    """The same from guesses near the closest points, shape (n,), [rad]; for live display.
+
+    Where a guess proves to be far off, the search is global.
+    """
+    better, distances = _refined(frame, curve, y, theta)
+    guessed = np.sqrt(((frame.lift(curve.at(theta)) - y) ** 2).sum(-1))
+    astray = ~((np.abs(better - theta) < NEAR) & (distances <= guessed + 1e-12))
+    if astray.any():
+        distances[astray] = path_distance(frame, curve, y[astray], 64)
+    return distances
+
+
+def _refined(
+    frame: Frame, curve: Curve, y: Array, theta: Array, reach: float = np.inf
+) -> tuple[Array, Array]:
+    """Better theta and the distance there, by Newton on the curve's cubic Taylor polynomial.
+
+    Args:
+        reach: how far a step may go, [rad]; with a bound steps may be bold near a centre of
+            curvature, where all of the curve is nearly equally far.
+    """
+    origin = frame.lift(np.zeros(2))
+    sigma, *derivatives = curve.all_orders(theta)
+    point = frame.lift(sigma)
+    first, second, third = (frame.lift(derivative) - origin for derivative in derivatives)
+    step = np.zeros((len(theta), 1))
+    least = 0.2 if reach == np.inf else 1e-4  # of the slope, against |sigma'|^2
+    for _ in range(2):
+        gap = point + step * (first + step / 2 * (second + step / 3 * third)) - y
+        tangent = first + step * (second + step / 2 * third)
+        squared = (tangent**2).sum(-1)
+        slope = np.maximum(squared + (gap * (second + step * third)).sum(-1), least * squared)
+        step = np.clip(step - ((gap * tangent).sum(-1) / slope)[:, None], -reach, reach)
+    gap = point + step * (first + step / 2 * (second + step / 3 * third)) - y
+    return theta + step[:, 0], np.sqrt((gap**2).sum(-1))

@@ -1,0 +1,1 @@
+"""The paper's experiments, and the identification of a robot's parameters."""

@@ -1,0 +1,247 @@
+"""The paper's experiments, headless: a task, a schedule, both controllers, a summary.
+
+They run in the interpreted loop: the same input gives the same bytes on any machine of a kind.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.simulation import (
+    FREE,
+    Push,
+    brake_at,
+    first_state,
+    kernel_of,
+    kind_of,
+    settings_vector,
+    time_step,
+)
+from onpath.models.closed_loop.trajectory import Trajectory, record
+from onpath.models.control.laws import NAMES
+from onpath.models.paths.curves import Curve, circle
+from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
+from onpath.models.systems.flexible_robot import FlexibleParameters, flexible_five_bar_robot
+from onpath.models.systems.parameters import (
+    FiveBarParameters,
+    Parameters,
+    changed,
+    specs,
+    unknown_name,
+)
+from onpath.models.systems.robots import Robot
+
+CHUNK = 200  # ticks between looks for a divergence
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """What an experiment has besides the robot's parameters.
+
+    Attributes:
+        r: radius of the path, [m].
+        duration: [s].
+        hold_from, hold_to: when the end-point is held back, [s]; equal: never.
+        reverse_at: when the wanted speed changes its sign, [s]; 0: never.
+    """
+
+    r: float = 0.05
+    duration: float = 4.0
+    hold_from: float = 0.0
+    hold_to: float = 0.0
+    reverse_at: float = 0.0
+
+    def __post_init__(self) -> None:
+        _within("r", self.r, 0.005, 0.12, "m")
+        _within("duration", self.duration, 0.01, 600.0, "s")
+        _within("hold_from", self.hold_from, 0.0, 600.0, "s")
+        _within("hold_to", self.hold_to, 0.0, 600.0, "s")
+        _within("reverse_at", self.reverse_at, 0.0, 600.0, "s")
+        if self.hold_to < self.hold_from:
+            raise ValueError(
+                f"hold_to ({self.hold_to:g} s) lies before hold_from ({self.hold_from:g} s)"
+            )
+
+
+def _within(name: str, value: float, low: float, high: float, unit: str) -> None:
+    if not low <= value <= high:  # NaN fails too
+        raise ValueError(f"{name}: {value} is not between {low:g} and {high:g} {unit}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Experiment:
+    """A named experiment, ready to run.
+
+    Attributes:
+        make: the robot for the parameters.
+        start: end-point at rest at the start, from r, (p,), [m].
+    """
+
+    name: str
+    title: str
+    make: Callable[[Parameters], Robot]
+    parameters: Parameters
+    schedule: Schedule
+    start: Callable[[float], Array]
+
+    def robot(self) -> Robot:
+        """The instance that serves the parameters."""
+        return self.make(self.parameters)
+
+    def with_values(self, assignments: dict[str, str]) -> Experiment:
+        """The same with values set by name.
+
+        Raises:
+            ValueError: an unknown name or a bad value; the message says which.
+        """
+        parameters, times = self.parameters, dict[str, float]()
+        own = {f.name for f in dataclasses.fields(Schedule)}
+        for name, text in assignments.items():
+            if name in own:
+                times[name] = _float(name, text)
+            elif name in specs(parameters):
+                parameters = changed(parameters, name, text)
+            else:
+                raise unknown_name(name, [*specs(parameters), *sorted(own)])
+        schedule = dataclasses.replace(self.schedule, **times)  # at once: they bound each other
+        return dataclasses.replace(self, parameters=parameters, schedule=schedule)
+
+
+def _float(name: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{name}: {text!r} is not a number") from None
+
+
+def experiments() -> dict[str, Experiment]:
+    """All experiments by name, with their defaults."""
+    position = Experiment(
+        name="position",
+        title="Experiment 1: to a place on the circle",
+        make=FIVE_BAR.make,
+        parameters=FiveBarParameters(task="position"),
+        schedule=Schedule(duration=4.0),
+        start=lambda r: 0.6 * r * np.array([np.cos(-np.pi / 3), np.sin(-np.pi / 3)]),
+    )
+    obstruction = Experiment(
+        name="obstruction",
+        title="Experiment 2: the end-point is held back for a while",
+        make=FIVE_BAR.make,
+        parameters=FiveBarParameters(),
+        schedule=Schedule(duration=8.0, hold_from=3.0, hold_to=5.0),
+        start=lambda r: np.array([r, 0.0]),
+    )
+    flexible = Experiment(
+        name="flexible",
+        title="Flexible link: there and back along the ellipse",
+        make=FLEXIBLE.make,
+        parameters=FlexibleParameters(),
+        schedule=Schedule(duration=6.0, reverse_at=3.0),
+        start=lambda _: _off_the_ellipse(),
+    )
+    return {e.name: e for e in (position, obstruction, flexible)}
+
+
+def _off_the_ellipse() -> Array:
+    robot = flexible_five_bar_robot()
+    return robot.endpoint(robot.start)
+
+
+def run(experiment: Experiment, controller: str) -> Trajectory:
+    """Simulate one controller.
+
+    Raises:
+        ValueError: the controller is unknown, or the path is out of the robot's reach.
+    """
+    if controller not in NAMES:
+        raise ValueError(f"controller {controller!r}: expected one of {', '.join(NAMES)}")
+    robot, curve = experiment.robot(), circle(experiment.schedule.r)
+    kernel = kernel_of(robot, kind_of(controller, experiment.parameters, curve))
+    start = robot.rest(experiment.start(experiment.schedule.r))
+    state = first_state(robot, kernel, curve, start)
+    segments: list[tuple[Array, Curve, bool]] = []
+    fault: tuple[int, str] | None = None
+    done = 0
+    for rows, held in _segments(experiment, kernel, curve, state):
+        fields = kernel.log.unpack(rows)
+        fault = robot.fault(fields["q"], fields["v"], experiment.parameters)
+        if fault is not None:
+            rows = rows[: fault[0]]
+        segments.append((rows, curve, held))
+        done += len(rows)
+        if fault is not None:
+            break
+    return _finished(robot, kernel, controller, segments, experiment, fault)
+
+
+def _segments(
+    experiment: Experiment, kernel: Kernel, curve: Curve, state: Array
+) -> Iterator[tuple[Array, bool]]:
+    """(log rows, held) of consecutive stretches of the run."""
+    robot, parameters, schedule = experiment.robot(), experiment.parameters, experiment.schedule
+    loop, table, dt = InterpretedLoop(kernel), curve.table(), time_step(parameters)
+    hold = range(round(schedule.hold_from / dt), round(schedule.hold_to / dt))
+    last, turn = round(schedule.duration / dt), round(schedule.reverse_at / dt)
+    push, back = FREE, dataclasses.replace(parameters, speed=-parameters.speed)
+    times = sorted({0, last, *(t for t in (hold.start, hold.stop, turn) if 0 < t < last)})
+    for begin, end in pairwise(times):
+        held = begin in hold
+        if held and push is FREE:
+            fields = kernel.state.unpack(state)
+            end_point = robot.endpoint(fields["q"])
+            push = Push(hold=brake_at(robot, curve, end_point, float(fields["theta"][0])))
+        wanted = back if 0 < turn <= begin else parameters
+        settings = settings_vector(robot, kernel, wanted, curve, push if held else FREE)
+        for first in range(begin, end, CHUNK):
+            state, rows = loop.run(state, settings, table, min(CHUNK, end - first))
+            yield rows, held
+
+
+def _finished(
+    robot: Robot,
+    kernel: Kernel,
+    controller: str,
+    segments: list[tuple[Array, Curve, bool]],
+    experiment: Experiment,
+    fault: tuple[int, str] | None,
+) -> Trajectory:
+    dt = time_step(experiment.parameters)
+    whole = record(robot, kernel.log, controller, segments, dt)
+    if fault is None:
+        return whole.thinned()
+    end = len(whole.t) * dt
+    return dataclasses.replace(whole.thinned(), diverged_at=end, reason=fault[1])
+
+
+def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
+    """What `--json` prints; numbers to nine digits."""
+    return {
+        "experiment": experiment.name,
+        "controllers": {run.controller: _summary(run) for run in runs},
+    }
+
+
+def _summary(run: Trajectory) -> dict[str, Any]:
+    def largest(values: Array) -> float | None:
+        return float(f"{np.abs(values).max():.9g}") if values.size else None
+
+    empty = run.t.size == 0
+    return {
+        "max_distance_m": largest(run.distance),
+        "max_distance_while_held_m": largest(run.distance[run.held]),
+        "rms_distance_m": None if empty else float(f"{np.sqrt(np.mean(run.distance**2)):.9g}"),
+        "final_speed_rad_s": None if empty else float(f"{run.fields['theta_rate'][-1, 0]:.9g}"),
+        "max_torque_Nm": largest(run.fields["u"]),
+        "diverged": run.diverged_at is not None,
+        "diverged_at_s": None if run.diverged_at is None else float(f"{run.diverged_at:.9g}"),
+    }

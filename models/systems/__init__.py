@@ -1,0 +1,1 @@
+"""Mechanical systems, robots, their parameters, and forces on them."""

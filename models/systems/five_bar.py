@@ -1,0 +1,199 @@
+"""The planar five-bar linkage with rigid links: parallelogram, both motors at the base.
+
+Link 3 stays parallel to link 1 and link 4 to link 2, so the two base angles are coordinates.
+Full dynamics before balancing (Spong and Vidyasagar 6.4.1); the paper's robot, eqs. (12)-(13),
+is the parameter set whose coupling and gravity terms vanish.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, replace
+
+import casadi as ca
+import numpy as np
+
+from onpath.assets import asset_path
+from onpath.models.arrays import Array
+from onpath.models.systems.system import MechanicalSystem, mechanical_system
+
+GRAVITY = 9.81  # [m/s^2]
+HOME = np.array([np.pi / 2, np.pi])
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """One link. Units: m, kg, kg m^2; centre of mass from the joint, along the link."""
+
+    length: float
+    mass: float
+    centre_of_mass: float
+    inertia: float
+
+
+@dataclass(frozen=True, slots=True)
+class FiveBarLinks:
+    """Links and joint friction of a five-bar; `spoiled` takes the balance away."""
+
+    link1: Link
+    link2: Link
+    link3: Link
+    link4: Link
+    viscous1: float  # [N m s]
+    viscous2: float  # [N m s]
+
+    def spoiled(self, removed: float, payload: float) -> FiveBarLinks:
+        """The same linkage with part of its counterweights gone and a mass at the end-point.
+
+        Args:
+            removed: fraction of the counterweight moments taken off, 0 to 1.
+            payload: mass at the end-point, [kg].
+        """
+        total = self.link4.mass + payload
+        centre = (self.link4.mass * self.link4.centre_of_mass + payload * self.link4.length) / total
+        inertia = (
+            self.link4.inertia
+            + self.link4.mass * (self.link4.centre_of_mass - centre) ** 2
+            + payload * (self.link4.length - centre) ** 2
+        )
+        kept = 1.0 - removed
+        return replace(
+            self,
+            link1=replace(self.link1, centre_of_mass=self.link1.centre_of_mass * kept),
+            link2=replace(self.link2, centre_of_mass=self.link2.centre_of_mass * kept),
+            link4=Link(self.link4.length, total, centre, inertia),
+        )
+
+    def lumped(self) -> dict[str, float]:
+        """The numbers that the equations of motion need, by name (SI).
+
+        Source: Spong and Vidyasagar 6.4.1; M12 and G1, G2 vanish for the paper's robot (12).
+        """
+        one, two, three, four = self.link1, self.link2, self.link3, self.link4
+        moment3 = three.mass * three.centre_of_mass
+        moment4 = four.mass * four.centre_of_mass
+        return {
+            "M11": one.inertia
+            + one.mass * one.centre_of_mass**2
+            + three.inertia
+            + three.mass * three.centre_of_mass**2
+            + four.mass * one.length**2,
+            "M22": two.inertia
+            + two.mass * two.centre_of_mass**2
+            + four.inertia
+            + four.mass * four.centre_of_mass**2
+            + three.mass * two.length**2,
+            "M12": two.length * moment3 - one.length * moment4,
+            "G1": GRAVITY * (one.mass * one.centre_of_mass + moment3 + four.mass * one.length),
+            "G2": GRAVITY * (two.mass * two.centre_of_mass + three.mass * two.length - moment4),
+            "b1": self.viscous1,
+            "b2": self.viscous2,
+            "l1": one.length,
+            "l4": four.length,
+        }
+
+
+def load_links() -> FiveBarLinks:
+    """The illustrative linkage of assets/five_bar.toml: balanced and decoupled."""
+    data = tomllib.loads(asset_path("five_bar.toml").read_text())
+    links = {name: Link(**data[name]) for name in ("link1", "link2", "link3", "link4")}
+    return FiveBarLinks(**links, **data["friction"])
+
+
+def five_bar() -> MechanicalSystem:
+    """The five-bar as symbols, parameters named as in `FiveBarLinks.lumped`.
+
+    Source: eqs. (12)-(13), and Spong and Vidyasagar 6.4.1 for the coupling and gravity terms.
+    """
+    names = ("M11", "M22", "M12", "G1", "G2", "b1", "b2", "l1", "l4")
+    parameters = ca.SX.sym("parameters", len(names))
+    p = dict(zip(names, ca.vertsplit(parameters), strict=True))
+    q, v = ca.SX.sym("q", 2), ca.SX.sym("v", 2)
+    c1, s1, c2, s2 = ca.cos(q[0]), ca.sin(q[0]), ca.cos(q[1]), ca.sin(q[1])
+    coupling = p["M12"] * (c1 * c2 + s1 * s2)  # M12 cos(q2 - q1)
+    turning = p["M12"] * (s2 * c1 - c2 * s1)  # M12 sin(q2 - q1)
+    bias = ca.vertcat(
+        p["G1"] * c1 + p["b1"] * v[0] - turning * v[1] ** 2,
+        p["G2"] * c2 + p["b2"] * v[1] + turning * v[0] ** 2,
+    )
+    tip = ca.vertcat(p["l1"] * c1 - p["l4"] * c2, p["l1"] * s1 - p["l4"] * s2)
+    return mechanical_system(
+        name="five_bar",
+        q=q,
+        v=v,
+        parameters=parameters,
+        parameter_names=names,
+        mass=ca.blockcat([[p["M11"], coupling], [coupling, p["M22"]]]),
+        bias=bias,
+        inputs=2,
+        output=tip - ca.vertcat(p["l4"], p["l1"]),
+        potential_energy=p["G1"] * s1 + p["G2"] * s2,
+        solve=_solve_symmetric,
+    )
+
+
+def _solve_symmetric(mass: ca.SX, rhs: ca.SX) -> ca.SX:
+    """M^-1 R of a symmetric 2 x 2 matrix by elimination; 1 / M11 is shared between calls."""
+    inverse, b = 1 / mass[0, 0], mass[0, 1]
+    part = inverse * b
+    second = (rhs[1, :] - part * rhs[0, :]) / (mass[1, 1] - part * b)
+    return ca.vertcat(inverse * (rhs[0, :] - b * second), second)
+
+
+def end_point(q: Array, l1: float, l4: float) -> Array:
+    """y = h(q), shape (..., 2) -> (..., 2), [m]. Source: eq. (13)."""
+    q1, q2 = q[..., 0], q[..., 1]
+    x, z = l1 * np.cos(q1) - l4 * np.cos(q2), l1 * np.sin(q1) - l4 * np.sin(q2)
+    return np.stack([x - l4, z - l1], axis=-1)
+
+
+def inverse_kinematics(y: Array, l1: float, l4: float) -> Array:
+    """Joint angles of the elbow-up pose that puts the end-point at y.
+
+    Args:
+        y: end-point, shape (..., 2), [m].
+        l1, l4: link lengths, [m].
+
+    Returns:
+        q, shape (..., 2), [rad]; near home q = (pi/2, pi).
+
+    Raises:
+        ValueError: a point is out of reach.
+
+    Source: eq. (13).
+    """
+    x, z = y[..., 0] + l4, y[..., 1] + l1
+    reach = np.hypot(x, z)
+    cosine = (l1**2 + reach**2 - l4**2) / (2 * l1 * np.where(reach > 0, reach, 1.0))
+    if not np.all((np.abs(cosine) <= 1) & (reach > 0)):
+        raise ValueError(
+            f"end-point out of reach: it must stay between {abs(l1 - l4):.3f} m and {l1 + l4:.3f} m"
+            " of the base"
+        )
+    q1 = np.arctan2(z, x) + np.arccos(cosine)
+    q2 = np.arctan2(l1 * np.sin(q1) - z, l1 * np.cos(q1) - x)
+    return np.stack([q1, np.mod(q2, 2 * np.pi)], axis=-1)
+
+
+def singularity_margin(q: Array) -> Array:
+    """|sin(q1 - q2)|, zero where the parallelogram collapses, shape (..., 2) -> (...).
+
+    Source: eq. (14).
+    """
+    return np.abs(np.sin(q[..., 0] - q[..., 1]))
+
+
+def skeleton(q: ca.SX, l1: float, l2: float, l4: float) -> tuple[ca.SX, ca.SX]:
+    """Links and bearings in the robot's frame (x right, y away, z up, base pivot at the origin).
+
+    Args:
+        q: joint angles, at least 2, symbols or numbers of CasADi, [rad].
+
+    Returns:
+        bars, shape (3, 8), links 1 to 4 as end to end segments, begin and end as columns; joints,
+        shape (3, 4): base, link 1-4, link 2-3, link 3-4, [m].
+    """
+    one, two = (ca.vertcat(ca.cos(q[i]), 0, ca.sin(q[i])) for i in range(2))
+    base, a, b, tip = 0 * one, l1 * one, l2 * two, l1 * one - l4 * two
+    c = a + b
+    return ca.horzcat(base, a, base, b, b, c, c, tip), ca.horzcat(base, a, b, c)

@@ -1,0 +1,304 @@
+"""The five-bar linkage on a turning waist, its last link a beam that bends horizontally.
+
+Coordinates q = (q1, q2, q3, f1..fN): base angles as in the rigid linkage, waist angle, modal
+coordinates of the deflection w(s) = sum_j phi_j(s) f_j across the linkage's vertical plane. Inputs
+act on q1, q2, q3. Gravity is balanced. A point s of the beam is at radius r = l1 cos q1 - s cos q2
+and w across it, so that T = 1/2 rho integral (r' - w q3')^2 + (r q3' + w')^2 ds + the linkage's.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, replace
+
+import casadi as ca
+import numpy as np
+
+from onpath.assets import asset_path
+from onpath.models.arrays import Array
+from onpath.models.systems.beam import BeamModes, beam_modes
+from onpath.models.systems.system import MechanicalSystem, mechanical_system
+
+PLANTS = ("lagrangian", "unit_modes")
+FORMER_PLANTS = {"as_printed": "unit_modes"}  # in share codes, kept labs and lessons of others
+_NAMES = "M11 M22 J0 J1 l1 l rho omega1 zeta alpha b1 b2 b3"
+NAMES: tuple[str, ...] = tuple(_NAMES.split())
+HOME = np.array([np.pi / 2, np.pi, 0.0])
+RIGID = 3  # coordinates that are joints
+
+
+@dataclass(frozen=True, slots=True)
+class FlexibleLinks:
+    """Linkage and beam. Units: m, kg m^2, kg/m, Hz, N m s."""
+
+    link1: float
+    link2: float
+    beam: float
+    M11: float
+    M22: float
+    J0: float
+    J1: float
+    rho: float
+    frequency: float
+    zeta: float
+    b1: float
+    b2: float
+    b3: float
+
+    def lumped(self, alpha: float) -> dict[str, float]:
+        """The numbers that the equations need, by name (SI).
+
+        Args:
+            alpha: share of the deflection in the controlled output: 1 the tip, 0 the rigid link.
+        """
+        own = {name: getattr(self, name) for name in NAMES if hasattr(self, name)}
+        omega1 = 2 * np.pi * self.frequency
+        return own | {"l1": self.link1, "l": self.beam, "omega1": omega1, "alpha": alpha}
+
+    def changed(self, rho: float, frequency: float, zeta: float) -> FlexibleLinks:
+        """The same with another beam, [kg/m], [Hz]."""
+        return replace(self, rho=rho, frequency=frequency, zeta=zeta)
+
+
+def load_links() -> FlexibleLinks:
+    """The illustrative robot of assets/flexible_five_bar.toml."""
+    data = tomllib.loads(asset_path("flexible_five_bar.toml").read_text())
+    return FlexibleLinks(**data["lengths"], **data["inertia"], **data["beam"], **data["friction"])
+
+
+@dataclass(frozen=True, slots=True)
+class _Symbols:
+    """What the equations are made of. The beam enters by P and Q: Psi = P a - Q b.
+
+    Attributes:
+        p: parameters by name.
+        q, v: coordinates and velocities.
+        P, Q: sqrt(l) l1 cos q1 and sqrt(l)^3 cos q2.
+        P1, Q2: dP/dq1 and dQ/dq2.
+        beam: of unit length.
+    """
+
+    p: dict[str, ca.SX]
+    q: ca.SX
+    v: ca.SX
+    P: ca.SX
+    Q: ca.SX
+    P1: ca.SX
+    Q2: ca.SX
+    beam: BeamModes
+
+    @property
+    def f(self) -> ca.SX:
+        """Modal coordinates, (N, 1), [m^3/2]."""
+        return self.q[RIGID:]
+
+    @property
+    def f_rate(self) -> ca.SX:
+        """Their rates, (N, 1)."""
+        return self.v[RIGID:]
+
+    @property
+    def coupling(self) -> ca.SX:
+        """Psi_j = integral of r phi_j, (N, 1)."""
+        return self.P * ca.DM(self.beam.area) - self.Q * ca.DM(self.beam.moment)
+
+    @property
+    def stiffness(self) -> ca.SX:
+        """omega_j^2, (N, 1)."""
+        return (self.p["omega1"] * ca.DM(self.beam.overtones)) ** 2
+
+    @property
+    def elastic(self) -> ca.SX:
+        """omega_j^2 f_j + 2 zeta omega_j f_j', the beam's own force over rho, (N, 1)."""
+        damping = (2 * self.p["zeta"] * self.p["omega1"]) * ca.DM(self.beam.overtones)
+        return self.stiffness * self.f + damping * self.f_rate
+
+    @property
+    def waist(self) -> ca.SX:
+        """M' = J - rho |Psi|^2 for the straight beam: what q3'' feels while the modes give way.
+
+        J = J0 + J1 cos^2 q1 + rho times the integral of r^2, which is P^2 - P Q + Q^2 / 3.
+        """
+        a, b = self.beam.area, self.beam.moment
+        beam = self.P * ((1 - a @ a) * self.P - (1 - 2 * a @ b) * self.Q)
+        beam += (1 / 3 - b @ b) * self.Q**2
+        return self.p["J0"] + self.p["J1"] * ca.cos(self.q[0]) ** 2 + self.p["rho"] * beam
+
+
+@dataclass(frozen=True, slots=True)
+class _Dynamics:
+    """M and c by blocks. Modal rows are divided by rho, so that their own block of M is I.
+
+    Attributes:
+        joints: M of q1 to q3 with the Schur complement of the modes at q3, an arrow, (3, 3).
+        row, column: what couples modes into q3's row, and q3 into the modes' rows, (N, 1).
+        bias: c of the joints, (3, 1).
+        modal_bias: c of the modes over rho, (N, 1).
+    """
+
+    joints: ca.SX
+    row: ca.SX
+    column: ca.SX
+    bias: ca.SX
+    modal_bias: ca.SX
+
+
+def _symbols(modes: int, parameters: ca.SX) -> _Symbols:
+    p = dict(zip(NAMES, ca.vertsplit(parameters), strict=True))
+    q, v = ca.SX.sym("q", RIGID + modes), ca.SX.sym("v", RIGID + modes)
+    root = ca.sqrt(p["l"])
+    first, second = root * p["l1"], root * p["l"]
+    return _Symbols(
+        p=p,
+        q=q,
+        v=v,
+        P=first * ca.cos(q[0]),
+        Q=second * ca.cos(q[1]),
+        P1=-first * ca.sin(q[0]),
+        Q2=-second * ca.sin(q[1]),
+        beam=beam_modes(modes, 1.0),
+    )
+
+
+def flexible_five_bar(modes: int = 3, plant: str = "lagrangian") -> MechanicalSystem:
+    """The robot as symbols, parameters named as in `NAMES`.
+
+    Args:
+        modes: assumed modes of the beam, 1 to 6.
+        plant: "lagrangian", or "unit_modes": (20)-(21) with Coriolis terms cancelled beforehand,
+            as there, and their symbols read with the integral of phi^2 = 1. See `_unit_modes`.
+
+    Raises:
+        ValueError: an unknown plant or number of modes.
+
+    Source: eqs. (20)-(22).
+    """
+    if plant not in PLANTS:
+        raise ValueError(f"plant {plant!r}: expected one of {', '.join(PLANTS)}")
+    parameters = ca.SX.sym("parameters", len(NAMES))
+    s = _symbols(modes, parameters)
+    rho = s.p["rho"]
+    parts = _lagrangian(s) if plant == "lagrangian" else _unit_modes(s)
+    w = 2 / ca.sqrt(s.p["l"]) * ca.dot((-1.0) ** np.arange(modes), s.f)
+    return mechanical_system(
+        name="flexible_five_bar",
+        q=s.q,
+        v=s.v,
+        parameters=parameters,
+        parameter_names=NAMES,
+        mass=_mass(parts, rho),
+        bias=ca.vertcat(parts.bias, rho * parts.modal_bias),
+        inputs=RIGID,
+        output=_end_point(s, w),
+        controlled_output=_end_point(s, s.p["alpha"] * w),
+        potential_energy=rho / 2 * ca.dot(s.stiffness, s.f**2),
+        solve=lambda _, rhs: _solve(parts, rho, rhs),
+    )
+
+
+def _end_point(s: _Symbols, w: ca.SX) -> ca.SX:
+    """y for a tip that is w off the straight link. Source: eq. (22)."""
+    l1, beam = s.p["l1"], s.p["l"]
+    radius = l1 * ca.cos(s.q[0]) - beam * ca.cos(s.q[1])
+    c3, s3 = ca.cos(s.q[2]), ca.sin(s.q[2])
+    height = l1 * ca.sin(s.q[0]) - beam * ca.sin(s.q[1]) - l1
+    return ca.vertcat(radius * c3 - w * s3, radius * s3 + w * c3, height)
+
+
+def _lagrangian(s: _Symbols) -> _Dynamics:
+    """From the kinetic energy in this file's head; a test differentiates it.
+
+    With A = a.f and B = b.f the beam's coupling term is rho q3' (Psi.f' - P1 q1' A + Q2 q2' B).
+    """
+    rho, (v1, v2, v3) = s.p["rho"], ca.vertsplit(s.v[:RIGID])
+    a, b = ca.DM(s.beam.area), ca.DM(s.beam.moment)
+    A, B, A_rate, B_rate = (ca.dot(k, x) for x in (s.f, s.f_rate) for k in (a, b))
+    rho1, rho2 = rho * s.P1, rho * s.Q2
+    turn1 = rho1 * (2 * s.P - s.Q) - 2 * s.p["J1"] * ca.cos(s.q[0]) * ca.sin(s.q[0])
+    turn2 = rho2 * (2 / 3 * s.Q - s.P)  # dJ/dq1 and dJ/dq2
+    swing = turn1 * v1 + turn2 * v2 + 2 * rho * ca.dot(s.f, s.f_rate)
+    to1, to2 = 2 * v3 * v1 * s.P1, 2 * v3 * v2 * s.Q2
+    return _Dynamics(
+        joints=ca.blockcat(
+            [
+                [s.p["M11"], 0, -rho1 * A],
+                [0, s.p["M22"], rho2 * B],
+                [-rho1 * A, rho2 * B, s.waist + rho * ca.dot(s.f, s.f)],
+            ]
+        ),
+        row=rho * s.coupling,
+        column=s.coupling,
+        bias=ca.vertcat(
+            s.p["b1"] * v1 - v3 * (2 * rho1 * A_rate + turn1 / 2 * v3),
+            s.p["b2"] * v2 + v3 * (2 * rho2 * B_rate - turn2 / 2 * v3),
+            (s.p["b3"] + swing) * v3 + rho * (s.P * v1**2 * A - s.Q * v2**2 * B),
+        ),
+        modal_bias=s.elastic + to1 * a - to2 * b - v3**2 * s.f,
+    )
+
+
+def _unit_modes(s: _Symbols) -> _Dynamics:
+    """M' q3'' = u3 + Psi.Omega and f'' = -rho Psi q3'' - Omega / rho with integral of phi^2 = 1.
+
+    The paper leaves Psi, Omega and M' to [15], which is not at hand. With mass-normalised shapes,
+    rho integral of phi_i phi_j = delta_ij, these equations are those of Lagrange for small
+    deflections; a test shows it. With this file's own shapes the term rho Psi q3'' has not the
+    units of f'', the modes feel the waist rho times (in SI) as strongly as Lagrange's equations
+    say, `mass` is not symmetric and there is no energy balance. This reading is kept because with
+    rho = 0.2 it reproduces the paper's figures 6 and 7 with the actual tip, and for no other
+    reason. The friction of the joints, b1 to b3, is this project's addition: (20) has none.
+
+    Source: eqs. (20)-(21).
+    """
+    rho = s.p["rho"]
+    return _Dynamics(
+        joints=ca.diag(ca.vertcat(s.p["M11"], s.p["M22"], s.waist)),
+        row=rho * s.coupling,
+        column=rho * s.coupling,
+        bias=ca.vertcat(*[s.p[f"b{i + 1}"] * s.v[i] for i in range(RIGID)]),
+        modal_bias=s.elastic,
+    )
+
+
+def _mass(parts: _Dynamics, rho: ca.SX) -> ca.SX:
+    """M with the Schur complement undone."""
+    joints, n = ca.SX(parts.joints), parts.row.numel()
+    joints[2, 2] += ca.dot(parts.row, parts.column)
+    above = ca.horzcat(joints, ca.vertcat(ca.SX(2, n), parts.row.T))
+    return ca.vertcat(above, rho * ca.horzcat(ca.SX(n, 2), parts.column, ca.SX.eye(n)))
+
+
+def _solve(parts: _Dynamics, rho: ca.SX, rhs: ca.SX) -> ca.SX:
+    """M^-1 R: first the waist, to which all else is coupled and nothing else to one another."""
+    joints, modal = parts.joints, _over(rho, rhs[RIGID:, :])
+    arm1, arm2 = _over(joints[0, 0], joints[0, 2]), _over(joints[1, 1], joints[1, 2])
+    waist = joints[2, 2] - arm1 * joints[0, 2] - arm2 * joints[1, 2]
+    pull = parts.row.T @ modal + arm1 * rhs[0, :] + arm2 * rhs[1, :]
+    third = (rhs[2, :] - pull) / waist
+    return ca.vertcat(
+        _over(joints[0, 0], rhs[0, :]) - arm1 * third,
+        _over(joints[1, 1], rhs[1, :]) - arm2 * third,
+        third,
+        modal - parts.column @ third,
+    )
+
+
+def _over(divisor: ca.SX, value: ca.SX) -> ca.SX:
+    """value / divisor by a product: 2 / divisor is shared, where 1 / divisor would be undone."""
+    return (2 / divisor) * (0.5 * value)
+
+
+def end_point(q: Array, l1: float, beam: BeamModes, alpha: float = 1.0) -> Array:
+    """y for q = (q1, q2, q3, f...), shape (..., n) -> (..., 3), [m].
+
+    Args:
+        l1: length of link 1, [m].
+        alpha: share of the deflection: 1 the actual tip, 0 that of a rigid link.
+
+    Source: eq. (22).
+    """
+    w = alpha * (q[..., RIGID:] @ beam.tip)
+    radius = l1 * np.cos(q[..., 0]) - beam.length * np.cos(q[..., 1])
+    height = l1 * np.sin(q[..., 0]) - beam.length * np.sin(q[..., 1]) - l1
+    c3, s3 = np.cos(q[..., 2]), np.sin(q[..., 2])
+    return np.stack([radius * c3 - w * s3, radius * s3 + w * c3, height], axis=-1)

@@ -1,0 +1,372 @@
+"""The flexible five-bar as the lab and the experiments use it: parameters, limits, drawing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.paths.frames import Frame, SlantedPlane
+from onpath.models.systems import five_bar, flexible_five_bar
+from onpath.models.systems.beam import MOST_MODES, BeamModes, beam_modes
+from onpath.models.systems.flexible_five_bar import FORMER_PLANTS, PLANTS, RIGID, FlexibleLinks
+from onpath.models.systems.forces import Grip, SpringLimits
+from onpath.models.systems.parameters import Parameters, choice, number
+from onpath.models.systems.robots import collapse, first_fault
+from onpath.models.systems.system import MechanicalSystem, conditioning, decoupling_matrix
+from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
+
+MOST_BENT = 0.3  # of the beam's length: far beyond what small deflections allow
+FASTEST_TIP = 20.0  # [m/s], of the deflection
+BENT = (
+    "the link bends too far although its zero dynamics are stable: the pull is too strong, the"
+    " control too slow or the controller's model too wrong"
+)
+UNSTABLE = "the output is on the path, the inside is not: unstable zero dynamics"
+# The bare tip is light and soft (15 N/m): a stiff grip held over a tick would chatter.
+SOFT_GRIP = Grip(SpringLimits(100.0, 2.0, 1.0), SpringLimits(500.0, 4.0, 5.0))
+PIECES = 10  # straight bars that the bent link is drawn with
+_SHARES = np.linspace(0.0, 1.0, PIECES + 1)
+
+
+@dataclass(frozen=True, slots=True)
+class FlexibleParameters(Parameters):
+    """The flexible five-bar's own: beam, output, model errors. `modes` and `plant` pick a robot."""
+
+    K5: float = number(
+        5.0,
+        "1/s",
+        (0, 100, 0.5),
+        "how hard the speed along the path is held",
+        group="gains",
+        label="K5 along",
+    )
+    speed: float = number(
+        2.0,
+        "rad/s",
+        (-10, 10, 0.1),
+        "wanted speed along the path; negative: backwards",
+        group="task",
+        label="Speed",
+    )
+    alpha: float = number(
+        0.5,
+        "",
+        (-1, 1, 0.01),
+        "share of the deflection that the controller sees: 1 the tip, 0 the straight link",
+        group="basic",
+        label="α",
+    )
+    law: str = choice(
+        "redefined",
+        ("redefined", "composite"),
+        "what the controller puts on the path: y with a share of the deflection, or the tip itself",
+        group="basic",
+        label="Output",
+    )
+    tip_damping: float = number(
+        0.3,
+        "",
+        (0.02, 0.7, 0.01),
+        "damping ratio that the waist gives the beam",
+        group="gains",
+        label="Tip damping",
+    )
+    tip_prediction: float = number(
+        1.2,
+        "ω₁",
+        (0.3, 2, 0.1),
+        "how quickly the deflection is foreseen",
+        group="gains",
+        label="Tip prediction",
+    )
+    tip_shaping: float = number(
+        0.25,
+        "ω₁",
+        (0.05, 2, 0.05),
+        "how quickly the wanted speed may change",
+        group="gains",
+        label="Speed shaping",
+    )
+    tip_yielding: float = number(
+        100.0,
+        "1/s²",
+        (0, 200, 5),
+        "how much progress gives way to a tip held back",
+        group="gains",
+        label="Yielding",
+    )
+    plant: str = choice(
+        "lagrangian",
+        PLANTS,
+        "Lagrange's equations, or (20)-(21) read with ∫φ² = 1, whose coupling has odd units",
+        group="robot",
+        label="Plant",
+        former=FORMER_PLANTS,
+    )
+    modes: int = choice(
+        3,
+        tuple(range(1, MOST_MODES + 1)),
+        "how many modes of the beam are simulated",
+        group="robot",
+        label="Modes",
+    )
+    rho: float = number(
+        0.2,
+        "kg/m",
+        (0.05, 1, 0.01),
+        "mass of the beam per metre",
+        group="robot",
+        label="ρ",
+    )
+    frequency: float = number(
+        4.0,
+        "Hz",
+        (1, 10, 0.1),
+        "first frequency of the clamped beam",
+        group="robot",
+        label="First frequency",
+    )
+    zeta: float = number(
+        0.01,
+        "",
+        (0, 0.2, 0.005),
+        "damping ratio of every mode",
+        group="robot",
+        label="Damping ζ",
+    )
+    error_M11: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's M11 is off by this",
+        group="realism",
+        label="M11 wrong",
+        on=30.0,
+    )
+    error_M22: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's M22 is off by this",
+        group="realism",
+        label="M22 wrong",
+        on=30.0,
+    )
+    error_J0: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's waist inertia J0 is off by this",
+        group="realism",
+        label="J0 wrong",
+        on=30.0,
+    )
+    error_rho: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's ρ is off by this",
+        group="realism",
+        label="ρ wrong",
+        on=30.0,
+    )
+    error_omega1: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's first frequency is off by this",
+        group="realism",
+        label="Frequency wrong",
+        on=10.0,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlexibleFiveBar:
+    """The five-bar on a waist with a flexible last link, section IV.
+
+    Its frame for drawing has x right, y away, z up and the waist's foot at the origin. The arm
+    reaches towards the viewer and the path's plane faces them: (y1, y2, y3) is at
+    (y2, -y1, l1 + y3), a rotation and a shift.
+    """
+
+    modes: int = 3
+    plant_name: str = "lagrangian"
+    links: FlexibleLinks = field(default_factory=flexible_five_bar.load_links)
+    system: MechanicalSystem = field(init=False, repr=False)
+    beam: BeamModes = field(init=False, repr=False)
+    shapes: Array = field(init=False, repr=False)  # at the ends of the pieces, (PIECES + 1, N)
+    frame: Frame = field(default_factory=SlantedPlane)
+    name: str = "flexible"
+    label: str = "Five-bar with a flexible link"
+    substeps: int = 2
+    grip: Grip = SOFT_GRIP
+
+    def __post_init__(self) -> None:
+        system = flexible_five_bar.flexible_five_bar(self.modes, self.plant_name)
+        object.__setattr__(self, "system", system)
+        beam = beam_modes(self.modes, self.links.beam)
+        object.__setattr__(self, "beam", beam)
+        object.__setattr__(self, "shapes", beam.shapes(beam.length * _SHARES))
+
+    @property
+    def start(self) -> Array:
+        """At rest 10 mm off the default path, shape (n,)."""
+        return np.concatenate([[np.pi / 2, np.pi - 0.12, 0.0], np.zeros(self.modes)])
+
+    @property
+    def coordinate_names(self) -> tuple[str, ...]:
+        """See `Robot.coordinate_names`; f in m^1.5, because phi is in m^-0.5."""
+        modal = (f"f{j + 1}_m1.5" for j in range(self.modes))
+        return ("q1_rad", "q2_rad", "q3_rad", *modal)
+
+    def plant(self, parameters: Parameters) -> Array:
+        """See `Robot.plant`."""
+        own = _own(parameters)
+        links = self.links.changed(own.rho, own.frequency, own.zeta)
+        return self.system.parameter_vector(links.lumped(own.alpha))
+
+    def model(self, parameters: Parameters) -> Array:
+        """See `Robot.model`: each entry wrong as asked."""
+        own = _own(parameters)
+        values = dict(zip(self.system.parameter_names, self.plant(own).tolist(), strict=True))
+        for name in ("M11", "M22", "J0", "rho", "omega1"):
+            values[name] *= 1 + getattr(own, f"error_{name}") / 100
+        return self.system.parameter_vector(values)
+
+    def rest(self, y: Array) -> Array:
+        """See `Robot.rest`: with the beam straight; (..., 3) -> (..., n)."""
+        planar = np.stack([np.hypot(y[..., 0], y[..., 1]) - self.links.beam, y[..., 2]], axis=-1)
+        angles = five_bar.inverse_kinematics(planar, self.links.link1, self.links.beam)
+        waist = np.arctan2(y[..., 1], y[..., 0])[..., None]
+        return np.concatenate([angles, waist, np.zeros((*waist.shape[:-1], self.modes))], axis=-1)
+
+    def endpoint(self, q: Array) -> Array:
+        """See `Robot.endpoint`."""
+        return flexible_five_bar.end_point(q, self.links.link1, self.beam)
+
+    def rigid_endpoint(self, q: Array) -> Array:
+        """Where the tip would be if the link were straight, (..., n) -> (..., 3), [m]."""
+        return flexible_five_bar.end_point(q, self.links.link1, self.beam, alpha=0.0)
+
+    def deflection(self, q: Array) -> Array:
+        """w at the tip, (..., n) -> (...), [m]."""
+        return q[..., RIGID:] @ self.beam.tip
+
+    def internal_energy(self, q: Array, v: Array, parameters: Parameters) -> Array:
+        """Of bending and of the modes' motion, (..., n), (..., n) -> (...), [J]."""
+        own = _own(parameters)
+        frequencies = 2 * np.pi * own.frequency * self.beam.overtones
+        f, f_rate = q[..., RIGID:], v[..., RIGID:]
+        return own.rho / 2 * (f_rate**2 + (frequencies * f) ** 2).sum(-1)
+
+    def margin(self, z: Array) -> Array:
+        """See `Robot.margin`: the rank test (11), beam straight, in parts of its value at home."""
+        l1, beam = self.links.link1, self.links.beam
+        y = self.frame.lift(np.vstack([z, np.zeros((1, 2))]))
+        reach = np.linalg.norm(y + np.array([0.0, 0.0, l1]), axis=-1)
+        inside = (abs(l1 - beam) < reach) & (reach < l1 + beam)
+        numbers = np.zeros(len(y))
+        numbers[inside] = conditioning(self._decoupling(self.rest(y[inside])))
+        return numbers[:-1] / numbers[-1]
+
+    def _decoupling(self, q: Array) -> Array:
+        """The matrix of the test with default parameters, shape (k, n) -> (k, 3, 3)."""
+        columns = _decoupling(self)(q.T, self.plant(FlexibleParameters())).full()
+        return columns.reshape(RIGID, len(q), RIGID).transpose(1, 0, 2)
+
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
+        """See `Robot.fault`."""
+        with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
+            bent = np.abs(self.deflection(q)) > MOST_BENT * self.links.beam
+            bent |= np.abs(self.deflection(v)) > FASTEST_TIP
+            found = first_fault(q, v, (bent, BENT), collapse(q))
+        if found is None or found[1] != BENT or not self.is_unstable_inside(q[0], parameters):
+            return found
+        return found[0], UNSTABLE
+
+    def is_unstable_inside(self, q: Array, parameters: Parameters) -> bool:
+        """Whether the zero dynamics at rest are unstable with the joints as in q, (n,)."""
+        straight = np.concatenate([q[:RIGID], np.zeros(self.modes)])
+        zero = flexible_zero_dynamics(self.modes, self.plant_name)
+        return bool(zero.exponents(straight, self.plant(parameters))[0, 0].real > 0)
+
+    def place(self, y: Array) -> Array:
+        """See `Robot.place`."""
+        return np.stack([y[..., 1], -y[..., 0], y[..., 2] + self.links.link1], axis=-1)
+
+    def unplace(self, point: Array) -> Array:
+        """See `Robot.unplace`."""
+        return np.stack([-point[..., 1], point[..., 0], point[..., 2] - self.links.link1], axis=-1)
+
+    def marks(self, q: ca.SX) -> ca.SX:
+        """See `Robot.marks`: where the tip would be if the link were straight."""
+        return self.skeleton(q, ca.SX(0))[0][:, -1]
+
+    @property
+    def extra_fields(self) -> tuple[tuple[str, int], ...]:
+        """See `Robot.extra_fields`: of the tip [m], of each mode at the tip [m], [J]."""
+        return (("deflection", 1), ("modes", self.modes), ("internal_energy", 1))
+
+    def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
+        """See `Robot.extras`."""
+        modes = q[RIGID:] * self.beam.tip
+        energy = self.internal_energy(q, v, parameters)[None]
+        return {"deflection": modes.sum()[None], "modes": modes, "internal_energy": energy}
+
+    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """See `Robot.skeleton`: links 1 to 3, then link 4 in pieces from its joint with link 3.
+
+        Returns:
+            bars, (3, 8 + 2 PIECES): link 1, 2, 3, link 4 behind its joint with link 1, the beam's
+            pieces; joints, (3, 4): base, link 1-4, link 2-3, link 3-4, [m].
+        """
+        bars, joints = five_bar.skeleton(q, self.links.link1, self.links.link2, 0.0)
+        along = -ca.vertcat(ca.cos(q[1]), 0, ca.sin(q[1]))
+        bent = exaggeration * (ca.DM(self.shapes) @ q[RIGID:])
+        line = joints[:, 1] + self.links.beam * along @ ca.DM(_SHARES).T
+        line += ca.vertcat(0, 1, 0) @ bent.T
+        ends = [end for i in range(PIECES) for end in (line[:, i], line[:, i + 1])]
+        return self._turned(ca.horzcat(bars, *ends), q[2]), self._turned(joints, q[2])
+
+    def _turned(self, points: ca.SX, waist: ca.SX) -> ca.SX:
+        """From (radius, w, height) to the frame for drawing."""
+        radius, w, height = points[0, :], points[1, :], points[2, :]
+        c, s = ca.cos(waist), ca.sin(waist)
+        return ca.vertcat(radius * s + w * c, w * s - radius * c, height)
+
+
+def flexible_five_bar_robot(modes: int = 3, plant: str = "lagrangian") -> FlexibleFiveBar:
+    """The one instance for a number of modes and a plant: its kernels are built once.
+
+    Raises:
+        ValueError: an unknown plant or number of modes.
+    """
+    return _robot(modes, plant)
+
+
+@lru_cache(maxsize=2 * MOST_MODES)
+def _robot(modes: int, plant: str) -> FlexibleFiveBar:
+    return FlexibleFiveBar(modes, plant)
+
+
+@lru_cache(maxsize=2 * MOST_MODES)
+def _decoupling(robot: FlexibleFiveBar) -> ca.Function:
+    return decoupling_matrix(robot.system)
+
+
+def robot_for(parameters: Parameters) -> FlexibleFiveBar:
+    """The instance that serves these parameters."""
+    own = _own(parameters)
+    return flexible_five_bar_robot(own.modes, own.plant)
+
+
+def _own(parameters: Parameters) -> FlexibleParameters:
+    if not isinstance(parameters, FlexibleParameters):
+        kind = type(parameters).__name__
+        raise TypeError(f"the flexible five-bar takes FlexibleParameters, got {kind}")
+    return parameters

@@ -1,0 +1,150 @@
+"""A controlled mechanical system, defined once by symbols; all else is derived from it.
+
+The class of systems is eqs. (1)-(3):  M(q) v' + c(q, v) = B u + J_h(q)^T F,  y = h(q),
+with F the external force at the end-point. CasADi differentiates; nothing is derived by hand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import casadi as ca
+import numpy as np
+
+from onpath.models.arrays import Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MechanicalSystem:
+    """Symbols of one robot. Columns throughout; n coordinates, m inputs, p outputs.
+
+    Attributes:
+        name: how the robot is called in files and on the command line.
+        q: generalized coordinates, (n, 1); the first m of them are the actuated joints.
+        v: their velocities, (n, 1).
+        tau: generalized forces B u + J_h^T F, (n, 1).
+        parameters: numbers that a run may change without rebuilding, (k, 1).
+        parameter_names: k names.
+        mass: M(q), (n, n).
+        bias: c(q, v), (n, 1).
+        acceleration: v' = M^-1 (tau - c), (n, 1).
+        drift: f_v(q, v) = -M^-1 c, (n, 1).
+        input_gain: g_v(q) = M^-1 B, (n, m).
+        output: h(q), the actual end-point, (p, 1), [m].
+        controlled_output: what a controller is given instead of h, (p, 1), [m]; often h itself.
+        energy: total mechanical energy, (1, 1), [J].
+        n, m, p: numbers of degrees of freedom, inputs and outputs.
+    """
+
+    name: str
+    q: ca.SX
+    v: ca.SX
+    tau: ca.SX
+    parameters: ca.SX
+    parameter_names: tuple[str, ...]
+    mass: ca.SX
+    bias: ca.SX
+    acceleration: ca.SX
+    drift: ca.SX
+    input_gain: ca.SX
+    output: ca.SX
+    controlled_output: ca.SX
+    energy: ca.SX
+    n: int = field(init=False)
+    m: int = field(init=False)
+    p: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "n", self.q.numel())
+        object.__setattr__(self, "m", self.input_gain.size2())
+        object.__setattr__(self, "p", self.output.numel())
+
+    def function(self, *names: str) -> ca.Function:
+        """Numeric function (q, v, parameters) -> the named attributes (not `acceleration`)."""
+        outputs = [getattr(self, name) for name in names]
+        return ca.Function("_".join(names), [self.q, self.v, self.parameters], outputs)
+
+    def with_rate(self, output: ca.SX) -> ca.Function:
+        """(q, v, parameters) -> an output of the configuration, and its rate of change."""
+        rate = ca.jtimes(output, self.q, self.v)
+        return ca.Function("with_rate", [self.q, self.v, self.parameters], [output, rate])
+
+    def parameter_vector(self, values: dict[str, float]) -> Array:
+        """`values` by name, in the order of `parameters`, shape (k,)."""
+        return np.array([values[name] for name in self.parameter_names])
+
+
+def mechanical_system(
+    *,
+    name: str,
+    q: ca.SX,
+    v: ca.SX,
+    parameters: ca.SX,
+    parameter_names: tuple[str, ...],
+    mass: ca.SX,
+    bias: ca.SX,
+    inputs: int,
+    output: ca.SX,
+    potential_energy: ca.SX,
+    controlled_output: ca.SX | None = None,
+    solve: Callable[[ca.SX, ca.SX], ca.SX] = ca.solve,
+) -> MechanicalSystem:
+    """A system from M, c and h; B selects the first `inputs` coordinates.
+
+    Args:
+        mass: M(q), (n, n).
+        bias: c(q, v), Coriolis, gravity, elastic and viscous terms, (n, 1).
+        potential_energy: [J]; only for the energy balance.
+        solve: returns M^-1 R for (M, R); replace it where M has structure.
+
+    Source: eqs. (1)-(3).
+    """
+    n = q.numel()
+    tau = ca.SX.sym("tau", n)
+    gains = solve(mass, ca.horzcat(-bias, ca.SX.eye(n)[:, :inputs]))
+    return MechanicalSystem(
+        name=name,
+        q=q,
+        v=v,
+        tau=tau,
+        parameters=parameters,
+        parameter_names=parameter_names,
+        mass=mass,
+        bias=bias,
+        acceleration=solve(mass, tau - bias),
+        drift=gains[:, 0],
+        input_gain=gains[:, 1:],
+        output=output,
+        controlled_output=output if controlled_output is None else controlled_output,
+        energy=0.5 * ca.dot(v, mass @ v) + potential_energy,
+    )
+
+
+def lagrange_bias(
+    q: ca.SX, v: ca.SX, kinetic_energy: ca.SX, potential_energy: ca.SX, friction: ca.SX
+) -> ca.SX:
+    """c(q, v) = d/dt (dT/dv) at v' = 0 - dT/dq + dV/dq + friction, by differentiation."""
+    momentum = ca.gradient(kinetic_energy, v)
+    turning = ca.jtimes(momentum, q, v) - ca.gradient(kinetic_energy, q)
+    return turning + ca.gradient(potential_energy, q) + friction
+
+
+def decoupling_matrix(system: MechanicalSystem) -> ca.Function:
+    """(q, parameters) -> dh/dq g_v(q), shape (p, m), whose rank the test (11) asks for.
+
+    Source: Theorem 2.1, eq. (11).
+    """
+    jacobian = ca.jacobian(system.controlled_output, system.q)
+    matrix = ca.densify(jacobian @ system.input_gain)
+    return ca.Function("decoupling_matrix", [system.q, system.parameters], [matrix])
+
+
+def conditioning(matrices: Array) -> Array:
+    """The rank test (11) as a number in [0, 1]: 0 where a matrix loses rank.
+
+    Smallest over largest singular value, shape (..., p, m) -> (...).
+    """
+    values = np.linalg.svd(matrices, compute_uv=False)
+    largest = values[..., 0]
+    return np.where(largest > 0, values[..., -1] / np.where(largest > 0, largest, 1.0), 0.0)

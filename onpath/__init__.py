@@ -1,0 +1,1 @@
+"""OnPath: a browser lab in which path following and trajectory tracking can be compared."""

@@ -1,0 +1,107 @@
+"""The bench of a crowd: a real server, real websockets, and numbers that can be."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from onpath.app.bench.crowd import HEAD, Crowd, folders, measured
+from onpath.app.bench.server_process import serving
+from onpath.app.cli.main import run_command
+
+CLIENTS, SECONDS = 3, 1.0
+WORKERS = 2 if sys.platform == "linux" else 1
+
+
+def test_a_small_crowd_on_a_real_server(tmp_path: Path) -> None:
+    crowd = Crowd(CLIENTS, WORKERS, SECONDS, rows=2)
+    rows = list(measured(crowd, folders(tmp_path, "data")))
+    assert len(rows) == 2
+    for row in rows:
+        seen = row.seen
+        assert seen.clients == CLIENTS == sum(row.labs) and len(row.labs) == WORKERS
+        assert seen.seconds == pytest.approx(SECONDS, abs=1.0) and row.settled > 0
+        assert 10 < row.simulation_hz < 62 and 0.1 < row.slowest_lab < 1.1
+        assert 1 < seen.slowest_hz <= seen.median_hz < 62
+        p50, p95, p99 = row.late_ms
+        assert p50 <= p95 <= p99 and 0 <= row.overdue <= 1
+        assert (row.overdue < 0.01) == (p99 <= 50)
+        assert 0 < row.cpu < 4 and 0 < seen.cpu < 4
+        assert seen.bytes_per_s > 1e3
+        if sys.platform == "linux":
+            assert 0 < row.memory_mb < 100 and 0 <= row.stolen < 1
+        assert len(str(row).rpartition(" ")[0]) == len(HEAD.splitlines()[1])
+    assert (tmp_path / "data" / "onpath" / "onpath.db").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ("--clients 0", "--clients 0: expected 1 to 300"),
+        ("--clients 3 1000", "--clients 1000: expected 1 to 300"),
+        ("--clients -1", "--clients"),
+        ("--clients x", "--clients"),
+        ("--clients 1 --workers 0", "--workers 0: expected 1 to 64"),
+        ("--clients 1 --seconds 0", "--seconds 0: expected 1 to 60"),
+        ("--clients 1 --seconds nan", "--seconds nan: expected 1 to 60"),
+        ("--clients 1 --minutes -1", "--minutes -1: expected 1 or more"),
+        ("--clients 1 --quick", "--quick"),
+        ("--workers 2", "go with --clients"),
+        ("--minutes 2", "go with --clients"),
+    ],
+)
+def test_what_cannot_be_measured_is_refused_in_words(
+    options: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command(["bench", *options.split()]) == 2
+    out = capsys.readouterr()
+    assert said in out.err and out.err.count("\n") == 1 and not out.out
+
+
+def processes_of(folder: Path) -> list[str]:
+    """What runs and was told of that folder."""
+    found: list[str] = []
+    for told in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            if str(folder).encode() in told.read_bytes():
+                found.append((told.parent / "cmdline").read_text().replace("\0", " "))
+        except OSError:  # it has ended, or is not ours
+            continue
+    return found
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_a_bench_that_is_stopped_takes_its_server_along(
+    tmp_path: Path, how: signal.Signals
+) -> None:
+    command = [sys.executable, "-m", "onpath", "bench", "--clients", "2", "--seconds", "60"]
+    environment = {**os.environ, "TMPDIR": str(tmp_path)}
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe) as process:
+        until = time.monotonic() + 60.0
+        while not any(
+            "onpath.app.bench.simulated_browser" in each for each in processes_of(tmp_path)
+        ):
+            assert process.poll() is None and time.monotonic() < until
+            time.sleep(0.1)
+        assert any("serve" in each for each in processes_of(tmp_path))
+        process.send_signal(how)
+        _, said = process.communicate(timeout=30.0)
+    assert process.returncode == 130 and said == b""
+    assert not processes_of(tmp_path) and not list(tmp_path.iterdir())
+
+
+def test_a_server_that_ends_says_why(tmp_path: Path) -> None:
+    environment = folders(tmp_path, "data")
+    with (
+        serving(environment, most=0) as server,
+        pytest.raises(ValueError, match=r"ended: .*--most-clients 0: expected 1 or more"),
+    ):
+        server.vitals()

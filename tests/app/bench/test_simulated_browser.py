@@ -1,0 +1,124 @@
+"""Simulated browsers do what real ones do, and the shortcuts for many of them change nothing."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from contextlib import aclosing, contextmanager
+from socket import create_server
+from threading import Thread
+
+import numpy as np
+import pytest
+import websockets.exceptions
+import websockets.sync.client
+
+from onpath.app.bench.simulated_browser import Seen, Unserved, crowd, first_poses
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.server.lab_server import LabServer
+from onpath.models.closed_loop.simulation import (
+    FREE,
+    Push,
+    brake_at,
+    kernel_of,
+    kind_of,
+    pushed,
+    settings_vector,
+)
+from onpath.models.paths.curves import circle
+from onpath.models.systems.catalogue import ROBOTS
+from tests.support.lab import FOLLOWER
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_filling_in_a_push_is_the_same_as_packing_anew(name: str) -> None:
+    parameters, curve = ROBOTS[name].parameters(), circle(0.05)
+    robot = ROBOTS[name].make(parameters)
+    kernel = kernel_of(robot, kind_of(FOLLOWER, parameters, curve))
+    y = robot.frame.lift(np.array([0.01, 0.02]))
+    pushes = [FREE, Push(hand=y), Push(hold=brake_at(robot, curve, y, 0.3))]
+    pushes.append(Push(pushes[1].hand, pushes[2].hold))
+    packs = [settings_vector(robot, kernel, parameters, curve, push) for push in pushes]
+    for before in packs:
+        for push, pack in zip(pushes, packs, strict=True):
+            assert np.array_equal(pushed(kernel, before, push), pack)
+
+
+def test_simulated_browsers_see_and_do_what_real_ones_do() -> None:
+    async def look(port: int) -> list[Seen]:
+        async with aclosing(crowd(port, 2, seconds=4.5)) as seen:
+            return [await anext(seen) for _ in range(2)]
+
+    server = LabServer("127.0.0.1", 0, LoopStore())
+    try:
+        first, then = asyncio.run(look(server.server.get_port()))
+        labs = server.simulation.labs
+    finally:
+        server.stop()
+    assert first.clients == then.clients == 2
+    assert then.seconds == pytest.approx(4.5, abs=0.5)
+    assert 10 < then.slowest_hz <= then.median_hz < 62
+    assert then.bytes_per_s > 0 and 0 < then.cpu < 1.5
+    assert all(lab.session.time > 1.0 for lab in labs)
+    assert max(run.max_distance for lab in labs for run in lab.session.runs.values()) > 0.004
+    assert any(lab.session.parameters.K1 != 400.0 for lab in labs)
+
+
+def test_a_crowd_that_is_not_served_says_so() -> None:
+    async def settle(port: int, patience: float) -> None:
+        async with aclosing(crowd(port, 2, 1.0, patience)) as seen:
+            await anext(seen)
+
+    server = LabServer("127.0.0.1", 0, LoopStore(), most_clients=1)
+    try:
+        with pytest.raises(Unserved, match=r"only 1 of 2 clients .* moving robots in 3 s"):
+            asyncio.run(settle(server.server.get_port(), 3.0))
+    finally:
+        server.stop()
+    with (
+        answering(REFUSED, REFUSED) as (port, _),
+        pytest.raises(Unserved, match=r"turned away: .*503"),
+    ):
+        asyncio.run(settle(port, 5.0))
+
+
+REFUSED = b"HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
+
+
+@contextmanager
+def answering(*answers: bytes) -> Iterator[tuple[int, Thread]]:
+    """A port where each connection gets one of these answers in turn, then none is taken."""
+
+    def serve() -> None:
+        for answer in answers:
+            connection, _ = listener.accept()
+            with connection:
+                connection.recv(4096)
+                connection.sendall(answer)
+        listener.close()
+
+    with create_server(("127.0.0.1", 0)) as listener:
+        thread = Thread(target=serve, daemon=True)
+        thread.start()
+        yield int(listener.getsockname()[1]), thread
+
+
+def test_the_bench_waits_for_a_server_that_is_not_ready() -> None:
+    async def wait(port: int, early: Thread) -> None:
+        waiting = asyncio.create_task(first_poses(port))
+        await asyncio.to_thread(early.join, 5.0)
+        assert not early.is_alive() and not waiting.done()
+        server = LabServer("127.0.0.1", port, LoopStore())
+        try:
+            await asyncio.wait_for(waiting, 20.0)
+        finally:
+            server.stop()
+
+    with answering(REFUSED, b"", b"HTTP/1.1 ") as (port, early):
+        asyncio.run(wait(port, early))
+
+
+def test_the_bench_does_not_wait_for_a_server_that_refuses() -> None:
+    forbidden = REFUSED.replace(b"503", b"403")
+    with answering(forbidden) as (port, _), pytest.raises(websockets.exceptions.InvalidStatus):
+        asyncio.run(asyncio.wait_for(first_poses(port), 5.0))

@@ -1,0 +1,548 @@
+"""A class without a browser: who may come in, what the teacher sees, what reaches the labs."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from onpath.app.classroom import class_html as page
+from onpath.app.classroom.admission import CODE_LENGTH, LONGEST_NAME, cleaned
+from onpath.app.classroom.class_sync import Attendance
+from onpath.app.classroom.local_classroom import Classroom
+from onpath.app.classroom.results import HEADER, class_csv, distribution, prediction_at, truth_of
+from onpath.app.classroom.shared_classroom import SharedClassroom
+from onpath.app.common.access_codes import ALPHABET, new_code, shown
+from onpath.app.common.throttle import TRIES, WITHIN, Throttle
+from onpath.app.lab import commands as c
+from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab.class_commands import Freeze, TakeSetup, TakeStep
+from onpath.app.lab.session import Session
+from onpath.app.lab.setup import Setup, capture
+from onpath.app.storage.forget import forget
+from onpath.app.storage.leases import Leases
+from onpath.app.storage.records import Records, file_url
+from onpath.app.storage.write_behind import Keeper
+from onpath.lessons.course import Course, read_course
+from onpath.lessons.progress import Answer, Notes, Progress, Truth
+from onpath.lessons.schema import Choice, Sketch
+from onpath.lessons.words import ENGLISH
+from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.lab import do, run, store
+from tests.support.lesson_texts import write_lesson
+
+LESSON, OTHER = "01-a", "02-b"
+HOSTILE = '<img src=x onerror="alert(1)">'
+
+
+@pytest.fixture
+def course(tmp_path: Path) -> Course:
+    write_lesson(tmp_path / "course")
+    write_lesson(tmp_path / "course", name=OTHER)
+    return read_course([tmp_path / "course"])[0]
+
+
+@dataclass
+class Watched:
+    """A class whose clock and labs are in the test's hands.
+
+    Attributes:
+        records: where the class is shared; None for the class of one process.
+    """
+
+    course: Course
+    records: Records | None = None
+    now: float = 1000.0
+    labs: dict[str, tuple[Session, bool]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.room: Classroom | SharedClassroom = Classroom(lambda: self.now)
+        if self.records is not None:
+            wall = lambda: 1.8e9 + self.now  # noqa: E731
+            self.room = SharedClassroom(self.records, new_code(), lambda: self.now, wall)
+            self.leases = Leases(self.records, clock=wall)
+        self.attendance = Attendance(self.room, self.labs.get)
+
+    def student(self, name: str) -> Session:
+        """One more, in the class."""
+        code = f"lab {len(self.labs)}"
+        session = Session(store(), FIVE_BAR, self.course)
+        self.labs[code] = session, True
+        self.room.join(code, self.room.code, name)
+        self.look()
+        return session
+
+    def look(self) -> None:
+        """As the class's thread does; then a frame of every lab."""
+        if self.records is not None:
+            self.leases.release()
+            self.leases.renew([code for code, (_, connected) in self.labs.items() if connected])
+        self.attendance.look()
+        for session, _ in self.labs.values():
+            session.drain()
+
+
+@pytest.fixture(params=["one process", "several"])
+def klass(request: pytest.FixtureRequest, course: Course, tmp_path: Path) -> Iterator[Watched]:
+    if request.param == "one process":
+        yield Watched(course)
+        return
+    records = Records(file_url(tmp_path / "class.db"))
+    yield Watched(course, records)
+    records.close()
+
+
+# Who may come in.
+
+
+def test_students_join_with_the_code_and_a_nickname(klass: Watched) -> None:
+    room = klass.room
+    room.join("lab", f" {room.code.upper()} ", "  Ada\tLovelace ")
+    assert [member.name for member in room.members().values()] == ["Ada Lovelace"]
+    with pytest.raises(ValueError, match="class code"):
+        room.join("other", "nope", "Bob")
+    with pytest.raises(ValueError, match="nickname"):
+        room.join("other", room.code, " \u200b\n")
+    assert room.member("other") is None
+
+
+def test_two_of_a_name_are_told_apart(klass: Watched) -> None:
+    room = klass.room
+    names = [room.join(f"lab {i}", room.code, "x" * 40).name for i in range(12)]
+    assert len(set(names)) == 12 and all(len(name) <= LONGEST_NAME for name in names)
+    assert room.join("lab 3", room.code, "new").number == 4
+
+
+@given(st.text(max_size=300))
+def test_a_nickname_is_short_and_printable(text: str) -> None:
+    try:
+        name = cleaned(text)
+    except ValueError:
+        return
+    assert 0 < len(name) <= LONGEST_NAME and name.isprintable()
+    assert cleaned(name) == name
+
+
+@pytest.mark.parametrize("name", [HOSTILE, "</td><script>", "\u202egnp.exe", "{0.x}", "&lt;b&gt;"])
+def test_a_hostile_nickname_is_only_text(klass: Watched, name: str) -> None:
+    klass.student(name)
+    shown = page.table(klass.room.members().values(), klass.course, klass.now, ENGLISH)
+    assert "<img" not in shown and "<script" not in shown and "\u202e" not in shown
+    assert shown.count("<tr") == 2
+
+
+def test_the_teacher_comes_in_with_the_key_alone(klass: Watched) -> None:
+    room = klass.room
+    given_pass = room.admit(f" {shown(room.key).upper()}", "lab")
+    assert room.is_pass(given_pass) and not room.is_pass(room.key)
+    for wrong in (None, "", given_pass[:-1], given_pass + "x", "é", "\udcff"):
+        assert not room.is_pass(wrong)
+    for wrong in (room.code, "", "é" * 12, "\udcff", "2222-2222-2222"):
+        with pytest.raises(ValueError, match="key"):
+            room.admit(wrong, f"lab {wrong}")
+    room.revoke(given_pass)
+    assert not room.is_pass(given_pass)
+
+
+def test_guessing_is_slow_and_locks_out_nobody_else(klass: Watched) -> None:
+    room = klass.room
+    for _ in range(TRIES):
+        with pytest.raises(ValueError, match="not the teacher's key"):
+            room.admit("2222-2222-2222", "thief")
+    with pytest.raises(ValueError, match="too many"):
+        room.admit(shown(room.key), "thief")
+    for typed in [f"wrong {number}" for number in range(TRIES)]:
+        with pytest.raises(ValueError, match="class code"):
+            room.join("thief", typed, "x")
+    for typed in (room.code, "wrong"):
+        with pytest.raises(ValueError, match="too many"):
+            room.join("thief", typed, "x")
+    assert room.admit(shown(room.key), "teacher") and room.join("student", room.code, "x")
+    klass.now += WITHIN + 1
+    assert room.join("thief", room.code, "x") and room.admit(shown(room.key), "thief")
+
+
+@pytest.mark.parametrize("wanted", ["class code", "teacher's key"])
+def test_a_flood_of_wrong_codes_from_throwaway_labs_locks_nobody_out(
+    klass: Watched, wanted: str
+) -> None:
+    room, answers = klass.room, []
+
+    def guess(tab: int) -> None:
+        for number in range(100):
+            lab = f"{tab}.{number // TRIES}"
+            try:
+                if wanted == "class code":
+                    room.join(lab, "wrong", "x")
+                else:
+                    room.admit("2222-2222-2222", lab)
+            except ValueError as error:
+                answers.append(str(error))
+
+    tabs = [threading.Thread(target=guess, args=(tab,)) for tab in range(20)]
+    for tab in tabs:
+        tab.start()
+    for tab in tabs:
+        tab.join()
+    assert len(answers) == 2000 and room.members() == {}
+    assert room.join("student", room.code, "Ada") and room.admit(shown(room.key), "teacher")
+
+
+def test_a_class_code_is_not_to_be_guessed_within_a_lesson(klass: Watched) -> None:
+    assert len(klass.room.code) == CODE_LENGTH and set(klass.room.code) <= set(ALPHABET)
+    guesses = 90 * 1700  # of a lesson; see `app.classroom.admission.Door`
+    assert guesses / len(ALPHABET) ** CODE_LENGTH < 1e-3
+
+
+def test_attempts_under_way_count_and_only_failures_go_on_counting() -> None:
+    now = 0.0
+    throttle = Throttle(lambda: now)
+    with ExitStack() as under_way:
+        for _ in range(TRIES):
+            under_way.enter_context(throttle.attempt("tab"))
+        with pytest.raises(ValueError, match="too many"), throttle.attempt("tab"):
+            raise AssertionError
+        with throttle.attempt("other"):
+            pass
+    for _ in range(TRIES):
+        with pytest.raises(OSError), throttle.attempt("tab"):
+            raise OSError
+    for _ in range(TRIES):
+        with pytest.raises(ValueError, match="wrong"), throttle.attempt("tab"):
+            raise ValueError("wrong")
+    now = WITHIN - 1
+    with pytest.raises(ValueError, match="too many"), throttle.attempt("tab"):
+        raise AssertionError
+    now = WITHIN
+    with throttle.attempt("tab"):
+        pass
+
+
+# What reaches the labs.
+
+
+def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -> None:
+    session = klass.student("Ada")
+    outside = Session(store(), FIVE_BAR, klass.course)
+    do(session, c.Tug(0.01, 0.0))
+    klass.room.freeze(True)
+    klass.look()
+    before = session.time
+    assert session.message == ENGLISH("class.frozen") and not session.grips.hands
+    for command in (c.SetRunning(False), c.Step(), c.SetParameter("K1", 1.0), c.Tug(0.01, 0.0)):
+        session.say("")
+        do(session, command)
+        assert session.message == ENGLISH("class.frozen")
+    run(session, 0.5)
+    run(outside, 0.5)
+    assert session.time == before and outside.time > 0.4
+    assert session.running and session.parameters.K1 != 1.0 and not session.grips.hands
+    klass.room.freeze(False)
+    klass.look()
+    run(session, 0.5)
+    assert session.time > before and session.message == ""
+
+
+def test_who_joins_is_frozen_too_and_who_leaves_is_let_go(klass: Watched) -> None:
+    klass.room.freeze(True)
+    first, second = klass.student("Ada"), klass.student("Bob")
+    assert first.frozen and second.frozen
+    klass.room.leave("lab 0")
+    klass.look()
+    assert not first.frozen and second.frozen
+    assert klass.room.end() == 1
+    klass.look()
+    assert not second.frozen and klass.room.members() == {} and not klass.room.orders.frozen
+
+
+def test_a_step_is_opened_for_all_as_if_they_had_come_there(klass: Watched) -> None:
+    first, second = klass.student("Ada"), klass.student("Bob")
+    do(second, lc.OpenLesson(LESSON), c.SetParameter("K1", 7.0))
+    klass.room.push(TakeStep(LESSON, 1))
+    klass.look()
+    for session in (first, second):
+        assert session.lessons.lesson is not None and session.lessons.index == 1
+        assert session.parameters.K1 == 300 and session.locked  # of the scene before
+        assert session.lessons.answer() is None
+        do(session, lc.CloseLesson())
+    klass.look()
+    assert first.lessons.lesson is None  # once, not again and again
+    for wrong in (TakeStep("nope", 0), TakeStep(LESSON, 99), TakeStep(LESSON, -1)):
+        klass.room.push(wrong)
+        klass.look()
+        assert first.lessons.lesson is None and first.message.startswith("no ")
+
+
+def test_a_setup_is_taken_by_all_even_when_frozen(klass: Watched) -> None:
+    own = Session(store(), FIVE_BAR, klass.course)
+    do(own, c.SetParameter("K2", 33), c.ChoosePath("clover"))
+    session = klass.student("Ada")
+    klass.room.freeze(True)
+    klass.look()
+    klass.room.push(TakeSetup(capture(own)))
+    klass.look()
+    assert capture(session) == capture(own)
+    assert session.frozen and session.message == ENGLISH("class.frozen")
+
+
+def sent_setup(course: Course) -> Setup:
+    """That no step of the lessons has."""
+    own = Session(store(), FIVE_BAR, course)
+    do(own, c.SetParameter("K2", 33), c.ChoosePath("clover"))
+    return capture(own)
+
+
+@pytest.mark.parametrize("step", range(8))
+def test_a_setup_leaves_a_student_in_the_open_step(klass: Watched, step: int) -> None:
+    session, setup = klass.student("Ada"), sent_setup(klass.course)
+    do(session, c.SetParameter("K1", 7.0), lc.OpenLesson(LESSON))
+    do(session, *[lc.GoToStep(1)] * step)
+    run(session, 0.2)
+    waits, before = session.locked, session.lessons.progress
+    klass.room.push(TakeSetup(setup))
+    klass.look()
+    assert capture(session) == setup and session.message == ENGLISH("class.setup_in_step")
+    assert session.lessons.progress == before and session.lessons.index == step
+    assert session.locked == waits and session.running == (not waits)
+    do(session, lc.GoToStep(1))
+    assert session.lessons.index == min(step + 1, 7)
+    do(session, lc.CloseLesson())
+    assert session.parameters.K1 == 7.0  # the free lab as it was
+
+
+def test_set_up_again_brings_the_steps_own_setup_back(klass: Watched) -> None:
+    session = klass.student("Ada")
+    do(session, lc.OpenLesson(LESSON))
+    own = capture(session)
+    klass.room.push(TakeSetup(sent_setup(klass.course)))
+    klass.look()
+    assert capture(session) != own
+    do(session, lc.BeginStepAnew())
+    assert capture(session) == own and session.lessons.index == 0
+
+
+def test_a_setup_ends_what_plays_and_nothing_is_noted_of_it(klass: Watched) -> None:
+    session = klass.student("Ada")
+    do(session, lc.OpenLesson(LESSON), *[lc.GoToStep(1)] * 2, lc.PlayStep())
+    run(session, 0.5)
+    assert session.lessons.playing
+    klass.room.push(TakeSetup(sent_setup(klass.course)))
+    klass.look()
+    run(session, 2.5)
+    assert not session.lessons.playing and not session.lessons.has_played()
+    assert session.lessons.notes.truths == {}
+
+
+def test_a_step_that_is_opened_is_a_step_of_a_lesson(klass: Watched) -> None:
+    session, free = klass.student("Ada"), klass.student("Bob")
+    do(session, c.SetParameter("K1", 7.0), lc.OpenLesson(OTHER), *[lc.GoToStep(1)] * 6)
+    klass.room.push(TakeStep(LESSON, 5))
+    klass.look()
+    assert session.message == ENGLISH("class.step_elsewhere")
+    assert free.message == ENGLISH("class.step")
+    for by, index in ((0, 5), (1, 6), (1, 7), (-1, 6), (-1, 5), (-1, 4)):
+        do(session, lc.GoToStep(by))
+        assert session.lessons.progress.lesson == LESSON and session.lessons.index == index
+    do(session, lc.OpenLesson(OTHER))
+    assert session.lessons.index == 6 and session.editor.design.name == "ellipse"
+    assert set(session.lessons.notes.answers) == {"1", "3"}
+    do(session, lc.CloseLesson())
+    assert session.parameters.K1 == 7.0
+
+
+def test_who_joins_later_gets_what_was_sent_last(klass: Watched) -> None:
+    klass.room.push(TakeStep(OTHER, 0))
+    klass.room.push(TakeStep(LESSON, 1))
+    for name in ("Ada", "Bob"):
+        late = klass.student(name)
+        assert late.lessons.progress.lesson == LESSON and late.lessons.index == 1
+        do(late, lc.CloseLesson())
+        klass.look()
+        assert late.lessons.lesson is None  # once
+    klass.room.push(TakeSetup(sent_setup(klass.course)))
+    assert capture(klass.student("Cid")) == sent_setup(klass.course)
+
+
+def test_what_stands_ends_when_the_teacher_says_so(klass: Watched) -> None:
+    first = klass.student("Ada")
+    klass.room.push(TakeStep(LESSON, 1))
+    klass.look()
+    klass.room.push(None)
+    klass.look()
+    assert klass.room.orders.push is None and first.lessons.progress.lesson == LESSON
+    assert klass.student("Bob").lessons.lesson is None
+    klass.room.push(TakeStep(OTHER, 0))
+    klass.look()
+    assert first.lessons.progress.lesson == OTHER
+    klass.room.end()
+    klass.look()
+    assert klass.student("Cid").lessons.lesson is None
+
+
+def test_who_reloads_has_what_was_sent_and_goes_on_from_there(klass: Watched) -> None:
+    session = klass.student("Ada")
+    klass.labs["lab 0"] = session, False  # a reload, and just then the teacher sends
+    klass.look()
+    klass.room.push(TakeStep(LESSON, 1))
+    klass.look()
+    klass.labs["lab 0"] = session, True
+    klass.look()
+    assert session.lessons.index == 1
+    do(session, lc.GoToStep(1))
+    klass.labs["lab 0"] = session, False
+    klass.look()
+    klass.labs["lab 0"] = session, True
+    klass.look()
+    assert session.lessons.index == 2  # and is not sent back
+
+
+def test_only_a_teacher_thaws(klass: Watched) -> None:
+    session = klass.student("Ada")
+    do(session, Freeze(True))  # type: ignore[arg-type]
+    do(session, lc.SetLanguage("de"), c.Reset())
+    assert session.frozen and session.lessons.words.language == "en"
+
+
+def test_who_leaves_and_returns_keeps_its_place(klass: Watched) -> None:
+    session = klass.student("Ada")
+    klass.room.push(TakeStep(LESSON, 1))
+    klass.look()
+    klass.look()
+    klass.labs["lab 0"] = session, False
+    klass.look()
+    away = klass.room.member("lab 0")
+    assert away is not None and not away.connected and away.progress.lesson == LESSON
+    del klass.labs["lab 0"]  # dropped after a while; kept in the database
+    klass.room.freeze(True)
+    klass.look()
+    again = Session(store(), FIVE_BAR, klass.course)
+    again.lessons.resume(session.lessons.progress, None, again)
+    klass.labs["lab 0"] = again, True
+    klass.look()
+    member = klass.room.member("lab 0")
+    assert member is not None and member.connected and again.frozen
+    assert (member.number, member.name) == (1, "Ada") and again.lessons.index == 1
+
+
+def test_the_table_knows_who_is_idle_and_who_is_away(klass: Watched) -> None:
+    busy, _ = klass.student("Busy"), klass.student("Idle")
+    klass.student("Gone")
+    klass.now += 180.0
+    do(busy, c.SetRunning(False))
+    klass.labs["lab 2"] = klass.labs["lab 2"][0], False
+    klass.look()
+    rows = page.table(klass.room.members().values(), klass.course, klass.now, ENGLISH)
+    for name, state in (("Busy", "here"), ("Idle", "idle for 3 min"), ("Gone", "away")):
+        row = next(row for row in rows.split("<tr") if name in row)
+        assert state in row
+
+
+# What was predicted.
+
+
+def answered(*answers: Answer | None, step: int) -> list[Progress]:
+    """Students with these answers to one prediction."""
+    kept = [{} if answer is None else {str(step): answer} for answer in answers]
+    return [Progress(notes={LESSON: Notes(answers=own)}) for own in kept]
+
+
+def test_choices_are_counted(course: Course) -> None:
+    lesson = course.lesson(LESSON, "en")
+    found = prediction_at(lesson, 4)
+    assert found is not None and found[0] == 3 and isinstance(found[1], Choice)
+    ways = answered(Answer(1), Answer(1), Answer(0), Answer(), Answer(7), None, step=3)
+    counted = distribution(found[1], LESSON, 3, [*ways, Progress()])
+    assert (counted.counts, counted.skipped, counted.waiting) == ((1, 2), 1, 2)
+    hidden = page.prediction_view(found[1], counted, None, False, ENGLISH)
+    revealed = page.prediction_view(found[1], counted, None, True, ENGLISH)
+    assert "✓" not in hidden and revealed.count("✓") == 1
+    assert "width:85.0%" in hidden and "width:42.5%" in hidden
+    large = page.prediction_view(found[1], counted, None, False, ENGLISH, large=True)
+    sizes = [float(re.findall(r"font-size:([\d.]+)em", view)[0]) for view in (hidden, large)]
+    assert sizes[1] > 1.3 * sizes[0]  # for a projector
+
+
+def test_sketches_lie_over_the_truth(course: Course) -> None:
+    lesson = course.lesson(LESSON, "en")
+    found = prediction_at(lesson, 2)
+    assert found is not None and found[0] == 1 and isinstance(found[1], Sketch)
+    curve = Answer(times=(0.0, 1.0, 2.0), values=(0.0, 30.0, 1e9))
+    ways = answered(curve, curve, None, step=1)
+    truth = Truth("distance", (0.0, 2.0), (0.0, 50.0), (0.0, 1.0))
+    played = Progress(notes={LESSON: Notes(truths={"1": truth})})
+    assert truth_of(LESSON, 1, ways) is None and truth_of(LESSON, 1, [*ways, played]) == truth
+    counted = distribution(found[1], LESSON, 1, ways)
+    hidden = page.prediction_view(found[1], counted, truth, False, ENGLISH)
+    revealed = page.prediction_view(found[1], counted, truth, True, ENGLISH)
+    assert hidden.count("<polyline") == 2 and revealed.count("<polyline") == 4
+    assert "nan" not in revealed and "1000000000" not in revealed
+
+
+def test_a_step_without_prediction_has_none(course: Course) -> None:
+    lesson = course.lesson(LESSON, "en")
+    assert prediction_at(lesson, 0) is None and prediction_at(lesson, 5) is None
+
+
+# What is taken home, and what is forgotten.
+
+
+def rows_of(data: bytes) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(data.decode("utf-8-sig"))))
+
+
+def test_the_record_has_a_row_for_each_prediction_and_task(klass: Watched) -> None:
+    session = klass.student("Ada")
+    klass.student("Bob")
+    do(session, lc.OpenLesson(LESSON), lc.GoToStep(1))
+    do(session, lc.Predict(times=(0.0, 1.0), values=(1.0, 2.5)))
+    klass.look()
+    rows = rows_of(class_csv(klass.room.members().values(), klass.course, "en"))
+    assert {row["nickname"] for row in rows} == {"Ada"} and tuple(rows[0]) == HEADER
+    found = {(row["kind"], row["step"]): row for row in rows}
+    assert found["prediction", "2"]["result"] == "sketch"
+    assert found["prediction", "2"]["value"] == "0:1 1:2.5"
+    assert found["prediction", "4"]["result"] == "open"
+    task = next(row for row in rows if row["kind"] == "task")
+    assert (task["item"], task["result"], task["right"]) == ("hold", "open", "0")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ['=HYPERLINK("http://x")', "+1", "-1", "@SUM(A1)", " =1", "\t=1", "|calc", "%0", 'a","=1'],
+)
+def test_no_cell_is_a_formula(klass: Watched, name: str) -> None:
+    session = klass.student(name)
+    do(session, lc.OpenLesson(LESSON))
+    klass.look()
+    rows = rows_of(class_csv(klass.room.members().values(), klass.course, "en"))
+    assert rows
+    assert {row["nickname"].removeprefix("'") for row in rows} == {cleaned(name)}
+    for cell in (cell for row in rows for cell in row.values()):
+        assert not cell.lstrip().startswith(("=", "+", "-", "@", "|", "%"))
+
+
+def test_everything_that_is_kept_is_deleted(tmp_path: Path) -> None:
+    file = tmp_path / "labs.db"
+    records = Records(file_url(file))
+    keeper = Keeper(records, interval=60.0)
+    for code in ("a" * 12, "b" * 12):
+        records.save(code, {"secret": "Ada"})
+    keeper.submit("c" * 12, lambda: {"secret": "late"})
+    count = keeper.forget(records.delete_all)
+    keeper.close()
+    assert count in (2, 3) and records.delete_all() == 0
+    records.save("a" * 12, {"secret": "Ada"})
+    records.close()
+    (tmp_path / "labs.db.broken-1").write_text("Ada")
+    gone = forget(f"sqlite:///{file}")
+    assert gone.labs == 1 and [f.name for f in gone.files] == ["labs.db.broken-1"]
+    assert not any(b"Ada" in part.read_bytes() for part in tmp_path.iterdir())

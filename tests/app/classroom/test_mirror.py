@@ -1,0 +1,231 @@
+"""A student's lab in another process, as the teacher sees it: the same motion, a little later."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from onpath.app.classroom.mirror import BEHIND, Mirror
+from onpath.app.classroom.moment import Moment, read_moment, tell
+from onpath.app.lab import commands as c
+from onpath.app.lab.class_commands import Freeze
+from onpath.app.lab.session import Session
+from onpath.app.lab.take_snapshot import take_snapshot
+from onpath.app.simulation.simulation_thread import Lab
+from onpath.models.control.laws import NAMES
+from tests.support.lab import FRAME, assert_drawable, do, new_session, store, y
+
+OFTEN = 8  # frames from one telling to the next
+SAME = 1e-3  # [m]
+
+
+Act = Callable[[float], c.Command | None]
+"""What is done, by the time since when, [s]."""
+
+
+def told(lab: Lab) -> str:
+    return msgspec.json.encode(tell(lab)).decode()
+
+
+@dataclass
+class Followed:
+    """A student's lab, its mirror, and where the student's end-points were when.
+
+    Attributes:
+        late: frames that a telling takes; called for each.
+    """
+
+    late: Callable[[], int] = lambda: 5
+    lab: Lab = field(default_factory=lambda: Lab(new_session(0.5)))
+    frames: int = 0
+    ways: dict[str, list[tuple[float, np.ndarray]]] = field(default_factory=dict)
+    jumps: list[float] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.mirror = Mirror(Session(store()), told(self.lab))
+        self._under_way: list[tuple[int, str]] = []
+
+    @property
+    def session(self) -> Session:
+        return self.lab.session
+
+    def run(
+        self, seconds: float, act: Callable[[float], c.Command | None] = lambda _: None
+    ) -> None:
+        """Both go on; what the teacher sees is compared with what was."""
+        for number in range(round(seconds / FRAME)):
+            command = act(number * FRAME)
+            do(self.session, *([command] if command else []))
+            self.session.advance(self.session.rate * FRAME)
+            for name in NAMES:
+                way = self.ways.setdefault(name, [])
+                way.append((self.session.time, y(self.session, name)))
+            if self.frames % OFTEN == 0:
+                self._under_way.append((self.frames + self.late(), told(self.lab)))
+            while self._under_way and self._under_way[0][0] <= self.frames:
+                self.mirror.tell(self._under_way.pop(0)[1])
+            before = self.mirror.session.time
+            self.mirror.keep_up()
+            self.jumps.append(self.mirror.session.time - before)
+            self.frames += 1
+
+    def distance(self) -> float:
+        """Of the mirror's end-points from where the student's were at that time, [m]."""
+        time = self.mirror.session.time
+        return max(self._distance(name, time) for name in NAMES)
+
+    def _distance(self, name: str, time: float) -> float:
+        times, points = (np.array(part) for part in zip(*self.ways[name], strict=True))
+        there = np.array([np.interp(time, times, along) for along in points.T])
+        return float(np.linalg.norm(y(self.mirror.session, name) - there))
+
+
+def test_the_same_motion_a_little_later_and_smoothly() -> None:
+    rng = np.random.default_rng(1)
+    both = Followed(late=lambda: int(rng.integers(2, 12)))
+    both.run(2.0)
+    both.jumps.clear()
+    for _ in range(60):
+        both.run(0.05)
+        assert both.distance() < SAME
+        assert 0.05 < both.session.time - both.mirror.session.time < 2 * BEHIND
+    assert min(both.jumps) >= 0.5 * FRAME - 1e-3 and max(both.jumps) <= 2 * FRAME + 1e-3
+    assert_drawable(take_snapshot(both.mirror.session, 1.0))
+
+
+def test_what_is_done_to_the_lab_is_seen_within_a_millimetre() -> None:
+    both = Followed()
+    both.run(1.0)
+    for command in (
+        c.Hold(True),
+        c.Hold(False),
+        c.SetParameter("K1", 90.0),
+        c.ChoosePath("clover"),
+    ):
+        do(both.session, command)
+        both.run(1.5)
+        assert both.distance() < SAME, command
+    assert both.mirror.session.parameters.K1 == 90.0
+    assert both.mirror.session.editor.design.name == "clover"
+
+
+def test_a_path_that_is_dragged_and_let_go_is_the_same_path() -> None:
+    both = Followed()
+    index, (x, up) = 2, both.session.editor.design.points[2]
+
+    def drag(time: float) -> c.Command | None:
+        at = both.session.robot.place(
+            both.session.robot.frame.lift(np.array([x + 0.02 * time, up + 0.01 * time]))
+        )
+        return c.MovePoint(index, at, finished=False) if round(time / FRAME) % 3 == 0 else None
+
+    both.run(1.0)
+    both.run(1.0, drag)
+    assert both.mirror.session.editor.points()[index][0] > x
+    do(both.session, c.EndMove())
+    both.run(1.5)
+    assert both.distance() < SAME
+    mine, theirs = both.mirror.session.editor, both.session.editor
+    assert np.allclose(mine.curve.series, theirs.curve.series, atol=1e-9)
+    assert np.allclose(mine.points(), theirs.points())
+
+
+def test_a_hand_that_pulls_is_near_meanwhile_and_exact_after() -> None:
+    both = Followed()
+    both.run(1.0)
+
+    def pull(time: float) -> c.Command | None:
+        return c.Tug(0.002 * np.cos(3 * time), 0.002 * np.sin(3 * time))
+
+    both.run(1.0, pull)
+    assert both.distance() < 5 * SAME and both.mirror.session.grips.grabbed
+    do(both.session, c.Release())
+    both.run(1.5)
+    assert both.distance() < SAME and not both.mirror.session.grips.grabbed
+
+
+@pytest.mark.parametrize(
+    "still", [c.SetRunning(False), c.View(0.4), Freeze(True)], ids=lambda s: type(s).__name__
+)
+def test_a_lab_that_stands_still_is_shown_where_it_stands(still: Any) -> None:
+    both = Followed()
+    both.run(1.0)
+    do(both.session, still)
+    both.run(1.5)
+    shown, real = (take_snapshot(s, 1.0) for s in (both.mirror.session, both.session))
+    assert abs(shown.time - real.time) < 2e-3 and shown.running == real.running
+    for name in NAMES:
+        assert np.abs(shown.robots[name].tip - real.robots[name].tip).max() < SAME
+    assert shown.message == real.message
+
+
+def test_a_new_start_and_another_robot_are_followed() -> None:
+    both = Followed()
+    both.run(1.0)
+    do(both.session, c.Reset())
+    both.run(0.7)
+    assert both.mirror.session.time < 0.8
+    do(both.session, c.ChooseRobot("flexible"), c.SetParameter("modes", 2))
+    both.ways.clear()
+    both.run(1.2)
+    assert both.mirror.session.robot is both.session.robot
+    assert both.distance() < SAME
+
+
+def test_nothing_that_the_teacher_does_reaches_the_lab_and_nothing_runs_unseen() -> None:
+    both = Followed()
+    both.run(1.0)
+    before = both.mirror.session.time, both.session.time
+    for _ in range(60):
+        both.mirror.tell(told(both.lab))
+        both.mirror.session.post(c.Reset())  # whatever a page may do wrong
+    assert (both.mirror.session.time, both.session.time) == before
+    assert len(both.mirror._coming) <= 50
+
+
+def spoilt(text: str) -> st.SearchStrategy[str]:
+    """One value of a moment replaced."""
+    values = st.one_of(
+        st.none(),
+        st.text(max_size=5),
+        st.integers(),
+        st.floats(),
+        st.lists(st.floats(), max_size=3),
+    )
+    data = msgspec.json.decode(text)
+    keys = [*((key,) for key in data), *(("path", key) for key in data["path"])]
+    keys += [("robots", 0, key) for key in data["robots"][0]]
+
+    def replaced(key: tuple[Any, ...], value: Any) -> str:
+        new = msgspec.json.decode(text)
+        part: Any = new
+        for step in key[:-1]:
+            part = part[step]
+        part[key[-1]] = value
+        return msgspec.json.encode(new).decode()
+
+    return st.builds(replaced, st.sampled_from(keys), values)
+
+
+TEXT = told(Lab(new_session(0.2)))
+
+
+@given(st.one_of(st.text(), spoilt(TEXT)))
+def test_what_comes_is_a_lab_or_is_left_out(text: str) -> None:
+    mirror = Mirror(Session(store()), TEXT)
+    mirror.keep_up()
+    mirror.tell(text)
+    for _ in range(3):
+        mirror.keep_up()
+    assert_drawable(take_snapshot(mirror.session, 1.0))
+    try:
+        assert isinstance(read_moment(text), Moment)
+    except ValueError:
+        assert mirror.is_seen is False

@@ -1,0 +1,256 @@
+"""The command line: what it prints and writes, and one clear line for whatever is wrong."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from onpath.app.cli.main import run_command
+from onpath.models.closed_loop.trajectory import read_csv
+from onpath.models.control.laws import NAMES
+from onpath.models.systems.parameters import FiveBarParameters, specs
+from tests.support.checkout import ROOT
+
+SHORT = ["experiment", "obstruction", "--set", "duration=0.2"]
+
+
+def onpath(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """A real process."""
+    command = [sys.executable, "-c", "from onpath.app.cli.main import main; main()", *arguments]
+    root = str(ROOT)
+    environment = {**os.environ, "PYTHONPATH": root}
+    return subprocess.run(
+        command, capture_output=True, text=True, env=environment, timeout=60, check=False
+    )
+
+
+def test_summary_is_json_with_both_controllers(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command([*SHORT, "--json"]) == 0
+    out = capsys.readouterr()
+    result = json.loads(out.out)
+    assert result["experiment"] == "obstruction" and set(result["controllers"]) == set(NAMES)
+    assert out.err == ""
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_one_controller_alone_is_as_in_company(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    summaries = []
+    for choice in (name, "both"):
+        assert run_command([*SHORT, "--json", "--controller", choice]) == 0
+        summaries.append(json.loads(capsys.readouterr().out)["controllers"])
+    assert list(summaries[0]) == [name] and summaries[0][name] == summaries[1][name]
+
+
+def test_table_for_a_reader_names_both_and_says_why_one_stopped(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    unstable = ["--set", "K1=2500", "--set", "K2=0", "--set", "control_rate=50"]
+    assert run_command(["experiment", "obstruction", *unstable]) == 0
+    text = capsys.readouterr().out
+    for words in ("trajectory tracking", "path following", "diverged at", "mm", "rad/s", "N m"):
+        assert words in text
+    assert "diverged: " not in text and "None" not in text
+    assert run_command(["experiment", "obstruction", *unstable, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["controllers"]
+    assert all(values["diverged"] and values["diverged_at_s"] > 0 for values in found.values())
+
+
+def test_all_files_are_the_same_to_the_byte(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written: list[list[bytes]] = []
+    for folder in ("first", "second"):
+        (tmp_path / folder).mkdir()
+        files = [tmp_path / folder / f"out.{kind}" for kind in ("csv", "png", "svg", "pdf")]
+        for file in files:
+            option = "--csv" if file.suffix == ".csv" else "--plot"
+            assert run_command([*SHORT, "--json", option, str(file)]) == 0
+        written.append([file.read_bytes() for file in files])
+        written[-1].append(capsys.readouterr().out.encode())
+        assert sorted((tmp_path / folder).iterdir()) == sorted(files)  # no scratch files
+    assert written[0] == written[1]
+    magic = (b"t_s,controller,", b"\x89PNG", b"<?xml", b"%PDF")
+    assert all(data.startswith(start) for data, start in zip(written[0], magic, strict=False))
+    assert min(len(data) for data in written[0]) > 200
+
+
+def test_csv_follows_what_was_set(tmp_path: Path) -> None:
+    file = tmp_path / "out.csv"
+    assert run_command([*SHORT, "--set", "r=0.03", "--csv", str(file)]) == 0
+    with file.open() as text:
+        columns = read_csv(text)
+    assert set(columns) == set(NAMES)
+    for values in columns.values():
+        assert len(values["t_s"]) == 200
+        assert (values["y1_m"][0], values["y2_m"][0]) == pytest.approx((0.03, 0.0))
+    assert file.stat().st_mode & 0o777 == 0o644
+
+
+def test_the_last_of_two_values_counts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    outputs = []
+    for values in (["--set", "K1=1", "--set", "K1=200"], ["--set", "K1=200"], ["--set", "K1=1"]):
+        assert (
+            run_command(["experiment", "position", "--set", "duration=0.2", *values, "--json"]) == 0
+        )
+        outputs.append(capsys.readouterr().out)
+    assert outputs[0] == outputs[1] != outputs[2]
+
+
+def test_every_parameter_can_be_set(capsys: pytest.CaptureFixture[str]) -> None:
+    settings = []
+    for name, spec in specs(FiveBarParameters).items():
+        value = spec.options[-1] if spec.options else spec.low + 0.4 * (spec.high - spec.low)
+        settings += ["--set", f"{name}={value}"]
+    assert run_command(["experiment", "obstruction", *settings, "--set", "duration=0.02"]) == 0
+
+
+BAD = [
+    ["bogus"],
+    [""],
+    ["-x"],
+    ["--port", "abc"],
+    ["serve", "--log-level", "loud"],
+    ["bench", "--slow"],
+    ["experiment"],
+    ["experiment", ""],
+    ["experiment", "obstructoin"],
+    ["experiment", "obstruction", "position"],
+    ["experiment", "obstruction", "--bogus"],
+    ["experiment", "obstruction", "--controller", "pid"],
+    ["experiment", "obstruction", "--json", "yes"],
+    ["experiment", "obstruction", "--csv"],
+    ["experiment", "obstruction", "--set"],
+    ["experiment", "obstruction", "--set", ""],
+    ["experiment", "obstruction", "--set", "K1"],
+    ["experiment", "obstruction", "--set", "K1="],
+    ["experiment", "obstruction", "--set", "=1"],
+    ["experiment", "obstruction", "--set", "K1=1=2"],
+    ["experiment", "obstruction", "--set", "K1=nan"],
+    ["experiment", "obstruction", "--set", "K1=-1"],
+    ["experiment", "obstruction", "--set", "K1=1e400"],
+    ["experiment", "obstruction", "--set", "K1=1\n2"],
+    ["experiment", "obstruction", "--set", "duration=0"],
+    ["experiment", "obstruction", "--set", "duration=1e9"],
+    ["experiment", "obstruction", "--set", "duration=nan"],
+    ["experiment", "obstruction", "--set", "r=0"],
+    ["experiment", "obstruction", "--set", "r=inf"],
+    ["experiment", "obstruction", "--set", "hold_from=5", "--set", "hold_to=4"],
+    ["experiment", "obstruction", "--set", "control_rate=999"],
+    ["experiment", "obstruction", "--set", "task=dance"],
+    ["experiment", "obstruction", "--plot", "x.txt"],
+    ["experiment", "obstruction", "--plot", "x"],
+    ["experiment", "obstruction", "--plot", "missing/x.png"],
+    ["experiment", "obstruction", "--csv", "missing/x.csv"],
+    ["experiment", "obstruction", "--csv", "."],
+    ["experiment", "obstruction", "--csv", ""],
+    ["experiment", "obstruction", "--csv", "file/x.csv"],
+    ["--port", "99999"],
+    ["--port", "-1"],
+    ["--workers", "2", "--port", "99999"],
+    ["--socket", "missing/x"],
+    ["--socket", "x" * 200],
+    ["--host", "256.0.0.1"],
+    ["zero-dynamics", "--set", "K1=3"],
+    ["zero-dynamics", "--set", "alpha=0.5"],
+    ["zero-dynamics", "--set", "bogus=3"],
+]
+
+
+@pytest.mark.parametrize("arguments", BAD, ids=repr)
+def test_bad_input_gives_one_line_and_code_two(
+    arguments: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").write_text("not a folder")
+    assert run_command(arguments) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith("onpath: ") and len(said.err) > 20
+    assert said.err.count("\n") == 1 and said.err.endswith("\n")
+    assert "Traceback" not in said.err and "---" not in said.err and "\u2500" not in said.err
+    assert [p.name for p in tmp_path.iterdir()] == ["file"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["experiment", "obstructoin"], "obstruction"),
+        (["experiment", "obstruction", "--set", "k1=1"], "did you mean K1"),
+        (["experiment", "obstruction", "--set", "holdfrom=1"], "hold_from"),
+        (["experiment", "obstruction", "--contrller", "both"], "--controller"),
+        (["experiment", "obstruction", "--controller", "pid"], "path_following"),
+        (["experimnt"], "experiment"),
+        (["experiment", "obstruction", "--set", "task=dance"], "speed, position"),
+        (["experiment", "obstruction", "--set", "K1=9999"], "0 and 2500 1/s²"),
+        (["experiment", "obstruction", "--plot", "x.txt"], ".png, .svg or .pdf"),
+        (["--port", "99999"], "port 99999: expected 0 to 65535"),
+        (["--socket", "missing/x"], "missing/x"),
+        (["zero-dynamics", "--set", "K1=3"], "plant, rho, frequency, zeta"),
+    ],
+)
+def test_complaint_names_what_was_expected(
+    arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command(arguments) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_a_file_that_is_there_is_kept_when_a_run_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "out.csv"
+    file.write_text("precious")
+    assert run_command([*SHORT, "--set", "K1=nan", "--csv", str(file)]) == 2
+
+    def fail(*_: object) -> None:
+        file.parent.joinpath("seen").write_text("the failure came while writing")
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr("onpath.models.closed_loop.trajectory.write_csv", fail)
+    assert run_command([*SHORT, "--csv", str(file)]) == 2
+    assert capsys.readouterr().err.endswith("no space left on device\n")
+    assert file.read_text() == "precious"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["out.csv", "seen"]
+
+
+def test_nothing_is_simulated_for_a_file_that_cannot_be(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        "onpath.models.studies.experiments.run", lambda *_: pytest.fail("simulated in vain")
+    )
+    for option, name in (("--csv", "x.csv"), ("--plot", "x.png")):
+        assert run_command([*SHORT, option, str(tmp_path / "missing" / name)]) == 2
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_folder_without_write_permission_is_refused(tmp_path: Path) -> None:
+    tmp_path.chmod(0o500)
+    assert run_command([*SHORT, "--csv", str(tmp_path / "x.csv")]) == 2
+
+
+def test_real_process_succeeds_and_fails_as_promised(tmp_path: Path) -> None:
+    good = onpath(*SHORT, "--json", "--csv", str(tmp_path / "x.csv"))
+    assert good.returncode == 0 and good.stderr == ""
+    assert json.loads(good.stdout)["experiment"] == "obstruction"
+    assert (tmp_path / "x.csv").read_text().count("\n") == 1 + 2 * 200
+    bad = onpath("experiment", "obstruction", "--set", "K9=1")
+    assert bad.returncode == 2 and bad.stdout == "" and bad.stderr.count("\n") == 1
+    assert "did you mean K" in bad.stderr and "Traceback" not in bad.stderr
+
+
+def test_help_is_given_on_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments, words in ((["--help"], "experiment"), (["experiment", "--help"], "--set")):
+        with pytest.raises(SystemExit) as stop:
+            run_command(arguments)
+        assert stop.value.code == 0 and words in capsys.readouterr().out

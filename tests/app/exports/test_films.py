@@ -1,0 +1,206 @@
+"""Recordings: many at once, one that takes too long, one that nobody waits for any more."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+
+import pytest
+from viser.infra import WebsockServer
+
+from onpath.app.exports import exporter as exports
+from onpath.app.exports.exporter import Exporter
+from onpath.app.lab.session import Session
+from onpath.app.viser_adapter import secure_server as hardening
+from tests.support import waiting
+from tests.support.lab import new_session
+
+WAIT = 60.0  # [s]; only ends a test that would hang
+CROWD = 12
+SOCKETS = Path("/proc/self/fd")
+wait_for = partial(waiting.wait_for, seconds=WAIT)
+
+
+class Note:
+    """What the user reads."""
+
+    body = ""
+
+
+class Client:
+    """A browser: the notes and the files that it has got."""
+
+    def __init__(self) -> None:
+        self.notes: list[Note] = []
+        self.files: list[bytes] = []
+
+    def add_notification(self, *_: object, **__: object) -> Note:
+        self.notes.append(Note())
+        return self.notes[-1]
+
+    def send_file_download(self, _name: str, content: bytes, save_immediately: bool) -> None:
+        self.files.append(content)
+
+    @property
+    def answered(self) -> bool:
+        """Whether all that was asked for has come, or has been given up."""
+        return bool(self.notes) and all(note.body for note in self.notes)
+
+
+@contextmanager
+def tab() -> Iterator[tuple[Client, Exporter]]:
+    client = Client()
+    exporter = Exporter(client)  # type: ignore[arg-type]
+    yield client, exporter
+    exporter.close()
+
+
+@pytest.fixture(scope="module")
+def session() -> Session:
+    return new_session(0.4)
+
+
+def open_sockets() -> int:
+    """Of this process."""
+    ours = [SOCKETS / name for name in os.listdir(SOCKETS)] if SOCKETS.exists() else []
+    return sum(os.readlink(each).startswith("socket:") for each in ours if each.is_symlink())
+
+
+def press_at_once(session: Session, exporters: list[Exporter]) -> None:
+    """The button of each, all in the same moment."""
+    ready = threading.Barrier(len(exporters))
+
+    def press(exporter: Exporter) -> None:
+        exporter.recording()
+        ready.wait()
+        exporter.serve(session)
+
+    threads = [threading.Thread(target=press, args=(each,)) for each in exporters]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+
+def test_twelve_pressed_together_are_twelve_films_and_leave_nothing_behind(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started: list[WebsockServer] = []
+    genuine = WebsockServer.start
+    monkeypatch.setattr(WebsockServer, "start", lambda s: (started.append(s), genuine(s)))
+    with tab() as (client, exporter):  # a first one, which loads what all share
+        press_at_once(session, [exporter])
+        wait_for(lambda: client.answered)
+    wait_for(lambda: not exporters_threads())
+    threads, sockets = threading.active_count(), open_sockets()
+    clients, exporters = [Client() for _ in range(CROWD)], list[Exporter]()
+    for each in clients:
+        exporters.append(Exporter(each))  # type: ignore[arg-type]
+    press_at_once(session, exporters)
+    wait_for(lambda: all(client.answered for client in clients))
+    for exporter in exporters:
+        exporter.close()
+    wait_for(lambda: not exporters_threads())
+    assert [len(client.files) for client in clients] == [1] * CROWD
+    assert len({film for client in clients for film in client.files}) == 1
+    assert not started
+    assert threading.active_count() <= threads and open_sockets() <= sockets
+
+
+def exporters_threads() -> list[threading.Thread]:
+    return [thread for thread in threading.enumerate() if thread.name.startswith("export")]
+
+
+def test_a_film_that_takes_too_long_is_given_up_and_the_user_is_told(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with tab() as (client, exporter):
+        monkeypatch.setattr(exports, "PATIENCE", -1.0)
+        press_at_once(session, [exporter])
+        wait_for(lambda: client.answered)
+        assert session.lessons.words("export.failed", name="onpath.html") == client.notes[0].body
+        monkeypatch.undo()
+        press_at_once(session, [exporter])  # the next one is made
+        wait_for(lambda: client.files)
+
+
+class Occupied:
+    """The films of others, which take their time."""
+
+    def __init__(self) -> None:
+        self.over = threading.Event()
+        begun = threading.Event()
+        self._film = exports._films.submit(lambda: (begun.set(), self.over.wait(WAIT)))
+        begun.wait(WAIT)
+
+    def end(self) -> None:
+        """And whoever was in the queue has had a turn."""
+        self.over.set()
+        exports._films.submit(lambda: None).result(WAIT)
+
+
+def test_pressed_a_hundred_times_it_makes_one_film(session: Session) -> None:
+    others = Occupied()
+    with tab() as (client, exporter):
+        for _ in range(100):
+            exporter.recording()
+            exporter.serve(session)
+        wait_for(lambda: client.notes)
+        wait_for(lambda: exporter._film)
+        others.end()
+        wait_for(lambda: client.answered)
+        assert (len(client.notes), len(client.files)) == (1, 1)
+
+
+def test_nothing_is_made_for_who_has_left_the_queue(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[str] = []
+    genuine: Callable[..., bytes] = exports.record_scene
+    monkeypatch.setattr(exports, "record_scene", lambda *a: (made.append("film"), genuine(*a))[1])
+    others = Occupied()
+    with tab() as (client, exporter):
+        press_at_once(session, [exporter])
+        wait_for(lambda: exporter._film)
+    others.end()
+    assert not made and not client.files
+
+
+class Asked:
+    """A lock that tells when somebody asks for it."""
+
+    def __init__(self) -> None:
+        self._lock, self.asked = threading.Lock(), threading.Event()
+
+    def __enter__(self) -> None:
+        self.asked.set()
+        self._lock.acquire()
+
+    def __exit__(self, *_: object) -> None:
+        self._lock.release()
+
+
+def test_a_server_built_while_another_is_being_built_listens(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """viser looks up the function that listens, which is replaced meanwhile: once at a time."""
+    lock, listening = Asked(), threading.Event()
+    monkeypatch.setattr(hardening, "_patching", lock)
+
+    def build() -> None:
+        server = hardening.make_server(port=0)
+        listening.set()
+        server.stop()
+
+    with hardening.listen("127.0.0.1", 0) as listener:
+        door, limits = hardening.Door((), local_only=True), hardening.Limits()
+        connections = hardening.ConnectionLimits(limits, hardening.Proxies())
+        with hardening._guarded_serve(listener, door, limits, connections, in_folder=False):
+            lock.asked.clear()
+            threading.Thread(target=build, daemon=True).start()
+            assert lock.asked.wait(WAIT)
+        assert listening.wait(WAIT / 6)

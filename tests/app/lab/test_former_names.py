@@ -1,0 +1,126 @@
+"""What was stored or typed when the plant unit_modes was called as_printed is still understood."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+
+from onpath.app.classroom.moment import parameters_of, read_moment, tell
+from onpath.app.cli.main import run_command
+from onpath.app.lab import commands as c
+from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab.class_commands import TakeSetup
+from onpath.app.lab.lesson_record import Beginning, record_of
+from onpath.app.lab.script_player import ScriptPlayer
+from onpath.app.lab.session import Session
+from onpath.app.lab.setup import capture, from_data
+from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.storage.lab_state import keep, put_back
+from onpath.lessons.checks import judge
+from onpath.lessons.course import Course, read_course
+from onpath.lessons.words import Words
+from onpath.models.systems.flexible_robot import FlexibleParameters
+from tests.support.lab import do, new_session, run, store
+from tests.support.lesson_texts import LESSON, write_lesson
+
+OLD, NEW = "as_printed", "unit_modes"
+SHARED = "ONPATH1-VPDBKH3IOEAASQKDSCTQU4QS6NAODHCYDRPVBFEZA6ZAZ2CQFRYV2CYA-NCGI2VI"
+"""Made when the plant had its old name."""
+SETUP = {"robot": "flexible", "benches": {"flexible": {"parameters": {"plant": OLD}}}}
+LESSON_OF_THEN = (
+    LESSON.replace("minutes = 1\n", 'minutes = 1\nrobot = "flexible"\n')
+    .replace("K1 = 300", f'plant = "{OLD}"')
+    .replace("{ at = 0.5, hold = true }", f'{{ at = 0.5, set = {{ plant = "{OLD}" }} }}')
+    .replace(
+        'kind = "bound"\nquantity = "distance"\nduring = "held"\nleast = 1.0\nbelow = 5.0',
+        f'kind = "setting"\nname = "plant"\nequals = "{OLD}"',
+    )
+)
+
+
+def plant(session: Session) -> str:
+    assert isinstance(session.parameters, FlexibleParameters)
+    assert session.robot.system.name == "flexible_five_bar"
+    return session.parameters.plant
+
+
+def test_a_share_code_of_then_opens() -> None:
+    session = new_session()
+    do(session, c.UseShared(SHARED))
+    assert plant(session) == NEW
+    assert capture(session).benches["flexible"].parameters == {"plant": NEW, "alpha": 1.0}
+
+
+def test_a_lab_kept_then_is_put_back_and_kept_under_the_new_name() -> None:
+    session, kept = new_session(), list[dict[str, Any]]()
+    put_back(session, {"setup": SETUP, "lessons": {}, "before": SETUP})
+    assert plant(session) == NEW
+    keep(session, lambda state: kept.append(state()))
+    assert NEW in json.dumps(kept[0]["setup"]) and OLD not in json.dumps(kept[0]["setup"])
+
+
+def test_a_teacher_s_set_up_of_then_is_taken() -> None:
+    session = new_session()
+    session.post(TakeSetup(from_data(SETUP)))
+    session.drain()
+    assert plant(session) == NEW
+
+
+def test_a_lab_on_a_worker_of_then_is_mirrored() -> None:
+    session = new_session()
+    do(session, c.UseShared(SHARED))
+    text = msgspec.json.encode(tell(Lab(session))).decode().replace(NEW, OLD)
+    assert plant(session) == NEW and OLD in text
+    assert parameters_of(read_moment(text)) == session.parameters
+
+
+@pytest.fixture
+def course(tmp_path: Path) -> Course:
+    write_lesson(tmp_path, LESSON_OF_THEN)
+    found, problems = read_course([tmp_path])
+    assert problems == []
+    return found
+
+
+def test_a_lesson_of_then_sets_and_checks_it(course: Course) -> None:
+    assert LESSON_OF_THEN.count(OLD) == 3
+    session = Session(store(), course=course)
+    do(session, lc.OpenLesson("01-a"), lc.GoToStep(0))
+    assert plant(session) == NEW
+    lesson = course.lessons["01-a"]["en"]
+    (task,) = lesson.tasks()
+    record = record_of(session, Beginning.now(session))
+    assert [v.passed for v in judge(task, record, Words())] == [True]
+    lagrangian = replace(record, parameters=FlexibleParameters())
+    assert [v.passed for v in judge(task, lagrangian, Words())] == [False]
+
+    script = next(step.script for step in lesson.steps if step.script)
+    do(session, c.SetParameter("plant", "lagrangian"))
+    session.script = ScriptPlayer(script)
+    run(session, 0.6)
+    assert plant(session) == NEW
+
+
+@pytest.mark.parametrize(
+    "command", [["experiment", "flexible", "--set", "duration=0.02"], ["zero-dynamics"]]
+)
+def test_the_command_line_takes_both_names(
+    command: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    outputs = list[str]()
+    for name in (OLD, NEW):
+        assert run_command([*command, "--set", f"plant={name}", "--json"]) == 0
+        outputs.append(capsys.readouterr().out)
+    assert outputs[0] == outputs[1] and OLD not in outputs[0]
+
+
+def test_another_name_is_refused_and_the_present_ones_are_told(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert run_command(["zero-dynamics", "--set", "plant=printed"]) == 2
+    assert "lagrangian, unit_modes" in capsys.readouterr().err

@@ -1,0 +1,351 @@
+"""The last minute: kept, looked at, gone on from, and computed again exactly."""
+
+from __future__ import annotations
+
+import threading
+import tracemalloc
+from functools import lru_cache
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.history import (
+    COARSE,
+    LONGEST,
+    MOST,
+    RECENT,
+    SECONDS,
+    Frame,
+    History,
+    Input,
+    Inputs,
+    Stretch,
+)
+from onpath.app.lab.session import Session
+from onpath.app.lab.take_snapshot import take_snapshot
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.control.laws import NAMES
+from onpath.models.paths.curves import Curve, circle
+from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, new_session, run, states, y
+
+CURVE, SETTINGS = circle(0.05), np.zeros(3)
+
+
+def add(
+    history: History,
+    time: float,
+    ticks: int = 17,
+    settings: np.ndarray = SETTINGS,
+    frozen: bool = False,
+    curve: Curve = CURVE,
+    dt: float = 1e-3,
+) -> None:
+    """A stretch of one robot, whose state and sample are the time."""
+    state, inputs = np.array([time]), inputs_of(curve, dt, id(settings), frozen)
+    history.append(Frame(time, ticks, inputs, [state], [0.0], [state], [0.0]))
+
+
+@lru_cache
+def inputs_of(curve: Curve, dt: float, settings: int, frozen: bool) -> Inputs:
+    """The same object for the same inputs."""
+    return Inputs(curve, dt, {FOLLOWER: Input(Kind(FOLLOWER), np.full(3, float(settings)), frozen)})
+
+
+def new_history() -> History:
+    return History(lambda frames: np.array([frame.rows for frame in frames]))
+
+
+def contiguous(history: History) -> bool:
+    kept = history.all()
+    ends = [s.time + s.ticks * s.dt for s in kept]
+    return np.allclose(ends[:-1], [s.time for s in kept[1:]], atol=1e-9)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.integers(1, 40), min_size=1, max_size=60), st.data())
+def test_nothing_is_lost_whatever_the_frames_were(ticks: list[int], data: st.DataObject) -> None:
+    history, time, kept = new_history(), 0.0, list[np.ndarray]()
+    for count in ticks:
+        changed = np.zeros(3) if data.draw(st.booleans()) else SETTINGS
+        kept.append(changed)  # alive, so that ids differ
+        add(history, time, count, changed)
+        time += count * 1e-3
+    assert contiguous(history) and history.span() == pytest.approx(time)
+    assert all(s.ticks <= max(LONGEST, max(ticks)) for s in history.all())
+    for instant in np.linspace(0, time - 1e-6, 7):
+        found = history.at(instant)
+        assert found is not None
+        assert found.time <= instant < found.time + found.ticks * found.dt + 1e-9
+        assert found.drives[FOLLOWER].state[0] == found.time  # the state at its beginning
+
+
+def test_only_stretches_with_the_same_inputs_are_joined() -> None:
+    other_settings, other_curve = np.zeros(3), circle(0.05)
+    cases: list[tuple[dict[str, Any], bool]] = [
+        ({"ticks": 5}, True),
+        ({"ticks": 13}, False),  # too long together
+        ({"ticks": 5, "settings": other_settings}, False),
+        ({"ticks": 5, "frozen": True}, False),
+        ({"ticks": 5, "curve": other_curve}, False),
+        ({"ticks": 5, "dt": 5e-4}, False),
+    ]
+    for changes, joined in cases:
+        history = new_history()
+        add(history, 0.0, 5)
+        add(history, 0.005, **changes)
+        assert (len(history) == 1) is joined
+        assert sum(s.ticks for s in history.all()) == 5 + changes["ticks"]
+
+
+def test_a_minute_is_kept_and_no_more() -> None:
+    history = new_history()
+    for k in range(5000):
+        add(history, k * 0.017)
+    assert SECONDS <= history.span() < SECONDS + 0.1
+    assert history.all()[-1].time == pytest.approx(4999 * 0.017)
+
+
+def test_short_stretches_do_not_pile_up() -> None:
+    history = new_history()
+    for k in range(3 * MOST):
+        add(history, k * 1e-3, 1, dt=1e-3 if k % 2 else 5e-4)
+    assert len(history) == MOST and history.all()[-1].time == pytest.approx(3 * MOST * 1e-3 - 1e-3)
+    assert [s.sample[0, 0] for s in history.all()] == pytest.approx(
+        [s.time for s in history.all()], abs=1e-6
+    )
+
+
+def test_a_minute_takes_little_memory() -> None:
+    """At 60 Hz, both robots, after a long time: less than 1 MB."""
+    session = new_session(0.5)
+    session.simulate(17)
+    one = session.history.at(session.time)
+    assert one is not None
+    taken = [memory_of_a_minute(session, one) for _ in range(3)]
+    used, peak = (min(each) for each in zip(*taken, strict=True))  # other threads take some, too
+    assert used < 1e6 and peak < 2e6
+
+
+def memory_of_a_minute(session: Session, one: Stretch) -> tuple[int, int]:
+    """What a history has in the end, and what all threads had meanwhile at most, [B]."""
+    names, rows = list(session.runs), list(one.sample)
+    inputs = Inputs(one.curve, one.dt, {name: session.runs[name].input() for name in names})
+    states = [one.drives[name].state for name in names]
+    tracemalloc.start()
+    history = new_history()
+    for k in range(8000):
+        history.append(Frame(k * 0.017, 17, inputs, states, [0.0, 0.0], rows, [0.0, 0.0]))
+    assert history.span() > 59
+    _, peak = tracemalloc.get_traced_memory()
+    snapshot = tracemalloc.take_snapshot()
+    tracemalloc.stop()
+    ours = [tracemalloc.Filter(True, file) for file in ("*/history.py", __file__)]
+    return sum(trace.size for trace in snapshot.filter_traces(ours).traces), peak
+
+
+def test_older_stretches_are_fewer_and_as_exact() -> None:
+    """Each goes on where the one before ends, to the last bit; a change of input parts them."""
+    session = new_session()
+    for k in range(2400):
+        if k % 37 == 0:
+            do(session, c.SetParameter("K2", 20.0 + k % 5))
+        session.simulate(17)
+    stretches, name = session.history.all(), FOLLOWER
+    assert sum(s.ticks for s in stretches) == 2400 * 17
+    recent = [s.ticks for s in stretches if s.time > session.time - RECENT]
+    assert set(recent) == {17} and max(s.ticks for s in stretches) == COARSE
+    assert len(stretches) < 2400 * 0.8
+    for stretch, later in pairwise(stretches):
+        drive, ends = stretch.drives[name], stretch.time + stretch.ticks * stretch.dt
+        assert later.time == pytest.approx(ends, abs=1e-9)
+        loop = session._store.get(session.robot, drive.kind)
+        state, _ = loop.run(drive.state, drive.settings, stretch.curve.table(), stretch.ticks)
+        assert np.array_equal(state, later.drives[name].state)
+
+
+def test_who_looks_meanwhile_changes_nothing() -> None:
+    """A page is built in a thread of its own."""
+    history, done = new_history(), threading.Event()
+
+    def look() -> None:
+        while not done.is_set():
+            history.samples(0.0, 100.0, 10)
+
+    looking = threading.Thread(target=look)
+    looking.start()
+    for k in range(3000):
+        add(history, k * 5e-3, 5)
+    done.set()
+    looking.join()
+    assert contiguous(history) and sum(s.ticks for s in history.all()) == 15_000
+
+
+def test_a_copy_of_what_came_before_is_independent() -> None:
+    history = new_history()
+    for k in range(10):
+        add(history, k * 0.017)
+    found = history.at(0.1)
+    assert found is not None
+    before = history.before(found)
+    assert [s.time for s in before.all()] == pytest.approx([k * 0.017 for k in range(5)])
+    add(before, 0.085)
+    assert [s.time for s in history.all()] == pytest.approx([k * 0.017 for k in range(10)])
+    history.clear()
+    assert len(history) == 0 and history.at(1.0) is None and history.span() == 0.0
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 300), st.integers(1, 120), st.floats(-1, 5), st.floats(0, 4))
+def test_samples_are_few_in_order_and_within(
+    count: int, most: int, begin: float, span: float
+) -> None:
+    history = new_history()
+    for k in range(count):
+        add(history, k * 0.017)
+    times, samples = history.samples(begin, begin + span, most)
+    assert len(times) == len(samples) <= most
+    assert np.all(np.diff(times) > 0) and np.all((begin <= times) & (times <= begin + span))
+    if len(times):
+        assert np.array_equal(samples[:, 0, 0], times.astype(np.float32))
+    inside = sum(begin <= k * 0.017 <= begin + span for k in range(count))
+    assert inside == len(times) if inside <= most else len(times) > most / 4
+
+
+# In a session
+
+
+def busy(seconds: float = 1.0) -> Session:
+    """A lab with a past in which everything happened."""
+    session = new_session(0.3)
+    do(session, c.Hold(True))
+    run(session, seconds / 3)
+    do(session, c.Hold(False), c.SetParameter("K3", 200))
+    do(
+        session,
+        c.Grab(TRACKER, session.robot.place(y(session, TRACKER)) + np.array([0.02, 0.0, 0.0])),
+    )
+    run(session, seconds / 3)
+    do(session, c.Release(), c.ChoosePath("ellipse"))
+    run(session, seconds / 3 + 0.35)
+    return session
+
+
+def test_past_is_shown_as_it_was() -> None:
+    session, seen = new_session(), []
+    for _ in range(60):
+        session.advance(FRAME)
+        seen.append((session.time, take_snapshot(session, 1.0)))
+    for ago in (0.1, 0.4, 0.9):
+        do(session, c.View(ago))
+        assert not session.running and session.viewing == pytest.approx(session.time - ago)
+        now = take_snapshot(session, 1.0)
+        at = session.history.at(session.viewing or 0.0)
+        assert at is not None
+        begin = at.time
+        then = min(seen, key=lambda pair: abs(pair[0] - begin))[1]
+        for name in NAMES:
+            was, shown = then.robots[name], now.robots[name]
+            assert shown.joints == pytest.approx(was.joints, abs=1e-3)
+            assert shown.tip == pytest.approx(was.tip, abs=1e-6)
+            assert shown.distance == pytest.approx(was.distance, abs=1e-7)
+            assert shown.max_distance == was.max_distance
+            assert shown.speed == pytest.approx(was.speed, rel=1e-5)
+    do(session, c.View(0.0))
+    assert session.viewing is None
+    assert take_snapshot(session, 1.0).robots[TRACKER].tip == pytest.approx(
+        seen[-1][1].robots[TRACKER].tip
+    )
+
+
+def test_looking_back_by_keys_stops_at_both_ends() -> None:
+    session = new_session(1.0)
+    do(session, c.LookBack(0.2), c.LookBack(0.2))
+    assert session.viewing == pytest.approx(session.time - 0.4)
+    do(session, c.LookBack(-0.3))
+    assert session.viewing == pytest.approx(session.time - 0.1)
+    do(session, c.LookBack(100.0))
+    assert session.viewing == pytest.approx(session.time - session.history.span())
+    do(session, c.LookBack(-100.0))
+    assert session.viewing is None
+
+
+@pytest.mark.parametrize("values", [{}, {"K3": 300, "encoder_counts": 4000}, {"control_rate": 50}])
+def test_going_on_gives_the_same_future_to_the_last_bit(values: dict[str, float]) -> None:
+    session = new_session()
+    do(session, *[c.SetParameter(name, value) for name, value in values.items()])
+    run(session, 1.0)
+    passed: dict[int, dict[str, np.ndarray]] = {}
+    for _ in range(40):
+        session.advance(FRAME)
+        passed[round(session.time * 1e3)] = states(session)
+    do(session, c.View(0.4), c.GoOn())
+    begin = session.time
+    assert session.viewing is None and session.running
+    assert begin == pytest.approx(1.667 - 0.4, abs=0.035)
+    compared = 0
+    while session.time < 1.6:
+        session.simulate(1)
+        then = passed.get(round(session.time * 1e3))
+        if then is not None:
+            compared += 1
+            for name, state in states(session).items():
+                assert np.array_equal(state, then[name])
+    assert compared > 10
+
+
+def test_going_on_forgets_what_came_after() -> None:
+    session = busy()
+    most = session.runs[TRACKER].max_distance
+    do(session, c.View(session.time - 0.2), c.GoOn())
+    assert session.time < 0.21 and session.history.span() < 0.21
+    assert not session.grips.held and not session.grips.hands
+    assert session.runs[TRACKER].max_distance < most / 3
+    run(session, 0.5)
+    assert contiguous(session.history)
+    for run_ in session.runs.values():
+        assert run_.diverged is None and run_.distance < 3e-3
+
+
+def test_going_on_from_a_time_with_another_path_finds_the_new_one() -> None:
+    session = new_session(0.5)
+    do(session, c.ChoosePath("segment"))
+    run(session, 0.5)
+    do(session, c.View(0.8), c.GoOn())
+    run(session, 2.0)
+    for run_ in session.runs.values():
+        assert run_.diverged is None and run_.distance < 1e-3
+        assert not session.editor.curve.closed
+
+
+def test_acting_on_the_lab_ends_looking_back() -> None:
+    for command in (c.Hold(True), c.Tug(0.01, 0.0), c.Step(), c.ChoosePath("ellipse")):
+        session = new_session(0.5)
+        time = session.time
+        do(session, c.View(0.3), command)
+        assert session.viewing is None and session.time >= time
+
+
+def test_reset_forgets_the_past() -> None:
+    session = new_session(0.5)
+    do(session, c.View(0.3), c.Reset())
+    assert session.viewing is None and len(session.history) == 0 and session.time == 0.0
+    do(session, c.View(0.3))
+    assert session.viewing is None
+
+
+def test_a_robot_that_had_diverged_stands_still_again_and_one_that_had_not_runs() -> None:
+    session = new_session(0.5)
+    session.runs[FOLLOWER].fields()["v"][:] = 500.0
+    run(session, 0.5)
+    assert session.runs[FOLLOWER].diverged
+    do(session, c.View(0.2), c.GoOn())
+    assert session.runs[FOLLOWER].diverged and "Path following stopped" in session.message
+    do(session, c.View(session.time - 0.3), c.GoOn())
+    assert session.runs[FOLLOWER].diverged is None and session.message_level == "info"
+    run(session, 0.3)
+    assert session.runs[FOLLOWER].diverged is None and session.runs[FOLLOWER].distance < 1e-3

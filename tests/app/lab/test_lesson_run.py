@@ -1,0 +1,298 @@
+"""A student's way through a lesson, without a browser."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from onpath.app.lab import commands as c
+from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab.class_commands import TakeStep
+from onpath.app.lab.history import RECENT
+from onpath.app.lab.lesson_record import Beginning, record_of
+from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.lab.session import Session
+from onpath.app.lab.sketches import sketched
+from onpath.app.page import lesson_html as html
+from onpath.lessons.checks import judge
+from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.progress import MOST_POINTS, Answer, Progress, read_progress
+from onpath.lessons.schema import Action, Choice, Event, Option, Quiz, Sketch, Task
+from onpath.lessons.words import Words
+from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, run, store
+from tests.support.lesson_texts import write_lesson
+
+NAME = "01-a"
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory: pytest.TempPathFactory) -> Course:
+    """Of one small lesson."""
+    folder: Path = tmp_path_factory.mktemp("course")
+    write_lesson(folder)
+    found, problems = read_course([folder])
+    assert problems == []
+    return found
+
+
+@pytest.fixture
+def session(course: Course) -> Session:
+    """A lab with that lesson open."""
+    session = Session(store(), FIVE_BAR, course)
+    do(session, lc.OpenLesson(NAME))
+    return session
+
+
+def test_a_scene_sets_the_lab_up_and_the_free_lab_comes_back(course: Course) -> None:
+    session = Session(store(), FIVE_BAR, course)
+    do(session, c.SetParameter("K2", 33), c.ChoosePath("clover"))
+    do(session, lc.OpenLesson(NAME))
+    assert session.parameters.K1 == 300 and session.parameters.K2 == FIVE_BAR.lab.K2
+    assert session.editor.design.name == "circle" and session.running
+    do(session, lc.CloseLesson())
+    assert session.parameters.K2 == 33 and session.editor.design.name == "clover"
+    assert session.lessons.lesson is None and session.locked == ""
+
+
+def test_nothing_happens_before_a_prediction(session: Session) -> None:
+    do(session, lc.GoToStep(1))
+    for command in (c.SetRunning(True), c.Step(), c.GoOn(), lc.PlayStep()):
+        do(session, command)
+        run(session, 0.2)
+        assert session.time == 0.0 and not session.running
+    assert session.message == session.locked != ""
+    do(session, lc.Predict(times=(0.0, 1.0, 2.0), values=(0.0, 40.0, 0.0)))
+    assert session.locked == ""
+    do(session, c.SetRunning(True))
+    run(session, 0.2)
+    assert session.time > 0.1
+
+
+def test_skipping_is_one_step_and_locks_nothing(session: Session) -> None:
+    do(session, lc.GoToStep(1), lc.GoToStep(1))
+    assert session.lessons.index == 2 and session.locked == ""
+    answer = session.lessons.answer()
+    assert answer is not None and answer.skipped
+
+
+def test_skipping_the_prediction_of_a_pushed_step_does_not_skip_what_happens(
+    session: Session,
+) -> None:
+    do(session, TakeStep(NAME, 2))
+    run_ = session.lessons
+    assert run_.waits and session.locked
+    do(session, lc.GoToStep(1))
+    assert run_.index == 2 and not run_.waits and not session.locked
+    assert run_.notes.answers["1"].skipped
+    do(session, lc.PlayStep())
+    assert run_.playing
+    do(session, lc.GoToStep(1))
+    assert run_.index == 3
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_who_did_not_answer_is_told_the_answer_and_not_that_it_was_right(language: str) -> None:
+    words = Words(language)
+    options = (Option("this", "no"), Option("that", "of course", right=True))
+    for block in (Choice("Which?", options), Quiz("Which?", options)):
+        skipped = html.question(block, None, True, words)
+        assert words("lesson.the_answer", answer="of course") in skipped
+        for key in ("right", "not_quite"):
+            assert words(f"lesson.{key}") not in skipped
+        assert words("lesson.right") in html.question(block, 1, True, words)
+        assert words("lesson.not_quite") in html.question(block, 0, True, words)
+        assert "of course" not in html.question(block, 0, False, words)
+
+
+def test_prediction_and_truth_are_kept_side_by_side(session: Session) -> None:
+    do(session, lc.GoToStep(1), lc.Predict(times=(0.0, 2.0), values=(5.0, 99.0)), lc.GoToStep(1))
+    do(session, lc.PlayStep())
+    run(session, 0.3)
+    assert session.lessons.playing and session.lessons.truth(session) is not None
+    run(session, 2.0)
+    assert not session.lessons.playing and not session.running
+    notes = session.lessons.notes
+    truth, answer = notes.truths["1"], notes.answers["1"]
+    assert answer.values[0] == 5.0 and answer.values[-1] == 60.0  # its axis ends there
+    assert max(truth.tracker) > 10 * max(truth.follower) > 0
+    assert truth.times[-1] == pytest.approx(2.0, abs=0.1)
+    assert np.all(np.diff(truth.times) > 0)
+
+
+def test_a_task_fails_then_passes_and_stays_passed(session: Session) -> None:
+    do(session, lc.GoToStep(3), lc.GoToStep(3))
+    assert session.lessons.step_is("task") and session.editor.design.name == "ellipse"
+    do(session, c.Hold(True))
+    run(session, 0.5)
+    do(session, c.Hold(False))
+    run(session, 1.0)
+    verdicts = session.lessons.verdicts["hold"]
+    assert not verdicts[0].passed and "0.5 of 1 s" in verdicts[0].words
+    assert "hold" not in session.lessons.notes.tasks
+    do(session, c.Hold(True))
+    run(session, 1.5)
+    assert "hold" in session.lessons.notes.tasks
+    do(session, c.Reset())
+    run(session, 1.0)
+    assert "hold" in session.lessons.notes.tasks
+
+
+@pytest.mark.parametrize("frame", [0.7 / 60, 1 / 60, 1.3 / 60])
+def test_pulled_off_let_go_and_back_again(frame: float) -> None:
+    """Lesson 1's last task, by the keys that it names, at the paces that a lab has."""
+    session = Session(store(), FIVE_BAR, read_course([BUILT_IN])[0])
+    do(session, TakeStep("01-path-or-timetable", 9))
+    for _ in range(6):
+        do(session, c.Tug(0.005, 0.0))
+        run(session, 0.1)
+    run(session, 1.0)
+    do(session, c.Release())
+    for _ in range(round(3.0 / frame)):
+        session.drain()
+        session.advance(frame)
+    assert "push-across" in session.lessons.notes.tasks
+
+
+def test_the_marks_of_a_passed_task_stay_until_the_next_attempt(session: Session) -> None:
+    do(session, lc.GoToStep(3), lc.GoToStep(3), c.Hold(True))
+    run(session, 2.0)
+    assert all(verdict.passed for verdict in session.lessons.verdicts["hold"])
+    do(session, c.SetParameter("K1", 20), c.SetParameter("K2", 1), c.Tug(0.1, 0.1))
+    run(session, 2.0)  # far off
+    assert all(verdict.passed for verdict in session.lessons.verdicts["hold"])
+    do(session, c.Reset())
+    run(session, 1.0)
+    assert not any(verdict.passed for verdict in session.lessons.verdicts["hold"])
+    assert "hold" in session.lessons.notes.tasks
+
+
+def test_what_is_undone_by_rewinding_passes_no_task(session: Session) -> None:
+    """Go on from before a hold, and it has not happened."""
+    held = Task("held", "Hold back.", (Event("hold"), Event("let_go", times=1)))
+    begin = Beginning.now(session)
+    run(session, 1.0)
+    do(session, c.Hold(True))
+    run(session, 0.5)
+    do(session, c.View(1.0), c.GoOn())
+    run(session, 0.5)
+    assert not judge(held, record_of(session, begin), Words())[0].passed
+    do(session, c.Hold(True))
+    run(session, 0.1)
+    assert all(verdict.passed for verdict in judge(held, record_of(session, begin), Words()))
+
+
+def test_the_truth_has_every_peak_however_long_ago() -> None:
+    """Lesson 3 plays for longer than the lab's past is kept at every frame."""
+    session = Session(store(), FIVE_BAR, read_course([BUILT_IN])[0])
+    do(session, TakeStep("03-the-five-bar", 3), lc.Predict(), lc.PlayStep())
+    seen: dict[str, list[float]] = {name: [] for name in session.runs}
+    while session.lessons.playing:
+        for name, one in session.runs.items():
+            seen[name].append(float(np.abs(one.shown()["u"]).max()))
+        session.advance(FRAME)
+        session.drain()
+    truth = session.lessons.notes.truths["2"]
+    assert truth.times[-1] > RECENT and len(truth.times) <= MOST_POINTS
+    for name, curve in ((FOLLOWER, truth.follower), (TRACKER, truth.tracker)):
+        for times in ((0.0, 3.0), (3.1, 9.0), (9.1, 12.0), (12.1, 15.0)):
+            first, last = (round(time / FRAME) for time in times)
+            inside = [
+                v for t, v in zip(truth.times, curve, strict=True) if times[0] <= t < times[1]
+            ]
+            assert max(inside) == pytest.approx(max(seen[name][first:last]), rel=0.02)
+        assert max(curve) == pytest.approx(max(seen[name]), abs=1e-4)
+
+
+def test_hints_come_one_at_a_time(session: Session) -> None:
+    do(session, lc.ShowHint("hold"))
+    assert session.lessons.notes.hints == {"hold": 1}
+
+
+def test_links_act_on_the_lab(session: Session) -> None:
+    do(session, lc.Act((Action(set={"K3": 100.0}), Action(path="clover"), Action(hold=True))))
+    assert session.parameters.K3 == 100.0 and session.editor.design.name == "clover"
+    assert session.grips.held
+    do(session, lc.Act((Action(set={"K3": 1e9}),)))
+    assert session.parameters.K3 == 100.0 and "K3" in session.message
+
+
+def test_resetting_by_hand_ends_what_is_shown(session: Session) -> None:
+    do(session, lc.GoToStep(2), lc.Predict(), lc.PlayStep())
+    run(session, 0.5)
+    do(session, c.Reset())
+    run(session, 0.2)
+    assert session.script is None and not session.lessons.playing
+
+
+@pytest.mark.parametrize("command", [c.Reset(), c.ChoosePath("clover"), c.GoOn()])
+def test_what_is_given_up_half_way_has_not_been_seen(session: Session, command: object) -> None:
+    """Resetting, another robot's run, going on from the past: no truth, and not played."""
+    do(session, lc.GoToStep(1), lc.Predict(times=(0.0, 1.0), values=(0.0, 1.0)), lc.GoToStep(1))
+    do(session, lc.PlayStep())
+    run(session, 1.0)
+    if isinstance(command, c.GoOn):
+        do(session, c.View(0.5))
+    do(session, command)  # type: ignore[arg-type]
+    run(session, 3.0)
+    notes = session.lessons.notes
+    done = isinstance(command, c.ChoosePath)  # that one lets the script go on to its end
+    assert bool(notes.truths) is bool(notes.played) is done
+    assert not session.lessons.playing
+
+
+def test_progress_comes_back_from_json(session: Session, course: Course) -> None:
+    do(session, lc.GoToStep(1), lc.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), lc.GoToStep(1))
+    do(session, lc.SetPresenting(True), lc.ShowHint("hold"))
+    kept = msgspec.json.encode(session.lessons.progress)
+    again = LessonRun(course, read_progress(msgspec.json.decode(kept)))
+    assert again.progress == session.lessons.progress
+    assert again.index == 2 and again.answer() == session.lessons.answer()
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"lesson": 3},
+        {"lesson": "x" * 100},
+        {"notes": {"a": {"answers": {"1": {"times": [0, 1], "values": [1]}}}}},
+        {"notes": {"a": {"step": -1}}},
+        {"surprise": 1},
+        {"notes": {"a": {"tasks": {"t": 1e999}}}},
+        [],
+        None,
+    ],
+)
+def test_what_is_no_progress_is_refused(data: object) -> None:
+    with pytest.raises(ValueError):
+        read_progress(data)
+
+
+def test_a_lesson_that_is_gone_is_not_open(course: Course) -> None:
+    assert LessonRun(course, Progress(lesson="99-gone")).lesson is None
+
+
+@example([(0.0, 0.0), (3.58e-308, 0.0), (2.2e-311, 7.0)])  # no slope is finite here
+@given(st.lists(st.tuples(st.floats(-5, 15), st.floats(-100, 100)), min_size=1, max_size=400))
+def test_any_stroke_becomes_a_curve_on_its_axes_or_is_refused(
+    stroke: list[tuple[float, float]],
+) -> None:
+    axes = Sketch("?", "distance", seconds=8.0, top=60.0)
+    times, values = zip(*stroke, strict=True)
+    try:
+        curve = sketched(axes, Answer(times=times, values=values))
+    except ValueError:
+        assert len(set(np.round(np.clip(times, 0, 8), 3))) < 2
+        return
+    assert np.all(np.diff(curve.times) >= 0) and len(curve.times) <= 200
+    assert min(curve.times) >= 0 and max(curve.times) <= 8
+    drawn = np.round(np.clip(times, 0, 8), 3)
+    assert (curve.times[0], curve.times[-1]) == (drawn.min(), drawn.max())
+    assert min(curve.values) >= 0 and max(curve.values) <= 60
+    if len(set(drawn)) == len(drawn):
+        assert max(curve.values) == round(float(np.clip(values, 0, 60).max()), 3)

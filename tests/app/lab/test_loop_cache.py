@@ -1,0 +1,136 @@
+"""Loops are there at once; compiled ones take over when they are ready, and nobody notices."""
+
+from __future__ import annotations
+
+import logging
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.lab import loop_cache as loop_store
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.session import Session
+from onpath.app.server.lazy_imports import LATER, warm_up
+from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
+from onpath.models.control.laws import NAMES
+from onpath.models.systems.robots import rigid_five_bar
+from tests.support.lab import FRAME, do, states
+
+PATIENCE = 60.0  # [s]
+
+
+@pytest.fixture
+def store() -> Iterator[LoopStore]:
+    made = LoopStore()
+    yield made
+    made.close()
+
+
+class Gate(threading.Event):
+    """Nothing is translated before it is open; `passed` has what was."""
+
+    def __init__(self, translate: Callable[[Kernel], CompiledLoop]) -> None:
+        super().__init__()
+        self.reached = threading.Event()
+        self.passed: list[Kernel] = []
+        self._translate = translate
+
+    def __call__(self, kernel: Kernel) -> CompiledLoop:
+        self.reached.set()
+        assert self.wait(PATIENCE)
+        self.passed.append(kernel)
+        return self._translate(kernel)
+
+
+@pytest.fixture
+def gate(monkeypatch: pytest.MonkeyPatch) -> Iterator[Gate]:
+    made = Gate(loop_store.translate_loop)
+    monkeypatch.setattr(loop_store, "translate_loop", made)
+    yield made
+    made.set()
+
+
+def finish(store: LoopStore) -> None:
+    """Wait until all loops that were asked for are compiled, or given up."""
+    for wanted in list(store._wanted.values()):
+        with suppress(CancelledError):
+            wanted.result(PATIENCE)
+
+
+def loops(session: Session, store: LoopStore) -> list[Loop]:
+    return [store.get(run.robot, run.kind) for run in session.runs.values()]
+
+
+def test_loops_are_interpreted_at_once_and_compiled_later(store: LoopStore, gate: Gate) -> None:
+    never = LoopStore()
+    never.close()
+    session, reference = Session(store), Session(never)
+    for tier in (InterpretedLoop, CompiledLoop):
+        for _ in range(30):
+            session.advance(FRAME)
+            reference.advance(FRAME)
+        now = loops(session, store)
+        assert all(isinstance(loop, tier) for loop in now) and loops(session, store) == now
+        assert all(isinstance(loop, InterpretedLoop) for loop in loops(reference, never))
+        gate.set()
+        finish(store)
+    for name, state in states(session).items():
+        assert np.array_equal(state, reference.runs[name].state)
+        assert session.runs[name].diverged is None
+    assert len(gate.passed) == len(NAMES)
+
+
+def test_what_cannot_be_compiled_is_told_once_and_the_lab_goes_on(
+    store: LoopStore, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setitem(sys.modules, "llvmlite.binding", None)
+    session = Session(store)
+    with caplog.at_level(logging.WARNING):
+        session.advance(FRAME)
+        finish(store)
+        for _ in range(20):
+            session.advance(FRAME)
+        do(session, c.Hold(on=True))
+        session.advance(FRAME)  # a loop that nobody has asked for before
+        finish(store)
+    (warning,) = [r for r in caplog.records if r.name == "onpath.app.lab.loop_cache"]
+    assert "interpreted" in warning.getMessage()
+    assert session.time == pytest.approx(22 * FRAME, abs=2e-3)
+    assert all(isinstance(loop, InterpretedLoop) for loop in loops(session, store))
+
+
+def test_closing_gives_up_what_is_waiting(store: LoopStore, gate: Gate) -> None:
+    kinds = [Kind(NAMES[0], closed, encoder=e) for closed in (True, False) for e in (True, False)]
+    for kind in kinds:
+        store.get(rigid_five_bar(), kind)
+    assert gate.reached.wait(PATIENCE)
+    store.close()
+    gate.set()
+    finish(store)
+    assert len(gate.passed) == 1
+    for kind in kinds[1:]:
+        assert isinstance(store.get(rigid_five_bar(), kind), InterpretedLoop)
+    store.get(rigid_five_bar(), replace(kinds[0], free=True))  # that is new, and refused quietly
+    assert len(store._wanted) == len(kinds)
+
+
+def test_a_first_lab_finds_its_loops_compiled(store: LoopStore) -> None:
+    """Free and held: whoever comes after a while meets no interpreted loop."""
+    warm_up(store, rest=0.0).join(PATIENCE)
+    finish(store)
+    assert all(name in sys.modules for name in LATER)
+    session = Session(store)
+    for commands in ([], [c.Hold(on=True)]):
+        do(session, *commands)
+        session.advance(FRAME)
+        assert all(isinstance(loop, CompiledLoop) for loop in loops(session, store))
+    assert len(store._wanted) == 2 * len(NAMES)

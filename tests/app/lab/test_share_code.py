@@ -1,0 +1,256 @@
+"""Share codes come back as they went, and nothing else comes back at all."""
+
+from __future__ import annotations
+
+import base64
+import json
+import string
+import time
+import tracemalloc
+import zlib
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from onpath.app.common.access_codes import ALPHABET, new_code, normalised, shown
+from onpath.app.lab import share_code
+from onpath.app.lab.commands import DrawPath, SetParameter
+from onpath.app.lab.setup import Setup, capture, capture_path
+from onpath.app.lab.share_code import decode, encode
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import specs
+from tests.support.lab import do, new_session
+from tests.support.some_setups import CALM, PRESETS, setups, wave
+
+SENT = "ONPATH1-OVJGQYADAC4AYAFKWEWN4IBA-"  # only its form
+
+
+def drawn_lab() -> Setup:
+    session = new_session()
+    points = wave(0.7, 1.0, closed=True).curve.at(wave(0.0, 0.0, True).curve.sample(80))
+    do(session, DrawPath(session.robot.place(session.robot.frame.lift(points))))
+    do(session, SetParameter("K3", 150.0))
+    assert session.editor.design.name == "drawn"
+    return capture(session)
+
+
+def forged(plain: Any) -> str:
+    """A code with a right checksum for anything."""
+    data = plain if isinstance(plain, bytes) else json.dumps(plain).encode()
+    squeeze = zlib.compressobj(9, wbits=-15, zdict=share_code._KNOWN)
+    return sealed(squeeze.compress(data) + squeeze.flush())
+
+
+def sealed(packed: bytes) -> str:
+    body = base64.b32encode(packed).decode().rstrip("=")
+    return f"ONPATH1-{body}-{share_code._checksum(body)}"
+
+
+@CALM
+@given(setups())
+def test_round_trip(setup: Setup) -> None:
+    code = encode(setup)
+    assert decode(code) == setup
+    assert encode(decode(code)) == code == encode(setup)
+    assert set(code) <= set(string.ascii_uppercase + string.digits + "-")
+
+
+def test_codes_are_short() -> None:
+    assert len(encode(Setup())) < 30
+    assert len(encode(capture(new_session()))) < 60
+    assert len(encode(drawn_lab())) < 300
+
+
+def test_codes_of_version_1_stay_readable() -> None:
+    """They are in people's notes: a change that breaks this one is another version."""
+    old = "ONPATH1-VNDISD44OEAPFARBFBKIATVKAUAA-GZ47G5I"
+    assert decode(old).benches["five_bar"].parameters == {"K3": 100.0}
+
+
+@CALM
+@given(setups(), st.data())
+def test_a_single_wrong_character_is_noticed(setup: Setup, data: st.DataObject) -> None:
+    code = encode(setup)
+    at = data.draw(st.integers(0, len(code) - 1))
+    wrong = data.draw(st.characters().filter(lambda c: c.upper() != code[at]))
+    with pytest.raises(ValueError):
+        decode(code[:at] + wrong + code[at + 1 :])
+
+
+def test_every_single_wrong_character_is_noticed() -> None:
+    code = encode(drawn_lab())
+    for at in range(len(code)):
+        for wrong in string.printable + "ſıK–":
+            if wrong.upper() != code[at]:
+                with pytest.raises(ValueError):
+                    decode(code[:at] + wrong + code[at + 1 :])
+
+
+def test_every_truncation_and_swap_is_noticed() -> None:
+    code = encode(drawn_lab())
+    for length in range(len(code)):
+        for rest in ("", " then so on, as agreed"):
+            with pytest.raises(ValueError, match="share code"):
+                decode(code[:length] + rest)
+    for at in range(len(code) - 1):
+        swapped = code[:at] + code[at + 1] + code[at] + code[at + 2 :]
+        if swapped != code:
+            with pytest.raises(ValueError):
+                decode(swapped)
+
+
+@pytest.mark.parametrize(
+    "around", ["{}", "  {}\n", "Try this: {}", "({}).", '"{}", said she', "{}and more", "> {} <"]
+)
+def test_words_around_and_breaks_inside_do_not_matter(around: str) -> None:
+    setup = drawn_lab()
+    code = encode(setup)
+    broken = "\r\n".join(code[i : i + 40] for i in range(0, len(code), 40))
+    spaced = "\u200b".join(code[i : i + 7] for i in range(0, len(code), 7))
+    for text in (code, broken, spaced, code.lower(), " ".join(code)):
+        assert decode(around.format(text)) == setup
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "no share code"),
+        ("hello", "no share code"),
+        ("ONPATH", "no share code"),
+        ("ONPATHX-AAAA-BBBBBBB", "no share code"),
+        ("ONPATH1-", "not complete"),
+        ("ONPATH1-AAAA", "not complete"),
+        ("ONPATH1-A0A1-BBBBBBB", "not complete"),
+        ("ONPATH2-AAAA-BBBBBBB", "newer OnPath"),
+        ("ONPATH2-~new~form~", "newer OnPath"),
+        ("ONPATH0-AAAA-BBBBBBB", "mistyped"),
+        ("ONPATH01-AAAA-BBBBBBB", "mistyped"),
+        ("ONPATH1-AAAA-BBBBBBB", "mistyped"),
+        ("ONPATH" + "9" * 6000 + "-AAAA-BBBBBBB", "no share code"),
+        ("ONPATH1-" + "A" * 10_000_000, "too long"),
+        (" " * 10_000_000, "too long"),
+        ("\0", "no share code"),
+        ("\ud800", "no share code"),
+    ],
+    ids=lambda text: text[:20],
+)
+def test_each_mistake_has_its_message(text: str, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        decode(text)
+
+
+BENCH = {"parameters": {"K1": 1e9}}
+HOSTILE: dict[str, Any] = {
+    "not JSON": b"hello",
+    "not text": b'{"robot":"\xff\xfe"}',
+    "UTF-16": '{"rate":2.0}'.encode("utf-16"),
+    "nothing": b"",
+    "null": None,
+    "array": [1, 2],
+    "nested arrays": b"[" * 15_000,
+    "nested objects": b'{"benches":' * 1500,
+    "nested and closed": b"[" * 9_000 + b"]" * 9_000,
+    "unknown field": {"admin": True},
+    "unknown inner field": {"benches": {"five_bar": {"code": "import os"}}},
+    "unknown robot": {"robot": "six_bar"},
+    "unknown bench": {"benches": {"six_bar": {}}},
+    "script": {"benches": {"five_bar": {"parameters": {"<script>alert(1)</script>": 1}}}},
+    "out of range": {"benches": {"five_bar": BENCH}},
+    "NaN": b'{"rate":NaN}',
+    "infinity": b'{"rate":Infinity}',
+    "1e999": b'{"rate":1e999}',
+    "nan as text": {"benches": {"five_bar": {"parameters": {"K1": "nan"}}}},
+    "rate": {"rate": 1e300},
+    "rate of another type": {"rate": "fast"},
+    "huge integer": b'{"benches":{"five_bar":{"parameters":{"K1":' + b"9" * 5000 + b"}}}}",
+    "truth": {"benches": {"five_bar": {"parameters": {"K1": True}}}},
+    "copy": {"copy": 1},
+    "points": {"benches": {"five_bar": {"path": {"name": "edited", "numbers": [1e300, 0]}}}},
+    "many": {"benches": {"five_bar": {"path": {"name": "drawn", "numbers": [0] * 5000}}}},
+    "many benches": {"benches": {f"r{i}": {} for i in range(1000)}},
+}
+
+
+@pytest.mark.parametrize("case", HOSTILE)
+def test_a_forged_code_is_refused_and_not_quoted(case: str) -> None:
+    with pytest.raises(ValueError, match="share code") as caught:
+        decode(forged(HOSTILE[case]))
+    assert "<" not in str(caught.value) and len(str(caught.value)) < 300
+    assert str(caught.value).endswith(".")
+
+
+@pytest.mark.parametrize("packed", [b"\xff" * 50, b"", b"\x00", bytes(range(256))])
+def test_what_cannot_be_inflated_is_refused(packed: bytes) -> None:
+    with pytest.raises(ValueError, match="holds no set-up"):
+        decode(sealed(packed))
+
+
+def test_more_after_the_end_is_refused() -> None:
+    squeeze = zlib.compressobj(wbits=-15)
+    with pytest.raises(ValueError, match="holds no set-up"):
+        decode(sealed(squeeze.compress(b"{}") + squeeze.flush() + b"more"))
+
+
+def test_a_bomb_is_not_inflated() -> None:
+    bomb = forged(b'{"robot":"' + b" " * 25_000_000 + b'"}')
+    assert len(bomb) < share_code.LONGEST_TEXT
+    tracemalloc.start()
+    began = time.perf_counter()
+    with pytest.raises(ValueError, match="holds no set-up"):
+        decode(bomb)
+    passed, peak = time.perf_counter() - began, tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert passed < 1.0 and peak < 2_000_000
+
+
+@settings(CALM, max_examples=300)
+@given(st.binary(max_size=200))
+def test_random_bytes_with_a_right_checksum(data: bytes) -> None:
+    for code in (sealed(data), forged(data)):
+        with pytest.raises(ValueError, match="share code"):
+            decode(code)
+
+
+@settings(CALM, max_examples=300)
+@given(st.text())
+def test_random_text(text: str) -> None:
+    for code in (text, "ONPATH1-" + text, SENT + text):
+        with pytest.raises(ValueError, match="share code"):
+            decode(code)
+
+
+def test_the_fullest_lab_fits() -> None:
+    path = capture_path(wave(0.9, 0.3, closed=True), PRESETS)
+    full = {
+        name: {
+            "parameters": {
+                field: spec.options[0] if spec.options else spec.low + 0.123456 * spec.high
+                for field, spec in specs(entry.lab).items()
+            },
+            "path": {"name": "drawn", "numbers": list(path.numbers)},
+        }
+        for name, entry in ROBOTS.items()
+    }
+    code = forged({"benches": full, "robot": "flexible", "rate": 0.25, "copy": False})
+    assert len(decode(code).benches) == 2
+    assert len(encode(decode(code))) < 3000
+
+
+def test_session_codes_are_forgiving_and_unambiguous() -> None:
+    codes = {new_code() for _ in range(500)}
+    assert len(codes) == 500
+    for code in codes:
+        assert set(code) <= set(ALPHABET) and not set(code) & set("01ilo")
+        assert normalised(shown(code)) == code
+        assert normalised(f"  {shown(code).upper().replace('-', ' – ')}\n") == code
+    assert shown("k7mf2xqa9tzr") == "k7mf-2xqa-9tzr"
+
+
+@pytest.mark.parametrize(
+    "text", ["", "abc", "k7mf-2xqa-9tz0", "k7mf-2xqa-9tzrr", "é" * 12, "x" * 10**7]
+)
+def test_what_is_no_session_code_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="session code"):
+        normalised(text)

@@ -1,0 +1,123 @@
+"""Sixty who come at once are let in one after the other, and whoever has to wait is told so."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+
+import pytest
+
+from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.session import Session
+from onpath.app.page.build_queue import FEW
+from onpath.app.page.page import LabView
+from onpath.app.server.lab_server import LabServer
+from tests.support.student import Student
+from tests.support.waiting import wait_for
+
+CROWD = 6
+LONG = 0.2  # [s] that a page takes at least
+MOMENT = "Many are coming"
+
+
+class Builds:
+    """What is built, and how many at a time."""
+
+    def __init__(self) -> None:
+        self.done, self.most, self._now = 0, 0, 0
+
+    def watch(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        genuine = LabView._build
+
+        def build(view: LabView, session: Session) -> None:
+            self._now += 1
+            self.most = max(self.most, self._now)
+            time.sleep(LONG)
+            genuine(view, session)
+            self._now -= 1
+            self.done += 1
+
+        monkeypatch.setattr(LabView, "_build", build)
+
+
+@pytest.fixture
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def builds(monkeypatch: pytest.MonkeyPatch) -> Builds:
+    builds = Builds()
+    builds.watch(monkeypatch)
+    return builds
+
+
+def wait_for_views(server: LabServer, count: int) -> None:
+    wait_for(lambda: len(server._views) == count, 15)
+
+
+class Comer(threading.Thread):
+    """A student who looks until a robot moves, or leaves when told to wait."""
+
+    def __init__(self, address: str, patient: bool = True) -> None:
+        super().__init__(daemon=True)
+        self.student, self._patient = Student(address), patient
+        self.told, self.after = False, 0.0
+
+    def run(self) -> None:
+        begun = time.monotonic()
+        self.student.open()
+        self.student.read(self._inside if self._patient else lambda: self._inside() or self.told)
+        self.after = time.monotonic() - begun
+        if not self._patient:
+            self.student.__exit__()
+
+    def _inside(self) -> bool:
+        self.told = self.told or self.student.sees(MOMENT)
+        return self.student.moving > 0
+
+
+def test_pages_are_built_one_at_a_time_and_who_waits_is_told(
+    server: LabServer, builds: Builds
+) -> None:
+    address = f"ws://127.0.0.1:{server.server.get_port()}"
+    with ExitStack() as stay:
+        crowd = [Comer(address) for _ in range(CROWD)]
+        for comer in crowd:
+            stay.enter_context(comer.student)
+            comer.start()
+        for comer in crowd:
+            comer.join(30)
+        wait_for_views(server, CROWD)
+        assert builds.done == CROWD and builds.most == 1
+        after = sorted(comer.after for comer in crowd)
+        assert sum(comer.told for comer in crowd) >= CROWD - FEW - 1
+        assert not any(comer.student.sees(MOMENT) for comer in crowd)
+        assert after[-1] - after[0] > 2 * (CROWD - 2) * LONG  # with a rest after each
+        for lab in server.simulation.labs:  # a teacher opens a lesson for all
+            lab.session.post(lc.OpenLesson(next(iter(lab.session.lessons.course.lessons))))
+        wait_for(lambda: builds.done >= 2 * CROWD, 20)
+        assert builds.most == 1
+
+
+def test_who_leaves_while_waiting_is_built_nothing(server: LabServer, builds: Builds) -> None:
+    address = f"ws://127.0.0.1:{server.server.get_port()}"
+    crowd = [Comer(address, patient=number < FEW + 1) for number in range(CROWD)]
+    for comer in crowd:
+        comer.start()
+        time.sleep(0.05)
+    for comer in crowd:
+        comer.join(30)
+    inside = [comer for comer in crowd if comer.student.moving]
+    wait_for_views(server, len(inside))
+    assert builds.done == len(inside) < CROWD
+    for comer in inside:
+        comer.student.__exit__()
+    wait_for_views(server, 0)
+    assert all(lab.view is None for lab in server.simulation.labs)
+    assert not server.sessions.held()

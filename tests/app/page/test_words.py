@@ -1,0 +1,296 @@
+"""Everything the interface says comes from the catalogue, in every language."""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab.session import Session
+from onpath.app.page.panels.keys import KEYS, help_text
+from onpath.app.page.panels.widgets import label_of, option_of
+from onpath.app.page.plots import MORE
+from onpath.lessons.record import PLOTS
+from onpath.lessons.words import ELSEWHERE, ENGLISH, SENTENCE, Words, catalogue, languages
+from onpath.models.control.poles import channels
+from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.curves import circle
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import FLEXIBLE, ROBOTS
+from onpath.models.systems.flexible_robot import BENT, UNSTABLE
+from onpath.models.systems.parameters import FiveBarParameters, specs
+from onpath.models.systems.robots import first_fault, rigid_five_bar
+from tests.support.checkout import ROOT
+from tests.support.lab import do, run, store
+
+SOURCES = sorted(file for folder in ("app", "lessons") for file in (ROOT / folder).rglob("*.py"))
+PAGE = sorted(
+    [
+        *(ROOT / "app" / "page" / "panels").glob("*.py"),
+        *(ROOT / "app" / "page").glob("*.py"),
+        ROOT / "app" / "exports" / "exporter.py",
+    ]
+)
+PREFIXES = (
+    *("quantity.", "stat.", "during.", "event.", "robot.", "kind.", "language.", "report."),
+    *("controller.", "key.", "keyname.", "pull.", "plot.", "axis."),
+    *("check.above", "check.below", "gains.across", "gains.along"),
+    *("lesson.back", "lesson.again", "lesson.close"),
+    *("readout.distance", "readout.now", "readout.most"),
+    *ELSEWHERE,
+)
+"""Keys, or their beginnings, that are put together from what the program knows by other names."""
+OTHERS = [language for language in languages() if language != "en"]
+
+
+@lru_cache
+def parsed(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+def text_of(node: ast.AST) -> str | None:
+    """A string's text, "{}" where an f-string has a value; None if it is no string."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        return node.value
+    if isinstance(node, ast.JoinedStr):
+        return "".join(str(v.value) if isinstance(v, ast.Constant) else "{}" for v in node.values)
+    return None
+
+
+def calls(tree: ast.AST) -> Iterator[tuple[str, ast.Call]]:
+    """Every call with the last part of the name that is called."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call):
+            name = getattr(node.func, "attr", None) or getattr(node.func, "id", "")
+            yield name, node
+
+
+# Nothing but the catalogue speaks.
+
+SHOWN = {"label", "hint", "text", "title", "body", "options", "content", "initial_value"}
+FOR_EYES = re.compile(r"add_(?!light|mesh|line|arrow|grid|image|batched|copies)|Series")
+
+
+def said_literally(tree: ast.AST) -> Iterator[str]:
+    """Strings with letters that are given to a widget, a title or a label as they stand."""
+    for name, call in calls(tree):
+        if FOR_EYES.fullmatch(name) or FOR_EYES.match(name):
+            given = [*call.args, *(k.value for k in call.keywords if k.arg in SHOWN)]
+            yield from (text for node in given for text in literals(node))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign):
+            targets = {getattr(target, "attr", "") for target in node.targets}
+            if targets & SHOWN:
+                yield from literals(node.value)
+
+
+def literals(node: ast.AST) -> Iterator[str]:
+    """Strings with letters in an expression, but for those that choose a key or name a node."""
+    if isinstance(node, ast.Call):
+        return
+    text = text_of(node)
+    if text is None:
+        for child in ast.iter_child_nodes(node):
+            yield from literals(child)
+    elif re.search(r"[^\W\d_]{2}", re.sub(r"<[^>]*>|\{\}", "", text)) and text[:1] != "/":
+        yield text
+
+
+def sentences(tree: ast.AST) -> Iterator[str]:
+    """Strings of two words or more that are neither documentation nor markup nor an error's."""
+    skipped: set[ast.AST] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Raise | ast.Assert):
+            skipped.update(ast.walk(node))
+        elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            skipped.add(node.value)
+        elif isinstance(node, ast.JoinedStr):
+            skipped.update(node.values)
+    for node in ast.walk(tree):
+        text = None if node in skipped else text_of(node)
+        if text is not None:
+            bare = re.sub(r"<style>.*?</style>|<[^>]*>?", "", text, flags=re.DOTALL)
+            if re.search(r"[^\W\d_]{2,} [^\W\d_]{2,}", bare) and not re.search(r"\w:\S", bare):
+                yield text
+
+
+@pytest.mark.parametrize("file", PAGE, ids=lambda file: str(file.relative_to(ROOT)))
+def test_a_page_says_nothing_but_from_the_catalogue(file: Path) -> None:
+    assert [*said_literally(parsed(file)), *sentences(parsed(file))] == []
+
+
+def test_what_is_said_literally_would_be_noticed() -> None:
+    bad = ast.parse(
+        "gui.add_button('Run')\ngui.add_slider(words('a.b'), hint='Faster')\nx.label = f'Now {y}'\n"
+        "gui.add_dropdown(words('a.b'), ['one', 'two'])\nHELP = 'do this'\n"
+        "uplot.Series(label='t [ms]')\nlabel = words('Run' if a else 'Stop')\n"
+    )
+    assert len([*said_literally(bad)]) == 6 and [*sentences(bad)] == ["do this"]
+    fine = ast.parse("'''A module.'''\ngui.add_html('')\nadd_text(s, '/a/node', words('a.b'))\n")
+    assert [*said_literally(fine), *sentences(fine)] == []
+
+
+# Code and catalogue know the same keys.
+
+
+def asked_for() -> Iterator[str]:
+    """What the code asks a catalogue for; "{}" where a key has a part that varies."""
+    for file in SOURCES:
+        for name, call in calls(parsed(file)):
+            asks = name.lower().endswith("words") or name == "ENGLISH"
+            if asks and call.args and name not in ("Words", "_stat_words"):
+                first = call.args[0]
+                branches = [first.body, first.orelse] if isinstance(first, ast.IfExp) else [first]
+                yield from (text for node in branches if (text := text_of(node)))
+
+
+def test_every_key_that_is_asked_for_exists() -> None:
+    asked = set(asked_for())
+    assert len(asked) > 100
+    known = catalogue("en")
+    assert {key for key in asked if "{}" not in key and key not in known} == set()
+    for key in asked:
+        if "{}" in key:
+            found = [own for own in known if re.fullmatch(key.replace("{}", ".+"), own)]
+            assert key.startswith(ELSEWHERE) or any(own.startswith(PREFIXES) for own in found), key
+
+
+def test_every_key_is_used() -> None:
+    written = {text_of(node) for file in SOURCES for node in ast.walk(parsed(file))}
+    unused = {key for key in catalogue("en") if key not in written}
+    assert {key for key in unused if not key.startswith(PREFIXES)} == set()
+
+
+# What is put together exists in every language.
+
+
+@pytest.mark.parametrize("words", [Words(language) for language in languages()])
+def test_what_the_program_names_has_words(words: Words) -> None:
+    assert set(MORE) == set(PLOTS)
+    for name in MORE:
+        assert words(f"plot.{name}") and words(f"axis.{name}")
+    for key in KEYS:
+        assert key.does(words) in help_text(words) and key.shown(words) in help_text(words)
+    for channel in channels(FiveBarParameters()):
+        assert words(f"gains.{channel.name}")
+
+
+@pytest.mark.parametrize("words", [Words(language) for language in OTHERS])
+def test_what_stands_in_models_is_translated(words: Words) -> None:
+    known = catalogue(words.language)
+    for name in presets():
+        assert f"path.{name}" in known
+    for entry in ROBOTS.values():
+        assert f"machine.{entry.name}.label" in known and f"machine.{entry.name}.text" in known
+        for name, spec in specs(entry.parameters).items():
+            assert f"parameter.{name}.label" in known and f"parameter.{name}.help" in known
+            shown = [option_of(words, name, option) for option in spec.options]
+            assert len(set(shown)) == len(shown)
+            if spec.options and not isinstance(spec.options[0], int):
+                assert all(f"parameter.{name}.option.{option}" in known for option in spec.options)
+
+
+@pytest.mark.parametrize("words", [Words(language) for language in OTHERS])
+def test_nothing_is_translated_that_there_is_not(words: Words) -> None:
+    names = {name for entry in ROBOTS.values() for name in specs(entry.parameters)}
+    sentences = [text_of(n) for f in said_in_english() for n in ast.walk(parsed(f))]
+    spoken = {re.sub(r"\{\}", "§", text) for text in sentences if text}
+    for key in catalogue(words.language):
+        if key.startswith("parameter."):
+            assert key.split(".")[1] in names
+        elif key.startswith("path."):
+            assert key.removeprefix("path.") in presets()
+        elif key.startswith("machine."):
+            assert key.split(".")[1] in ROBOTS
+        elif key.startswith(SENTENCE):
+            pattern = re.sub(r"\\\{\w+\\\}|\d+", ".+?", re.escape(key.removeprefix(SENTENCE)))
+            pattern = re.sub(r"\d+", ".+?", pattern)
+            assert any(re.fullmatch(pattern, text) for text in spoken), key
+
+
+def said_in_english() -> list[Path]:
+    return [*(ROOT / "models").rglob("*.py"), *(ROOT / "app").rglob("*.py")]
+
+
+def reasons() -> Iterator[str]:
+    """Why runs stop and paths are refused."""
+    robot = rigid_five_bar()
+    for curve in (presets()["figure of eight"].curve, circle(0.19), circle(0.004), circle(0.3)):
+        yield from (fault.reason for fault in curve_faults(robot.margin, curve))
+    v = np.zeros((1, 2))
+    for q, rates in ((v * np.nan, v), (v, v + 1e4)):
+        found = first_fault(q, rates)
+        assert found is not None
+        yield found[1]
+    collapsed = robot.fault(v, v, FiveBarParameters())
+    assert collapsed is not None
+    yield from (collapsed[1], UNSTABLE, BENT)
+
+
+def behaviours() -> Iterator[str]:
+    for changes in ({"K1": 0.0, "K2": 0.0}, {"K2": 5.0}, {"K3": 8000.0, "K2": 10.0}, {}):
+        for channel in channels(dataclasses.replace(FiveBarParameters(), **changes)):
+            yield channel.words()
+
+
+@pytest.mark.parametrize("words", [Words(language) for language in OTHERS])
+def test_reasons_and_behaviours_are_translated(words: Words) -> None:
+    said = {*reasons(), *behaviours()}
+    assert len(said) > 10
+    for english in said:
+        own = words.sentence(english)
+        assert own != english and "{" not in own
+        assert re.findall(r"\d[\d.]*\d", own) == re.findall(r"\d[\d.]*\d", english)
+        assert ENGLISH.sentence(english) == english
+
+
+def test_a_sentence_inside_a_sentence_is_translated_too() -> None:
+    english = "settles in 0.2 s, no overshoot"
+    assert Words("de").sentence(english) == "klingt in 0.2 s ab, ohne Überschwingen"
+    assert Words("de").sentence("never heard {of} it") == "never heard {of} it"
+
+
+def test_fields_of_translated_sentences_are_the_same() -> None:
+    for language in OTHERS:
+        for key, own in catalogue(language).items():
+            if key.startswith(SENTENCE):
+                assert set(re.findall(r"\{\w+\}", key)) == set(re.findall(r"\{\w+\}", own)), key
+
+
+# A lab that speaks German.
+
+
+def test_a_german_lab_speaks_german() -> None:
+    session = Session(store(), FLEXIBLE)
+    do(session, lc.SetLanguage("de"), c.ChoosePath("figure of eight"))
+    assert session.message.startswith("Diese Bahn geht nicht: die Bahn kreuzt sich selbst")
+    do(session, c.Undo())
+    assert session.message == "es gibt nichts rückgängig zu machen"
+    do(session, c.RemovePoint())
+    assert session.message.startswith("wähle erst einen Kontrollpunkt")
+    do(session, c.SetParameter("law", "redefined"), c.SetParameter("alpha", 0.95))
+    run(session, 3.0)
+    assert "regelung: stehen geblieben" in session.message and "Nulldynamik" in session.message
+    do(session, lc.SetLanguage("en"))
+    assert "stopped at" in session.message and UNSTABLE in session.message
+
+
+def test_a_parameter_without_words_has_those_of_its_declaration() -> None:
+    spec = specs(FiveBarParameters)["K1"]
+    assert label_of(ENGLISH, "K1", spec) == spec.label != label_of(Words("de"), "K1", spec)
+
+
+def test_plots_call_eta_what_the_paper_does() -> None:
+    """eta_2 is (theta, theta'), eta_1 the motion inside: neither is theta or its rate alone."""
+    for language in languages():
+        said = Words(language)
+        shown = [said(f"{kind}.{name}") for kind in ("plot", "axis") for name in ("place", "rate")]
+        assert all("θ" in text and "η" not in text for text in shown)

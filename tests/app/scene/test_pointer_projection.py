@@ -1,0 +1,89 @@
+"""Laws of the pointer's geometry."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import assume, example, given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from onpath.app.scene.pointer_projection import (
+    REACHABLE,
+    VERTICAL_PLANE,
+    Box,
+    intersect_ray_plane,
+    pointer_on_plane,
+)
+
+vectors = arrays(np.float64, 3, elements=st.floats(-10.0, 10.0))
+NOT_FINITE = st.sampled_from([np.nan, np.inf, -np.inf])
+
+
+def steep(direction: np.ndarray, normal: np.ndarray) -> float:
+    """Cosine of the angle between two vectors, 0 when either is nothing."""
+    lengths = np.linalg.norm(direction) * np.linalg.norm(normal)
+    return float(direction @ normal / lengths) if lengths > 1e-6 else 0.0
+
+
+@given(vectors, vectors, vectors, vectors)
+@example(  # a plane through the ray's origin: the sign of `ahead` is rounding
+    np.array([1.5, 3.75, 0.0]), -np.ones(3), np.array([3.75, 1.5, 0.0]), 2.058 * np.ones(3)
+)
+def test_hit_lies_on_plane_and_on_ray(origin, direction, point, normal):
+    assume(abs(steep(direction, normal)) > 0.05)
+    hit = intersect_ray_plane(origin, direction, point, normal)
+    ahead = float((point - origin) @ normal) / float(direction @ normal)
+    scale = np.abs(point - origin) @ np.abs(normal) / abs(direction @ normal)
+    undecided = abs(ahead) <= 1e-14 * scale  # a few roundings: behind or at the origin
+    if ahead < 0.0 and not undecided:
+        assert hit is None
+        return
+    if hit is None:
+        assert undecided
+        return
+    assert abs((hit - point) @ normal) < 1e-9 * np.linalg.norm(normal) * (1.0 + ahead)
+    np.testing.assert_allclose(hit, origin + ahead * direction, atol=1e-9)
+
+
+@given(vectors, vectors, vectors, vectors)
+def test_ray_along_the_plane_never_hits(origin, direction, point, normal):
+    assume(np.linalg.norm(normal) > 1e-3)
+    along = direction - (direction @ normal) / (normal @ normal) * normal
+    assume(np.linalg.norm(along) > 1e-6)  # else only rounding is left of it
+    assert intersect_ray_plane(origin, along, point, normal) is None
+
+
+@given(vectors, vectors, vectors, vectors, st.integers(0, 11), NOT_FINITE)
+def test_what_is_not_finite_never_hits(origin, direction, point, normal, place, value):
+    numbers = np.concatenate([origin, direction, point, normal])
+    numbers[place] = value
+    with np.errstate(invalid="ignore"):
+        assert intersect_ray_plane(*numbers.reshape(4, 3)) is None
+
+
+@given(vectors, vectors, vectors)
+def test_clamped_point_is_the_nearest_of_the_box(point, corner, other):
+    box = Box(np.minimum(corner, other), np.maximum(corner, other))
+    clamped = box.clamp(point)
+    assert ((clamped >= box.lower) & (clamped <= box.upper)).all()
+    for candidate in (box.lower, box.upper, (box.lower + box.upper) / 2):
+        nearer = np.linalg.norm(point - candidate) - np.linalg.norm(point - clamped)
+        assert nearer >= -1e-12
+
+
+@given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(0.1, 0.9), vectors)
+def test_pointer_anywhere_on_the_ray_means_the_same_point(x, z, share, base):
+    camera = base + [0.3, -3.0, 0.4]
+    target = np.array([x, 0.0, z])
+    pointer = camera + share * (base + target - camera)
+    found = pointer_on_plane(camera, pointer, base, VERTICAL_PLANE)
+    assert found is not None
+    np.testing.assert_allclose(found, target, atol=1e-9)
+
+
+def test_far_pointer_stays_within_reach():
+    far = pointer_on_plane(
+        np.array([0.0, -1.0, 0.0]), np.array([50.0, 0.0, 80.0]), np.zeros(3), VERTICAL_PLANE
+    )
+    assert far is not None
+    np.testing.assert_allclose(far, [REACHABLE.upper[0], 0.0, REACHABLE.upper[2]])

@@ -1,0 +1,290 @@
+"""The scene, built on a real viser server without a browser; drags are played to its callbacks."""
+
+from __future__ import annotations
+
+import socket
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import viser
+from scipy.spatial.transform import Rotation
+
+from onpath.app.common import palette
+from onpath.app.lab.snapshot import Counts, FollowerName, PathView, RobotView, Snapshot, TrackerName
+from onpath.app.scene.poses import bar_quaternions, trace_segments, waist_angle
+from onpath.app.scene.robot_nodes import TRACE_SEGMENTS
+from onpath.app.scene.scene import Hooks, Scene, meshes
+from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Stage, view_of
+from onpath.app.scene.stage_catalogue import FLEXIBLE, RIGID
+from tests.support.drags import play
+from tests.support.drawing import evaluated
+
+NAMES = (TrackerName, FollowerName)
+
+
+def direction(angle: float) -> np.ndarray:
+    """Unit vector in the robot's plane."""
+    return np.array([np.cos(angle), 0.0, np.sin(angle)])
+
+
+def robot(q1: float, q2: float, force: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> RobotView:
+    """A rigid five-bar with links of 0.2 and 0.1 m."""
+    base, a, b = np.zeros(3), 0.2 * direction(q1), 0.1 * direction(q2)
+    tip = a - 0.2 * direction(q2)
+    bars = np.array([(base, a), (base, b), (b, a + b), (a + b, tip)])
+    trace = np.linspace(base, tip, 50)
+    joints = np.array([base, a, b, a + b])
+    points = np.vstack([bars.reshape(-1, 3), joints, tip, tip, tip, force])
+    return RobotView(points, Counts(4, 4, 0), trace, 0.0, 0.0, 0.0, np.zeros(2))
+
+
+def path(version: int = 0, n_points: int = 6) -> PathView:
+    """A circle with control points on it."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 101)[:, None]
+    circle = np.array([0.2, 0.0, 0.2]) + 0.05 * np.hstack([np.cos(turn), 0 * turn, np.sin(turn)])
+    return PathView(version, circle, circle[:n_points], None, np.zeros((0, 3)))
+
+
+def snapshot(q1: float = 1.5, q2: float = 3.0, **changes: Any) -> Snapshot:
+    """Both robots in the same pose."""
+    both = {name: robot(q1, q2) for name in NAMES}
+    whole = Snapshot(0.0, True, 1.0, both, path(), False, None, "", "info")
+    return replace(whole, **changes)
+
+
+@pytest.fixture(scope="module")
+def server():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    server = viser.ViserServer(host="127.0.0.1", port=port, verbose=False)
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def lab(server, monkeypatch):
+    """A built scene, the messages it sent since, and what its hooks heard."""
+    server.scene.reset()
+    heard: list[tuple[Any, ...]] = []
+    hooks = Hooks(
+        on_grab=lambda *a: heard.append(("grab", *a)),
+        on_release=lambda *a: heard.append(("release", *a)),
+        on_point_dragged=lambda *a: heard.append(("dragged", *a)),
+        on_point_drag_end=lambda *a: heard.append(("dropped", *a)),
+        on_point_selected=lambda *a: heard.append(("selected", *a)),
+    )
+    client: Any = SimpleNamespace(scene=server.scene, atomic=server.atomic)
+    scene = Scene(client, hooks=hooks)
+    scene.build(snapshot())
+    sent: list[Any] = []
+    queue = server.scene._queue_scene_message
+    monkeypatch.setattr(server.scene, "_queue_scene_message", lambda m: (sent.append(m), queue(m)))
+    return SimpleNamespace(scene=scene, api=server.scene, sent=sent, heard=heard)
+
+
+def test_a_moving_frame_costs_at_most_four_messages(lab):
+    lab.scene.update(snapshot(1.4, 2.9))
+    assert 0 < len(lab.sent) <= 4
+
+
+def test_a_still_frame_costs_nothing(lab):
+    lab.scene.update(snapshot())
+    lab.scene.update_path(snapshot())
+    assert lab.sent == []
+
+
+def test_a_force_shows_and_then_hides_its_arrow(lab):
+    arrows = lab.api.get_handle_by_name("/force")
+    pulled = {name: robot(1.5, 3.0, force=(10.0, 0.0, 0.0)) for name in NAMES}
+    lab.scene.update(snapshot(robots=pulled))
+    assert arrows.visible
+    lengths = np.linalg.norm(arrows.points[:, 1] - arrows.points[:, 0], axis=1)
+    lab.scene.update(snapshot(robots={n: robot(1.5, 3.0, force=(20.0, 0, 0)) for n in NAMES}))
+    twice = np.linalg.norm(arrows.points[:, 1] - arrows.points[:, 0], axis=1)
+    np.testing.assert_allclose(twice, 2.0 * lengths, rtol=1e-5)
+    lab.scene.update(snapshot())
+    assert not arrows.visible
+
+
+def test_poses_that_are_not_finite_are_not_sent(lab):
+    broken = {name: robot(np.nan, 3.0) for name in NAMES}
+    lab.scene.update(snapshot(robots=broken))
+    lab.scene.update_traces(snapshot(robots=broken))
+    assert lab.sent == []
+
+
+def test_path_is_redrawn_only_when_its_version_changes(lab):
+    moved = replace(path(), points=path().points + 0.01)
+    lab.scene.update_path(snapshot(path=moved))
+    assert lab.sent == []
+    lab.scene.update_path(snapshot(path=replace(moved, version=1)))
+    assert 0 < len(lab.sent) <= 3
+
+
+@pytest.mark.parametrize("count", [0, 3, 9])
+def test_number_of_control_points_may_change(lab, count):
+    lab.scene.update_path(snapshot(path=path(1, count)))
+    points = lab.api.get_handle_by_name("/path/points")
+    assert (points is None) == (count == 0)
+    if count:
+        assert len(points.batched_positions) == len(points.batched_wxyzs) == 2 * count
+
+
+def test_an_unscaled_control_point_covers_next_to_nothing(lab):
+    """viser leaves one at the origin, invisible, where it blocks the camera."""
+    points = lab.api.get_handle_by_name("/path/points")
+    assert points.batched_scales is None
+    assert np.abs(points.vertices).max() < 0.01
+
+
+def test_refused_places_come_and_go(lab):
+    marks = replace(path(), refused=np.zeros((2, 3)))
+    for version, refused in ((1, marks), (2, path())):
+        lab.scene.update_path(snapshot(path=replace(refused, version=version)))
+        shown = lab.api.get_handle_by_name("/path/refused") is not None
+        assert shown == (version == 1)
+
+
+@pytest.mark.parametrize("instance", [0, 1])
+def test_pulling_an_end_point_tells_the_robot_and_the_place(lab, instance):
+    name, target = NAMES[instance], np.array([0.21, 0.0, 0.13])
+    for phase in ("start", "update", "end"):
+        play(lab, "/grips", phase, instance, RIGID.bases[name], RIGID.bases[name] + target)
+    assert [event[:2] for event in lab.heard] == [("grab", name)] * 2 + [("release", name)]
+    np.testing.assert_allclose(lab.heard[1][2], target, atol=1e-9)
+
+
+@pytest.mark.parametrize("robot_index", [0, 1])
+def test_a_dragged_point_moves_by_what_the_mouse_moved(lab, robot_index):
+    base, index = RIGID.bases[NAMES[robot_index]], 4
+    point = path().control_points[index]
+    pressed = base + point + [0.003, 0.0, -0.002]
+    shift = np.array([0.02, 0.0, 0.01])
+    instance = robot_index * len(path().control_points) + index
+    play(lab, "/path/points", "start", instance, pressed, pressed)
+    play(lab, "/path/points", "update", instance, pressed, pressed + shift)
+    play(lab, "/path/points", "end", instance, pressed, pressed + shift)
+    assert [event[0] for event in lab.heard] == [
+        "selected", "dragged", "dragged", "dragged", "dropped"
+    ]  # fmt: skip
+    assert all(event[1] == index for event in lab.heard)
+    np.testing.assert_allclose(lab.heard[1][2], point, atol=1e-9)
+    np.testing.assert_allclose(lab.heard[2][2], point + shift, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("path_first", "selected", "beside", "taken"),
+    [
+        (False, None, 0.0, "grab"),
+        (True, None, 0.0, "dragged"),
+        (True, None, 0.016, "grab"),  # nearer to the rim of what takes the press
+        (False, 4, 0.0, "dragged"),
+        (False, 3, 0.0, "grab"),
+    ],
+)
+def test_where_an_end_point_covers_a_control_point_the_one_that_is_meant_is_taken(
+    lab, path_first, selected, beside, taken
+):
+    lab.scene.path_first = path_first
+    lab.scene.update_path(snapshot(path=replace(path(1), selected=selected)))
+    name = NAMES[1]
+    point = path().control_points[4] + [beside, 0.0, 0.0]
+    pressed, shift = RIGID.bases[name] + point, np.array([0.02, 0.0, 0.01])
+    for phase, way in (("start", 0.0), ("update", 1.0), ("end", 1.0)):
+        play(lab, "/grips", phase, 1, pressed, pressed + way * shift)
+    heard = [event[0] for event in lab.heard]
+    if taken == "grab":
+        assert heard == ["grab", "grab", "release"]
+        return
+    assert heard == ["selected", "dragged", "dragged", "dragged", "dropped"]
+    assert all(event[1] == 4 for event in lab.heard)
+    np.testing.assert_allclose(lab.heard[2][2], path().control_points[4] + shift, atol=1e-9)
+
+
+def test_a_freehand_stroke_is_told_once_in_the_robots_frame(lab):
+    strokes: list[np.ndarray] = []
+    lab.scene.begin_freehand(strokes.append)
+    base = RIGID.bases[FollowerName]
+    corners = np.array([(0.1, 0.0, 0.1), (0.2, 0.0, 0.1), (0.2, 0.0, 0.2), (0.1, 0.0, 0.2)])
+    phases = ("start", "update", "update", "end")
+    for phase, corner in zip(phases, corners, strict=True):
+        play(lab, "/freehand/sheet", phase, 1, base + corners[0], base + corner)
+    assert len(strokes) == 1
+    np.testing.assert_allclose(strokes[0], corners, atol=1e-9)
+    assert lab.api.get_handle_by_name("/freehand/sheet") is None
+    assert lab.api.get_handle_by_name("/freehand/ink") is None
+
+
+def test_the_singular_zone_can_be_shown_and_hidden(lab):
+    for visible in (True, True, False):
+        lab.scene.show_singular_zone(0.0, 0.4, 0.02, visible)
+        assert (lab.api.get_handle_by_name("/zone") is not None) == visible
+
+
+@pytest.mark.parametrize("waist", [-0.6, 0.0, 0.9])
+def test_bars_point_along_their_links_whatever_the_waist(waist):
+    turn = Rotation.from_euler("z", waist)
+    bars = turn.apply(robot(1.3, 2.8).bars.reshape(-1, 3)).reshape(-1, 2, 3)
+    along = bars[:, 1] - bars[:, 0]
+    along[3] += turn.apply([0.0, 0.02, 0.0])  # a bent beam leaves the plane
+    assert evaluated(waist_angle, bars.reshape(-1, 3).T)[0] == pytest.approx(waist)
+    quaternions = evaluated(bar_quaternions, along.T, waist)[0]
+    turned = Rotation.from_quat(quaternions.T, scalar_first=True)
+    unit = along / np.linalg.norm(along, axis=1)[:, None]
+    np.testing.assert_allclose(turned.apply([1.0, 0.0, 0.0]), unit, atol=1e-12)
+    normal = turn.apply([0.0, 1.0, 0.0])
+    np.testing.assert_allclose(turned[:3].apply([0.0, 1.0, 0.0]), [normal] * 3, atol=1e-12)
+
+
+@pytest.mark.parametrize("length", [0, 1, 2, TRACE_SEGMENTS + 1, 1000])
+def test_traces_are_connected_and_end_at_the_newest_point(length):
+    trace = np.cumsum(np.ones((length, 3)), axis=0)
+    segments = trace_segments(trace, TRACE_SEGMENTS)
+    assert segments.shape == (TRACE_SEGMENTS, 2, 3)
+    np.testing.assert_array_equal(segments[1:, 0], segments[:-1, 1])
+    if length:
+        np.testing.assert_array_equal(segments[-1, 1], trace[-1])
+
+
+@pytest.mark.parametrize("size", [(1400, 800), (390, 844), (2560, 600)])
+@pytest.mark.parametrize("insets", [Insets(), Insets(left=60, right=90, bottom=200)])
+@pytest.mark.parametrize("stage", [RIGID, FLEXIBLE], ids=["rigid", "flexible"])
+def test_camera_shows_both_robots_clear_of_the_panels(size, insets, stage: Stage):
+    pose = view_of(stage, size, insets)
+    forward = (pose.look_at - pose.position) / np.linalg.norm(pose.look_at - pose.position)
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    up = np.cross(right, forward)
+    scale = size[1] / 2 / np.tan(FIELD_OF_VIEW / 2)
+    seen = stage.corners - pose.position
+    x = size[0] / 2 + scale * (seen @ right) / (seen @ forward)
+    y = size[1] / 2 - scale * (seen @ up) / (seen @ forward)
+    slack = 2.0
+    assert x.min() > insets.left - slack and x.max() < size[0] - insets.right + slack
+    assert y.min() > insets.top - slack and y.max() < size[1] - insets.bottom + slack
+    free = size[0] - insets.left - insets.right, size[1] - insets.top - insets.bottom
+    widest = max(np.ptp(x) / free[0], np.ptp(y) / free[1])
+    assert widest > 0.8
+
+
+@pytest.mark.parametrize(
+    "part", ["link", "bearing", "grip", "motors", "base", "cross", "blade", "pedestal", "turntable"]
+)
+def test_parts_are_solids_that_look_outward(part):
+    mesh = getattr(meshes, part)().copy()
+    mesh.merge_vertices()
+    assert mesh.is_watertight and mesh.volume > 0.0
+
+
+def test_layers_keep_links_apart():
+    assert meshes.BACK_LAYER - meshes.FRONT_LAYER > meshes.LINK_THICKNESS
+
+
+def test_controllers_differ_in_lightness_or_blue_for_every_eye():
+    tracker, follower = (np.array(palette.CONTROLLERS[name].rgb) for name in NAMES)
+    assert abs(int(tracker[2]) - int(follower[2])) > 120
+    assert palette.TRACKER.hex == "#d55e00"

@@ -1,0 +1,183 @@
+"""A stroke without end costs no more than a short one, and nothing on the event loop of all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from onpath.app.common import palette
+from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.scene.ink import MOST, Ink
+from onpath.app.scene.stage_catalogue import RIGID
+from onpath.app.server.lab_server import LabServer
+from onpath.lessons.schema import Sketch
+from tests.support import waiting
+from tests.support.drags import play
+from tests.support.student import Student
+
+FRAMES, MESSAGES, DISPLAY = 60, 400, 10  # per simulated second; so often a stroke is drawn at most
+SECONDS = 6
+wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that would hang
+
+
+class Page:
+    """One tab of a real lab whose frames are counted out here; notes what is told of the ink."""
+
+    def __init__(self, lab: LabServer) -> None:
+        (self.number,) = wait_for(lambda: list(lab._views))
+        self.view: Any = lab._views[self.number]
+        self.client = lab.server.get_clients()[self.number]
+        self.session = next(iter(lab.sessions._entries.values())).lab.session
+        lab.simulation.stop()
+        self.frame, self._showing = 0, False
+        self.told: list[int] = []  # points of each drawing
+        self.told_by_mouse = 0
+        connection: Any = self.client._websock_connection
+        self._queue = connection.queue_message
+        connection.queue_message = self._note
+
+    def _note(self, message: Any) -> None:
+        if getattr(message, "name", "").endswith("/ink"):
+            drawn = getattr(message, "updates", None) or vars(getattr(message, "props", message))
+            if "points" in drawn:
+                self.told.append(len(drawn["points"]))
+                self.told_by_mouse += not self._showing
+        self._queue(message)
+
+    def show(self) -> None:
+        """A frame, as the simulation thread does it."""
+        self._showing = True
+        self.session.drain()
+        self.view.show(self.session, 1.0, self.frame, 2.0)
+        self.view.send()
+        self._showing = False
+        self.frame += 1
+
+    def shown(self, node: str) -> bool:
+        """Whether a node has come after another frame."""
+        self.show()
+        return self.client.scene.get_handle_by_name(node) is not None
+
+    def scribble(self, node: str, place: Callable[[int], np.ndarray]) -> None:
+        """A mouse that goes through places, at `MESSAGES` a second for `SECONDS`."""
+        scene = SimpleNamespace(api=self.client.scene)
+        for k in range(SECONDS * MESSAGES):
+            play(scene, node, "update" if k else "start", 0, place(max(k - 1, 0)), place(k))
+            if k * FRAMES // MESSAGES != (k - 1) * FRAMES // MESSAGES:
+                self.show()
+        self.end = partial(play, scene, node, "end", 0, place(k), place(k))
+
+    def assert_bounded(self) -> None:
+        """What has been told of the ink since the beginning."""
+        assert len(self.told) <= SECONDS * DISPLAY + 1
+        assert max(self.told) <= MOST
+        assert len(self.told) > SECONDS * DISPLAY / 2  # it is seen while it is drawn
+        assert not self.told_by_mouse
+
+
+@pytest.fixture
+def page() -> Iterator[Page]:
+    lab = LabServer("127.0.0.1", 0, LoopStore())
+    with Student(f"ws://127.0.0.1:{lab.server.get_port()}") as student:
+        student.open()
+        student.read(lambda: student.may("Path") and lab._views)
+        yield Page(lab)
+    lab.stop()
+
+
+def around(k: int) -> np.ndarray:
+    """Steps of 3 mm along a circle, in the robot's frame, [m]."""
+    turn = k * 0.03
+    return np.array([0.2 + 0.1 * np.cos(turn), 0.0, 0.15 + 0.1 * np.sin(turn)])
+
+
+def test_an_endless_freehand_stroke_is_drawn_ten_times_a_second_of_few_points(page: Page) -> None:
+    strokes: list[np.ndarray] = []
+    page.view._scene.begin_freehand(strokes.append)
+    base = next(iter(RIGID.bases.values()))
+    page.scribble("/freehand/sheet", lambda k: base + around(k))
+    page.assert_bounded()
+    page.end()
+    (stroke,) = strokes
+    assert MOST / 2 <= len(stroke) <= MOST
+    middle = np.array([0.2, 0.0, 0.15])
+    assert np.linalg.norm(stroke - middle, axis=1) == pytest.approx(np.full(len(stroke), 0.1))
+    assert stroke[0] == pytest.approx(around(0))
+    assert not page.shown("/freehand/ink") and not page.told_by_mouse
+
+
+def test_an_endless_sketch_too(page: Page) -> None:
+    course = page.session.lessons.course
+    name, step = next(
+        (name, number)
+        for name in course.lessons
+        for number, step in enumerate(course.lesson(name, "en").steps)
+        if any(isinstance(block, Sketch) for block in step.blocks)
+    )
+    page.session.post(lc.OpenLesson(name))
+    for _ in range(step):
+        page.session.post(lc.GoToStep(step))
+    wait_for(lambda: page.shown("/board/sheet"))
+    (board,) = wait_for(lambda: [p._board for p in page.view._parts if hasattr(p, "_board")])
+    page.scribble("/board/sheet", lambda k: board._world(0.3 * sideways(k)[None])[0])
+    page.assert_bounded()
+    page.end()
+    drawn = len(page.told)
+    for _ in range(FRAMES):
+        page.show()
+    assert len(page.told) <= drawn + 1 and not page.told_by_mouse  # what is drawn stays
+
+
+def sideways(k: int) -> np.ndarray:
+    """Along a circle round the board's middle."""
+    return np.array([np.cos(k * 0.03), np.sin(k * 0.03)])
+
+
+class Paper:
+    """A scene on which lines are drawn."""
+
+    def __init__(self) -> None:
+        self.drawings: list[np.ndarray] = []
+
+    def add_line_segments(self, _name: str, points: np.ndarray, *_: Any, **__: Any) -> Any:
+        self.points = points
+        return self
+
+    def remove(self) -> None:
+        self.drawings.append(np.zeros((0, 2, 3)))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        super().__setattr__(name, value)
+        if name == "points":
+            self.drawings.append(value)
+
+
+@given(st.lists(st.floats(0.5, 1.5), max_size=40), st.integers(1, 4 * MOST))
+def test_a_line_begins_where_it_began_and_ends_near_the_hand(
+    steps: list[float], count: int
+) -> None:
+    paper = Paper()
+    ink = Ink(paper, "ink", (palette.INK, 1.0), 1.0, lambda points: points)  # type: ignore[arg-type]
+    way = np.cumsum([0.0, *(2.0 * np.resize(steps or [1.0], count))])
+    for x in way:
+        ink.add(np.array([x, 0.0, 0.0]))
+    points = ink.points[:, 0]
+    gaps = np.diff(points)
+    assert len(points) <= MOST and points[0] == way[0] and set(points) <= set(way)
+    if len(points) > 1:
+        assert gaps.min() > 1.0 and way[-1] - points[-1] <= gaps.max()
+    for _ in range(2):
+        ink.draw()
+    assert len(paper.drawings) == (len(points) > 1)
+    ink.remove()
+    ink.add(np.array([-9.0, 0.0, 0.0]))
+    ink.draw()
+    assert len(paper.drawings) == 2 * (len(points) > 1)

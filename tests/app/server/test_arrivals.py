@@ -1,0 +1,170 @@
+"""Tabs that answer nothing hold no thread and no place, and who answers late is let in."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack
+from functools import partial
+
+import pytest
+import viser
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Subprotocol
+
+from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.server.arrivals import MOST_EACH, Arrivals, Kept
+from onpath.app.server.lab_server import LabServer
+from onpath.app.viser_adapter.secure_server import Limits, make_server
+from tests.support import waiting
+from tests.support.raw_socket import frames, is_closed, knock
+from tests.support.student import Student
+
+WAIT = 30.0  # [s]; only ends a test that would hang
+SILENT = 200
+wait_for = partial(waiting.wait_for, seconds=WAIT)
+
+
+def silent(server: viser.ViserServer, source: str = "127.0.0.1") -> socket.socket:
+    """A tab that is there, and says nothing more."""
+    raw = knock(server.get_port(), source=source)
+    raw.sendall(frames(packed("ViewerCameraMessage", **CAMERA)))
+    return raw
+
+
+def all_threads_are_free(server: viser.ViserServer) -> bool:
+    """Whether viser's threads can all be had at once."""
+    pool = server._thread_executor
+    meet = threading.Barrier(pool._max_workers)
+    jobs = [pool.submit(meet.wait, WAIT / 2) for _ in range(pool._max_workers)]
+    return not any(job.exception() for job in jobs)
+
+
+@pytest.fixture
+def lab() -> Iterator[LabServer]:
+    lab = LabServer("127.0.0.1", 0, LoopStore())
+    yield lab
+    lab.stop()
+
+
+def test_silent_tabs_hold_no_thread_no_lab_and_no_place(lab: LabServer) -> None:
+    address = f"ws://127.0.0.1:{lab.server.get_port()}"
+    with ExitStack() as stay:
+        insider = stay.enter_context(Student(address))
+        insider.open()
+        insider.read(lambda: insider.may("Path"))
+        tabs = [stay.enter_context(silent(lab.server)) for _ in range(SILENT)]
+        wait_for(lambda: [is_closed(tab) for tab in tabs].count(True) == SILENT - MOST_EACH)
+        assert all_threads_are_free(lab.server)
+        newcomer = stay.enter_context(Student(address))
+        newcomer.open()
+        newcomer.read(lambda: newcomer.may("Path"))
+        insider.set("Lessons", True)
+        insider.read(lambda: insider.may("Open"))
+        wait_for(lambda: len(lab._views) == 2)
+        assert len(lab.sessions) == 2
+        assert [is_closed(tab) for tab in tabs] == [True] * MOST_EACH + [False] * MOST_EACH
+
+
+def test_who_answers_late_comes_back_to_the_same_lab(lab: LabServer) -> None:
+    with Student(f"ws://127.0.0.1:{lab.server.get_port()}") as student:
+        student.open()
+        student.read(lambda: student.code and student.may("Path"))
+        code = student.code
+        student.close()
+        wait_for(lambda: not lab.server.get_clients())
+        student.open()  # and reads no question yet
+        wait_for(lab.server.get_clients)
+        assert all_threads_are_free(lab.server)
+        student.read(lambda: student.may("Path"))
+        assert student.code == code and len(lab.sessions) == 1
+
+
+# The questions by themselves.
+
+
+class Inn:
+    """A server that asks two things."""
+
+    def __init__(self) -> None:
+        self.server = make_server(port=0, limits=Limits(farewell=0.1))
+        self.let_in: list[Kept] = []
+        self.arrivals = Arrivals(
+            self.server, ["a", "b"], lambda _, kept: self.let_in.append(kept), 5, 3
+        )
+
+    def visit(self) -> ClientConnection:
+        """A browser that has answered nothing yet."""
+        address = f"ws://127.0.0.1:{self.server.get_port()}"
+        versions = [Subprotocol(SUBPROTOCOL)]
+        client = connect(address, subprotocols=versions, compression=None, close_timeout=1)
+        client.send(packed("ViewerCameraMessage", **CAMERA))
+        return client
+
+    def settled(self, client: ClientConnection) -> None:
+        """What a client has sent so far has been heard."""
+        assert client.ping().wait(WAIT)
+        assert all_threads_are_free(self.server)
+
+
+def answers_of(client: ClientConnection) -> dict[str, bytes]:
+    """To what it is asked, by key, not sent yet."""
+    answers: dict[str, bytes] = {}
+    while len(answers) < 2:
+        raw = client.recv(WAIT)
+        assert isinstance(raw, bytes)
+        for message in unpacked(raw):
+            if reply := answer(message, {"a": "apple"}):
+                answers[message["key"]] = reply
+    return answers
+
+
+@pytest.fixture
+def inn() -> Iterator[Inn]:
+    inn = Inn()
+    yield inn
+    inn.server.stop()
+
+
+def test_who_has_answered_everything_is_let_in_once(inn: Inn) -> None:
+    client = inn.visit()
+    with client:
+        answers = answers_of(client)
+        response = "LocalStorageGetItemResponseMessage"
+        client.send(packed(response, request_uuid="made up", value="x", error=None))
+        client.send(answers["b"])
+        client.send(answers["b"])
+        inn.settled(client)
+        assert not inn.let_in
+        client.send(answers["a"])
+        wait_for(lambda: inn.let_in)
+        client.send(answers["a"])
+        inn.settled(client)
+        assert inn.let_in == [{"a": "apple", "b": None}]
+        assert not len(inn.arrivals._silent)
+
+
+def test_the_oldest_of_an_address_is_turned_away_and_then_the_oldest_of_all(inn: Inn) -> None:
+    def come(source: str) -> socket.socket:
+        known = len(inn.server.get_clients())
+        tab = stay.enter_context(silent(inn.server, source))
+        wait_for(lambda: len(inn.server.get_clients()) > known or any(map(is_closed, tabs)))
+        return tab
+
+    tabs = list[socket.socket]()
+    with ExitStack() as stay:
+        for source, turned_away in [
+            *[("127.0.0.1", [])] * 3,
+            ("127.0.0.1", [0]),
+            *[("127.0.0.2", [0])] * 2,
+            ("127.0.0.3", [0, 1]),
+            ("127.0.0.1", [0, 1, 2]),
+        ]:
+            tabs.append(come(source))
+            gone = [tabs[number] for number in turned_away]
+            wait_for(lambda gone=gone: all(map(is_closed, gone)))
+            assert [n for n, tab in enumerate(tabs) if is_closed(tab)] == turned_away
+    wait_for(lambda: not len(inn.arrivals._silent))  # who leaves is not waited for
+    assert not inn.let_in

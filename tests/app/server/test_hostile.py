@@ -1,0 +1,528 @@
+"""A real lab under attack: the attacker alone is turned away, the others keep their display rate.
+
+tests/app/viser_adapter/test_hardening.py has each check by itself; here is the whole server, with
+somebody in it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import math
+import os
+import select
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+import websockets.sync.client
+from websockets.exceptions import ConnectionClosed
+from websockets.frames import Opcode
+from websockets.typing import Subprotocol
+
+from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
+from onpath.app.bench.simulated_browser import Browser
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.server.lab_server import LabServer
+from onpath.app.viser_adapter.frame_channel import MOST_UNSENT
+from onpath.app.viser_adapter.secure_server import Limits, make_server
+from tests.support import waiting
+from tests.support.checkout import ROOT
+from tests.support.lab import assert_sound
+from tests.support.raw_socket import WAIT, answer_questions, frames, is_closed, knock
+
+RESTING = 30.0  # [Hz]; it is shown more while it pulls
+KEPT = 0.6  # of the display rate that it had before; a busy machine is unsteady by itself
+LONGEST_GAP = 1.0  # [s]
+CALM = 0.7  # [s] of looking at it before, and at least during
+
+
+pytestmark = pytest.mark.flaky(reruns=2, only_rerun="Starved")
+wait_for = partial(waiting.wait_for, seconds=WAIT)
+
+
+class Guest:
+    """A tab that answers what a tab must, reads everything, and sends what it is told."""
+
+    def __init__(self, server: LabServer, inside: bool = True) -> None:
+        self.told: list[dict[str, Any]] = []
+        before = set(server._views)
+        self.socket = websockets.sync.client.connect(
+            f"ws://127.0.0.1:{server.server.get_port()}",
+            subprotocols=[Subprotocol(SUBPROTOCOL)],
+            max_size=None,
+            compression=None,
+            close_timeout=0.5,
+        )
+        threading.Thread(target=self._read, daemon=True).start()
+        self.send("ViewerCameraMessage", **CAMERA)
+        if not inside:
+            return
+        (self.id,) = wait_for(lambda: set(server._views) - before)
+        self.client = server.server.get_clients()[self.id]
+        entries = server.sessions._entries.values()
+        self.lab = next(entry.lab for entry in entries if entry.client == self.id)
+
+    def send(self, kind: str, **fields: Any) -> None:
+        self.socket.send(packed(kind, **fields))
+
+    def update(self, uuid: str, value: Any) -> None:
+        self.send("GuiUpdateMessage", uuid=uuid, updates={"value": value})
+
+    @property
+    def let_in(self) -> bool:
+        """Whether a notice has been taken away again."""
+        return any(message["type"] == "GuiCloseModalMessage" for message in self.told)
+
+    @property
+    def handles(self) -> dict[str, Any]:
+        """All its widgets."""
+        return dict(self.client.gui._gui_input_handle_from_uuid)
+
+    def labelled(self, label: str) -> str:
+        """The widget of this label."""
+        found = [u for u, h in self.handles.items() if getattr(h, "label", "").startswith(label)]
+        return found[0]
+
+    def _read(self) -> None:
+        with suppress(ConnectionClosed):
+            for raw in self.socket:
+                assert isinstance(raw, bytes)
+                for message in unpacked(raw):
+                    if "Modal" in message["type"] or "Markdown" in message["type"]:
+                        self.told.append(message)
+                    if reply := answer(message):
+                        self.socket.send(reply)
+
+
+class Starved(AssertionError):
+    """A witness is shown too little; what takes it away once may be the machine, not the attack."""
+
+
+class Witness:
+    """An honest browser that uses its lab all the time, in a thread of its own."""
+
+    def __init__(self, port: int) -> None:
+        self._browser = Browser(port, 0)
+        self._loop = asyncio.new_event_loop()
+        self._browsing = self._loop.create_task(self._browser.browse(600.0))
+        self._thread = threading.Thread(target=self._browse, daemon=True)
+        self._thread.start()
+        wait_for(lambda: len(self._browser.shown) > 30)
+
+    def _browse(self) -> None:
+        with suppress(ConnectionClosed, OSError, asyncio.CancelledError):
+            self._loop.run_until_complete(self._browsing)
+
+    def close(self) -> None:
+        """It leaves, and its thread ends."""
+        self._loop.call_soon_threadsafe(self._browsing.cancel)
+        self._thread.join(WAIT)
+
+    @contextmanager
+    def served(self) -> Iterator[None]:
+        """What is done in here takes nothing away from it."""
+        begun = time.monotonic()
+        time.sleep(CALM)
+        calm = min(len(self._shown_since(begun)) / CALM, RESTING)
+        begun = time.monotonic()
+        yield
+        time.sleep(max(0.0, begun + CALM - time.monotonic()))
+        shown, ended = self._shown_since(begun), time.monotonic()
+        rate = len(shown) / (ended - begun)
+        gap = max(b - a for a, b in pairwise([begun, *shown, ended]))
+        if not rate > KEPT * calm > 0 or gap >= LONGEST_GAP:
+            raise Starved(f"{rate:.1f} Hz, {calm:.1f} Hz before; for {gap:.2f} s nothing")
+
+    def _shown_since(self, begun: float) -> list[float]:
+        return [t for t in self._browser.shown[-2000:] if t > begun]
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
+    yield server
+    server.stop()
+
+
+@pytest.fixture(scope="module")
+def witness(server: LabServer) -> Iterator[Witness]:
+    witness = Witness(server.server.get_port())
+    yield witness
+    witness.close()
+
+
+@pytest.fixture
+def attacker(server: LabServer) -> Iterator[Guest]:
+    guest = Guest(server)
+    yield guest
+    guest.socket.close()
+    wait_for(lambda: guest.id not in server._views)
+
+
+@pytest.fixture
+def quiet_log(
+    caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]
+) -> Iterator[None]:
+    """A warning for a client at most, and no traceback."""
+    caplog.set_level(logging.WARNING)
+    yield
+    records = caplog.get_records("call")
+    assert [each.getMessage() for each in records if each.levelno > logging.WARNING] == []
+    assert len(records) < 13
+    assert "Traceback" not in "".join(capfd.readouterr())
+
+
+# Widgets.
+
+NO_VALUES: list[Any] = [
+    *(math.nan, math.inf, -math.inf, 1e300, -1e300, 2**63, 0.5, -1),
+    *("", "nan", "x" * 20_000, "ONPATH1-" + "a" * 5000, b"\xff", None),
+    *([], [math.nan] * 3, [1e300, -1e300], [[[]]], {"value": 1}, {"__binary_index": 0}),
+]
+
+
+def test_no_widget_of_the_lab_takes_what_it_cannot_hold(
+    server: LabServer, attacker: Guest, witness: Witness
+) -> None:
+    session = attacker.lab.session
+    handles = attacker.handles
+    assert len(handles) > 50
+    with witness.served():
+        for uuid in handles:
+            for value in NO_VALUES:
+                attacker.update(uuid, value)
+                time.sleep(1 / 450)
+    wait_for(lambda: not session._inbox)
+    assert_sound(session)
+    for handle in handles.values():
+        value = getattr(handle, "value", 0.0)
+        if isinstance(value, (int, float)):
+            low, high = (getattr(handle, name, None) for name in ("min", "max"))
+            assert math.isfinite(value)
+            assert (low is None or low <= value) and (high is None or value <= high)
+        elif getattr(handle, "options", None):
+            assert value in handle.options
+    assert attacker.id in server._views  # it may go on
+
+
+def test_another_s_widgets_do_not_move(
+    server: LabServer, attacker: Guest, witness: Witness
+) -> None:
+    victim = Guest(server)
+    before = {uuid: handle.value for uuid, handle in victim.handles.items()}
+    parameters = victim.lab.session.parameters
+    with witness.served():
+        for uuid in before:
+            for value in (True, 1, 1.0, "ellipse"):
+                attacker.update(uuid, value)
+                time.sleep(1 / 450)
+        time.sleep(0.2)
+    assert victim.lab.session.parameters == parameters and victim.lab.session.asked == 0
+    assert victim.lab.session.editor.design.name == "circle"
+    moving = ("GuiProgressBarHandle",)
+    after = victim.handles
+    changed = [u for u in before if after[u].value != before[u]]
+    assert [type(after[u]).__name__ for u in changed if type(after[u]).__name__ not in moving] == []
+    victim.socket.close()
+
+
+# Floods.
+
+
+@pytest.mark.parametrize(
+    ("label", "values"),
+    [
+        ("Path", ["ellipse", "clover", "rounded square", "circle"]),
+        ("Identify", [True]),
+        ("Share this", [True]),
+        ("Recording", [True]),
+    ],
+)
+@pytest.mark.usefixtures("quiet_log")
+def test_long_work_asked_for_all_the_time_is_the_asker_s_to_wait_for(
+    attacker: Guest, witness: Witness, label: str, values: list[Any]
+) -> None:
+    """As fast as the limit on messages allows: the work, not the messages, is the burden."""
+    uuid = attacker.labelled(label)
+    with witness.served():
+        for k in range(600):
+            attacker.update(uuid, values[k % len(values)])
+            time.sleep(1 / 450)
+    assert len(attacker.lab.session._inbox) <= 500
+
+
+def test_5000_messages_a_second_close_the_sender(
+    server: LabServer, witness: Witness, quiet_log: None
+) -> None:
+    raw = knock(server.server.get_port())
+    camera = frames(packed("ViewerCameraMessage", **CAMERA)) * 50
+    sent, begun = 0, time.monotonic()
+    with witness.served():
+        with suppress(OSError):
+            while time.monotonic() < begun + WAIT and not is_closed(raw):
+                raw.sendall(camera)
+                sent += 50
+                time.sleep(max(0.0, begun + sent / 5000 - time.monotonic()))
+        raw.close()
+    assert sent > 500 and time.monotonic() < begun + 4.0
+
+
+# Frames and handshakes.
+
+
+VERSIONS = [None, "viser-v0.0.0", "viser-v1.1.0", "viser-v[/bold]", "viser-v" + "9" * 4000, "chat"]
+
+
+def test_a_wrong_version_is_told_so_and_closed(
+    server: LabServer, witness: Witness, quiet_log: None
+) -> None:
+    clients = set(server.server.get_clients())
+    with witness.served():
+        raws = [knock(server.server.get_port(), version) for version in VERSIONS * 5]
+        for raw in raws:
+            wait_for(lambda raw=raw: is_closed(raw))
+            raw.close()
+    assert set(server.server.get_clients()) == clients
+
+
+GARBAGE = {
+    "not HTTP": b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + bytes(200),
+    "no websocket key": b"GET / HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\n\r\n",
+    "an endless header": b"GET / HTTP/1.1\r\nX: " + b"x" * 100_000,
+    "many headers": b"GET / HTTP/1.1\r\n" + b"X: x\r\n" * 1000 + b"\r\n",
+    "another method": b"DELETE / HTTP/1.1\r\nHost: x\r\n\r\n",
+    "a body": b"POST / HTTP/1.1\r\nContent-Length: 1000000000\r\n\r\n" + bytes(1000),
+    "an old HTTP": b"GET / HTTP/0.9\r\n\r\n",
+    "nothing": b"",
+}
+
+
+def test_what_is_no_request_is_closed_and_not_logged_in_full(
+    server: LabServer, witness: Witness, quiet_log: None
+) -> None:
+    with witness.served():
+        for garbage in [*GARBAGE.values()] * 5:
+            with socket.create_connection(("127.0.0.1", server.server.get_port())) as raw:
+                with suppress(OSError):
+                    raw.sendall(garbage)
+                    raw.shutdown(socket.SHUT_WR)
+                wait_for(lambda raw=raw: is_closed(raw))
+
+
+BROKEN = {
+    "reserved bits": b"\xf2\x80" + bytes(4),
+    "unmasked": b"\x82\x05hello",
+    "no such opcode": b"\x83\x80" + bytes(4),
+    "a continuation of nothing": b"\x80\x80" + bytes(4),
+    "a long ping": b"\x89\xfe\xff\xff" + bytes(4 + 0xFFFF),
+    "a petabyte": b"\x82\xff" + (2**50).to_bytes(8, "big") + bytes(4),
+    "a length of its own": b"\x82\xff" + (2**63 + 5).to_bytes(8, "big") + bytes(4),
+    "no text": frames(b"\xff\xff", opcode=Opcode.TEXT),
+    "a strange close": frames(b"\x00\x00bye", opcode=Opcode.CLOSE),
+}
+
+
+def test_a_broken_frame_closes_its_sender(
+    server: LabServer, witness: Witness, quiet_log: None
+) -> None:
+    with witness.served():
+        for broken in BROKEN.values():
+            raws = [knock(server.server.get_port()) for _ in range(5)]
+            for raw in raws:
+                wait_for(lambda raw=raw: select.select([raw], [], [], 0)[0])
+                raw.sendall(frames(packed("ViewerCameraMessage", **CAMERA)) + broken)
+            for raw in raws:
+                wait_for(lambda raw=raw: is_closed(raw))
+                raw.close()
+
+
+# Connections.
+
+
+def memory() -> int:
+    """Of this process, [B]."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+def test_a_client_that_reads_nothing_costs_a_bounded_amount(
+    server: LabServer, witness: Witness, quiet_log: None
+) -> None:
+    before, sockets = set(server._views), server.server._websock_server._live_connections
+    known = set(sockets.values())
+    raw = socket.socket()
+    raw.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    raw.connect(("127.0.0.1", server.server.get_port()))
+    silent = websockets.sync.client.connect(
+        f"ws://127.0.0.1:{server.server.get_port()}",
+        sock=raw,
+        subprotocols=[Subprotocol(SUBPROTOCOL)],
+        compression=None,
+        max_queue=1,
+    )
+    (connection,) = wait_for(lambda: set(sockets.values()) - known)
+    connection.transport.get_extra_info("socket").setsockopt(
+        socket.SOL_SOCKET, socket.SO_SNDBUF, 4096
+    )
+    silent.send(packed("ViewerCameraMessage", **CAMERA))
+    answer_questions(silent)
+    (deaf,) = wait_for(lambda: set(server._views) - before)
+    client = server.server.get_clients()[deaf]
+    buffer = client._websock_connection._state.message_buffer
+    wait_for(lambda: connection.transport.get_write_buffer_size() > 0)
+    waiting: list[int] = []
+    with witness.served():
+        for _ in range(30):
+            waiting.append(len(buffer.message_from_id))
+            assert connection.transport.get_write_buffer_size() < 16 * MOST_UNSENT
+            time.sleep(0.1)
+    assert max(waiting[-10:]) <= max(waiting[:20]) + 20  # what is late is merged
+    raw.close()
+    wait_for(lambda: deaf not in server._views)
+
+
+def test_a_client_that_answers_nothing_is_closed() -> None:
+    server = make_server(port=0, limits=Limits(silence=0.2, farewell=0.2))
+    raw = knock(server.get_port())
+    raw.sendall(frames(packed("ViewerCameraMessage", **CAMERA)))
+    wait_for(server.get_clients)
+    wait_for(lambda: is_closed(raw), seconds=3.0)
+    wait_for(lambda: not server.get_clients())
+    raw.close()
+    server.stop()
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="reads /proc")
+def test_200_connections_a_second(server: LabServer, witness: Witness, quiet_log: None) -> None:
+    """Some leave at once, some during the handshake, some after it, politely or not."""
+    port = server.server.get_port()
+    camera = frames(packed("ViewerCameraMessage", **CAMERA))
+    labs, threads, used = len(server.simulation.labs), threading.active_count(), memory()
+    sockets, begun = 0, time.monotonic()
+    with witness.served():
+        while time.monotonic() < begun + 4.0:
+            way = sockets % 4
+            raw = knock(port) if way else socket.create_connection(("127.0.0.1", port))
+            if way > 1:
+                raw.recv(1 << 12)
+                raw.sendall(camera)
+            if way == 3:
+                raw.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            raw.close()
+            sockets += 1
+            time.sleep(max(0.0, begun + sockets / 200 - time.monotonic()))
+    assert sockets > 300  # a busy machine cannot do more
+    assert threading.active_count() < threads + 50
+    newcomer = Guest(server)
+    newcomer.socket.close()
+    wait_for(lambda: len(server.simulation.labs) <= labs + 3)
+    wait_for(lambda: len(server.server._websock_server._live_connections) <= 2)
+    assert memory() - used < 30e6
+
+
+# Capacity.
+
+
+def test_beyond_capacity_a_newcomer_is_told_to_wait_and_gets_the_first_free_place() -> None:
+    server = LabServer("127.0.0.1", 0, LoopStore(), most_clients=2)
+    try:
+        inside = Witness(server.server.get_port())
+        leaving = Guest(server)
+        with inside.served():
+            late = [Guest(server, inside=False) for _ in range(3)]
+            for guest in late:
+                said = wait_for(lambda guest=guest: [m for m in guest.told if "markdown" in str(m)])
+                assert "All 2 places are taken" in str(said)
+            assert len(server.simulation.labs) == 2
+        leaving.socket.close()
+        wait_for(lambda: len(server._views) == 2 and leaving.id not in server._views)
+        (entered,) = [number for number in server._views if number != 0]
+        wait_for(lambda: any(guest.let_in for guest in late))
+        outside = [guest for guest in late if not guest.let_in]
+        outside[0].socket.close()  # who waits and leaves frees nothing
+        time.sleep(0.3)
+        assert set(server._views) == {0, entered}
+        assert len(outside) == 2 and not any(guest.let_in for guest in outside)
+        inside.close()
+    finally:
+        server.stop()
+
+
+# Misfortune.
+
+
+def test_a_clock_that_jumps_is_not_noticed(
+    server: LabServer, witness: Witness, quiet_log: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    genuine = time.time
+    labs = set(server.simulation.labs)
+    with witness.served():
+        for jump in (86400.0, -86400.0, 3e9, 0.0):
+            monkeypatch.setattr(time, "time", lambda jump=jump: genuine() + jump)
+            time.sleep(0.3)
+            newcomer = Guest(server)
+            begun = newcomer.lab.session.time
+            wait_for(lambda n=newcomer, b=begun: n.lab.session.time > b + 0.1)
+            newcomer.socket.close()
+    assert labs <= set(server.simulation.labs)
+
+
+SUSPENDED = """
+import sys
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.server.lab_server import LabServer
+server = LabServer("127.0.0.1", 0, LoopStore())
+print("told", server.server.get_port(), flush=True)
+for _ in sys.stdin:
+    (lab,) = server.simulation.labs
+    print("told", lab.session.time, flush=True)
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="no way to suspend a process here")
+def test_a_suspended_process_goes_on_where_it_was_and_makes_nothing_up() -> None:
+    pipe = subprocess.PIPE
+    command = [sys.executable, "-c", SUSPENDED]
+    process = subprocess.Popen(
+        command, cwd=ROOT, stdin=pipe, stdout=pipe, stderr=pipe, text=True, bufsize=1
+    )
+    stdin, stdout = process.stdin, process.stdout
+    assert stdin is not None and stdout is not None
+
+    def told() -> float:
+        return next(float(line.split()[1]) for line in stdout if line.startswith("told"))
+
+    def simulated() -> float:
+        stdin.write("\n")
+        return told()
+
+    try:
+        witness = Witness(int(told()))
+        before = simulated()
+        process.send_signal(signal.SIGSTOP)
+        time.sleep(2.0)
+        process.send_signal(signal.SIGCONT)
+        woken = simulated()
+        assert woken - before < 1.0  # the sleep is not made up for
+        begun = time.monotonic()
+        with witness.served():
+            time.sleep(1.0)
+        passed = time.monotonic() - begun
+        assert 0.5 * passed < simulated() - woken < passed + 0.3
+        witness.close()
+    finally:
+        process.kill()
+        errors = process.communicate()[1]
+    assert "Traceback" not in errors

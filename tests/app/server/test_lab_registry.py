@@ -1,0 +1,137 @@
+"""A reload comes back to its own lab; abandoned labs wait a while and are gone."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from onpath.app.server.lab_registry import CODE, KEPT, MOST_ABANDONED, MOST_CODES, Entry, Sessions
+from onpath.app.simulation.simulation_thread import SimulationThread
+from tests.support.lab import new_session
+
+
+class Desk:
+    """Sessions under a clock that stands still, and browsers that keep their codes."""
+
+    def __init__(self) -> None:
+        self.now = 1000.0
+        self.simulation = SimulationThread()
+        self.sessions = Sessions(self.simulation, new_session, lambda: self.now)
+        self.storage: dict[str, str | None] = {}
+        self._clients = 0
+
+    def open(self, browser: str) -> tuple[int, Entry]:
+        """A tab: (client, its entry)."""
+        self._clients += 1
+        known = self.storage.get(browser)
+        entry = self.sessions.join(self._clients, known)
+        entry.lab.view = _View()
+        self.storage[browser] = self.sessions.remembered(entry.code, known)
+        return self._clients, entry
+
+
+class _View:
+    def show(self, session: object, achieved: float, frame: int, stride: float) -> None:
+        pass
+
+    def send(self) -> None:
+        pass
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+def test_reload_comes_back_to_the_same_lab(desk: Desk) -> None:
+    client, entry = desk.open("a")
+    for _ in range(5):
+        left = desk.sessions.leave(client)
+        assert left is entry and entry.client is None
+        assert entry.lab.view is None  # time waits
+        client, again = desk.open("a")
+        assert again is entry and entry.client == client and entry.lab.view is not None
+    assert len(desk.sessions) == 1 and desk.simulation.labs == [entry.lab]
+
+
+def test_two_tabs_are_two_labs_and_each_reload_finds_its_own(desk: Desk) -> None:
+    first, one = desk.open("a")
+    second, two = desk.open("a")
+    assert one is not two and one.lab.session is not two.lab.session and one.code != two.code
+    desk.sessions.leave(first)
+    assert desk.open("a")[1] is one
+    desk.sessions.leave(second)
+    assert desk.open("a")[1] is two
+
+
+def test_the_lab_left_last_comes_back_first(desk: Desk) -> None:
+    tabs = [desk.open("a") for _ in range(3)]
+    for client, _ in (tabs[1], tabs[2], tabs[0]):
+        desk.now += 1
+        desk.sessions.leave(client)
+    assert [desk.open("a")[1] for _ in range(3)] == [tabs[0][1], tabs[2][1], tabs[1][1]]
+
+
+def test_another_browser_gets_another_lab(desk: Desk) -> None:
+    client, entry = desk.open("a")
+    desk.sessions.leave(client)
+    assert desk.open("b")[1] is not entry
+
+
+@pytest.mark.parametrize("known", [None, "", "x", "0" * 12, "," * 500, "<script>", "é" * 300])
+def test_codes_that_nobody_gave_open_nothing(desk: Desk, known: str | None) -> None:
+    client, entry = desk.open("a")
+    desk.sessions.leave(client)
+    desk.storage["b"] = known
+    assert desk.open("b")[1] is not entry
+    assert re.fullmatch(r"[a-z0-9]{12}(,[a-z0-9]{12})*", str(desk.storage["b"]))
+
+
+def test_codes_cannot_be_guessed_from_each_other() -> None:
+    desk = Desk()
+    codes = {desk.open(str(k))[1].code for k in range(50)}
+    assert len(codes) == 50 and all(CODE.fullmatch(code) for code in codes)
+
+
+def test_a_lab_in_use_is_given_to_nobody_else(desk: Desk) -> None:
+    _, entry = desk.open("a")
+    desk.storage["b"] = desk.storage["a"]
+    assert desk.open("b")[1] is not entry
+
+
+def test_browser_remembers_a_few_codes_the_newest_first(desk: Desk) -> None:
+    codes = [desk.open("a")[1].code for _ in range(MOST_CODES + 3)]
+    assert str(desk.storage["a"]).split(",") == codes[::-1][:MOST_CODES]
+
+
+def test_abandoned_lab_is_kept_for_a_while_and_then_dropped(desk: Desk) -> None:
+    client, entry = desk.open("a")
+    _, used = desk.open("c")
+    desk.sessions.leave(client)
+    desk.now += KEPT - 1
+    desk.sessions.leave(desk.open("b")[0])
+    assert entry.lab in desk.simulation.labs
+    desk.now += 2
+    desk.open("b")
+    assert entry.lab not in desk.simulation.labs
+    assert desk.open("a")[1] is not entry
+    assert used.lab in desk.simulation.labs  # somebody looks at it, however long
+
+
+def test_no_more_than_so_many_wait(desk: Desk) -> None:
+    tabs = [desk.open(str(k)) for k in range(MOST_ABANDONED + 5)]
+    assert len(desk.sessions) == MOST_ABANDONED + 5
+    for client, _ in tabs:
+        desk.now += 0.1
+        desk.sessions.leave(client)
+    assert len(desk.sessions) == len(desk.simulation.labs) == MOST_ABANDONED
+    assert desk.open("0")[1] is not tabs[0][1]  # the oldest went
+    assert desk.open(str(MOST_ABANDONED + 4))[1] is tabs[-1][1]
+
+
+def test_leaving_twice_or_never_having_come_does_no_harm(desk: Desk) -> None:
+    client, entry = desk.open("a")
+    assert desk.sessions.leave(99) is None
+    assert desk.sessions.leave(client) is entry and desk.sessions.leave(client) is None
+    assert len(desk.sessions) == 1

@@ -1,0 +1,240 @@
+"""Opening a lab keeps no other tab waiting, however long it takes and often it is tried."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from onpath.app.common.access_codes import new_code
+from onpath.app.common.throttle import TRIES
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.session import Session
+from onpath.app.page.panels.widgets import on_slow_press
+from onpath.app.server.lab_registry import Sessions
+from onpath.app.server.lab_server import LabServer
+from onpath.app.simulation.simulation_thread import SimulationThread
+from onpath.app.storage.lab_state import State
+from onpath.app.storage.records import Records, file_url
+from onpath.app.viser_adapter.secure_server import Limits
+from onpath.lessons.words import ENGLISH
+from tests.support.lab import store
+from tests.support.student import Student
+from tests.support.waiting import wait_for
+
+WAIT = 20.0  # [s]
+SLOW, QUICK = "s" * 12, "q" * 12
+WIDE = Limits(messages_per_second=1e6, message_burst=1_000_000)
+PRESSES = 2000
+
+
+class Gate:
+    """Where somebody may be held up."""
+
+    def __init__(self) -> None:
+        self.reached, self.open = threading.Event(), threading.Event()
+
+    def pass_by(self) -> None:
+        self.reached.set()
+        assert self.open.wait(WAIT)
+
+
+class Held:
+    """Leases, and a database, that hold up whoever wants one lab at one place."""
+
+    def __init__(self, where: str) -> None:
+        self.gate, self._where = Gate(), where
+
+    def _hold(self, where: str, codes: list[str]) -> None:
+        if where == self._where and SLOW in codes:
+            self.gate.pass_by()
+
+    def available(self, codes: list[str]) -> list[str]:
+        self._hold("available", codes)
+        return codes
+
+    def claim(self, code: str) -> bool:
+        self._hold("claim", [code])
+        return True
+
+    def release(self, code: str) -> None:
+        self._hold("release", [code])
+
+    def load(self, code: str) -> State:
+        self._hold("load", [code])
+        return {"setup": {}, "lessons": {}}
+
+
+@pytest.fixture(params=["available", "claim", "load", "release"])
+def held(request: pytest.FixtureRequest) -> Iterator[Held]:
+    made = Held(request.param)
+    yield made
+    made.gate.open.set()
+
+
+def in_thread(act: Callable[[], Any]) -> threading.Thread:
+    thread = threading.Thread(target=act, daemon=True)
+    thread.start()
+    return thread
+
+
+def ends(act: Callable[[], Any]) -> bool:
+    """Whether something comes to its end, and does not wait for ever."""
+    done = threading.Event()
+
+    def acting() -> None:
+        act()
+        done.set()
+
+    in_thread(acting)
+    return done.wait(WAIT / 2)
+
+
+def new_sessions(held: Held) -> Sessions:
+    leases: Any = held
+    make = lambda: Session(store())  # noqa: E731
+    return Sessions(SimulationThread(), make, load=held.load, leases=leases)
+
+
+@pytest.mark.parametrize("way", ["enter", "join"])
+def test_a_lab_that_is_waited_for_holds_up_nobody_else(held: Held, way: str) -> None:
+    sessions = new_sessions(held)
+    others = [sessions.join(client, None).code for client in (1, 2)]
+    if way == "enter":
+        sessions.join(3, None)
+    open_slowly = {
+        "enter": lambda: sessions.enter(3, SLOW),
+        "join": lambda: sessions.join(3, SLOW),
+    }[way]
+
+    def come_and_go() -> None:
+        open_slowly()
+        sessions.leave(3)
+
+    in_thread(come_and_go)
+    assert held.gate.reached.wait(WAIT)
+
+    def live_on() -> None:
+        assert set(others) <= set(sessions.held())
+        assert sessions.enter(1, QUICK).client == 1
+        sessions.leave(2)
+        assert sessions.join(4, others[1]).code == others[1]
+        assert sessions.join(5, None).client == 5
+        assert QUICK in sessions.held()
+        assert sessions.lose(QUICK) == 1
+
+    assert ends(live_on)
+    held.gate.open.set()
+    wait_for(lambda: SLOW not in sessions.held(), WAIT)
+
+
+def test_two_who_want_the_same_lab_at_once_get_it_once() -> None:
+    held = Held("load")
+    sessions, found = new_sessions(held), []
+    threads = [
+        in_thread(lambda n=n: found.append(sessions.join(n, f"{SLOW},{QUICK}"))) for n in range(3)
+    ]
+    assert held.gate.reached.wait(WAIT)
+    held.gate.open.set()
+    for thread in threads:
+        thread.join(WAIT)
+    codes = [entry.code for entry in found]
+    assert len(set(codes)) == 3 and {SLOW, QUICK} < set(codes)
+    assert sorted(sessions.held()) == sorted(codes) and len(sessions.simulation.labs) == 3
+
+
+def test_codes_that_nobody_has_make_no_session_and_soon_are_refused_unasked() -> None:
+    made, asked = [], []
+
+    def make() -> Session:
+        made.append(Session(store()))
+        return made[-1]
+
+    sessions = Sessions(SimulationThread(), make, load=asked.append)  # type: ignore[arg-type]
+    entry = sessions.join(1, None)
+    said = set()
+    for _ in range(PRESSES):
+        with pytest.raises(ValueError, match=r"no lab|too many") as refused:
+            sessions.enter(1, new_code())
+        said.add(str(refused.value))
+    assert len(made) == 1 and len(asked) == TRIES and len(said) == 2
+    assert sessions.held() == [entry.code]
+    sessions.join(2, None)
+    with pytest.raises(ValueError, match="no lab"):
+        sessions.enter(2, new_code())
+
+
+def test_presses_while_one_is_under_way_are_dropped() -> None:
+    gate, begun, callbacks = Gate(), [], []
+
+    class Tab: ...
+
+    tab = Tab()
+
+    class Event:
+        client = tab
+
+    class Button:
+        def on_click(self, callback: Any) -> None:
+            callbacks.append(callback)
+
+    def act() -> None:
+        begun.append(threading.current_thread())
+        gate.pass_by()
+        raise RuntimeError  # does not keep the next press from its turn
+
+    def press() -> None:
+        with pytest.raises(StopIteration):
+            callbacks[-1](Event()).send(None)
+
+    on_slow_press(Button(), act)
+    press()
+    on_slow_press(Button(), act)  # another one of the same tab
+    for _ in range(PRESSES):
+        press()
+    assert gate.reached.wait(WAIT) and len(begun) == 1
+    gate.open.set()
+    begun[0].join(WAIT)
+    press()
+    wait_for(lambda: len(begun) == 2, WAIT)
+
+
+def test_a_tab_that_presses_for_ever_is_one_of_many(tmp_path: Path) -> None:
+    records = Records(file_url(tmp_path / "labs.db"))
+    own = LoopStore()  # ends with the server
+    server = LabServer("127.0.0.1", 0, own, records=records, limits=WIDE)
+    gate, loads = Gate(), []
+
+    def load(code: str) -> None:
+        loads.append(code)
+        gate.pass_by()
+
+    try:
+        address = f"ws://127.0.0.1:{server.server.get_port()}"
+        with Student(address) as attacker, Student(address) as insider:
+            for tab in (attacker, insider):
+                tab.open()
+                tab.read(lambda tab=tab: tab.moving > 5)
+            server.sessions.load = load  # type: ignore[assignment]
+            attacker.set(ENGLISH("keep.other"), new_code())
+            for _ in range(PRESSES):
+                attacker.set(ENGLISH("keep.go"), True)
+            attacker.set(ENGLISH("keep.share"), True)  # behind all others in its line
+            attacker.read(lambda: attacker.sees(ENGLISH("keep.shared")))
+            assert gate.reached.wait(WAIT) and len(loads) == 1
+            queue = server.server._thread_executor._work_queue
+            wait_for(lambda: queue.qsize() == 0, WAIT)
+            assert insider.code in server.sessions.held()
+            insider.set(ENGLISH("keep.other"), new_code())
+            insider.set(ENGLISH("keep.go"), True)
+            wait_for(lambda: len(loads) == 2, WAIT)
+            gate.open.set()
+            for tab in (attacker, insider):
+                tab.read(lambda tab=tab: tab.sees("no lab with this code"))
+    finally:
+        gate.open.set()
+        server.stop()
+    assert loads.count(loads[0]) == 1

@@ -1,0 +1,185 @@
+"""A tab that nobody sees, and one in which nothing moves, cost nearly nothing."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from onpath.app.bench.client_protocol import answer
+from onpath.app.lab import commands as c
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.server import tab_visibility as onlooker
+from onpath.app.server.lab_server import LabServer
+from onpath.app.server.tab_visibility import EVERY, PATIENCE, TICK, Onlooker
+from onpath.app.simulation.simulation_thread import Lab
+from tests.support.lab import new_session
+from tests.support.student import Student
+
+QUIET = EVERY + PATIENCE + 2 * TICK  # [s] after which nothing more is sent
+HIDDEN, PAUSED = 150.0, 1000.0  # [B/s]
+
+
+class Browser:
+    """A client and the view of it, and a clock that a test sets."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+        self.told, self.asked = 0, 0
+        self._answer: Any = None
+        self.camera = SimpleNamespace(
+            up_direction=np.array([0.0, 0.0, 1.0]),
+            on_update=lambda react: setattr(self, "_answer", react),
+        )
+        self._websock_connection = SimpleNamespace(queue_message=self._take)
+        self.onlooker = Onlooker(self, lambda: self.now)  # type: ignore[arg-type]
+        self.lab = Lab(new_session())
+        self.onlooker.watch(self.lab, self)
+
+    def show(self, session: object, achieved: float, frame: int, stride: float) -> None:
+        self.told += 1
+
+    def send(self) -> None:
+        pass
+
+    def _take(self, message: Any) -> None:
+        assert message.position == (0.0, 0.0, 1.0) and not message.initial
+        self.asked += 1
+
+    def answer(self) -> None:
+        asyncio.run(self._answer(self.camera))
+
+    def wait(self, seconds: float, answers: bool = False, tells: bool = True) -> None:
+        """Time passes, and the lab is shown as long as somebody looks."""
+        for _ in range(round(seconds / TICK)):
+            self.now += TICK
+            if tells and self.lab.view is not None:
+                self.lab.drain()
+                self.lab.advance(TICK)
+                self.lab.show(0, 1)
+            before = self.asked
+            self.onlooker.look()
+            if answers and self.asked > before:
+                self.answer()
+
+
+def test_who_answers_late_is_looked_for_and_not_taken_for_gone() -> None:
+    browser = Browser()
+    browser.wait(60.0, answers=True)
+    assert 60 / (EVERY + TICK) - 1 <= browser.asked <= 60 / EVERY
+    browser.wait(EVERY + PATIENCE - TICK)
+    assert browser.lab.view is browser
+
+
+def test_a_lab_waits_for_who_does_not_answer_and_goes_on() -> None:
+    browser = Browser()
+    session = browser.lab.session
+    browser.wait(QUIET)
+    assert browser.lab.view is None
+    told, asked, simulated = browser.told, browser.asked, session.time
+    browser.wait(100.0)
+    assert (browser.told, session.time) == (told, simulated) and simulated > 0
+    assert browser.asked - asked <= 100 / EVERY
+    browser.answer()
+    assert browser.lab.view is browser
+    browser.wait(10.0, answers=True)
+    assert browser.told > told and session.time > simulated
+
+
+def test_who_is_told_nothing_is_asked_nothing() -> None:
+    browser = Browser()
+    browser.wait(100.0, tells=False)
+    assert browser.asked == 0 and browser.lab.view is browser
+
+
+def test_who_has_left_does_not_come_back_by_a_late_answer() -> None:
+    browser = Browser()
+    browser.wait(QUIET)
+    browser.onlooker.leave()
+    browser.answer()
+    assert browser.lab.view is None
+    other = Browser()
+    other.wait(QUIET)
+    other.lab.view = browser  # somebody else has the lab by now
+    other.answer()
+    assert other.lab.view is browser
+    other.onlooker.leave()
+    assert other.lab.view is browser
+
+
+class Tab(Student):
+    """A simulated tab that can be hidden: it draws nothing, and answers all the rest."""
+
+    hidden = False
+    asked: dict[str, Any] | None = None
+
+    def _take(self, message: dict[str, Any]) -> None:
+        if self.hidden and message["type"] == "SetCameraUpDirectionMessage":
+            self.asked = message
+        else:
+            super()._take(message)
+
+    def show(self) -> None:
+        """It draws again."""
+        assert self.asked is not None and self._socket is not None
+        self.hidden = False
+        self._socket.send(answer(self.asked) or b"")
+
+    def rate(self, seconds: float) -> float:
+        """What comes, [B/s]."""
+        before = self.received
+        self.stay(seconds)
+        return (self.received - before) / seconds
+
+
+SOON = {"EVERY": 0.5, "PATIENCE": 1.0, "TICK": 0.1}
+GONE = sum(SOON.values()) + 0.5  # [s]
+
+
+@pytest.fixture
+def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[LabServer]:
+    for name, seconds in SOON.items():
+        monkeypatch.setattr(onlooker, name, seconds)
+    server = LabServer("127.0.0.1", 0, LoopStore())
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def tab(server: LabServer) -> Iterator[Tab]:
+    with Tab(f"ws://127.0.0.1:{server.server.get_port()}") as tab:
+        tab.open()
+        tab.read(lambda: tab.moving > 10)
+        yield tab
+
+
+def test_a_hidden_tab_gets_nothing_and_then_the_present_whole(server: LabServer, tab: Tab) -> None:
+    (lab,) = server.simulation.labs
+    visible = tab.rate(2 * GONE)
+    assert lab.view is not None
+    tab.hidden = True
+    tab.rate(GONE)
+    simulated, moving = lab.session.time, tab.moving
+    hidden = tab.rate(2.0)
+    assert hidden * SOON["EVERY"] / EVERY < min(HIDDEN, 0.01 * visible)
+    assert lab.session.time == simulated and tab.moving == moving
+    lab.session.post(c.ChoosePath("clover"))  # a teacher does, say
+    tab.show()
+    tab.read(lambda: tab.find("Path")["value"] == "clover" and tab.moving > moving + 10)
+    assert lab.session.time > simulated
+
+
+def test_a_paused_lab_sends_nothing(server: LabServer, tab: Tab) -> None:
+    (lab,) = server.simulation.labs
+    running = tab.rate(2.0)
+    lab.session.post(c.SetRunning(False))
+    tab.rate(GONE)
+    paused = tab.rate(2.0)
+    assert paused < min(PAUSED, 0.05 * running)
+    before = tab.moving
+    tab.set("Step", "Step")
+    tab.read(lambda: tab.moving > before)

@@ -1,0 +1,65 @@
+"""What /health tells is true, short, cheap to make, and about nobody."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+import urllib.request
+
+import msgspec
+import pytest
+
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.server.lab_server import LabServer
+from onpath.app.simulation.metrics import LONGEST, Vitals, asked_vitals, vitals
+from onpath.app.simulation.simulation_thread import SimulationThread
+
+
+@pytest.fixture
+def thread() -> SimulationThread:
+    """A minute of frames, those of the last ten seconds 5 ms late and one of them 80 ms."""
+    made, now = SimulationThread(), time.perf_counter()
+    for i in range(3600):
+        ago = 60.0 - i / 60
+        made.frames.append((now - ago, 0.08 if i == 3400 else 0.005 if ago < 10.5 else 0.0))
+    return made
+
+
+def test_vitals_are_those_of_the_window(thread: SimulationThread) -> None:
+    lately, long = vitals(thread, 9.0), vitals(thread, LONGEST)
+    assert lately.late_ms == (5.0, 5.0, 5.0) and max(long.late_ms) == 5.0 > min(long.late_ms)
+    thread.frames.extend([(time.perf_counter(), 0.08)] * 20)
+    assert [lately.overdue, long.overdue] == pytest.approx([1 / 540, 1 / 3600], rel=0.02)
+    after = vitals(thread, 9.0)
+    assert after.late_ms[2] == 80.0 and after.overdue == pytest.approx(21 / 560, rel=0.02)
+    assert lately.frames_per_s == pytest.approx(60.0, abs=1.0)
+    assert lately.pid == os.getpid() and lately.labs == 0 == len(lately.simulated_s)
+
+
+def test_a_thread_that_stands_still_is_seen_to(thread: SimulationThread) -> None:
+    old = SimulationThread()
+    old.frames.extend((began - LONGEST, late) for began, late in thread.frames)
+    for silent in (old, SimulationThread()):
+        assert vitals(silent).frames_per_s == 0.0
+
+
+@pytest.mark.parametrize("query", ["", "seconds=x", "seconds=nan", "seconds=1e9", "seconds=", "%"])
+def test_nonsense_is_answered_as_if_it_were_not_there(query: str, thread: SimulationThread) -> None:
+    answer = json.loads(asked_vitals(thread, query))
+    assert answer["late_ms"] == [5.0, 5.0, 5.0]
+
+
+def test_a_server_tells_its_vitals() -> None:
+    server = LabServer("127.0.0.1", 0, LoopStore())
+    try:
+        time.sleep(0.5)
+        address = f"http://127.0.0.1:{server.server.get_port()}/health"
+        for query in ("", "?seconds=3"):
+            with urllib.request.urlopen(address + query, timeout=9) as reply:
+                body = reply.read()
+                assert reply.status == 200 and len(body) < 400
+            told = msgspec.json.decode(body, type=Vitals)
+            assert told.pid == os.getpid() and told.frames_per_s > 0 and told.cpu_s > 0
+    finally:
+        server.stop()

@@ -1,0 +1,114 @@
+"""What a student did outlives the server: a new one, with the same database, goes on from there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from onpath.app.common.access_codes import normalised, shown
+from onpath.app.lab import commands as c
+from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab.session import Session
+from onpath.app.server.lab_registry import Sessions
+from onpath.app.simulation.simulation_thread import SimulationThread
+from onpath.app.storage.records import Records, file_url
+from onpath.app.storage.write_behind import Keeper
+from onpath.lessons.course import Course, read_course
+from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.lab import do, run, store
+from tests.support.lesson_texts import write_lesson
+
+
+@pytest.fixture
+def course(tmp_path: Path) -> Course:
+    write_lesson(tmp_path / "course")
+    return read_course([tmp_path / "course"])[0]
+
+
+class Server:
+    """Sessions with a database, without a network."""
+
+    def __init__(self, file: Path, course: Course) -> None:
+        self.records = Records(file_url(file))
+        self.keeper = Keeper(self.records, interval=0.0)
+        self.sessions = Sessions(
+            SimulationThread(),
+            lambda: Session(store(), FIVE_BAR, course),
+            load=self.records.load,
+            keeper=self.keeper,
+        )
+
+    def stop(self) -> None:
+        self.keeper.close()
+        self.records.close()
+
+
+@pytest.fixture
+def servers(tmp_path: Path, course: Course) -> Iterator[list[Server]]:
+    made = [Server(tmp_path / "labs.db", course)]
+    yield made
+    made[-1].stop()
+
+
+def restart(servers: list[Server], tmp_path: Path, course: Course) -> Server:
+    servers[-1].stop()
+    servers.append(Server(tmp_path / "labs.db", course))
+    return servers[-1]
+
+
+def test_path_gains_and_lesson_survive_a_restart(
+    servers: list[Server], tmp_path: Path, course: Course
+) -> None:
+    entry = servers[0].sessions.join(1, None)
+    session = entry.lab.session
+    do(session, c.SetParameter("K2", 33), c.ChoosePath("clover"), lc.OpenLesson("01-a"))
+    do(session, lc.GoToStep(1), lc.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), lc.GoToStep(1))
+    do(session, c.SetParameter("K1", 444))
+    run(session, 2.5)
+    again = restart(servers, tmp_path, course).sessions.join(1, entry.code)
+    other = again.lab.session
+    assert again.code == entry.code and other is not session
+    assert other.lessons.progress == session.lessons.progress
+    assert other.parameters == session.parameters and other.parameters.K1 == 444
+    do(other, lc.CloseLesson())
+    assert other.parameters.K2 == 33 and other.editor.design.name == "clover"
+
+
+def test_a_visit_that_did_nothing_leaves_nothing(servers: list[Server]) -> None:
+    entry = servers[0].sessions.join(1, None)
+    run(entry.lab.session, 3.0)
+    servers[0].keeper.close()
+    assert servers[0].records.load(entry.code) is None
+
+
+def test_a_code_that_was_noted_down_opens_the_lab_elsewhere(
+    servers: list[Server], tmp_path: Path, course: Course
+) -> None:
+    entry = servers[0].sessions.join(1, None)
+    do(entry.lab.session, c.ChoosePath("clover"))
+    run(entry.lab.session, 1.5)
+    server = restart(servers, tmp_path, course)
+    own = server.sessions.join(7, None)
+    typed = f" {shown(entry.code).upper()} "
+    found = server.sessions.enter(7, normalised(typed))
+    assert found.code == entry.code and found.lab.session.editor.design.name == "clover"
+    assert found.client == 7 and own.client is None
+    with pytest.raises(ValueError, match="another window"):
+        server.sessions.enter(8, entry.code)
+    with pytest.raises(ValueError, match="no lab"):
+        server.sessions.enter(8, "222222222222")
+    assert len(server.sessions) == 2
+
+
+def test_what_cannot_be_read_is_said_and_not_overwritten(servers: list[Server]) -> None:
+    records = servers[0].records
+    records.save("222222222222", {"setup": {"robot": "hexapod"}, "lessons": {}})
+    entry = servers[0].sessions.join(1, "222222222222")
+    assert entry.code != "222222222222" and "cannot be read" in entry.lab.session.message
+    do(entry.lab.session, c.ChoosePath("clover"))
+    run(entry.lab.session, 1.5)
+    servers[0].keeper.close()
+    assert records.load("222222222222") == {"setup": {"robot": "hexapod"}, "lessons": {}}
+    assert records.load(entry.code) is not None

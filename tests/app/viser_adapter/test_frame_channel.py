@@ -1,0 +1,205 @@
+"""The shortcuts to many browsers change nothing of what each is told."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Event, Thread
+from time import sleep
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+import viser
+import websockets.sync.client
+from viser import _messages, uplot
+from viser.infra import Message
+from websockets.typing import Subprotocol
+
+from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, packed, unpacked
+from onpath.app.viser_adapter.frame_channel import Channel, _wire, update_gui, update_node
+from onpath.app.viser_adapter.secure_server import make_server
+
+
+@pytest.fixture
+def server() -> Iterator[viser.ViserServer]:
+    server = make_server(port=0)
+    yield server
+    server.stop()
+
+
+def told(server: viser.ViserServer, name: str, fields: set[str]) -> dict[str, Any]:
+    """The first update of these fields of a node that a browser gets."""
+    address = f"ws://127.0.0.1:{server.get_port()}"
+    with websockets.sync.client.connect(
+        address, subprotocols=[Subprotocol(SUBPROTOCOL)], compression=None
+    ) as socket:
+        socket.send(packed("ViewerCameraMessage", **CAMERA))
+        while True:
+            raw = socket.recv(timeout=10)
+            assert isinstance(raw, bytes)
+            for message in unpacked(raw):
+                if message.get("name") == name and fields <= message.get("updates", {}).keys():
+                    return message
+
+
+def test_one_message_does_what_assignments_do(server: viser.ViserServer) -> None:
+    corners = np.eye(3, dtype=np.float32)
+    nodes = [
+        server.scene.add_batched_meshes_simple(
+            f"/{name}",
+            corners,
+            np.array([[0, 1, 2]]),
+            np.tile([1.0, 0, 0, 0], (2, 1)),
+            np.zeros((2, 3)),
+        )
+        for name in ("assigned", "updated")
+    ]
+    there = np.arange(6, dtype=np.float32).reshape(2, 3)
+    turned = np.tile(np.array([0, 1, 0, 0], dtype=np.float32), (2, 1))
+    nodes[0].batched_positions, nodes[0].batched_wxyzs = there, turned
+    update_node(nodes[1], batched_positions=there, batched_wxyzs=turned)
+    kept = there.copy()
+    there += 1  # nobody may hold on to what was given
+    both = told(server, "/updated", {"batched_positions", "batched_wxyzs"})
+    for field in ("batched_positions", "batched_wxyzs"):
+        one = told(server, "/assigned", {field})
+        assert one["owner"] == both["owner"]
+        assert one["updates"][field].dtype == both["updates"][field].dtype
+        assert np.array_equal(one["updates"][field], both["updates"][field])
+    assert np.array_equal(both["updates"]["batched_positions"].reshape(2, 3), kept)
+    assert np.array_equal(nodes[1].batched_positions, kept)
+
+
+def test_a_plot_is_told_what_an_assignment_tells(server: viser.ViserServer) -> None:
+    lines = np.arange(6.0).reshape(2, 3)
+    series = (uplot.Series(label="x"), uplot.Series(label="y"))
+    with browser(server) as (client, socket):
+        plots = [client.gui.add_uplot((np.zeros(2), np.zeros(2)), series) for _ in range(2)]
+        plots[0].data = tuple(lines)
+        update_gui(plots[1], "data", tuple(lines))
+        updates: list[Any] = []
+        while len(updates) < 2:
+            messages = unpacked(socket.recv(timeout=10))
+            updates += [m for m in messages if "data" in m.get("updates", {})]
+    assert [m["uuid"] for m in updates] == [plot._impl.uuid for plot in plots]
+    assert updates[0]["type"] == updates[1]["type"]
+    for one, other in zip(*(m["updates"]["data"] for m in updates), strict=True):
+        assert one.dtype == other.dtype and np.array_equal(one, other)
+    assert np.array_equal(np.array(plots[1].data), lines)
+
+
+@contextmanager
+def browser(server: viser.ViserServer) -> Iterator[tuple[viser.ClientHandle, Any]]:
+    """A client as the server knows it, and its socket."""
+    address = f"ws://127.0.0.1:{server.get_port()}"
+    with websockets.sync.client.connect(
+        address, subprotocols=[Subprotocol(SUBPROTOCOL)], compression=None
+    ) as socket:
+        socket.send(packed("ViewerCameraMessage", **CAMERA))
+        while not server.get_clients():
+            sleep(0.01)
+        (client,) = server.get_clients().values()
+        yield client, socket
+
+
+def told_until(socket: Any, last: str) -> list[list[str]]:
+    """What a browser is told of nodes, frame by frame, until the node `last` is updated.
+
+    A node's name, marked when it is made anew.
+    """
+    frames: list[list[str]] = []
+    while not any(last in frame for frame in frames):
+        messages = [m for m in unpacked(socket.recv(timeout=10)) if m.get("name", "")[1:].isdigit()]
+        made = ["" if "updates" in m else "new " for m in messages]
+        frames.append([how + m["name"] for how, m in zip(made, messages, strict=True)])
+    return [frame for frame in frames if frame]
+
+
+def test_what_one_thread_tells_in_a_frame_arrives_at_once_and_in_order(
+    server: viser.ViserServer,
+) -> None:
+    with browser(server) as (client, socket):
+        channel = Channel(client)
+        names = [f"/{i}" for i in range(5)]
+        nodes = [client.scene.add_point_cloud(n, np.zeros((1, 3)), (0, 0, 0)) for n in names]
+        for node in nodes[:2]:  # nodes wait in viser's queue: these must wait behind them
+            with channel:
+                update_node(node, points=np.ones((1, 3)))
+            channel.send()
+        told = [name for frame in told_until(socket, "/1") for name in frame]
+        assert all(told.index(f"new {name}") < told.index(name) for name in names[:2])
+        with channel:
+            for node in nodes[2:4]:
+                update_node(node, points=np.ones((1, 3)))
+            other = Thread(target=lambda: update_node(nodes[4], points=np.ones((1, 3))))
+            other.start()
+            other.join()
+            assert told_until(socket, "/4") == [["/4"]]  # another thread waits for nothing
+        channel.send()
+        assert told_until(socket, "/3") == [["/2", "/3"]]
+        channel.send()  # nothing is sent twice
+        update_node(nodes[0], points=np.zeros((1, 3)))
+        assert told_until(socket, "/0") == [["/0"]]
+
+
+def test_nobody_is_told_anything_when_he_is_gone(
+    server: viser.ViserServer, recwarn: pytest.WarningsRecorder
+) -> None:
+    with browser(server) as (client, _):
+        channel = Channel(client)
+        node = client.scene.add_point_cloud("/node", np.zeros((1, 3)), (0, 0, 0))
+        assert not channel.closed
+    while server.get_clients():
+        sleep(0.01)
+    assert channel.closed
+    with channel:
+        update_node(node, points=np.ones((1, 3)))
+    channel.send()
+    done = Event()
+    server.get_event_loop().call_soon_threadsafe(done.set)
+    assert done.wait(5.0) and not recwarn.list
+
+
+NODE, PANEL = _messages.SceneNodeUpdateMessage, _messages.GuiUpdateMessage
+TWO = (np.arange(3.0), np.zeros((0, 3), dtype=np.float32))
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        NODE("/links", {"batched_positions": TWO[1], "visible": True}),
+        NODE("/links", {"points": np.eye(3)[:, ::2]}),  # not one piece of memory
+        NODE("/links", {"points": TWO[0], "position": (np.float64(1.0), 2, "x")}),
+        PANEL("a", {"data": TWO}),
+        PANEL("a", {"content": "text", "value": 3, "visible": None, "step": 0.5}),
+        PANEL("a", {"value": np.bool_(True), "more": TWO[0]}),
+        _messages.SetSceneNodeVisibilityMessage("/links", False),
+    ],
+)
+def test_messages_are_put_as_viser_puts_them(message: Message) -> None:
+    theirs: list[memoryview] = [memoryview(b"before")]
+    ours = theirs.copy()
+    as_they_do = message.as_serializable_dict(theirs)
+    put = msgspec.msgpack.encode(_wire(message, ours))
+    assert msgspec.msgpack.decode(put) == msgspec.msgpack.decode(msgspec.msgpack.encode(as_they_do))
+    assert [bytes(array) for array in ours] == [bytes(array) for array in theirs]
+
+
+def test_a_page_is_not_told_what_it_has_just_said(server: viser.ViserServer) -> None:
+    with browser(server) as (client, socket):
+        slider = client.gui.add_slider("gain", 0.0, 9.0, 1.0, 0.0)
+        Channel(client)
+        said = {"uuid": slider._impl.uuid, "updates": {"value": 4.0}}
+        socket.send(packed("GuiUpdateMessage", **said))
+        while slider.value != 4.0:
+            sleep(0.01)
+        slider.value = 5.0
+        told: list[Any] = []
+        while not told:
+            told = [m for m in unpacked(socket.recv(timeout=10)) if "value" in m.get("updates", ())]
+        assert [m["updates"]["value"] for m in told] == [5.0]
+        buffer = client._websock_connection._state.message_buffer
+        while buffer.message_from_id:  # a picture need not wait for what nobody gets
+            sleep(0.01)

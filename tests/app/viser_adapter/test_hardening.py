@@ -1,0 +1,791 @@
+"""A hostile browser has no effect, and a well-behaved one beside it still gets service."""
+
+from __future__ import annotations
+
+import http.client
+import inspect
+import logging
+import math
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+import msgspec
+import pytest
+import viser
+import websockets.sync.client
+import zstandard
+from viser import _gui_api, _gui_handles, _messages, _scene_api, _viser
+from viser.infra import _infra
+from websockets.asyncio.server import ServerConnection
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.frames import Frame, Opcode
+from websockets.typing import Origin, Subprotocol
+
+from onpath.app.common import error_log
+from onpath.app.viser_adapter.compression import LEVEL, compress
+from onpath.app.viser_adapter.secure_server import Limits, PortInUse, make_server
+from tests.support import waiting
+
+WAIT = 5.0
+CAMERA = {
+    "wxyz": [1.0, 0.0, 0.0, 0.0],
+    "position": [0.0, -2.0, 1.0],
+    "fov": 0.8,
+    "near": 0.01,
+    "far": 1000.0,
+    "image_height": 600,
+    "image_width": 800,
+    "look_at": [0.0, 0.0, 0.0],
+    "up_direction": [0.0, 0.0, 1.0],
+}
+TRUE_VALUES = {
+    "slider": 2.5,
+    "steps": 3,
+    "number": 1.0,
+    "bounded": 1,
+    "range": (1.0, 2.0),
+    "vector2": (0.5, 0.5),
+    "vector3": (0.0, 0.0, 0.0),
+    "checkbox": False,
+    "dropdown": "one",
+    "text": "hello",
+    "rgb": (1, 2, 3),
+    "rgba": (1, 2, 3, 4),
+    "disabled": 1.0,
+    "progress": 10.0,
+}
+
+
+class Lab:
+    """The server under attack: every client gets one of each widget, and all callbacks note."""
+
+    def __init__(self, **options: Any) -> None:
+        self.server = make_server(port=0, **options)
+        self.port = self.server.get_port()
+        self.events: list[tuple[int, str, Any]] = []
+        self.widgets: dict[int, dict[str, Any]] = {}
+        self.server.on_client_connect(self._build)
+
+    async def _build(self, client: viser.ClientHandle) -> None:
+        gui, true = client.gui, TRUE_VALUES
+        widgets: dict[str, Any] = {
+            "slider": gui.add_slider("slider", 0.0, 10.0, 0.1, true["slider"]),
+            "steps": gui.add_slider("steps", 1, 5, 1, true["steps"]),
+            "number": gui.add_number("number", true["number"]),
+            "bounded": gui.add_number("bounded", true["bounded"], min=0, max=9),
+            "range": gui.add_multi_slider("range", 0.0, 5.0, 0.1, true["range"]),
+            "vector2": gui.add_vector2("vector2", true["vector2"], min=(0.0, 0.0), max=(1.0, 2.0)),
+            "vector3": gui.add_vector3("vector3", true["vector3"]),
+            "checkbox": gui.add_checkbox("checkbox", true["checkbox"]),
+            "dropdown": gui.add_dropdown("dropdown", ("one", "two")),
+            "group": gui.add_button_group("group", ("left", "right")),
+            "text": gui.add_text("text", true["text"]),
+            "rgb": gui.add_rgb("rgb", true["rgb"]),
+            "rgba": gui.add_rgba("rgba", true["rgba"]),
+            "disabled": gui.add_number("disabled", true["disabled"], disabled=True),
+            "progress": gui.add_progress_bar(true["progress"]),
+            "upload": gui.add_upload_button("upload"),
+            "button": gui.add_button("button"),
+            "marker": gui.add_number("marker", 0),
+        }
+        for name, widget in widgets.items():
+            widget._impl.update_cb.append(self._note(client, name, lambda e: e.target.value))
+        box = client.scene.add_box("/box")
+        gizmo = client.scene.add_transform_controls("/gizmo")
+        box.on_drag("left")(self._note(client, "drag", lambda e: e.end_position))
+        box.on_click(self._note(client, "click", lambda e: e.ray_origin))
+        gizmo.on_update(self._note(client, "gizmo", lambda e: tuple(e.target.position)))
+        client.scene.on_click()(self._note(client, "pointer", lambda e: e.ray_direction))
+        client.camera.on_update(self._note(client, "camera", lambda c: tuple(c.position)))
+        self.widgets[client.client_id] = widgets
+
+    def _note(self, client: viser.ClientHandle, name: str, read: Callable[[Any], Any]) -> Any:
+        async def note(event: Any) -> None:
+            self.events.append((client.client_id, name, read(event)))
+
+        return note
+
+    def heard(self, browser: Browser) -> list[tuple[str, Any]]:
+        """What callbacks saw from this browser, the markers of `settle` aside."""
+        own = [(name, value) for client, name, value in self.events if client == browser.id]
+        return [event for event in own if event[0] != "marker"]
+
+
+class Browser:
+    """A websocket that speaks viser's protocol and sends whatever it is told."""
+
+    def __init__(self, lab: Lab, origin: str | None = None, announce: bool = True) -> None:
+        self.lab = lab
+        self.socket = websockets.sync.client.connect(
+            f"ws://127.0.0.1:{lab.port}",
+            subprotocols=[Subprotocol(f"viser-v{viser.__version__}")],
+            origin=Origin(origin) if origin else None,
+            max_size=None,
+            compression=None,
+            close_timeout=0.5,
+        )
+        self.told: dict[str, Any] = {}
+        self.markers = 0
+        known = set(lab.widgets)
+        if announce:
+            self.send("ViewerCameraMessage", **CAMERA)
+            wait_for(lambda: set(lab.widgets) - known)
+            (self.id,) = set(lab.widgets) - known
+            self.settle()
+            lab.events.clear()
+
+    def send(self, kind: str, **fields: Any) -> None:
+        self.socket.send(msgspec.msgpack.encode({"type": kind, **fields}))
+
+    def update(self, name: str, **updates: Any) -> None:
+        uuid = self.lab.widgets[self.id][name]._impl.uuid
+        self.send("GuiUpdateMessage", uuid=uuid, updates=updates)
+
+    def settle(self) -> None:
+        """Return when all that was sent before has been dealt with."""
+        self.markers += 1
+        self.update("marker", value=self.markers)
+        wait_for(lambda: (self.id, "marker", self.markers) in self.lab.events)
+
+    def value_told(self, name: str) -> Any:
+        """The last value of a widget that the server has told this browser, or None."""
+        uuid = self.lab.widgets[self.id][name]._impl.uuid
+        deadline = time.monotonic() + WAIT
+        while uuid not in self.told and time.monotonic() < deadline:
+            try:
+                raw = self.socket.recv(timeout=0.2)
+            except TimeoutError:
+                return None
+            assert isinstance(raw, bytes)
+            size = int.from_bytes(raw[8:16], "little")
+            window = msgspec.msgpack.decode(zstandard.decompress(raw[16 : 16 + size]))
+            for message in window["messages"]:
+                if message["type"] == "GuiUpdateMessage":
+                    self.told |= {message["uuid"]: message["updates"].get("value")}
+        return self.told.get(uuid)
+
+
+wait_for = partial(waiting.wait_for, seconds=WAIT)
+
+
+def closing(browser: Browser) -> ConnectionClosed:
+    """How the server ends a connection that it must end."""
+    deadline = time.monotonic() + WAIT
+    with pytest.raises(ConnectionClosed) as closed:
+        while time.monotonic() < deadline:
+            browser.socket.recv(timeout=WAIT)
+    return closed.value
+
+
+@pytest.fixture(scope="module")
+def lab() -> Iterator[Lab]:
+    lab = Lab()
+    yield lab
+    lab.server.stop()
+
+
+@pytest.fixture
+def attacker(lab: Lab) -> Iterator[Browser]:
+    browser = Browser(lab)
+    yield browser
+    browser.socket.close()
+
+
+@pytest.fixture
+def no_errors(caplog: pytest.LogCaptureFixture) -> Iterator[None]:
+    """What is refused is refused by design, not by an exception further on."""
+    yield
+    assert [each for each in caplog.get_records("call") if each.levelno > logging.WARNING] == []
+
+
+@pytest.fixture
+def bystander(lab: Lab) -> Iterator[Browser]:
+    """After the test, whatever it did, this one must still be served."""
+    browser = Browser(lab)
+    yield browser
+    browser.update("slider", value=7.5)
+    browser.settle()
+    assert lab.heard(browser) == [("slider", 7.5)]
+    browser.socket.close()
+
+
+# Widgets.
+
+HONEST = [
+    ("slider", 3.5, 3.5),
+    ("slider", 4, 4.0),
+    ("steps", 4, 4),
+    ("number", -1e6, -1e6),
+    ("bounded", 9, 9),
+    ("range", [1.5, 4.0], (1.5, 4.0)),
+    ("vector2", [1, 2], (1.0, 2.0)),
+    ("vector3", [1.0, 2.0, -3.0], (1.0, 2.0, -3.0)),
+    ("checkbox", True, True),
+    ("dropdown", "two", "two"),
+    ("group", "right", "right"),
+    ("text", "<b>π</b>", "<b>π</b>"),
+    ("rgb", [0, 128, 255], (0, 128, 255)),
+    ("rgba", [0, 128, 255, 9], (0, 128, 255, 9)),
+    ("button", True, True),
+]
+CLAMPED = [
+    ("slider", 1e9, 10.0),
+    ("slider", -1, 0.0),
+    ("steps", 2**60, 5),
+    ("steps", 4.7, 4),
+    ("bounded", -(2**60), 0),
+    ("range", [-1e9, 1e9], (0.0, 5.0)),
+    ("range", [4.0, 3.0], (3.0, 4.0)),
+    ("vector2", [1e9, -1e9], (1.0, 0.0)),
+    ("text", "x" * 100_000, "x" * 2000),
+    ("rgb", [-5, 300, 10], (0, 255, 10)),
+    ("rgba", [0, 0, 0, 10**9], (0, 0, 0, 255)),
+]
+NUMBERS = ["slider", "steps", "number", "bounded"]
+NOT_NUMBERS = [math.nan, math.inf, -math.inf, "3", "nan", True, None, [3.0], {"a": 1}, b"3"]
+REFUSED = [
+    *((name, value) for name in NUMBERS for value in NOT_NUMBERS),
+    *(("range", value) for value in ([1.0, math.nan], [1.0], [1.0] * 3, [], 1.0, "12", ["1", "2"])),
+    *(("vector2", value) for value in ([0.1, math.inf], [0.1], [0.1] * 3, "12", None, [[0.1], 0])),
+    *(("vector3", value) for value in ([0.1, 0.1, math.nan], [0.1] * 2, {"0": 1}, [True] * 3)),
+    *(("checkbox", value) for value in (1, 1.0, "true", None, [], [True])),
+    *(("dropdown", value) for value in ("three", "", 1, None, ["two"], {"two": 1})),
+    *(("text", value) for value in (1, None, ["x"], b"x", True)),
+    *(("rgb", value) for value in ([1, 2], [1, 2, 3, 4], [1, 2, math.nan], "#ffffff", [1, 2, "3"])),
+    *(("rgba", value) for value in ([1, 2, 3], [1, 2, 3, math.inf], "#ffffffff")),
+    ("disabled", 2.0),
+    ("progress", 50.0),
+]
+
+
+@pytest.mark.usefixtures("no_errors")
+def test_honest_values_arrive(lab: Lab, attacker: Browser) -> None:
+    for name, value, _ in HONEST:
+        attacker.update(name, value=value)
+    attacker.settle()
+    assert lab.heard(attacker) == [(name, expected) for name, _, expected in HONEST]
+
+
+@pytest.mark.usefixtures("no_errors")
+def test_values_outside_the_limits_are_clamped(lab: Lab, attacker: Browser) -> None:
+    for name, value, expected in CLAMPED:
+        attacker.told.clear()
+        attacker.update(name, value=value)
+        attacker.settle()
+        assert lab.heard(attacker)[-1] == (name, expected)
+        assert type(lab.heard(attacker)[-1][1]) is type(TRUE_VALUES[name])
+        told = attacker.value_told(name)
+        assert (tuple(told) if isinstance(told, list) else told) == expected
+
+
+@pytest.mark.usefixtures("no_errors")
+def test_impossible_values_reach_no_callback(
+    lab: Lab, attacker: Browser, bystander: Browser
+) -> None:
+    for name, value in REFUSED:
+        attacker.update(name, value=value)
+    for button, value in [("button", "yes"), ("button", 1), ("group", "middle"), ("group", 0)]:
+        attacker.update(button, value=value)
+    attacker.settle()
+    assert lab.heard(attacker) == []
+    held = {name: lab.widgets[attacker.id][name].value for name in TRUE_VALUES}
+    assert held == TRUE_VALUES
+
+
+@pytest.mark.parametrize("name", sorted(set(TRUE_VALUES) - {"disabled", "progress"}))
+def test_refused_browser_is_told_the_true_value(attacker: Browser, name: str) -> None:
+    attacker.update(name, value={"no": "thing"})
+    told = attacker.value_told(name)
+    assert (tuple(told) if isinstance(told, list) else told) == TRUE_VALUES[name]
+
+
+@pytest.mark.parametrize(
+    "updates",
+    [
+        {"max": 1e9},
+        {"max": 1e9, "value": 3.0},
+        {"value": 3.0, "label": "<img src=x onerror=alert(1)>"},
+        {"update_cb": []},
+        {"sync_cb": None},
+        {"removed": True},
+        {"props": {}},
+        {"uuid": "other"},
+        {"no_such_thing": 1},
+        {},
+    ],
+)
+@pytest.mark.usefixtures("no_errors")
+def test_only_the_value_may_be_set(
+    lab: Lab, attacker: Browser, bystander: Browser, updates: dict[str, Any]
+) -> None:
+    slider = lab.widgets[attacker.id]["slider"]
+    before = vars(slider._impl).copy() | vars(slider._impl.props)
+    attacker.update("slider", **updates)
+    attacker.settle()
+    assert vars(slider._impl) | vars(slider._impl.props) == before
+    assert lab.heard(attacker) == []
+
+
+def test_a_disabled_button_can_be_neither_pressed_nor_held(lab: Lab, attacker: Browser) -> None:
+    button, holds = lab.widgets[attacker.id]["button"], []
+    button.on_hold(holds.append, callback_hz=10.0)
+    for disabled, expected in ((True, 0), (False, 1)):
+        button.disabled = disabled
+        attacker.update("button", value=True)
+        attacker.send("GuiButtonHoldMessage", uuid=button._impl.uuid, frequency=10.0)
+        attacker.settle()
+        wait_for(lambda expected=expected: len(holds) >= expected)
+        assert (len(lab.heard(attacker)), len(holds)) == (expected, expected)
+
+
+@pytest.mark.usefixtures("no_errors")
+def test_no_client_reaches_the_widgets_or_nodes_of_another(
+    lab: Lab, attacker: Browser, bystander: Browser
+) -> None:
+    for name, widget in lab.widgets[bystander.id].items():
+        value = dict((each, value) for each, value, _ in HONEST).get(name, 1)
+        attacker.send("GuiUpdateMessage", uuid=widget._impl.uuid, updates={"value": value})
+    for owner in (str(bystander.id), ""):
+        attacker.send("SceneNodeDragMessage", **drag(bystander) | {"owner": owner})
+        attacker.send("TransformControlsUpdateMessage", **gizmo(bystander) | {"owner": owner})
+    attacker.settle()
+    bystander.settle()
+    assert lab.heard(bystander) == []
+    assert lab.heard(attacker) == []
+
+
+def test_a_forged_form_is_not_kept_for_all_to_come(lab: Lab, attacker: Browser) -> None:
+    attacker.send("GuiFormDirtyMessage", uuid="invented")
+    attacker.settle()
+    buffered = lab.server._websock_server._broadcast_buffer.message_from_id.values()
+    assert not any(isinstance(each, _messages.GuiFormDirtyMessage) for each in buffered)
+
+
+# Scene.
+
+
+def drag(browser: Browser) -> dict[str, Any]:
+    return {
+        "phase": "update",
+        "name": "/box",
+        "instance_index": None,
+        "start_position": [0.0, 0.0, 0.0],
+        "start_screen_pos": [0.5, 0.5],
+        "end_position": [0.1, 0.0, 0.2],
+        "end_screen_pos": [0.6, 0.5],
+        "button": "left",
+        "modifier": None,
+        "owner": str(browser.id),
+    }
+
+
+def click(browser: Browser) -> dict[str, Any]:
+    return {
+        "name": "/box",
+        "instance_index": None,
+        "ray_origin": [0.0, -2.0, 0.0],
+        "ray_direction": [0.0, 1.0, 0.0],
+        "screen_pos": [0.5, 0.5],
+        "modifier": None,
+        "owner": str(browser.id),
+    }
+
+
+def gizmo(browser: Browser) -> dict[str, Any]:
+    pose = {"wxyz": [1.0, 0.0, 0.0, 0.0], "position": [1.0, 2.0, 3.0]}
+    return {"name": "/gizmo", "owner": str(browser.id), **pose}
+
+
+def pointer(_: Browser) -> dict[str, Any]:
+    ray = {"ray_origin": [0.0, -2.0, 0.0], "ray_direction": [0.0, 1.0, 0.0]}
+    return {"event_type": "click", "screen_pos": [[0.5, 0.5]], "modifier": None, **ray}
+
+
+def camera(_: Browser) -> dict[str, Any]:
+    return CAMERA | {"position": [1.0, 1.0, 1.0]}
+
+
+SCENE: dict[str, tuple[str, Callable[[Browser], dict[str, Any]], Any]] = {
+    "drag": ("SceneNodeDragMessage", drag, (0.1, 0.0, 0.2)),
+    "click": ("SceneNodeClickMessage", click, (0.0, -2.0, 0.0)),
+    "gizmo": ("TransformControlsUpdateMessage", gizmo, (1.0, 2.0, 3.0)),
+    "pointer": ("ScenePointerMessage", pointer, (0.0, 1.0, 0.0)),
+    "camera": ("ViewerCameraMessage", camera, (1.0, 1.0, 1.0)),
+}
+NO_POSITION = [
+    [math.nan, 0.0, 0.0],
+    [0.0, math.inf, 0.0],
+    [0.0, 0.0, -1e300],
+    [0.0, 0.0],
+    [0.0] * 4,
+    [],
+    ["0", "0", "0"],
+    ["nan", "nan", "nan"],
+    [True, True, True],
+    [None] * 3,
+    [[0.0]] * 3,
+    "000",
+    None,
+    0.0,
+    {"x": 0.0},
+]
+POSITIONS = {
+    "drag": ("start_position", "end_position"),
+    "click": ("ray_origin", "ray_direction"),
+    "gizmo": ("position",),
+    "pointer": ("ray_origin", "ray_direction"),
+    "camera": ("position", "look_at", "up_direction"),
+}
+NO_SCENE_MESSAGE = [
+    *((n, {key: bad}) for n, keys in POSITIONS.items() for key in keys for bad in NO_POSITION),
+    *((n, {"wxyz": bad}) for n in ("gizmo", "camera") for bad in ([0.0] * 4, [math.nan] * 4, [1])),
+    *((n, {"instance_index": bad}) for n in ("drag", "click") for bad in (-1, 0.5, "0", True)),
+    *(("camera", {"fov": bad}) for bad in (math.nan, "1", None, [1.0])),
+    *(("camera", {"image_height": bad}) for bad in (math.inf, 0.5, 10**12, "600")),
+    *(("pointer", {"screen_pos": bad}) for bad in ([], [[0.5]], [[0.5, math.nan]], [0.5, 0.5])),
+    ("pointer", {"event_type": "rect-select"}),
+    ("pointer", {"event_type": "explode"}),
+    ("drag", {"end_screen_pos": [math.nan, 0.0]}),
+    ("drag", {"phase": "forever"}),
+    ("drag", {"button": ["left"]}),
+    ("drag", {"modifier": "meta"}),
+    ("drag", {"name": 7}),
+    ("drag", {"surplus": 7}),
+]
+
+
+def test_honest_scene_messages_arrive(lab: Lab, attacker: Browser) -> None:
+    for kind, fields, _ in SCENE.values():
+        attacker.send(kind, **fields(attacker))
+    attacker.settle()
+    assert lab.heard(attacker) == [(name, value) for name, (_, _, value) in SCENE.items()]
+
+
+@pytest.mark.usefixtures("no_errors")
+def test_impossible_scene_messages_reach_no_callback(
+    lab: Lab, attacker: Browser, bystander: Browser
+) -> None:
+    for name, change in NO_SCENE_MESSAGE:
+        kind, fields, _ = SCENE[name]
+        attacker.send(kind, **fields(attacker) | change)
+    attacker.settle()
+    assert lab.heard(attacker) == []
+
+
+# Frames.
+
+
+@pytest.mark.usefixtures("no_errors")
+def test_what_is_no_message_is_skipped(lab: Lab, attacker: Browser, bystander: Browser) -> None:
+    def packed(message: Any) -> bytes:
+        return msgspec.msgpack.encode(message)
+
+    frames = [
+        "a text frame",
+        b"",
+        b"\xc1",
+        b"\xdd\xff\xff\xff\xff",
+        b"\x81\xa1a" + b"\x91" * 100_000,
+        b"\x82\xa4type\xadNoSuchMessage\xa1a" + b"\x91" * 100_000,
+        b"\x82\xa4type\xb0GuiUpdateMessage\xa7updates" + b"\x91" * 100_000,
+        b"\x81\xa4type\xa1\xff",
+        packed(7),
+        packed({}),
+        packed({1: 2}),
+        packed({"type": None}),
+        packed({"type": ["GuiUpdateMessage"]}),
+        packed({"type": "NoSuchMessage"}),
+        packed({"type": "RunJavascriptMessage", "source": "alert(1)"}),
+        packed({"type": "GuiUpdateMessage"}),
+        packed({"type": "GuiUpdateMessage", "uuid": "x", "updates": [1]}),
+        packed({"type": "GuiUpdateMessage", "uuid": ["x"], "updates": {}}),
+        packed({"type": "SceneNodeUpdateMessage", "name": "/box", "updates": {"visible": False}}),
+    ]
+    for frame in frames:
+        attacker.socket.send(frame)
+    attacker.settle()
+    assert lab.heard(attacker) == []
+
+
+@pytest.mark.usefixtures("no_errors")
+def test_too_large_a_message_closes_that_connection(
+    lab: Lab, attacker: Browser, bystander: Browser
+) -> None:
+    attacker.update("text", value="x" * 2_000_000)
+    closed = closing(attacker).rcvd
+    assert closed is not None and closed.code == 1009
+    assert lab.heard(attacker) == []
+
+
+@pytest.mark.parametrize("flood", ["messages", "pings", "fragments"])
+@pytest.mark.usefixtures("no_errors")
+def test_a_flood_closes_that_connection_and_says_why(
+    lab: Lab, attacker: Browser, bystander: Browser, flood: str
+) -> None:
+    def pour() -> None:
+        with pytest.raises(ConnectionClosed):
+            while True:
+                if flood == "messages":
+                    attacker.update("checkbox", value="no")
+                elif flood == "pings":
+                    attacker.socket.ping()
+                else:
+                    attacker.socket.send(b"x" for _ in range(100_000))
+
+    pouring = threading.Thread(target=pour)
+    pouring.start()
+    closed = closing(attacker).rcvd
+    pouring.join(WAIT)
+    assert not pouring.is_alive()
+    assert closed is not None and closed.code == 1008
+    assert "500 messages per second" in closed.reason
+
+
+def test_a_brisk_but_honest_client_is_served(lab: Lab, attacker: Browser) -> None:
+    """60 drags a second, each with a camera message, for as long as a burst cannot carry."""
+    limits = Limits(messages_per_second=500, message_burst=30)
+    brisk = Lab(limits=limits)
+    browser = Browser(brisk)
+    for _ in range(60):
+        browser.send("SceneNodeDragMessage", **drag(browser))
+        browser.send("ViewerCameraMessage", **camera(browser))
+        time.sleep(1 / 100)
+    browser.settle()
+    assert len(brisk.heard(browser)) == 120
+    browser.socket.close()
+    brisk.server.stop()
+
+
+# Uploads and the share tunnel.
+
+
+def upload(browser: Browser, content: bytes, *, into: str = "upload", size: int = -1) -> None:
+    source = browser.lab.widgets[browser.id][into]._impl.uuid
+    size = len(content) if size < 0 else size
+    ids = {"source_component_uuid": source, "transfer_uuid": f"{into}{size}"}
+    file = {"filename": "x", "mime_type": "text/plain", "part_count": 1, "size_bytes": size}
+    browser.send("FileTransferStartUpload", **ids, **file)
+    browser.send("FileTransferPart", **ids, part_index=0, content=content)
+
+
+@pytest.mark.usefixtures("no_errors")
+def test_uploads_are_refused(lab: Lab, attacker: Browser, bystander: Browser) -> None:
+    upload(attacker, b"abc")
+    upload(attacker, b"abc", into="slider")
+    attacker.settle()
+    assert lab.heard(attacker) == []
+    assert lab.widgets[attacker.id]["slider"].value == TRUE_VALUES["slider"]
+
+
+def test_uploads_within_the_limit_when_allowed() -> None:
+    lab = Lab(limits=Limits(max_upload_bytes=10))
+    browser = Browser(lab)
+    upload(browser, b"abc", into="slider")
+    upload(browser, b"x" * 11)
+    upload(browser, b"0123456789")
+    browser.settle()
+    ((name, file),) = lab.heard(browser)
+    assert (name, file.content) == ("upload", b"0123456789")
+    upload(browser, b"more than it said", size=2)
+    upload(browser, b"abc")
+    browser.settle()
+    assert len(lab.heard(browser)) == 1
+    (transfer,) = lab.server.get_clients()[browser.id].gui._current_file_upload_states.values()
+    assert transfer["parts"] == {}
+    browser.socket.close()
+    lab.server.stop()
+
+
+def test_no_client_opens_a_share_tunnel(
+    lab: Lab, attacker: Browser, bystander: Browser, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr(lab.server, "request_share_url", lambda: asked.append("open"))
+    monkeypatch.setattr(lab.server, "disconnect_share_url", lambda: asked.append("close"))
+    handlers = lab.server._websock_server._incoming_handlers
+    assert not {_messages.ShareUrlRequest, _messages.ShareUrlDisconnect} & handlers.keys()
+    attacker.send("ShareUrlRequest")
+    attacker.send("ShareUrlDisconnect")
+    attacker.settle()
+    assert asked == []
+
+
+# Handshake and files.
+
+
+def test_pages_of_other_sites_may_not_connect(lab: Lab) -> None:
+    foreign = [
+        "http://evil.example",
+        f"http://evil.example:{lab.port}",
+        f"http://127.0.0.1:{lab.port + 1}",
+        f"http://127.0.0.1.evil.example:{lab.port}",
+        "null",
+        "file://",
+        "http://[",
+    ]
+    for origin in foreign:
+        with pytest.raises(InvalidStatus) as refused:
+            Browser(lab, origin=origin)
+        assert refused.value.response.status_code == 403
+    own = Browser(lab, origin=f"http://127.0.0.1:{lab.port}")
+    own.settle()
+    own.socket.close()
+
+
+def test_the_web_server_serves_its_folder_and_nothing_else(lab: Lab) -> None:
+    def get(path: str) -> tuple[int, bytes]:
+        connection = http.client.HTTPConnection("127.0.0.1", lab.port, timeout=WAIT)
+        connection.putrequest("GET", path, skip_host=False)
+        connection.endheaders()
+        response = connection.getresponse()
+        return response.status, response.read()
+
+    assert get("/")[0] == 200
+    up = ["..", "%2e%2e", ".%2E", "%2e.", "..%5c..", "..%2f..", "%252e%252e", "....//", "..;"]
+    paths = [f"/{dots}/package.json" for dots in up]  # lies in the folder above
+    paths += [f"/assets/{dots}/{dots}/package.json" for dots in up]
+    paths += ["//etc/passwd", "/%2fetc/passwd", "/file:///etc/passwd", "/%00", "/assets", "/x" * 99]
+    for path in paths:
+        assert get(path)[0] == 404, path
+    assert get("/" + "x" * 5000)[0] in (404, 500)
+    assert get("/")[0] == 200
+
+
+# Address.
+
+
+def test_a_taken_port_is_an_error_that_shows_the_way_out() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(PortInUse, match=f"port {port} .* in use: .*another port"):
+            make_server(port=port)
+
+
+def test_it_listens_where_it_was_told_and_by_default_to_this_machine_only(lab: Lab) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    server = make_server(port=port)
+    assert (server.get_host(), server.get_port()) == ("127.0.0.1", port)
+    with pytest.raises(OSError):
+        socket.create_connection(("127.0.0.2", port), timeout=WAIT)
+    server.stop()
+
+
+def test_an_address_of_another_machine_is_an_error_not_a_hang() -> None:
+    with pytest.raises(OSError, match="assign"):
+        make_server("192.0.2.1", 0)
+
+
+# What a server says.
+
+
+def test_one_warning_for_a_client_and_no_traceback(
+    lab: Lab, attacker: Browser, caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]
+) -> None:
+    error_log._warned.clear()  # other tests have warned a lot lately
+    for _ in range(20):
+        attacker.update("slider", value=math.nan)
+        attacker.update("slider", max=1e9)
+        attacker.socket.send(b"\xc1")
+        attacker.send("SceneNodeDragMessage", **drag(attacker) | {"end_position": [math.nan] * 3})
+    attacker.settle()
+    assert [record.levelno for record in caplog.records] == [logging.WARNING]
+    assert capfd.readouterr().err == ""
+
+
+def failing(lab: Lab, browser: Browser, calls: list[str]) -> None:
+    """Make several kinds of callback of this browser fail."""
+
+    def fails(_: Any) -> None:
+        calls.append("plain")
+        raise RuntimeError("plain")
+
+    async def fails_in_the_loop(_: Any) -> None:
+        calls.append("async")
+        raise RuntimeError("async")
+
+    async def fails_in_the_scene(_: Any) -> None:
+        calls.append("scene")
+        raise RuntimeError("scene")
+
+    client = lab.server.get_clients()[browser.id]
+    lab.widgets[browser.id]["button"].on_click(fails)
+    lab.widgets[browser.id]["group"].on_click(fails_in_the_loop)
+    box = client.scene.add_box("/fails")
+    box.on_click(fails_in_the_scene)
+
+
+def test_failing_callbacks_kill_nothing_and_are_logged_once_each(
+    lab: Lab,
+    attacker: Browser,
+    bystander: Browser,
+    caplog: pytest.LogCaptureFixture,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    calls: list[str] = []
+    failing(lab, attacker, calls)
+    for _ in range(30):
+        attacker.update("button", value=True)
+        attacker.update("group", value="left")
+        attacker.send("SceneNodeClickMessage", **click(attacker) | {"name": "/fails"})
+    wait_for(lambda: len(calls) == 90)
+    attacker.settle()
+    assert {name: calls.count(name) for name in set(calls)} == dict.fromkeys(
+        ("plain", "async", "scene"), 30
+    )
+    in_full = [record for record in caplog.records if record.exc_info]
+    assert len(in_full) == 3
+    assert len(caplog.records) == 6  # and that it happened ten times
+    assert "Traceback" not in capfd.readouterr().err
+
+
+# What hardening relies on.
+
+
+def test_viser_is_the_one_that_hardening_was_written_against(lab: Lab, attacker: Browser) -> None:
+    assert viser.__version__ == "1.1.1"
+    client = lab.server.get_clients()[attacker.id]
+    needed: list[tuple[Any, str]] = [
+        (lab.server, "_websock_server _event_loop"),
+        (lab.server._websock_server, "_live_connections _incoming_handlers on_client_connect"),
+        (lab.server._websock_server, "_handle_incoming_message unregister_handler"),
+        (client._websock_connection, "_incoming_handlers _handle_incoming_message"),
+        (client.gui, "_gui_input_handle_from_uuid _container_handle_from_uuid"),
+        (client.gui, "_current_file_upload_states _websock_interface"),
+        (lab.widgets[attacker.id]["slider"]._impl, "removed value uuid"),
+        (_gui_api, "print_threadpool_errors"),
+        (_gui_handles, "print_task_error"),
+        (_scene_api, "print_threadpool_errors print_awaited_callback_error"),
+        (_viser, "print_threadpool_errors print_awaited_callback_error print_task_error"),
+        (ServerConnection, "process_event recv close respond"),
+        (Frame(Opcode.PING, b""), "opcode data"),
+    ]
+    for thing, names in needed:
+        assert [name for name in names.split() if not hasattr(thing, name)] == []
+
+
+def test_viser_calls_what_hardening_replaces() -> None:
+    worker = inspect.getsource(_infra.WebsockServer._background_worker)
+    assert worker.count("websockets.asyncio.server.serve(") == 1
+    assert "self._handle_incoming_message(client_id, message)" in worker
+    assert "client_connection._handle_incoming_message(client_id, message)" in worker
+    assert "await websocket.recv()" in inspect.getsource(_infra._message_consumer)
+    producer = inspect.getsource(_infra._message_producer)
+    assert f"zstandard.ZstdCompressor(level={LEVEL})" in producer and "zstd.compress(" in producer
+
+
+@pytest.mark.usefixtures("lab")
+def test_the_connections_of_a_thread_share_a_compressor() -> None:
+    library: Any = _infra
+    make = library.zstandard.ZstdCompressor
+    one, others = make(level=LEVEL), []
+    asking = threading.Thread(target=lambda: others.append(make(level=LEVEL)))
+    asking.start()
+    asking.join()
+    assert make(level=LEVEL) is one and others[0] is not one
+    assert make(level=12, threads=-1) is not make(level=12, threads=-1)  # a recording's
+    assert zstandard.decompress(compress(b"as it was" * 9)) == b"as it was" * 9

@@ -1,0 +1,73 @@
+"""What is served is viser's page with our scripts before its own, whatever that page is like."""
+
+from __future__ import annotations
+
+import gzip
+import http.client
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import viser
+
+from onpath.app.viser_adapter.page_scripts import our_scripts, with_scripts
+from onpath.app.viser_adapter.secure_server import make_server
+from onpath.assets import asset_path
+
+SCRIPTS = sorted(asset_path("page").glob("*.js"))
+INDEX = Path(viser.__file__).parent / "client" / "build" / "index.html"
+
+
+@pytest.fixture(scope="module")
+def port() -> Iterator[int]:
+    server = make_server(port=0)
+    yield server.get_port()
+    server.stop()
+
+
+def get(port: int, path: str, **headers: str) -> tuple[http.client.HTTPResponse, bytes]:
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+    connection.request("GET", path, headers=headers)
+    reply = connection.getresponse()
+    return reply, reply.read()
+
+
+@pytest.mark.parametrize("path", ["/", "/index.html", "/?fixedDpr=1", "/./index.html", "//"])
+@pytest.mark.parametrize("encoding", ["gzip", "identity"])
+def test_the_page_is_visers_and_our_scripts(port: int, path: str, encoding: str) -> None:
+    for _ in range(2):
+        reply, body = get(port, path, **{"Accept-Encoding": encoding})
+        assert reply.status == 200 and reply.getheader("Content-Encoding") == encoding
+        assert reply.headers.get_all("Content-Length") == [str(len(body))]
+        assert (reply.getheader("Content-Type") or "").startswith("text/html")
+        page = gzip.decompress(body) if encoding == "gzip" else body
+        assert page.count(our_scripts()) == 1
+        assert page.replace(our_scripts(), b"") == INDEX.read_bytes()
+        assert page.index(b"<meta charset") < 900  # a browser looks for it in the first 1024 bytes
+        assert page.index(our_scripts()) + len(our_scripts()) == page.index(b"<script data-p")
+
+
+def test_nothing_else_is_touched(port: int) -> None:
+    assert get(port, "/nothing.html")[0].status == 404
+    assert get(port, "/health")[1] == b"well\n"
+
+
+def test_every_script_is_an_element_of_its_own_in_order_of_name() -> None:
+    assert SCRIPTS
+    texts = [file.read_bytes() for file in SCRIPTS]
+    assert all(text.isascii() and text.endswith(b"\n") for text in texts)
+    assert not any(b"</script" in text.lower() or b"<!--" in text for text in texts)
+    assert our_scripts() == b"".join(b"<script>\n" + text + b"</script>\n" for text in texts)
+
+
+@pytest.mark.parametrize(
+    ("page", "expected"),
+    [
+        (b"<head><title>x</title><script>1</script></head>", b"<head><title>x</title>!<script>1"),
+        (b"<head><title>x</title></head><body>", b"<head><title>x</title>!</head><body>"),
+        (b"<p>hello</p>", b"<p>hello</p>"),
+        (b"", b""),
+    ],
+)
+def test_scripts_come_first_in_whatever_page(page: bytes, expected: bytes) -> None:
+    assert with_scripts(page, b"!").startswith(expected)

@@ -1,0 +1,151 @@
+"""A class in real browsers: a teacher's tab and two students'."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser, sync_playwright
+
+from onpath.app.classroom.local_classroom import Classroom
+from onpath.app.common.access_codes import shown
+from onpath.app.lab import commands as c
+from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.page.teacher_view import TeacherView
+from onpath.app.server.lab_server import LabServer
+from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+
+HOSTILE = "<img src=x onerror=1>"
+WINDOWS = ((1100, 600), (800, 400), (800, 400))
+
+
+@dataclass
+class Class:
+    """Three tabs."""
+
+    room: Classroom
+    teacher: Tab
+    students: list[Tab]
+
+
+@pytest.fixture(scope="module")
+def tabs() -> Iterator[Class]:
+    room = Classroom()
+    store = LoopStore()
+    server = LabServer("127.0.0.1", 0, store, classroom=room)
+    with sync_playwright() as playwright:
+        browser: Browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
+        made: list[Tab] = []
+        for width, height in WINDOWS:
+            context = browser.new_context(viewport={"width": width, "height": height})
+            made.append(Tab(server, context, draws=False))
+            made[-1].ask(c.SetRunning(False))
+        yield Class(room, made[0], made[1:])
+        assert [tab.errors for tab in made] == [[], [], []]
+        browser.close()
+    server.stop()
+
+
+def fill(tab: Tab, label: str, text: str) -> None:
+    """Type into a text field."""
+    box = tab.field(label)
+    box.fill(text)
+    box.press("Enter")
+    box.blur()
+
+
+def test_students_join_and_the_teacher_sees_them(tabs: Class) -> None:
+    for student, name in zip(tabs.students, ("Ada", HOSTILE), strict=True):
+        fill(student, "Class code", tabs.room.code.upper())
+        fill(student, "Nickname", name)
+        student.press("Join the class")
+        student.page.get_by_text("You are in the class as").wait_for()
+    teacher = tabs.teacher
+    teacher.open("Teacher…")
+    fill(teacher, "Teacher's key", "2222-2222-2222")
+    teacher.press("Open the teacher's page")
+    teacher.page.get_by_text("this is not the teacher's key").wait_for()
+    fill(teacher, "Teacher's key", shown(tabs.room.key))
+    teacher.press("Open the teacher's page")
+    teacher.page.get_by_text("2 in the class").first.wait_for()
+    for name in ("Ada", HOSTILE):
+        teacher.page.get_by_role("cell", name=name, exact=True).wait_for()
+    assert teacher.page.locator("img[src=x]").count() == 0
+
+
+def test_frozen_labs_stand_still_and_say_so(tabs: Class) -> None:
+    for student in tabs.students:
+        student.ask(c.SetRunning(True))
+    tabs.teacher.press("Freeze all labs")
+    for student in tabs.students:
+        wait_for(lambda student=student: "look to the front" in student.said())
+        before = student.session.time
+        student.press("Pause")
+        student.page.wait_for_timeout(300)
+        assert student.session.running and student.session.time == before
+    tabs.teacher.press("Let all labs go on")
+    for student in tabs.students:
+        before = student.session.time
+        wait_for(lambda student=student, before=before: student.session.time > before)
+        wait_for(lambda student=student: student.said() == "")
+        student.ask(c.SetRunning(False))
+
+
+def test_a_pushed_step_opens_and_predictions_show_without_names(tabs: Class) -> None:
+    teacher, (first, second) = tabs.teacher, tabs.students
+    teacher.page.get_by_role("tab", name="Predictions").click()
+    teacher.field("Step").click()
+    teacher.page.get_by_role("option", name=re.compile("^2. Predict")).click()
+    teacher.press("Open this step for all")
+    for student in (first, second):
+        student.page.get_by_role("heading", name="Draw what the tracker does").wait_for()
+    for student, height in ((first, 40.0), (second, 10.0)):
+        student.ask(lc.Predict(times=(0.0, 4.0, 8.0), values=(0.0, height, 0.0)))
+    picture = teacher.page.locator(".op-class")
+    wait_for(lambda: picture.locator("polyline").count() == 2)
+    assert "2 predicted" in picture.inner_text() and "Ada" not in picture.inner_text()
+
+
+def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None:
+    teacher, (first, _) = tabs.teacher, tabs.students
+    teacher.ask(c.SetParameter("K2", 33.0))
+    teacher.press("Send my set-up to all")
+    wait_for(lambda: "“Set up again” brings" in first.said())
+    assert first.session.parameters.K2 == 33.0 and first.session.lessons.index == 1
+    assert first.page.get_by_role("heading", name="Draw what the tracker does").is_visible()
+    first.press("Next")
+    wait_for(lambda: first.session.lessons.index == 2)
+    wait_for(lambda: teacher.page.get_by_text("Students in the class: 2").count() == 2)
+    teacher.page.get_by_role("tab", name="Class").click()
+    teacher.page.get_by_text("Whoever joins gets the set-up").wait_for()
+    teacher.press("Stop sending this to those who join")
+    wait_for(lambda: tabs.room.orders.push is None)
+    teacher.page.get_by_text("Whoever joins gets").wait_for(state="hidden")
+
+
+def test_the_teacher_looks_on_and_touches_nothing(tabs: Class) -> None:
+    teacher, (first, _) = tabs.teacher, tabs.students
+    teacher.page.get_by_role("tab", name="Class").click()
+    teacher.field("Follow").click()
+    teacher.page.get_by_role("option", name="1. Ada").click()
+    teacher.page.get_by_text("This is the lab of Ada").wait_for()
+    view = teacher.lab.view
+    assert isinstance(view, TeacherView)
+    wait_for(lambda: view._built[0] == id(first.session))
+    assert first.session.lessons.lesson is not None
+    assert teacher.button("Hold both back").count() == 0
+    teacher.page.keyboard.press("h")
+    teacher.page.wait_for_timeout(300)
+    assert not first.session.grips.held and not teacher.session.grips.held
+
+
+def test_a_teacher_who_reloads_is_still_the_teacher(tabs: Class) -> None:
+    tabs.teacher.page.reload(wait_until="commit")
+    tabs.teacher.page.get_by_text("2 in the class").first.wait_for()
+    assert [member.name for member in tabs.room.members().values()] == ["Ada", HOSTILE]

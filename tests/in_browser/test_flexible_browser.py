@@ -1,0 +1,124 @@
+"""The flexible link as its users meet it: chosen from the menu, bent, pulled, diverged, reset."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import sync_playwright
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.scene.stage_catalogue import HORIZONTAL, IN_PATH_PLANE
+from onpath.app.server.lab_server import LabServer
+from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
+from onpath.models.systems.flexible_robot import UNSTABLE, FlexibleFiveBar
+from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+
+FOLLOWER = "path_following"
+
+
+@pytest.fixture(scope="module")
+def tab() -> Iterator[Tab]:
+    """A tab in which the flexible link has been chosen from the menu."""
+    store = LoopStore()
+    server = LabServer("127.0.0.1", 0, store)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
+        tab = Tab(server, browser.new_context(viewport={"width": 1000, "height": 700}), draws=False)
+        tab.press("Robot…")
+        for entry in (FIVE_BAR, FLEXIBLE):
+            tab.page.get_by_alt_text(entry.label).wait_for()
+        tab.press(FLEXIBLE.label)
+        wait_for(lambda: tab.session.entry is FLEXIBLE and tab.session.time > 0.3)
+        tab.page.get_by_text("Flexible link", exact=True).wait_for()
+        tab.settle()
+        yield tab
+        assert tab.errors == []
+        browser.close()
+    server.stop()
+
+
+def deflection(tab: Tab) -> float:
+    """Of the follower's tip, or of those that stand still, [m]."""
+    robot, runs = tab.session.robot, tab.session.runs
+    assert isinstance(robot, FlexibleFiveBar)
+    still = [run for run in runs.values() if run.diverged is not None]
+    bent = [robot.deflection(run.shown()["q"]) for run in still or [runs[FOLLOWER]]]
+    return float(np.abs(bent).max())
+
+
+def tip(tab: Tab) -> np.ndarray:
+    """The follower's end-point in the robot's frame for drawing, (3,), [m]."""
+    session = tab.session
+    return session.robot.place(session.runs[FOLLOWER].shown()["y"])
+
+
+@pytest.mark.parametrize("plane", [IN_PATH_PLANE, HORIZONTAL])
+def test_the_tip_is_pulled_in_the_plane_that_was_chosen(tab: Tab, plane: str) -> None:
+    session = tab.session
+    tab.choose("Pull in", plane)
+    tab.ask(c.SetParameter("speed", 0.0), c.Reset(), c.SetRunning(False))
+    tab.ask(*[c.Step()] * 50)
+    tab.settle()
+    before, start = tip(tab), tab.pixel(FOLLOWER, tip(tab))
+
+    def pulled() -> np.ndarray:
+        return session.robot.place(session.grips.hands[FOLLOWER])
+
+    with tab.dragging(start, (start[0] + 45, start[1] + 25)):
+        wait_for(lambda: session.grips.hands and np.linalg.norm(pulled() - before) > 0.01)
+        moved = pulled() - before
+        flat = moved[2] if plane == HORIZONTAL else moved @ [0.1, 1.0, 0.0]
+        assert abs(flat) < 1e-6
+        tab.ask(c.SetRunning(True))
+        wait_for(lambda: deflection(tab) > 1e-3)
+    wait_for(lambda: not session.grips.hands)
+    wait_for(lambda: deflection(tab) < 1e-3)
+    assert tab.said() == ""
+
+
+def test_the_path_is_dragged_in_its_slanted_plane(tab: Tab) -> None:
+    session = tab.session
+    tab.ask(c.ChoosePath("circle"), c.Reset(), c.SetRunning(False))
+    tab.settle()
+    old = session.editor.design.points[3].copy()
+    start, end = tab.placed(FOLLOWER, old), tab.placed(FOLLOWER, old + [0.015, 0.012])
+    with tab.dragging(start, end):
+        wait_for(lambda: session.editor.design.name == "edited" or session.editor.proposed)
+    wait_for(lambda: session.editor.design.name == "edited")
+    np.testing.assert_allclose(session.editor.design.points[3], old + [0.015, 0.012], atol=2e-3)
+    tab.ask(c.SetRunning(True))
+    wait_for(lambda: session.time > 1.5)
+    assert session.runs[FOLLOWER].distance < 2e-3 and tab.said() == ""
+    tab.ask(c.ChoosePath("circle"), c.Reset())
+
+
+def test_a_divergence_is_caught_said_and_reset(tab: Tab) -> None:
+    session = tab.session
+    tab.ask(c.SetParameter("speed", 2.0), c.Reset(), c.SetRunning(True))
+    tab.enter("Drawn larger", "5")
+    wait_for(lambda: session.exaggeration == 5.0)
+    tab.enter("α", "0.95")
+    wait_for(lambda: session.parameters.law == "redefined")  # type: ignore[attr-defined]
+    wait_for(lambda: UNSTABLE in tab.said())
+    assert deflection(tab) > 0.01  # the last instant before: seen at a glance
+    bar = tab.page.get_by_text("unstable inside")
+    bar.wait_for()
+    tab.enter("α", "0.5")
+    wait_for(lambda: bar.count() == 0)
+    tab.press("Reset")
+    wait_for(lambda: tab.said() == "" and session.time > 1.5)
+    assert session.runs[FOLLOWER].distance < 5e-3
+
+
+def test_the_other_robot_is_as_it_was(tab: Tab) -> None:
+    tab.press("Robot…")
+    tab.press(FIVE_BAR.label)
+    wait_for(lambda: tab.session.entry is FIVE_BAR and tab.session.time > 0.3)
+    tab.page.get_by_text("Flexible link", exact=True).wait_for(state="detached")
+    assert tab.session.parameters == FIVE_BAR.lab

@@ -1,0 +1,135 @@
+"""A real browser with another tab in front of the lab: what it costs then, and what is seen after.
+
+Playwright keeps all its tabs visible; so the browser is started and told by its own protocol.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from urllib.request import Request, urlopen
+
+import numpy as np
+import pytest
+import websockets.sync.client
+
+pytest.importorskip("playwright")
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.server.lab_server import LabServer
+from onpath.app.server.tab_visibility import EVERY, PATIENCE, TICK
+from tests.support.browser import CHROMIUM, COARSER, PLAIN, wait_for
+
+VALUES = "[...document.querySelectorAll('input')].map(each => each.value)"
+SMALL = ("--window-size=600,400",)  # so that drawing in software keeps up
+HIDDEN, PAUSED = 200.0, 1000.0  # [B/s]
+
+
+class Window:
+    """A browser with the lab in its first tab."""
+
+    def __init__(self, folder: Path, address: str) -> None:
+        options = ["--headless=new", f"--user-data-dir={folder}", "--remote-debugging-port=0"]
+        self._process = subprocess.Popen(
+            [CHROMIUM, *options, "--remote-allow-origins=*", *SMALL, *PLAIN, address],
+            stderr=subprocess.DEVNULL,
+        )
+        told = folder / "DevToolsActivePort"
+        self._port = wait_for(lambda: told.exists() and told.read_text().partition("\n")[0])
+        self._lab = wait_for(lambda: [t for t in self._ask("list") if t["type"] == "page"])[0]
+
+    def close(self) -> None:
+        self._process.terminate()
+        self._process.wait()
+
+    def cover(self) -> None:
+        """Another tab comes to the front."""
+        self._ask("new?about:blank", "PUT")
+        wait_for(lambda: self.evaluate("document.visibilityState") == "hidden")
+
+    def uncover(self) -> None:
+        """The lab's tab comes back to the front."""
+        self._ask(f"activate/{self._lab['id']}")
+        wait_for(lambda: self.evaluate("document.visibilityState") == "visible")
+
+    def evaluate(self, expression: str) -> Any:
+        """In the lab's page."""
+        ask = {"id": 1, "method": "Runtime.evaluate", "params": {"expression": expression}}
+        with websockets.sync.client.connect(self._lab["webSocketDebuggerUrl"]) as socket:
+            socket.send(json.dumps(ask))
+            return json.loads(socket.recv(timeout=10))["result"]["result"]["value"]
+
+    def _ask(self, what: str, method: str = "GET") -> Any:
+        with urlopen(Request(f"http://127.0.0.1:{self._port}/json/{what}", method=method)) as reply:
+            said = reply.read()
+        return json.loads(said) if said.startswith((b"{", b"[")) else said
+
+
+@pytest.fixture
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def window(server: LabServer, tmp_path: Path) -> Iterator[Window]:
+    window = Window(tmp_path / "browser", f"{server.address}/?{COARSER}")
+    yield window
+    window.close()
+
+
+class Meter:
+    """Counts what is written to the only browser."""
+
+    def __init__(self, server: LabServer) -> None:
+        (connection,) = server.server._websock_server._live_connections.values()
+        self._write, self._sent = connection.transport.write, 0
+        connection.transport.write = self._count
+
+    def _count(self, data: bytes | bytearray | memoryview) -> None:
+        self._sent += len(data)
+        self._write(data)
+
+    def rate(self, seconds: float) -> float:
+        """[B/s]"""
+        before = self._sent
+        time.sleep(seconds)
+        return (self._sent - before) / seconds
+
+
+def test_a_covered_tab_costs_nothing_and_then_shows_what_is(
+    server: LabServer, window: Window
+) -> None:
+    view = wait_for(lambda: [lab.view for lab in server.simulation.labs if lab.view is not None])[0]
+    (lab,), meter = server.simulation.labs, Meter(server)
+    wait_for(lambda: lab.session.time > 1.0)
+
+    def seen_throughout() -> float:
+        rate = meter.rate(EVERY + PATIENCE + TICK)
+        return rate if lab.view is view else 0.0
+
+    visible = wait_for(seen_throughout)  # drawn in software, but seen, once the page has settled
+    (client,) = server.server.get_clients().values()
+    camera = client.camera.position
+    window.cover()
+    wait_for(lambda: lab.view is None)
+    wait_for(lambda: meter.rate(TICK) < HIDDEN)  # what was on its way to a busy browser
+    simulated = lab.session.time
+    hidden = meter.rate(3.0)
+    assert hidden < min(HIDDEN, 0.02 * visible)
+    assert lab.view is None and lab.session.time == simulated
+    lab.session.post(c.ChoosePath("clover"))
+    window.uncover()
+    wait_for(lambda: lab.view is view)
+    wait_for(lambda: window.evaluate(f"{VALUES}.includes('clover')"))
+    assert meter.rate(1.0) > 0.3 * visible and lab.session.time > simulated
+    assert np.allclose(client.camera.position, camera, atol=1e-9)  # for all that it was asked
+    lab.session.post(c.SetRunning(False))
+    time.sleep(EVERY + TICK)
+    assert meter.rate(2.0) < PAUSED and lab.view is view

@@ -1,0 +1,252 @@
+"""Keys in the lab and in a lesson, pressed in a real browser: whose they are, and the camera."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser, sync_playwright
+from viser import _messages
+
+from onpath.app.lab import commands as c
+from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.page.panels.keys import KEYS
+from onpath.app.server.lab_server import LabServer
+from onpath.models.systems.parameters import specs
+from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+
+NAMES = {"space": "Space", "escape": "Escape", "insert": "Insert", "delete": "Delete"}
+NAMES |= {f"arrow{way.lower()}": f"Arrow{way}" for way in ("Left", "Right", "Up", "Down")}
+NAMES |= {"home": "Home"}
+LESSON = "01-path-or-timetable"
+TOUCH = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
+    yield server
+    server.stop()
+
+
+@contextmanager
+def opened(browser: Browser, server: LabServer, place: str, **options: object) -> Iterator[Tab]:
+    """A tab in the free lab, or in a lesson with all controls shown."""
+    context = browser.new_context(**{"viewport": {"width": 1280, "height": 800}, **options})  # type: ignore[arg-type]
+    tab = Tab(server, context, draws=False)
+    if place == "lesson":
+        tab.ask(lc.OpenLesson(LESSON))
+        tab.page.get_by_role("heading", name="Two robots, one circle").wait_for()
+        if not options:
+            tab.page.get_by_role("tab", name="All controls").click()
+    yield tab
+    assert tab.errors == []
+    context.close()
+
+
+@pytest.fixture(scope="module", params=["lab", "lesson"])
+def shared(request: pytest.FixtureRequest, browser: Browser, server: LabServer) -> Iterator[Tab]:
+    with opened(browser, server, request.param) as tab:
+        yield tab
+
+
+@pytest.fixture
+def tab(shared: Tab) -> Iterator[Tab]:
+    """Running, with nothing selected and nothing focused."""
+    leave(shared)
+    shared.ask(c.ResetParameters(), c.SelectPoint(None), c.Reset(), c.SetRunning(True))
+    yield shared
+    shared.ask(c.SetRunning(False))
+
+
+def leave(tab: Tab) -> None:
+    """Take the focus away from whatever has it."""
+    tab.page.evaluate("document.activeElement?.blur()")
+
+
+def asked_since(tab: Tab, before: int) -> int:
+    """How many commands the keys have given, one more that is the last not counted."""
+    leave(tab)
+    tab.ask(c.SelectPoint(None))
+    tab.page.keyboard.press("n")
+    wait_for(lambda: tab.session.editor.selected == 0)
+    return tab.session.asked - before - 3
+
+
+def camera(tab: Tab) -> np.ndarray:
+    """Where the page says that its camera is and looks to, when it is asked, shape (6,), [m]."""
+    camera = tab.client.camera
+    for _ in range(2):  # the first answer may have been on its way
+        before = camera.update_timestamp
+        up = tuple(camera.up_direction.tolist())
+        message = _messages.SetCameraUpDirectionMessage(up)
+        tab.client._websock_connection.queue_message(message)
+        wait_for(lambda: camera.update_timestamp > before)
+    return np.concatenate([camera.position, camera.look_at])
+
+
+def settled_camera(tab: Tab) -> np.ndarray:
+    """The same, once the lab places it no more by itself."""
+    wait_for(lambda: not tab.view._settling)  # type: ignore[attr-defined]
+    tab.settle()
+    return camera(tab)
+
+
+# The camera.
+
+
+def test_no_key_of_lab_or_lesson_moves_the_camera(tab: Tab) -> None:
+    tab.ask(c.SetRunning(False))
+    pressed = [
+        ("Control+" if key.modifier else "") + NAMES.get(key.hotkey, key.hotkey.lower())
+        for key in KEYS
+    ]
+    placed = settled_camera(tab)
+    for name in [*pressed, "q", "e", "PageDown", "PageUp"]:
+        asked = tab.session.asked
+        tab.page.keyboard.down(name) if "+" not in name else tab.page.keyboard.press(name)
+        tab.settle()
+        if "+" not in name:
+            tab.page.keyboard.up(name)
+        np.testing.assert_allclose(camera(tab), placed, atol=1e-6, err_msg=name)
+        if name not in ("q", "e", "Home", "PageDown", "PageUp"):
+            assert tab.session.asked > asked, name
+
+
+def turn_the_view(tab: Tab) -> None:
+    box = tab.page.locator("canvas").first.bounding_box()
+    assert box is not None
+    x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.08 * box["height"]
+    before = camera(tab)
+    with tab.dragging((x, y), (x + 60, y + 25)):
+        pass
+    tab.settle()
+    assert np.abs(camera(tab) - before).max() > 1e-3
+
+
+def test_the_view_is_reset_by_a_key_and_by_a_button(tab: Tab) -> None:
+    placed = settled_camera(tab)
+    turn_the_view(tab)
+    asked = tab.session.asked
+    tab.page.keyboard.press("Home")
+    wait_for(lambda: np.allclose(camera(tab), placed, atol=1e-4))
+    turn_the_view(tab)
+    tab.button("Reset view").first.click()
+    wait_for(lambda: np.allclose(camera(tab), placed, atol=1e-4))
+    assert tab.session.asked == asked  # nobody else who looks at this lab notices
+
+
+@pytest.mark.parametrize("place", ["lab", "lesson"])
+def test_the_view_is_reset_on_a_phone(browser: Browser, server: LabServer, place: str) -> None:
+    with opened(browser, server, place, **TOUCH) as tab:
+        placed = settled_camera(tab)
+        turn_the_view(tab)
+        if place == "lesson":
+            tab.page.get_by_role("tab", name="The lab").click()
+        tab.button("Reset view").first.click()
+        wait_for(lambda: np.allclose(camera(tab), placed, atol=1e-4))
+
+
+# The focused control.
+
+
+def test_arrows_on_a_slider_move_that_alone(tab: Tab) -> None:
+    session, before = tab.session, tab.session.asked
+    value, spec = session.parameters.K1, specs(session.parameters)["K1"]
+    steps = [("ArrowRight", value + spec.step), ("ArrowLeft", value), ("Home", spec.low)]
+    tab.slider("K1").focus()
+    for key, wanted in steps:
+        tab.page.keyboard.press(key)
+        wait_for(lambda wanted=wanted: wanted == session.parameters.K1)
+    assert asked_since(tab, before) == 3 and tab.session.running
+
+
+def test_arrows_move_the_slider_of_the_past(tab: Tab) -> None:
+    session = tab.session
+    wait_for(lambda: session.time > 1.0)
+    tab.open("Look back")
+    tab.slider("Seconds ago").focus()
+    for tenths in (1, 2, 3):
+        tab.page.keyboard.press("ArrowRight")
+        wait_for(
+            lambda tenths=tenths: round(10 * (session.time - (session.viewing or 9e9))) == tenths
+        )
+    time = session.time
+    tab.page.keyboard.press("ArrowLeft")
+    wait_for(lambda: session.time - (session.viewing or 0.0) == pytest.approx(0.2, abs=0.01))
+    assert session.time == time and not session.running
+
+
+@pytest.mark.parametrize("key", ["Space", "Enter"])
+def test_a_focused_button_is_pressed_and_nothing_else(tab: Tab, key: str) -> None:
+    before = tab.session.asked
+    tab.button("Hold both back").first.focus()
+    tab.page.keyboard.press(key)
+    wait_for(lambda: len(tab.session.grips.held) == 2)
+    assert asked_since(tab, before) == 1 and tab.session.running
+
+
+def test_letters_still_work_on_buttons_sliders_and_boxes_to_tick(tab: Tab) -> None:
+    session = tab.session
+    tab.button("Hold both back").first.click()
+    wait_for(lambda: session.grips.held)
+    for control in (None, tab.slider("K1"), tab.page.get_by_label("Copy to both")):
+        if control is not None:
+            control.focus()
+        held = bool(session.grips.held)
+        tab.page.keyboard.press("h")
+        wait_for(lambda held=held: bool(session.grips.held) is not held)
+        tab.page.keyboard.press("d")
+        wait_for(lambda: session.grips.hands)
+        tab.page.keyboard.press("x")
+        wait_for(lambda: not session.grips.hands)
+
+
+def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
+    session = tab.session
+    tab.open("Keep and share")
+    before, step = session.asked, session.lessons.index
+    for field in (tab.field("Share code"), tab.number("K1")):
+        field.focus()
+        for key in ("d", "x", "h", "w", "r", "g", "u", "PageDown", "PageUp", "Home"):
+            tab.page.keyboard.press(key)
+    assert tab.field("Share code").input_value() == "dxhwrgu"
+    assert asked_since(tab, before) == 0 and session.running and session.lessons.index == step
+    tab.field("Share code").fill("")
+
+
+def test_going_on_is_said_and_undone_by_key_and_button(tab: Tab) -> None:
+    session = tab.session
+    wait_for(lambda: session.time > 1.5)
+    tab.page.keyboard.press("b")
+    wait_for(lambda: session.viewing is not None)
+    time = session.time
+    wait_for(lambda: "This is the past" in tab.said())
+    tab.page.keyboard.press("Space")
+    wait_for(lambda: session.running and session.time > time)  # back at the present
+    tab.page.keyboard.press("b")
+    wait_for(lambda: session.viewing is not None)
+    end = session.time
+    tab.open("Look back")
+    tab.press("Go on from here")
+    wait_for(lambda: "are forgotten" in tab.said())
+    tab.press("Undo going on")
+    wait_for(lambda: session.time == end and not session.running)
+    tab.page.keyboard.press("u")
+    wait_for(lambda: session.time != end)
+    tab.page.keyboard.press("u")
+    wait_for(lambda: session.time == end)

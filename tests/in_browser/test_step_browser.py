@@ -1,0 +1,103 @@
+"""The page of a lesson's step: it opens at its top, and says what can be done now."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser, sync_playwright
+
+from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab.class_commands import TakeStep
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.server.lab_server import LabServer
+from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+
+LESSON, LONG = "01-path-or-timetable", "03-the-five-bar"
+LINE = 24  # [px]; the browser itself may scroll so far, to keep what is read in its place
+SCROLL = """(to) => {
+    let box = document.querySelector("[data-step]")
+    while (box !== null && !(box.scrollHeight > box.clientHeight + 50 &&
+            ["auto", "scroll"].includes(getComputedStyle(box).overflowY))) box = box.parentElement
+    if (box !== null && to !== null) box.scrollTop = to
+    return box === null ? 0 : box.scrollTop
+}"""
+"""Scrolls what the step's page is in, and says how far it is scrolled, [px]."""
+SEEN = """(heading) => {
+    const { x, y, height } = heading.getBoundingClientRect()
+    return heading.contains(document.elementFromPoint(x + 5, y + height / 2))
+}"""
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
+    yield server
+    server.stop()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        yield playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
+
+
+@pytest.fixture(params=[(1280, 800), (390, 844)], ids=["desk", "telephone"])
+def tab(request: pytest.FixtureRequest, server: LabServer, browser: Browser) -> Iterator[Tab]:
+    width, height = request.param
+    context = browser.new_context(viewport={"width": width, "height": height})
+    tab = Tab(server, context, draws=False)
+    tab.ask(lc.OpenLesson(LESSON))
+    yield tab
+    assert tab.errors == []
+    context.close()
+
+
+def is_seen(tab: Tab, index: int) -> bool:
+    """Whether the title of a step of the lesson is on the screen."""
+    run = tab.session.lessons
+    assert run.lesson is not None
+    heading = tab.page.get_by_role("heading", name=run.lesson.steps[index].title)
+    return heading.count() == 1 and heading.evaluate(SEEN)
+
+
+def test_a_step_opens_at_its_top(tab: Tab) -> None:
+    tab.ask(TakeStep(LONG, 5))
+    wait_for(lambda: is_seen(tab, 5))
+    before = 5
+    for index, name in ((6, "Next"), (5, "Back"), (6, "Next")):
+        tab.button(name).scroll_into_view_if_needed()
+        wait_for(lambda: tab.page.evaluate(SCROLL, 1e6) > 0)
+        wait_for(lambda before=before: not is_seen(tab, before))
+        tab.button(name).click()
+        wait_for(lambda index=index: is_seen(tab, index))
+        assert tab.page.evaluate(SCROLL, None) == 0
+        before = index
+
+
+def test_a_hint_leaves_the_page_where_it_is(tab: Tab) -> None:
+    tab.ask(TakeStep(LESSON, 6))
+    wait_for(lambda: is_seen(tab, 6))
+    hint = tab.page.get_by_role("button", name="Hint (3 left)").first
+    tab.page.evaluate(SCROLL, 150)
+    hint.scroll_into_view_if_needed()
+    tab.settle()
+    before = tab.page.evaluate(SCROLL, None)
+    hint.click()
+    tab.page.get_by_role("button", name="Hint (2 left)").first.wait_for()
+    assert abs(tab.page.evaluate(SCROLL, None) - before) < LINE < before
+
+
+def test_what_happens_can_be_seen_without_a_prediction(tab: Tab) -> None:
+    tab.ask(TakeStep(LESSON, 2))
+    wait_for(lambda: is_seen(tab, 2))
+    tab.page.get_by_text("First go back and make the prediction").wait_for()
+    assert tab.button("Let it happen").is_disabled()
+    tab.press("Skip the prediction")
+    tab.page.get_by_text("You skipped the prediction.").wait_for()
+    assert tab.session.lessons.index == 2
+    tab.press("Let it happen")
+    wait_for(lambda: tab.session.lessons.playing)

@@ -1,0 +1,245 @@
+"""Every task of every lesson, done in a browser as its last hint says."""
+
+from __future__ import annotations
+
+import html
+import re
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser, sync_playwright
+
+from onpath.app.lab import commands as c
+from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.server.lab_server import LabServer
+from onpath.lessons.course import BUILT_IN, read_course
+from onpath.lessons.schema import Task
+from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.hands import (
+    ROBOT,
+    Choose,
+    DragBall,
+    Enter,
+    Gesture,
+    Hands,
+    Key,
+    Press,
+    Pull,
+    Slide,
+    Wait,
+)
+
+COURSE, _ = read_course([BUILT_IN])
+TASKS = {
+    (lesson.name, task.id): (index, task)
+    for lesson in (versions["en"] for versions in COURSE.lessons.values())
+    for index, step in enumerate(lesson.steps)
+    for task in step.tasks()
+}
+HOLD, LET_GO, RESET = Press("Hold both back"), Press("Let both go"), Press("Reset")
+TWO_BULGES = (DragBall((0, 50), (0, 65)), DragBall((0, -50), (0, -65)))
+TWO_HOLDS = (HOLD, Wait(2.2), LET_GO, Wait(2), HOLD, Wait(2.2), LET_GO, Wait(3.2))
+
+# In the order in which a student comes to them; a step's tasks follow each other without a Reset.
+WALKS: dict[str, dict[str, tuple[Gesture, ...]]] = {
+    "01-path-or-timetable": {
+        "hold-two-seconds": (Enter("K1", 600), Enter("K2", 50), Key("h"), Wait(3), Key("h")),
+        "thirty-times": (Enter("K1", 1600), Enter("K2", 80), HOLD, Wait(3), LET_GO),
+        "push-across": (Key("d", 6), Wait(1), Key("x"), Wait(2)),
+    },
+    "02-what-is-the-error": {
+        "half-a-round-late": (RESET, Wait(1), HOLD, Wait(1.3), LET_GO, Wait(2)),
+        "the-other-side": (Pull(-70, 0, seconds=1), Wait(2)),
+        "deeper-than-deep": (Enter("Target", 1.57), Wait(2), Key("s", 12), Wait(0.5), Key("x")),
+    },
+    "03-the-five-bar": {
+        "dear": (DragBall((35, 35), (67, 67)), Wait(3)),
+        "cheap": (Key("Control+z"), DragBall((-35, 35), (-67, 67)), Wait(3)),
+        "carry": (Enter("K1", 1600), Enter("K2", 80), Enter("K5", 30), Wait(4)),
+    },
+    "04-across-and-along": {
+        "no-overshoot": (
+            *(Enter("K4", 100), Enter("K5", 20), RESET),
+            *(Key("w", 6), Wait(1), Key("x"), Wait(2)),
+        ),
+        "rail": (Enter("K1", 1600), Enter("K2", 80), RESET, Key("w", 5), Wait(2), Key("x")),
+        "spring-board": (
+            *(Enter("K1", 100), Enter("K2", 20), Enter("K4", 400), Enter("K5", 40)),
+            *(RESET, Key("d", 4), Wait(1), Key("x")),
+        ),
+        "enough": (Enter("K1", 400), Enter("K2", 40), Wait(4)),
+    },
+    "05-invariance": {
+        "tour": (Slide("Target", 3.1), Wait(2), Slide("Target", 0), Wait(2)),
+        "obstruction": (
+            *(Press("run round the circle"), Enter("K1", 2500), Enter("K2", 100), RESET),
+            *(Wait(1), HOLD, Wait(2.2), LET_GO, Wait(2)),
+        ),
+    },
+    "06-exact-cancellation": {
+        "quiet-and-close": (Enter("K3", 2000), RESET, Wait(5)),
+        "excite": (Enter("Speed", 6), Wait(3), Press("Identify M and b"), Wait(4)),
+        "excite-well": (
+            Press("the same with coarse encoders, at a crawl"),
+            *(Enter("Speed", 5), Wait(1), Enter("Speed", -5), Wait(1), Enter("Speed", 5), Wait(1)),
+            Press("Identify M and b"),
+        ),
+    },
+    "07-flexible-link": {
+        "choose-alpha": (Enter("α", 0.7), Wait(4)),
+        "broken-promise": (
+            *(Choose("Modes", "1"), Enter("α", 0.8), Wait(1), Choose("Modes", "3"), Wait(0.5)),
+        ),
+        "hold-the-tip": (
+            *(Choose("Output", "composite"), RESET, Wait(3), HOLD, Wait(2.2), LET_GO),
+        ),
+        "turn-gently": (
+            *(Choose("Output", "redefined"), RESET, Wait(2)),
+            *(Enter("K5", 1), Enter("Speed", -2), Wait(4)),
+        ),
+    },
+    "08-challenge": {
+        "own-path": (
+            *(*TWO_BULGES, Enter("K1", 1600), Enter("K2", 80), Enter("K5", 5)),
+            *(RESET, Wait(3.4), *TWO_HOLDS),
+        ),
+        "clover": (
+            *(Enter("Speed", 4), Enter("K1", 2500), Enter("K2", 100), Enter("K5", 5)),
+            *(RESET, Wait(3), *TWO_HOLDS),
+        ),
+        "real-one": (
+            *(*TWO_BULGES, Enter("Speed", 5.2), Enter("K1", 2500), Enter("K2", 100)),
+            *(Enter("K3", 8000), Enter("K5", 7), RESET, Wait(3.3), *TWO_HOLDS),
+        ),
+    },
+}
+BY_TOUCH: dict[str, dict[str, tuple[Gesture, ...]]] = {
+    "01-path-or-timetable": {"push-across": (Pull(30, 0, seconds=1), Wait(2))},
+    "03-the-five-bar": {"dear": WALKS["03-the-five-bar"]["dear"]},
+    "05-invariance": WALKS["05-invariance"],
+}
+"""One task at least for each kind of gesture: a pull, a ball, a slider, buttons."""
+
+
+def cases(walks: dict[str, dict[str, tuple[Gesture, ...]]]) -> list[tuple[str, str]]:
+    """Lesson and task of each walk, in order."""
+    return [(lesson, task) for lesson, tasks in walks.items() for task in tasks]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopStore())
+    yield server
+    server.stop()
+
+
+def opened(browser: Browser, server: LabServer, touch: bool) -> Iterator[Hands]:
+    """A student's tab."""
+    context = browser.new_context(viewport={"width": 1280, "height": 800}, has_touch=touch)
+    tab = Tab(server, context, draws=False)
+    yield Hands(tab, touch)
+    assert tab.errors == []
+    context.close()
+
+
+@pytest.fixture(scope="module")
+def mouse(browser: Browser, server: LabServer) -> Iterator[Hands]:
+    yield from opened(browser, server, touch=False)
+
+
+@pytest.fixture(scope="module")
+def finger(browser: Browser, server: LabServer) -> Iterator[Hands]:
+    yield from opened(browser, server, touch=True)
+
+
+def go_to(tab: Tab, lesson: str, index: int) -> None:
+    """To a step, unless it is open; time stands still there."""
+    run = tab.session.lessons
+    if run.lesson is None or run.lesson.name != lesson:
+        tab.ask(lc.OpenLesson(lesson))
+    if run.index != index:
+        step = lc.GoToStep(1 if index > run.index else -1)
+        tab.ask(*[step] * abs(index - run.index))
+    tab.ask(c.SetRunning(False))
+    title = COURSE.lesson(lesson, "en").steps[index].title
+    tab.page.get_by_role("heading", name=title, exact=True).wait_for()
+    tab.settle()
+
+
+def do(hands: Hands, lesson: str, task: str, gestures: tuple[Gesture, ...]) -> None:
+    """A walk, and the task's tick on the page."""
+    index, wanted = TASKS[lesson, task]
+    go_to(hands.tab, lesson, index)
+    for gesture in gestures:
+        gesture(hands)
+    try:
+        wait_for(lambda: passed(hands.tab, wanted), seconds=10.0)
+    except AssertionError:
+        pytest.fail("\n".join(verdicts(hands.tab, wanted)))
+
+
+def passed(tab: Tab, task: Task) -> bool:
+    """Whether the page says so."""
+    box = tab.page.locator(".op-box").filter(has_text=beginning(task))
+    return box.filter(has_text="✓ Passed").count() == 1
+
+
+def verdicts(tab: Tab, task: Task) -> list[str]:
+    """What the lab has measured."""
+    return [verdict.words for verdict in tab.session.lessons.verdicts.get(task.id, [])]
+
+
+def beginning(task: Task) -> str:
+    """Of its text, as the page shows it."""
+    return html.unescape(re.sub(r"<[^>]+>", "", task.text))[:40]
+
+
+def test_every_task_of_every_lesson_is_done_here() -> None:
+    assert set(cases(WALKS)) == set(TASKS)
+    assert set(cases(BY_TOUCH)) <= set(TASKS)
+
+
+@pytest.mark.parametrize(("lesson", "task"), cases(WALKS))
+def test_a_number_that_is_typed_stands_in_the_hints(lesson: str, task: str) -> None:
+    said = " ".join([TASKS[lesson, task][1].text, *TASKS[lesson, task][1].hints])
+    numbers = re.findall(r"[-−]?\d+(?:\.\d+)?", html.unescape(said))
+    known = {float(number.replace("−", "-")) for number in numbers}
+    typed = {g.value for g in WALKS[lesson][task] if isinstance(g, Enter | Slide)}
+    assert typed <= known
+
+
+@pytest.mark.parametrize(("lesson", "task"), cases(WALKS))
+def test_a_task_is_passed_by_doing_what_its_last_hint_says(
+    mouse: Hands, lesson: str, task: str
+) -> None:
+    do(mouse, lesson, task, WALKS[lesson][task])
+
+
+@pytest.mark.parametrize(("lesson", "task"), cases(BY_TOUCH))
+def test_a_task_is_passed_by_touch(finger: Hands, lesson: str, task: str) -> None:
+    do(finger, lesson, task, BY_TOUCH[lesson][task])
+
+
+@pytest.mark.parametrize("by", ["mouse", "finger"])
+def test_the_ball_under_the_end_point_is_dragged(by: str, request: pytest.FixtureRequest) -> None:
+    """As the five-bar's first step asks: the end-point rests on the ball at the right end."""
+    hands: Hands = request.getfixturevalue(by)
+    tab, session = hands.tab, hands.session
+    go_to(tab, "03-the-five-bar", 0)
+    tab.elapse(2)  # both come to rest there
+    end = session.editor.design.points[-1] * 1e3
+    assert np.linalg.norm(tab.tip(ROBOT) * 1e3 - end) < 1
+    DragBall((end[0], end[1]), (end[0] - 10, end[1] + 25))(hands)

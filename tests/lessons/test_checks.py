@@ -1,0 +1,143 @@
+"""A check passes exactly when what it asks for holds over its whole window."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from itertools import accumulate
+
+import numpy as np
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from onpath.lessons.checks import verdict
+from onpath.lessons.record import Happening, Record
+from onpath.lessons.schema import Bound, Compare, During
+from onpath.lessons.words import Words
+from onpath.models.systems.catalogue import FIVE_BAR
+
+DT = 1e-3  # [s], a tick
+NEED = re.compile(r"\(([\d.]+) of ([\d.]+) s\)")
+WORDS = Words()
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Some frames of the lab with the same inputs."""
+
+    ticks: tuple[int, ...]
+    held: bool
+    value: float
+
+
+@dataclass(frozen=True)
+class Frames:
+    """A run, frame after frame: its ticks are whole numbers, its times sums as the lab has them."""
+
+    ticks: np.ndarray
+    held: np.ndarray
+    values: np.ndarray
+
+    def record(self) -> Record:
+        times = list(accumulate((int(n) * DT for n in self.ticks), initial=0.0))
+        happenings, before = list[Happening](), False
+        for time, held in zip(times, self.held.tolist(), strict=False):
+            if held != before:
+                happenings.append(Happening(0, time, "hold" if held else "let_go"))
+            before = held
+        values = {"distance": self.values}
+        return Record(
+            times=np.array(times[:-1]),
+            values={"follower": values, "tracker": {"distance": 2.0 * self.values}},
+            happenings=tuple(happenings),
+            run=0,
+            parameters=FIVE_BAR.lab,
+            end=times[-1],
+        )
+
+    def window(self, during: During, last: int) -> tuple[np.ndarray, int]:
+        """Which frames count, and how many ticks they last; exactly, by counting ticks.
+
+        Args:
+            last: ticks; 0 for all.
+        """
+        chosen = {"always": np.ones_like(self.held), "held": self.held, "free": ~self.held}[during]
+        ticks = np.where(chosen, self.ticks, 0)
+        later = np.cumsum(ticks[::-1])[::-1] - ticks
+        if last:
+            chosen = chosen & (later < last)
+        return chosen, int(self.ticks[chosen].sum())
+
+
+def frames_of(stretches: list[Stretch]) -> Frames:
+    rows = [(ticks, s.held, s.value) for s in stretches for ticks in s.ticks]
+    ticks, held, values = zip(*rows, strict=True)
+    return Frames(np.array(ticks), np.array(held, dtype=bool), np.array(values))
+
+
+sixtieths = st.integers(1, 90).map(
+    lambda n: tuple(np.diff([int(k / 60 / DT + 1e-9) for k in range(n + 1)]).tolist())
+)
+uneven = st.lists(st.integers(1, 68), min_size=1, max_size=90).map(tuple)
+stretches = st.builds(
+    Stretch,
+    st.one_of(sixtieths, uneven),
+    st.booleans(),
+    st.sampled_from([0.5, 0.603, 1.0, 1.004, 3.0]),
+)
+runs = st.lists(stretches, min_size=1, max_size=8).map(frames_of)
+seconds = st.sampled_from([0.0, 0.05, 0.3, 0.5, 0.95, 1.0, 2.0, 2.2, 3.0])
+durings = st.sampled_from(["always", "held", "free"])
+
+
+def frames(*ticks: int) -> Frames:
+    """A run all of which is held, and well."""
+    return frames_of([Stretch(ticks, held=True, value=1.0)])
+
+
+@given(runs, durings, seconds, seconds)
+@example(frames(*200 * [17]), "always", 1.0, 1.0)
+@example(frames(*20 * [16, 17, 17]), "held", 1.0, 1.0)
+@example(frames(*58 * [17], 10), "held", 0.0, 1.0)  # four ticks too few
+def test_a_bound_passes_exactly_when_it_holds_over_its_window(
+    run: Frames, during: During, last: float, least: float
+) -> None:
+    chosen, ticks = run.window(during, round(last / DT))
+    enough = ticks >= round(least / DT)
+    holds = bool(chosen.any()) and bool((run.values[chosen] <= 1.0).all())
+    check = Bound(during=during, last=last, least=least, quantity="distance", below=1.0)
+    assert verdict(check, run.record(), WORDS).passed == (enough and holds)
+
+
+@given(runs, durings, seconds)
+def test_the_latest_seconds_are_enough_when_as_many_are_asked_for(
+    run: Frames, during: During, last: float
+) -> None:
+    whole = run.window(during, 0)[1]
+    if last:
+        check = Bound(during=during, last=last, least=last, quantity="distance", below=9.0)
+        assert verdict(check, run.record(), WORDS).passed == (whole >= round(last / DT))
+
+
+@given(runs, durings, seconds, seconds, st.sampled_from([0.5, 0.6, 1.0, 1.001, 3.0]))
+def test_the_numbers_that_are_shown_are_met_exactly_when_it_passes(
+    run: Frames, during: During, last: float, least: float, below: float
+) -> None:
+    check = Bound(during=during, last=last, least=least, quantity="distance", below=below)
+    found = verdict(check, run.record(), WORDS)
+    shown = NEED.search(found.words)
+    assert shown is not None
+    have, need = map(float, shown.groups())
+    value = re.search(r"([\d.e+-]+) mm", found.words)
+    assert value is not None
+    there = run.window(during, round(last / DT))[0].any()
+    met = have >= need and bool(there) and float(value[1]) <= below
+    assert found.passed == met, found.words
+
+
+@given(runs, seconds, st.sampled_from([1.9, 2.0, 2.1]))
+def test_a_comparison_looks_at_the_same_window(run: Frames, last: float, ratio: float) -> None:
+    whole = run.window("always", 0)[1]
+    check = Compare(last=last, least=last, quantity="distance", ratio=ratio)
+    passed = verdict(check, run.record(), WORDS).passed
+    assert passed == (whole >= round(last / DT) and ratio <= 2.0)

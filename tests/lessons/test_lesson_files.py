@@ -1,0 +1,210 @@
+"""Lessons as files: what is right is read, what is wrong is named with file, line and words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from onpath.app.cli.main import run_command
+from onpath.lessons.course import read_course
+from onpath.lessons.formulas import to_html
+from onpath.lessons.links import read_link
+from onpath.lessons.parse import LARGEST, LessonError, read_lesson
+from onpath.lessons.schema import Action, Sketch, Text
+from onpath.lessons.words import ELSEWHERE, Words, catalogue, languages
+from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
+
+
+def problems(path: Path) -> list[tuple[int, str]]:
+    """Line and words of all that is wrong."""
+    with pytest.raises(LessonError) as caught:
+        read_lesson(path)
+    return [(problem.line, problem.text) for problem in caught.value.problems]
+
+
+def line_of(part: str, text: str) -> int:
+    """Where a part of a text is, from 1."""
+    return next(i for i, line in enumerate(text.split("\n"), 1) if part in line)
+
+
+def test_a_lesson_is_read(tmp_path: Path) -> None:
+    lesson = read_lesson(write_lesson(tmp_path))
+    assert [step.kind for step in lesson.steps] == [
+        *("play", "predict", "run", "predict", "run", "explain", "task", "quiz"),
+    ]
+    play = lesson.steps[0]
+    assert play.scene is not None and play.scene.set == {"K1": 300}
+    text = play.blocks[0]
+    assert isinstance(text, Text) and "<math" in text.html and "<em>waits</em>" in text.html
+    assert text.links[0].label == "set K3 to 100"
+    assert text.links[0].actions == (Action(set={"K3": 100.0}),)
+    assert isinstance(lesson.steps[1].predictions()[0], Sketch)
+    assert lesson.tasks()[0].id == "hold"
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "said"),
+    [
+        ('title = "A lesson"', 'tilte = "A lesson"', "tilte"),
+        ("minutes = 1", 'minutes = "one"', "minutes"),
+        ("# play: Look around", "# plai: Look around", "plai"),
+        ("K1 = 300", "K1 = 30000", "K1"),
+        ("K1 = 300", "K9 = 300", "K9"),
+        ('controls = ["K1", "hold"]', 'controls = ["K1", "hodl"]', "did you mean hold"),
+        ('quantity = "distance"\nseconds', 'quantity = "distnace"\nseconds', "did you mean"),
+        ("top = 60.0", "top = -60.0", "top"),
+        ("until = 2.0", "until = 2000.0", "until"),
+        ("{ at = 0.5, hold = true }", "{ at = 0.5, hold = true, run = true }", "exactly one"),
+        ("{ at = 0.5, hold = true }", "{ at = 0.5 hold = true }", "TOML"),
+        ('path = "ellipse"', 'path = "elipse"', "did you mean ellipse"),
+        ("least = 1.0", 'least = "long"', "least"),
+        ('during = "held"', 'during = "hold"', "during"),
+        ('kind = "bound"', 'kind = "bond"', "bond"),
+        ("below = 5.0", "", "below or above"),
+        ('answer = "yes", right = true', 'answer = "yes"', "one of them right"),
+        ("(lab:K3=100)", "(lab:K3=1e9)", "K3"),
+        ("(lab:K3=100)", "(lab:explode)", "explode"),
+        ("(lab:K3=100)", "(http://example.org)", "https://"),
+        ("*waits*", "![x](no.svg)", "no.svg"),
+        ("*waits*", "![x](../../secret.svg)", "not in the lesson's folder"),
+    ],
+)
+def test_what_is_wrong_is_named_with_its_line(
+    tmp_path: Path, right: str, wrong: str, said: str
+) -> None:
+    assert right in LESSON
+    text = LESSON.replace(right, wrong, 1)
+    found = problems(write_lesson(tmp_path, text))
+    assert any(said in words for _, words in found), found
+    first = wrong.split("\n")[0] or 'kind = "bound"'
+    assert len(found) == 1, found
+    assert 0 <= line_of(first, text) - found[0][0] <= 4, found  # its line, or its block's first
+
+
+@pytest.mark.parametrize("kind", ["play", "predict", "run", "explain", "task"])
+def test_a_lesson_without_one_of_its_parts_is_refused(tmp_path: Path, kind: str) -> None:
+    text = LESSON.replace(f"# {kind}: ", "# quiz: ")
+    assert any(f"no step `# {kind}" in words for _, words in problems(write_lesson(tmp_path, text)))
+
+
+def test_html_is_shown_as_it_is_typed(tmp_path: Path) -> None:
+    hostile = "<img src=x onerror=alert(1)><script>alert(1)</script>"
+    text = LESSON.replace("*waits*", hostile).replace('"Draw the distance."', f"'{hostile}'")
+    lesson = read_lesson(write_lesson(tmp_path, text))
+    for step in lesson.steps[:2]:
+        html = "".join(getattr(b, "html", "") + getattr(b, "question", "") for b in step.blocks)
+        assert "<script" not in html and "<img" not in html and "&lt;script" in html
+
+
+@pytest.mark.parametrize("address", ["javascript:alert(1)", "data:text/html,x", "JaVaScRiPt:x"])
+def test_no_link_runs_anything(address: str) -> None:
+    assert "href" not in to_html(f"[press]({address})")
+    with pytest.raises(ValueError):
+        read_link(address)
+
+
+@given(st.text(max_size=400))
+@settings(max_examples=150, deadline=None)
+def test_whatever_is_typed_gives_a_lesson_or_problems(text: str) -> None:
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as folder:
+        file = write_lesson(Path(folder), LESSON)
+        file.write_bytes(LESSON.replace("*waits*", text).encode("utf-8", "replace"))
+        try:
+            assert read_lesson(file).steps
+        except LessonError as error:
+            assert error.problems
+
+
+@pytest.mark.parametrize("length", range(0, len(LESSON), 97))
+def test_a_truncated_lesson_is_named(tmp_path: Path, length: int) -> None:
+    assert problems(write_lesson(tmp_path, LESSON[:length]))
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [(b"\xff\xfe\x00", "UTF-8"), (b"x" * (LARGEST + 1), "larger"), (b"", "+++")],
+)
+def test_no_text_at_all(tmp_path: Path, content: bytes, said: str) -> None:
+    file = write_lesson(tmp_path)
+    file.write_bytes(content)
+    assert any(said in words for _, words in problems(file))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+def test_any_editor_will_do(tmp_path: Path, encoding: str, ending: str) -> None:
+    """Windows' Notepad begins a file with a byte-order mark and ends lines with CR LF."""
+    plain = read_lesson(write_lesson(tmp_path / "plain"))
+    file = write_lesson(tmp_path / "own")
+    for own in file.parent.iterdir():
+        own.write_bytes(own.read_text().replace("\n", ending).encode(encoding))
+    assert read_course([tmp_path / "own"])[1] == []
+    assert read_lesson(file) == plain
+    assert run_command(["lessons", "check", str(tmp_path / "own")]) == 0
+
+
+def test_a_wrong_lesson_does_not_take_the_others_with_it(tmp_path: Path) -> None:
+    write_lesson(tmp_path, name="01-good")
+    write_lesson(tmp_path, "nothing", name="02-bad")
+    course, found = read_course([tmp_path])
+    assert list(course.lessons) == ["01-good"]
+    assert {Path(problem.path).parent.name for problem in found} == {"02-bad"}
+
+
+@pytest.mark.parametrize(
+    ("reference", "said"),
+    [
+        ("", "no solution of task 'hold'"),
+        (REFERENCE + REFERENCE.replace("hold.", "other."), "there is no task 'other'"),
+        (REFERENCE.replace("hold = true", "hodl = true"), "hodl"),
+        (REFERENCE.replace("until = 3.0", "until = 0.5"), "at = 1"),
+        ("[hold", "TOML"),
+    ],
+)
+def test_references_are_checked(tmp_path: Path, reference: str, said: str) -> None:
+    write_lesson(tmp_path, reference=reference)
+    _, found = read_course([tmp_path])
+    assert found and (said in str(found) or said == "TOML")
+
+
+def test_a_translation_that_does_something_else_is_named(tmp_path: Path) -> None:
+    file = write_lesson(tmp_path)
+    (file.parent / "de.md").write_text(LESSON.replace("Hold back.", "Halte fest."))
+    assert read_course([tmp_path])[1] == []
+    (file.parent / "de.md").write_text(LESSON.replace("below = 5.0", "below = 4.0"))
+    (found,) = read_course([tmp_path])[1]
+    assert found.path.endswith("de.md") and found.line == line_of("# task", LESSON)
+
+
+def test_the_command_line_lists_and_checks(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_lesson(tmp_path)
+    assert run_command(["lessons", "check", str(tmp_path)]) == 0
+    assert run_command(["lessons", "list", str(tmp_path)]) == 0
+    assert "A lesson" in capsys.readouterr().out
+    file = write_lesson(tmp_path, LESSON.replace("K1 = 300", "K1 = 30000"))
+    assert run_command(["lessons", "check", str(tmp_path)]) == 1
+    line = line_of("K1 = 30000", file.read_text())
+    assert f"{file}:{line}: " in capsys.readouterr().err
+    assert run_command(["--lessons", str(tmp_path), "--port", "0"]) == 2
+    assert run_command(["lessons", "check", str(tmp_path / "none")]) == 1
+
+
+def test_every_language_says_everything() -> None:
+    assert {"en", "de"} <= set(languages())
+    for language in languages():
+        own = catalogue(language)
+        assert {key for key in own if not key.startswith(ELSEWHERE)} == catalogue("en").keys()
+        for key, words in catalogue("en").items():
+            fields = {part.split("}")[0] for part in words.split("{")[1:]}
+            assert fields == {part.split("}")[0] for part in own[key].split("{")[1:]}, key
+
+
+def test_a_language_that_there_is_not_is_answered_in_english() -> None:
+    assert Words("xx").language == "en" and Words("../en")("kind.play") == Words()("kind.play")

@@ -1,0 +1,87 @@
+"""Every lesson is all right, and each task's solution passes where its failure does not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from onpath.app.cli.main import run_command
+from onpath.app.lab.course_check import lab_at, play, play_course, solved
+from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
+from onpath.lessons.schema import Lesson, Step, Task
+from tests.support.lab import store
+from tests.support.lesson_texts import LESSON, write_lesson
+from tests.support.lesson_texts import REFERENCE as EXAMPLE
+
+COURSE, PROBLEMS = read_course([BUILT_IN])
+ENGLISH = [versions["en"] for versions in COURSE.lessons.values()]
+TASKS = [
+    (lesson, step, task) for lesson in ENGLISH for step in lesson.steps for task in step.tasks()
+]
+SCRIPTS = [(lesson, step) for lesson in ENGLISH for step in lesson.steps if step.script]
+
+
+def label(value: object) -> str:
+    """For pytest's names of tests."""
+    if isinstance(value, Lesson):
+        return value.name
+    return value.id if isinstance(value, Task) else getattr(value, "title", "")
+
+
+def test_every_lesson_is_all_right() -> None:
+    assert PROBLEMS == []
+    assert len(ENGLISH) >= 8 and "de" in COURSE.languages()
+
+
+@pytest.mark.parametrize(("lesson", "step", "task"), TASKS, ids=label)
+def test_solution_passes_and_failure_does_not(lesson: Lesson, step: Step, task: Task) -> None:
+    reference = read_references(lesson, BUILT_IN / lesson.name / REFERENCE)[0][task.id]
+    passed, last = solved(lab_at(lesson, step, store()), reference.solution, task)
+    assert passed, [verdict.words for verdict in last]
+    passed, last = solved(lab_at(lesson, step, store()), reference.failure, task)
+    assert not passed, [verdict.words for verdict in last]
+
+
+@pytest.mark.parametrize(("lesson", "step"), SCRIPTS, ids=label)
+def test_what_a_step_shows_by_itself_is_let_happen(lesson: Lesson, step: Step) -> None:
+    assert step.script is not None
+    session = lab_at(lesson, step, store())
+    assert list(play(session, step.script)) == []
+    assert session.time > 0
+
+
+def test_references_are_where_the_lessons_are() -> None:
+    for lesson in ENGLISH:
+        assert Path(BUILT_IN / lesson.name / REFERENCE).is_file()
+
+
+@pytest.mark.parametrize(
+    ("reference", "line", "words"),
+    [
+        (EXAMPLE.replace("until = 3.0", "until = 1.5"), 2, "0.4 of 1 s"),
+        (EXAMPLE.replace("until = 1.5", "until = 3.0"), 5, "passes the task"),
+        (EXAMPLE.replace("hold = true", "reset = true"), 2, "0.0 of 1 s"),
+    ],
+    ids=["a solution that fails", "a failure that passes", "a solution that does nothing"],
+)
+def test_a_solution_that_is_none_is_found(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], reference: str, line: int, words: str
+) -> None:
+    file = write_lesson(tmp_path).with_name(REFERENCE)
+    assert run_command(["lessons", "check", str(tmp_path)]) == 0
+    assert "1 lesson," in capsys.readouterr().out
+    file.write_text(reference)
+    assert run_command(["lessons", "check", str(tmp_path)]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith(f"{file}:{line}: hold.") and words in said
+
+
+def test_a_script_that_the_lab_refuses_is_found(tmp_path: Path) -> None:
+    own = LESSON.replace("{ at = 0.5, hold = true }", '{ at = 0.5, path = "figure of eight" }')
+    file = write_lesson(tmp_path, own)
+    course, problems = read_course([tmp_path])
+    assert problems == []
+    (problem,) = play_course(course, tmp_path, store())
+    assert problem.path == str(file) and "crosses itself" in problem.text
+    assert own.split("\n")[problem.line - 1].startswith("# run")

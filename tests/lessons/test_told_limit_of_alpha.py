@@ -1,0 +1,107 @@
+"""What lesson 7 and the README tell of the limit of alpha, from the pencil of matrices at home."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.systems.beam import beam_modes
+from onpath.models.systems.flexible_five_bar import HOME, load_links
+from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
+from tests.lessons.test_told_numbers_invariance import told_in_readme
+from tests.support.told import agrees, assert_told, said
+
+LESSON, LINKS = "07", load_links()
+
+
+def coefficients(modes: int) -> Array:
+    """c_j = phi_j(l) integral of s phi_j / l of a beam turned at its end."""
+    beam = beam_modes(modes, LINKS.beam)
+    return beam.tip * beam.moment / LINKS.beam
+
+
+def limit(modes: int, damping: Any) -> float:
+    """Smallest alpha with an exponent to the right, at home.
+
+    With the output held (I - alpha c phi^T) f'' = -D f' - omega^2 f, c and phi as vectors.
+
+    Args:
+        damping: of each omega_j, [1/s], omega_j -> D_j.
+    """
+    beam = beam_modes(modes, LINKS.beam)
+    omega = 2 * np.pi * LINKS.frequency * beam.overtones
+
+    def grows(alpha: float) -> bool:
+        inertia = np.eye(modes) - alpha * np.outer(beam.moment, beam.tip) / LINKS.beam
+        rates = (
+            -np.linalg.solve(inertia, np.diag(omega**2)),
+            -np.linalg.solve(inertia, np.diag(damping(omega))),
+        )
+        whole = np.block([[np.zeros((modes, modes)), np.eye(modes)], [rates[0], rates[1]]])
+        exponents = np.linalg.eigvals(whole)
+        return bool(exponents.real.max() > 1e-7 * np.abs(exponents).max())
+
+    low, high = next((a - 0.01, a) for a in np.arange(0.3, 1, 0.01) if grows(a))
+    for _ in range(30):
+        middle = (low + high) / 2
+        low, high = (low, middle) if grows(middle) else (middle, high)
+    return float(high)
+
+
+def equal(omega: Array) -> Array:
+    return 2 * 0.01 * omega
+
+
+def test_the_numbers_of_one_mode() -> None:
+    beam = beam_modes(1, LINKS.beam)
+    turned, shifted = float(coefficients(1)[0]), float(beam.tip[0] * beam.area[0])
+    assert_told(said(LESSON, "and $c = #$ follows from"), [turned])
+    assert_told(said(LESSON, "a base that is *shifted* would give #)"), [shifted])
+    assert_told(said(LESSON, "$(1-c)\\,a = #\\,a$"), [1 - turned])
+    assert_told(said(LESSON, "At $\\alpha = 1/c = #$ the sign turns"), [1 / turned])
+    texts = said(LESSON, "their sum tends to 1: it is #, #, #, # with one to four modes.")
+    assert_told(texts, np.cumsum(coefficients(4)).tolist())
+    assert abs(coefficients(6).sum() - 1) < abs(coefficients(4).sum() - 1)
+
+
+def test_the_limit_is_one_of_the_damping() -> None:
+    one, three = said(LESSON, "The limit is # for one mode and # for three.")
+    assert_told([one, three], [limit(1, equal), limit(3, equal)])
+    texts = said(LESSON, "grows from α = # on, in the home pose (# with four modes or more).")
+    assert_told(texts, [limit(3, equal), limit(4, equal)])
+    assert agrees(texts[1], limit(6, equal))
+    meet, _ = said(LESSON, "Without damping they would meet at α = #, at # Hz")
+    assert_told([meet], [limit(3, np.zeros_like)])
+    texts = said(LESSON, "So between # and # it is *damping* that destabilises")
+    assert limit(3, equal) < float(texts[0]) + 1e-3 and float(texts[1]) < limit(3, np.zeros_like)
+    first = 2 * np.pi * LINKS.frequency
+    stiff = limit(3, lambda omega: 2 * 0.01 * omega**2 / first)
+    heavy = limit(3, lambda omega: 2 * 0.01 * first * np.ones_like(omega))
+    texts = said(
+        LESSON, "in proportion to its stiffness, the limit would be #, in proportion to its mass #."
+    )
+    assert_told(texts, [stiff, heavy])
+    assert_told(told_in_readme("with this damping, it is stable up to #."), [limit(3, equal)])
+
+
+def frequencies(alpha: float, **changes: float) -> Array:
+    """Of the zero dynamics at home, with three modes, rising, [Hz]."""
+    zero = flexible_zero_dynamics(3)
+    parameters = zero.system.parameter_vector(LINKS.lumped(alpha) | changes)
+    exponents = zero.exponents(np.concatenate([HOME, np.zeros(3)]), parameters)[0]
+    return np.sort(exponents.imag[exponents.imag > 0]) / (2 * np.pi)
+
+
+def test_frequencies_inside() -> None:
+    texts = said(
+        LESSON,
+        "the lowest rises (#, #, # Hz at α = 0, 0.5, 0.7) while the second sinks (#, #, # Hz).",
+    )
+    found = [frequencies(alpha)[:2] for alpha in (0.0, 0.5, 0.7)]
+    assert_told(texts, [float(f[0]) for f in found] + [float(f[1]) for f in found])
+    alpha, meeting = said(LESSON, "Without damping they would meet at α = #, at # Hz")
+    lowest, second = frequencies(float(alpha) - 1e-5, zeta=0.0)[:2]
+    assert agrees(meeting, float(lowest + second) / 2) and second - lowest < 0.5
+    assert_told(said(LESSON, "The inside swings at # Hz"), [float(frequencies(-1.0)[0])])

@@ -1,0 +1,90 @@
+"""What LLVM runs is what CasADi's virtual machine runs, instruction by instruction."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from itertools import product
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.simulation import kernel_of
+from onpath.models.closed_loop.translated_loop import OPERATIONS, translate, translate_loop
+from onpath.models.control.laws import NAMES
+from onpath.models.layout import Layout
+from onpath.models.paths.curves import TABLE_SHAPE, TERMS, circle
+from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
+from onpath.models.systems.robots import Robot, rigid_five_bar
+
+NUMBERS = [0.0, -0.0, 1.0, -1.0, 0.3, -2.5, 1e3, 5e-324, 1e300, np.inf, -np.inf, np.nan]
+PLANTS = ("unit_modes", "lagrangian")
+
+
+def flexible(plant: str) -> Robot:
+    return robot_for(replace(FlexibleParameters(), modes=1, plant=plant))
+
+
+def logging_kernel(*rows: ca.SX, x: ca.SX) -> Kernel:
+    """Its state x stays as it is and its log is what is asked for."""
+    settings, values = ca.SX.sym("settings"), ca.SX.sym("values", TABLE_SHAPE[0])
+    still = ca.Function("bases", [x, settings], [ca.DM.ones(TERMS)])
+    turn = ca.Function("turn", [x, settings, values], [x, ca.vertcat(*rows), ca.DM.ones(TERMS)])
+    layouts = Layout((("x", x.numel()),)), Layout((("s", 1),)), Layout((("row", len(rows)),))
+    return Kernel(still, turn, *layouts)
+
+
+def test_every_operation_is_the_interpreter_s_for_all_kinds_of_numbers() -> None:
+    x = ca.SX.sym("x", 2)
+    results = [ca.SX.binary(code, x[0], x[1]) for code in OPERATIONS if takes_two(code)]
+    results += [ca.SX.unary(code, x[0]) for code in OPERATIONS if not takes_two(code)]
+    kernel = logging_kernel(*results, x=x)
+    codes = {kernel.turn.instruction_id(i) for i in range(kernel.turn.n_instructions())}
+    assert codes >= OPERATIONS.keys()
+    loops = InterpretedLoop(kernel), translate_loop(kernel)
+    for pair in product(NUMBERS, NUMBERS):
+        given = np.array(pair), np.zeros(1), circle(0.05).table(), 1
+        (interpreted,), (translated,) = (loop.run(*given)[1] for loop in loops)
+        assert np.array_equal(interpreted, translated, equal_nan=True), pair
+        numbers = ~np.isnan(interpreted)
+        assert np.array_equal(np.signbit(interpreted)[numbers], np.signbit(translated)[numbers])
+
+
+def takes_two(code: int) -> bool:
+    return "{1}" in OPERATIONS[code]
+
+
+def test_an_operation_without_a_translation_is_named() -> None:
+    x = ca.SX.sym("x")
+    with pytest.raises(NotImplementedError, match="OP_ERF"):
+        translate(logging_kernel(ca.SX.unary(ca.OP_ERF, x), x=x))
+
+
+@pytest.mark.parametrize("controller", NAMES)
+@pytest.mark.parametrize("encoder", [False, True])
+@pytest.mark.parametrize("free", [False, True])
+def test_every_loop_of_every_robot_can_be_translated(
+    controller: str, encoder: bool, free: bool
+) -> None:
+    paths = [(True, False), (True, True), (False, False)]
+    for closed, level_set in paths:
+        kind = Kind(controller, closed, level_set, encoder, free)
+        assert "onpath_run" in translate(kernel_of(rigid_five_bar(), kind))
+        for plant, law in product(PLANTS, ("redefined", "composite")):
+            assert translate(kernel_of(flexible(plant), replace(kind, law=law)))
+
+
+def test_llvm_is_loaded_only_where_it_is_needed() -> None:
+    script = """
+import sys
+import onpath.app.server.lab_server
+assert not any("llvm" in name for name in sys.modules)
+"""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    subprocess.run([sys.executable, "-c", script], check=True, env=environment)

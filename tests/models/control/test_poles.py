@@ -1,0 +1,162 @@
+"""The poles shown beside the gains are those with which the simulated robot moves."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+
+from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.simulation import (
+    FREE,
+    first_state,
+    kernel_of,
+    kind_of,
+    settings_vector,
+)
+from onpath.models.control.laws import NAMES
+from onpath.models.control.poles import Complex, channels
+from onpath.models.paths.curves import circle
+from onpath.models.systems.parameters import FiveBarParameters, time_step
+from onpath.models.systems.robots import rigid_five_bar
+
+RADIUS = 0.05
+
+
+def simulated(seconds: float, offset: float, name: str = "path_following", **values: Any):
+    """(time of a tick, log of a run that begins `offset` [m] outside the circle, at rest)."""
+    robot, curve = rigid_five_bar(), circle(RADIUS)
+    parameters = dataclasses.replace(FiveBarParameters(), **values)
+    kernel = kernel_of(robot, kind_of(name, parameters, curve))
+    state = first_state(robot, kernel, curve, robot.rest(np.array([RADIUS + offset, 0.0])))
+    settings = settings_vector(robot, kernel, parameters, curve, FREE)
+    dt = time_step(parameters)
+    rows = InterpretedLoop(kernel).run(state, settings, curve.table(), round(seconds / dt))[1]
+    return dt, kernel.log.unpack(rows)
+
+
+def slowest(poles: Complex) -> complex:
+    return complex(poles[poles.real.argmax()])
+
+
+@pytest.mark.parametrize("rate", [200, 1000, 2000])
+@pytest.mark.parametrize("gains", [(400, 40, 0), (100, 60, 0), (100, 25, 150), (900, 30, 0)])
+def test_error_across_moves_as_the_poles_say(gains: tuple[float, ...], rate: int) -> None:
+    values = dict(zip(("K1", "K2", "K3"), gains, strict=True)) | {
+        "control_rate": rate,
+        "speed": 0.0,
+    }
+    poles = channels(dataclasses.replace(FiveBarParameters(), **values))[0].poles
+    offset = 1e-5
+    dt, log = simulated(0.4, offset, "path_following", **values)
+    xi, times = log["xi"][:, 0] * np.sign(log["xi"][0, 0]), dt * np.arange(len(log["xi"]))
+    # the solution of the linear channel through xi(0) = offset, at rest, integral empty
+    acceleration = -gains[0] * offset
+    start = [offset, 0.0, acceleration][: len(poles)]
+    modes = np.linalg.solve(np.vander(poles, increasing=True).T, np.array(start, dtype=complex))
+    expected = (np.exp(np.outer(times, poles)) @ modes).real
+    assert np.abs(xi - expected).max() < 0.03 * offset * max(1.0, 1000 / rate)
+    assert xi[-1] < 0.7 * offset  # it did move
+
+
+@pytest.mark.parametrize("rate", [200, 500, 1000])
+def test_undamped_swing_grows_or_stays_as_the_poles_say(rate: int) -> None:
+    values = {"K1": 2500.0, "K2": 0.0, "control_rate": rate}
+    pole = slowest(channels(dataclasses.replace(FiveBarParameters(), **values))[0].poles)
+    dt, log = simulated(1.5, 1e-6, "path_following", speed=0.0, **values)
+    xi, period = np.abs(log["xi"][:, 0]), round(2 * np.pi / abs(pole.imag) / dt)
+    grown = np.log(xi[-period:].max() / xi[:period].max())
+    assert grown == pytest.approx(pole.real * dt * (len(xi) - period), rel=0.05, abs=0.1)
+    assert rate > 200 or grown > 2
+
+
+@pytest.mark.parametrize("gain", [2.0, 10.0, 40.0])
+def test_speed_settles_as_the_pole_says(gain: float) -> None:
+    along = channels(dataclasses.replace(FiveBarParameters(), K5=gain))[1]
+    dt, log = simulated(min(0.3, 5 / gain), 0.0, K5=gain, speed=1.0)
+    error = 1.0 - log["theta_rate"][:, 0]
+    rate = -np.log(error[-1] / error[20]) / (dt * (len(error) - 21))
+    assert rate == pytest.approx(-slowest(along.poles).real, rel=0.02)
+    assert along.stable
+
+
+def test_position_settles_as_the_poles_say() -> None:
+    values = {"task": "position", "target": 0.02, "K4": 25.0, "K5": 3.0}
+    pole = slowest(channels(dataclasses.replace(FiveBarParameters(), **values))[1].poles)
+    dt, log = simulated(2.5, 0.0, **values)
+    theta = log["theta"][:, 0]
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(theta)))) + 1
+    assert np.diff(turns).mean() * dt == pytest.approx(np.pi / abs(pole.imag), rel=0.02)
+    overshoot = (theta[turns[0]] - 0.02) / 0.02
+    assert overshoot == pytest.approx(np.exp(np.pi * pole.real / abs(pole.imag)), rel=0.03)
+
+
+UNSTABLE = [
+    {"control_rate": 50, "K1": 400.0, "K2": 110.0},
+    {"control_rate": 50, "K1": 2500.0, "K2": 10.0},
+    {"control_rate": 1000, "K1": 100.0, "K2": 10.0, "K3": 1500.0},
+    {"control_rate": 100, "K1": 2500.0, "K2": 0.0},
+]
+STABLE = [
+    {"control_rate": 50, "K1": 400.0, "K2": 70.0},
+    {"control_rate": 50, "K1": 400.0, "K2": 20.0},
+    {"control_rate": 1000, "K1": 100.0, "K2": 10.0, "K3": 700.0},
+    {"control_rate": 1000, "K1": 2500.0, "K2": 200.0},
+]
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    ("values", "stable"), [(v, True) for v in STABLE] + [(v, False) for v in UNSTABLE], ids=repr
+)
+def test_predicted_instability_is_what_happens(
+    name: str, values: dict[str, float], stable: bool
+) -> None:
+    across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]
+    assert across.stable is stable
+    offset = 1e-6
+    _, log = simulated(3.0, offset, name, speed=0.0, **values)
+    error = (
+        np.linalg.norm(log["y"] - [RADIUS, 0.0], axis=1) if name == NAMES[0] else log["xi"][:, 0]
+    )
+    late = np.abs(error)[len(error) // 2 :].max()
+    assert np.isnan(late) or late > 2 * offset if not stable else late < offset / 2
+    assert ("unstable" in across.words()) is not stable
+
+
+def test_words_name_damping_and_time() -> None:
+    damped, swinging = (
+        channels(dataclasses.replace(FiveBarParameters(), K1=400.0, K2=k2))[0] for k2 in (40.0, 8.0)
+    )
+    assert "no overshoot" in damped.words()
+    assert "damping 0.2" in swinging.words() and "settles in 1 s" in swinging.words()
+
+
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ({}, "-20, -20"),
+        ({"K1": 1600.0, "K2": 80.0}, "-39.9, -39.9"),
+        ({"K2": 8.0}, "-4 ± 19.6i"),
+        ({"K2": 200.0}, "-194, -2.02"),
+    ],
+)
+def test_poles_are_told_as_the_words_have_it(values: dict[str, float], told: str) -> None:
+    across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]
+    assert across.pole_words() == told
+    assert ("±" in told) is ("no overshoot" not in across.words())
+
+
+@pytest.mark.parametrize("values", [{"K1": 0.0}, {"K2": 0.0}, {"K1": 0.0, "K2": 0.0}])
+def test_an_error_that_stays_is_not_called_stable(values: dict[str, float]) -> None:
+    across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]
+    assert not across.stable and "stable" in across.words()
+
+
+def test_free_position_is_not_stable_but_free_speed_loop_is() -> None:
+    free = dataclasses.replace(FiveBarParameters(), K4=0.0, task="position")
+    assert not channels(free)[1].stable
+    assert channels(dataclasses.replace(free, task="speed"))[1].stable
+    assert not channels(dataclasses.replace(free, task="speed", K5=0.0))[1].stable

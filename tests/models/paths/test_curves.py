@@ -1,0 +1,203 @@
+"""Laws of the paths: exact conics, exact derivatives, fits, the global search."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from onpath.models.arrays import Array
+from onpath.models.paths.curve_fit import closed_through, control_points, from_stroke, open_through
+from onpath.models.paths.curves import (
+    HARMONICS,
+    ORDERS,
+    TABLE_SHAPE,
+    Curve,
+    blend,
+    chebyshev_curve,
+    circle,
+    ellipse,
+    segment,
+)
+
+THETA = np.linspace(-np.pi, np.pi, 41)
+
+
+def some_open_curve(seed: int) -> Curve:
+    rng = np.random.default_rng(seed)
+    coefficients = (
+        0.02 * rng.normal(size=(HARMONICS + 1, 2)) / np.arange(1, HARMONICS + 2)[:, None] ** 2
+    )
+    coefficients[1, 0] += 0.06
+    return chebyshev_curve(coefficients)
+
+
+def dense(curve: Curve, beyond: float = 0.0, count: int = 4001) -> Array:
+    return curve.at(np.linspace(-np.pi - beyond, np.pi + beyond, count))
+
+
+def distance_to(curve: Curve, points: Array) -> Array:
+    """By brute force, to about 1e-5 m."""
+    return np.linalg.norm(points[:, None] - dense(curve)[None], axis=-1).min(axis=1)
+
+
+def test_circle_and_ellipse_are_exact() -> None:
+    x, y = ellipse((0.06, 0.03), (0.01, -0.02)).at(THETA).T
+    assert x == pytest.approx(0.01 + 0.06 * np.cos(THETA), abs=1e-16)
+    assert y == pytest.approx(-0.02 + 0.03 * np.sin(THETA), abs=1e-16)
+    assert circle(0.05).curvature(THETA) == pytest.approx(np.full(41, 20.0))
+    assert circle(0.05).length() == pytest.approx(0.1 * np.pi)
+
+
+def test_segment_runs_from_start_to_end_and_on() -> None:
+    line = segment((-0.01, 0.02), (0.03, 0.05))
+    ends = line.at(np.array([-np.pi, np.pi, 2 * np.pi]))
+    assert ends == pytest.approx(np.array([[-0.01, 0.02], [0.03, 0.05], [0.05, 0.065]]))
+    assert line.length() == pytest.approx(0.05)
+    assert line.curvature(THETA) == pytest.approx(np.zeros(41), abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("closed", [True, False])
+@pytest.mark.parametrize("order", range(ORDERS - 1))
+def test_derivatives_are_derivatives(
+    random_curve: Callable[[int], Curve], seed: int, closed: bool, order: int
+) -> None:
+    curve, h = random_curve(seed) if closed else some_open_curve(seed), 1e-5
+    theta = THETA if closed else np.concatenate([THETA[1:-1], [-4.0, 3.5, 9.0]])
+    slope = (curve.at(theta + h, order) - curve.at(theta - h, order)) / (2 * h)
+    exact = curve.at(theta, order + 1)
+    assert np.abs(slope - exact).max() < 1e-6 * max(1.0, np.abs(exact).max())
+
+
+def test_open_curve_goes_on_along_its_tangents() -> None:
+    curve = some_open_curve(3)
+    for end in (-np.pi, np.pi):
+        theta = end + np.sign(end) * np.array([0.0, 1e-9, 0.5, 2.0])
+        steps = curve.at(theta) - curve.at(theta[:1])
+        assert steps == pytest.approx((theta - end)[:, None] * curve.at(theta[:1], 1))
+        assert np.all(curve.at(theta[1:], 2) == 0)
+
+
+def test_table_is_the_series_by_columns() -> None:
+    curve = some_open_curve(1)
+    x = THETA[7] / np.pi
+    basis = np.concatenate([np.cos(np.arange(13) * np.arccos(x)), np.zeros(12)])
+    rows = curve.table().reshape(TABLE_SHAPE, order="F") @ basis
+    assert rows.reshape(ORDERS, 2) == pytest.approx(
+        np.array([curve.at(THETA[7], order) for order in range(ORDERS)])
+    )
+
+
+@given(st.integers(0, 10_000), st.booleans())
+def test_nearest_point_is_nearest(seed: int, closed: bool) -> None:
+    rng = np.random.default_rng(seed)
+    curve = closed_through(star(rng)) if closed else some_open_curve(seed)
+    points = rng.uniform(-0.12, 0.12, (20, 2))
+    theta, distance = curve.nearest(points)
+    assert distance == pytest.approx(np.linalg.norm(points - curve.at(theta), axis=1))
+    assert np.all(distance <= distance_to(curve, points) + 1e-9)
+
+
+def star(rng: np.random.Generator, corners: int = 8) -> Array:
+    """Corners of a polygon about the origin, in order."""
+    angle = np.linspace(-np.pi, np.pi, corners, endpoint=False) + rng.uniform(-0.2, 0.2, corners)
+    radius = rng.uniform(0.045, 0.06, corners)
+    return radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+@given(st.integers(0, 10_000))
+def test_closed_fit_passes_near_its_points_at_even_speed(seed: int) -> None:
+    points = star(np.random.default_rng(seed))
+    curve = closed_through(points)
+    assert distance_to(curve, points).max() < 5e-4
+    assert curve.at(np.array(-np.pi)) == pytest.approx(curve.at(np.array(np.pi)))
+    speed = np.linalg.norm(curve.at(curve.sample(), 1), axis=1)
+    assert np.ptp(speed) < 0.2 * speed.mean()
+
+
+def test_closed_fit_of_a_circle_is_that_circle() -> None:
+    angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    curve = closed_through(0.05 * np.column_stack([np.cos(angle), np.sin(angle)]))
+    assert np.linalg.norm(dense(curve), axis=1) == pytest.approx(np.full(4001, 0.05), rel=1e-4)
+
+
+def test_open_fit_starts_and_ends_where_its_points_do() -> None:
+    x = np.linspace(-0.06, 0.06, 6)
+    points = np.column_stack([x, 0.02 * np.sin(40 * x)])
+    curve = open_through(points)
+    assert not curve.closed
+    assert distance_to(curve, points).max() < 5e-4
+    assert curve.at(np.array([-np.pi, np.pi])) == pytest.approx(points[[0, -1]], abs=5e-4)
+    straight = open_through(points[[0, -1]])
+    assert np.abs(straight.curvature(THETA)).max() < 1e-9
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_stroke_loses_its_tremor_and_keeps_its_shape(closed: bool) -> None:
+    rng = np.random.default_rng(0)
+    angle = np.linspace(-np.pi, np.pi if closed else 1.0, 300)
+    drawn = 0.06 * np.column_stack([np.cos(angle), np.sin(angle)])
+    curve = from_stroke(drawn + 3e-4 * rng.normal(size=drawn.shape), closed)
+    assert curve.closed == closed
+    inside = curve.sample() if closed else curve.sample()[40:-40]
+    radius = np.linalg.norm(curve.at(inside), axis=1)
+    assert radius.std() < 2e-4
+    assert radius == pytest.approx(0.06, rel=0.05)
+    assert curve.curvature(inside) == pytest.approx(1 / 0.06, rel=0.6)
+
+
+def test_control_points_give_the_curve_back() -> None:
+    curve = closed_through(star(np.random.default_rng(5)))
+    again = closed_through(control_points(curve, 16))
+    assert distance_to(curve, dense(again, count=201)).max() < 1e-3
+    points = control_points(some_open_curve(2), 6)
+    gaps = [some_open_curve(2).nearest(points)[0][i] for i in (0, -1)]
+    assert gaps == pytest.approx([-np.pi, np.pi], abs=1e-3)
+
+
+@pytest.mark.parametrize("fit", [closed_through, open_through])
+@pytest.mark.parametrize(
+    "points, reason",
+    [
+        ([[0.0, 0.0]], "at least"),
+        ([[0.01, 0.01]] * 9, "at least"),
+        ([[0.0, 0.0], [0.001, 0.0], [0.0, 0.001], [0.001, 0.001]], "too short"),
+        ([[0.0, 0.0], [np.nan, 0.1], [0.1, 0.0]], "finite"),
+        ([[0.0, 0.0, 0.0], [0.1, 0.1, 0.0], [0.2, 0.0, 0.0]], "shape"),
+    ],
+)
+def test_points_that_are_no_path_are_refused(
+    fit: Callable[[Array], Curve], points: list[list[float]], reason: str
+) -> None:
+    with pytest.raises(ValueError, match=reason):
+        fit(np.array(points))
+
+
+def test_conic_is_recognised_and_vanishes_on_its_curve() -> None:
+    for half_axes in ((0.05, 0.05), (0.06, 0.02)):
+        curve = ellipse(half_axes, (0.01, 0.02))
+        conic = curve.conic()
+        assert conic is not None
+        centre, weights, constant = conic
+        assert ((curve.at(THETA) - centre) ** 2) @ weights == pytest.approx(constant)
+    conic = circle(0.05).conic()
+    assert conic is not None
+    assert conic[1] == pytest.approx([1.0, 1.0]) and conic[2] == pytest.approx(0.05**2)
+
+
+def test_other_curves_are_no_conics(random_curve: Callable[[int], Curve]) -> None:
+    assert random_curve(0).conic() is None
+    assert segment((0, 0), (0.1, 0)).conic() is None
+
+
+@given(st.floats(0, 1))
+def test_blend_moves_every_point_along_a_line(fraction: float) -> None:
+    old, new = circle(0.05), ellipse((0.07, 0.03), (0.0, 0.01))
+    between = blend(old, new, fraction)
+    for order in range(ORDERS):
+        expected = (1 - fraction) * old.at(THETA, order) + fraction * new.at(THETA, order)
+        assert between.at(THETA, order) == pytest.approx(expected, abs=1e-15)

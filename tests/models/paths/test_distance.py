@@ -1,0 +1,57 @@
+"""The distance to the path: the quick way is the thorough one, whatever the guess."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from onpath.models.paths.curves import circle
+from onpath.models.paths.distance import near_distance, path_distance
+from onpath.models.paths.frames import Plane, SlantedPlane
+from onpath.models.paths.path_design import presets
+
+DESIGNS = [design for name, design in presets().items() if name != "figure of eight"]
+
+
+@pytest.mark.parametrize("frame", [Plane(), SlantedPlane()], ids=["plane", "slanted"])
+@pytest.mark.parametrize("design", DESIGNS, ids=lambda design: design.name)
+def test_a_good_guess_finds_the_closest_point(design, frame):
+    rng = np.random.default_rng(1)
+    theta = rng.uniform(-1.0, 1.0, 40)
+    y = frame.lift(design.curve.at(theta)) + rng.normal(
+        0.0, 1e-3, (40, frame.lift(np.zeros(2)).size)
+    )
+    near = near_distance(frame, design.curve, y, theta + 0.005)
+    thorough = path_distance(frame, design.curve, y)
+    np.testing.assert_allclose(near, thorough, atol=1e-6)  # a micrometre, on the screen
+
+
+@pytest.mark.parametrize("design", DESIGNS, ids=lambda design: design.name)
+def test_a_wild_guess_never_tells_of_a_distance_that_is_none(design):
+    rng = np.random.default_rng(2)
+    frame, theta = Plane(), rng.uniform(-np.pi, np.pi, 300)
+    y = rng.uniform(-0.12, 0.12, (300, 2))
+    near, far = near_distance(frame, design.curve, y, theta), path_distance(frame, design.curve, y)
+    guessed = np.linalg.norm(design.curve.at(theta) - y, axis=1)
+    assert np.all(near >= far - 1e-5) and np.all(near <= guessed + 1e-5)
+
+
+def test_on_a_circle_it_is_that_of_the_radius_also_near_the_centre():
+    rng = np.random.default_rng(3)
+    y = rng.normal(size=(4000, 2))
+    y *= (np.geomspace(1e-6, 0.15, 4000) / np.linalg.norm(y, axis=1))[:, None]
+    for found in (path_distance(Plane(), circle(0.05), y), circle(0.05).nearest(y)[1]):
+        assert np.abs(found - np.abs(np.linalg.norm(y, axis=1) - 0.05)).max() < 1e-10
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_no_point_of_the_curve_is_nearer_even_where_two_valleys_are_equally_deep(
+    random_curve, seed
+):
+    curve, y = random_curve(seed), np.random.default_rng(seed).uniform(-0.12, 0.12, (2000, 2))
+    everywhere = curve.at(curve.sample(6000))
+    nearest = np.full(len(y), np.inf)
+    for part in np.array_split(everywhere, 60):
+        nearest = np.minimum(nearest, ((y[:, None, :] - part) ** 2).sum(-1).min(axis=1))
+    for found in (path_distance(Plane(), curve, y, 64), curve.nearest(y, 64)[1]):
+        assert np.all(found <= np.sqrt(nearest) + 1e-12)

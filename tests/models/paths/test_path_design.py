@@ -1,0 +1,363 @@
+"""Paths as a user makes them, and every reason for which one is refused."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, event, given, settings
+from hypothesis import strategies as st
+
+from onpath.app.lab.path_editor import BLEND, PathEditor
+from onpath.models.paths.curve_faults import LEAST_MARGIN, TUBE, curve_faults, self_crossings
+from onpath.models.paths.curves import (
+    Curve,
+    aligned,
+    blend,
+    chebyshev_curve,
+    circle,
+    ellipse,
+    fourier,
+    segment,
+)
+from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, drawn, presets
+from onpath.models.systems.robots import rigid_five_bar
+
+ROBOT = rigid_five_bar()
+GOOD = [name for name in presets() if name != "figure of eight"]
+CLOSED = [name for name in GOOD if presets()[name].curve.closed]
+
+
+def reasons(curve: Curve) -> list[str]:
+    return [fault.reason for fault in curve_faults(ROBOT.margin, curve)]
+
+
+def teardrop(sharpness: float) -> Curve:
+    """An ellipse-like curve whose sharpest bend has the radius b^2 / a."""
+    a = 0.06
+    return ellipse((a, math.sqrt(a * sharpness)))
+
+
+# What is refused, and why
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_presets_are_good_paths(name: str) -> None:
+    design = presets()[name]
+    assert design.name == name and reasons(design.curve) == []
+    assert design.curve.nearest(design.points)[1].max() < 1e-6
+
+
+def test_figure_of_eight_is_refused_where_it_crosses() -> None:
+    found = curve_faults(ROBOT.margin, presets()["figure of eight"].curve)
+    assert len(found) == 1 and "crosses itself" in found[0].reason
+    assert np.linalg.norm(found[0].points, axis=1).max() < 1e-6  # in the middle, and only there
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.02, -0.03])
+def test_path_leaves_the_workspace_where_the_arm_ends(offset: float) -> None:
+    # the arm, stretched, reaches a circle of 0.4 m about (-0.2, -0.2)
+    middle = np.array([-0.2, -0.2]) + 0.4 * np.array([np.cos(0.8 + offset), np.sin(0.8 + offset)])
+    outside = circle(0.02, centre=(float(middle[0]), float(middle[1])))
+    faults = curve_faults(ROBOT.margin, outside)
+    where = next(f.points for f in faults if "leaves the workspace" in f.reason)
+    assert np.all(np.hypot(*(where + 0.2).T) >= 0.4 - 1e-9)
+    theta = outside.sample(240)
+    beyond = np.hypot(*(outside.at(theta) + 0.2).T) >= 0.4
+    assert len(where) == beyond.sum()
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.0, 2 * math.pi), st.one_of(st.floats(0.012, 0.06), st.floats(0.36, 0.42)))
+def test_singular_configurations_are_kept_clear_of(angle: float, reach: float) -> None:
+    # |sin(q1 - q2)| at distance d from the base, by the cosine rule
+    middle = reach * np.array([np.cos(angle), np.sin(angle)]) - 0.2
+    small = circle(0.009, centre=(float(middle[0]), float(middle[1])))
+    d = np.hypot(*(small.at(small.sample(240)) + 0.2).T)
+    gap = np.arccos(np.clip((0.08 - d**2) / 0.08, -1, 1))
+    margin = np.abs(np.sin(gap))
+    assume(np.abs(margin - LEAST_MARGIN).min() > 1e-6 and np.abs(d - 0.4).min() > 1e-6)
+    near = any("singular" in reason for reason in reasons(small))
+    event(f"near: {near}")
+    assert near == bool(np.any((margin < LEAST_MARGIN) & (d < 0.4)))
+
+
+@pytest.mark.parametrize(("radius", "refused"), [(TUBE * 1.05, False), (TUBE * 0.95, True)])
+def test_bend_must_be_as_wide_as_the_tube(radius: float, refused: bool) -> None:
+    for curve in (circle(radius), teardrop(radius)):
+        found = curve_faults(ROBOT.margin, curve)
+        assert [("bends too sharply" in f.reason) for f in found] == [True] * refused
+    if refused:  # at the sharp ends only
+        where = found[0].points
+        assert np.all(np.abs(where[:, 0]) > 0.05)
+
+
+def test_cusp_is_refused() -> None:
+    # a deltoid: three cusps
+    a = 0.02
+    cosine, sine = np.array([[2 * a, 0], [a, 0]]), np.array([[0, 2 * a], [0, -a]])
+    found = {
+        f.reason.split(",")[0]: f.points
+        for f in curve_faults(ROBOT.margin, fourier(np.zeros(2), cosine, sine))
+    }
+    assert any("cusp" in reason for reason in found)
+
+
+def test_numbers_that_are_none_are_refused() -> None:
+    assert "not numbers" in reasons(circle(math.nan))[0]
+
+
+def test_open_paths_may_cross_themselves_no_more_than_closed_ones() -> None:
+    # a loop in the ribbon: x = T1 - 1.6 T3-like, y = T2
+    loop = chebyshev_curve(np.array([[0, 0], [0.01, 0], [0, 0.03], [0.03, 0]]))
+    assert any("crosses itself" in reason for reason in reasons(loop))
+    assert reasons(segment((-0.05, 0.0), (0.05, 0.02))) == []
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.booleans(), st.integers(4, 14))
+def test_crossings_are_those_of_pairs_of_segments(seed: int, closed: bool, count: int) -> None:
+    z = np.random.default_rng(seed).uniform(-1, 1, (count, 2))
+    line = np.vstack([z, z[:1]]) if closed else z
+    pairs = 0
+    for i in range(len(line) - 1):
+        for j in range(i + 2, len(line) - 1):
+            if closed and i == 0 and j == len(line) - 2:
+                continue
+            sides = [
+                np.linalg.det(np.stack([q - line[a], line[a + 1] - line[a]]))
+                for a, q in ((i, line[j]), (i, line[j + 1]), (j, line[i]), (j, line[i + 1]))
+            ]
+            pairs += sides[0] * sides[1] < 0 and sides[2] * sides[3] < 0
+    assert len(self_crossings(z, closed)) == pairs
+
+
+# Editing
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_moving_a_point_moves_the_path_there_and_not_elsewhere(name: str) -> None:
+    design = presets()[name]
+    before, points = design.curve.at(np.linspace(-3, 3, 50)), design.points.copy()
+    index = len(points) - 1
+    target = points[index] + [0.004, -0.003]
+    moved = design.moved(index, target)
+    assert moved.name == "edited" and np.array_equal(moved.points[index], target)
+    assert np.array_equal(np.delete(moved.points, index, 0), np.delete(points, index, 0))
+    assert moved.curve.nearest(target[None])[1][0] < 1.5e-3
+    far = np.linalg.norm(points - points[index], axis=1).argmax()
+    assert moved.curve.nearest(points[[far]])[1][0] < 1.5e-3
+    assert np.array_equal(design.points, points)
+    assert np.array_equal(design.curve.at(np.linspace(-3, 3, 50)), before)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.sampled_from(GOOD), st.integers(0, 30), st.floats(allow_nan=True, allow_infinity=True))
+def test_point_goes_nowhere_that_is_no_place(name: str, index: int, x: float) -> None:
+    design = presets()[name]
+    if index >= len(design.points) or not math.isfinite(x):
+        with pytest.raises(ValueError, match="control point"):
+            design.moved(index, np.array([x, 0.0]))
+    else:
+        try:
+            moved = design.moved(index, np.array([x, 0.0]))
+        except ValueError as error:
+            assert "path" in str(error)
+        else:
+            assert np.abs(moved.points).max() <= REACH
+            assert np.isfinite(moved.curve.series).all()
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_added_point_lies_on_the_path_and_hardly_changes_it(name: str) -> None:
+    design = presets()[name]
+    for index in range(len(design.points)):
+        more = design.added(index)
+        assert len(more.points) == len(design.points) + 1
+        new = [p for p in more.points if np.abs(design.points - p).sum(1).min() > 1e-9]
+        assert len(new) == 1 and design.curve.nearest(np.array(new))[1][0] < 1e-6
+        sample = more.curve.at(more.curve.sample(64))
+        assert design.curve.nearest(sample)[1].max() < 3e-3
+        less = more.removed([np.array_equal(p, new[0]) for p in more.points].index(True))
+        assert np.array_equal(less.points, design.points)
+
+
+def test_no_edit_puts_a_point_where_no_path_may_be_kept() -> None:
+    stroke = np.array([[-0.2, 0.1875], [-0.0625, 0.2], [0.1, 0.2], [0.2, -0.1]])
+    design = drawn(stroke)
+    assert np.abs(design.points).max() > REACH
+    points = design.added(len(design.points) - 1).points
+    assert np.abs(points).max() <= REACH
+
+
+def test_there_is_a_least_and_a_greatest_number_of_points() -> None:
+    for name, least in (("circle", 3), ("segment", 2)):
+        design = presets()[name]
+        while len(design.points) > least:
+            design = design.removed(len(design.points) - 1)
+        with pytest.raises(ValueError, match=f"at least {least}"):
+            design.removed(0)
+    design = presets()["circle"]
+    for k in range(MOST_POINTS - len(design.points)):
+        design = design.added(k % len(design.points))
+    with pytest.raises(ValueError, match=f"at most {MOST_POINTS}"):
+        design.added(0)
+
+
+# Drawing
+
+
+def stroke_along(curve: Curve, begin: float, turn: float) -> np.ndarray:
+    return curve.at(begin + turn * np.linspace(0, 2 * np.pi * 0.97, 80))
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+@pytest.mark.parametrize("begin", [0.0, 1.0, 2.5, -2.0])
+@pytest.mark.parametrize("name", CLOSED)
+def test_drawn_ring_lies_where_it_was_drawn_and_blends_from_any_other(
+    name: str, begin: float, turn: int
+) -> None:
+    wanted = presets()[name].curve
+    design = drawn(stroke_along(wanted, begin, turn), circle(0.05))
+    assert design.name == "drawn" and design.curve.closed
+    assert wanted.nearest(design.curve.at(design.curve.sample(64)))[1].max() < 4e-3
+    assert design.curve.nearest(design.points)[1].max() < 1e-6
+    for half_way in (blend(presets()[other].curve, design.curve, 0.5) for other in CLOSED):
+        assert np.linalg.norm(half_way.at(half_way.sample(64)), axis=1).min() > 0.03
+        assert self_crossings(half_way.at(half_way.sample(240)), True).size == 0
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_drawn_line_runs_as_the_one_before_it(turn: int) -> None:
+    line = segment((-0.06 * turn, -0.03), (0.06 * turn, 0.02))
+    stroke = line.at(np.linspace(-np.pi, np.pi, 40))
+    for before in (None, circle(0.05), segment((-0.05, 0.0), (0.05, 0.0))):
+        design = drawn(stroke, before)
+        assert not design.curve.closed
+        assert design.curve.at(np.array(np.pi))[0] > design.curve.at(np.array(-np.pi))[0]
+        assert line.nearest(design.curve.at(design.curve.sample(32)))[1].max() < 1e-3
+    backwards = drawn(stroke, segment((0.05, 0.0), (-0.05, 0.0)))
+    assert backwards.curve.at(np.array(np.pi))[0] < backwards.curve.at(np.array(-np.pi))[0]
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6), st.floats(-3, 3), st.sampled_from([1, -1]))
+def test_alignment_changes_the_parameter_and_not_the_curve(
+    seed: int, shift: float, sense: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    falling = 1e-2 / np.arange(1, 5)[:, None] ** 2
+    a, b = falling * rng.normal(size=(2, 4, 2))
+    base = fourier(rng.normal(size=2), a, b)
+    k = np.arange(1, 5)[:, None]
+    turned_a = np.cos(k * shift) * a + sense * np.sin(k * shift) * b
+    turned_b = sense * np.cos(k * shift) * b - np.sin(k * shift) * a
+    turned = fourier(base.series[0, 0], turned_a, turned_b)
+    back = aligned(turned, base)
+    grid = base.sample(360)  # whole degrees, as alignment goes
+    points, given_points = back.at(grid), turned.at(grid)
+    orders = [np.roll(given_points[::s], k, axis=0) for s in (1, -1) for k in range(360)]
+    assert min(np.abs(order - points).max() for order in orders) < 1e-12
+    # nothing else on the grid is nearer to `base`, not even what undoes the turning
+    half_degree = math.radians(0.5) ** 2 * (base.at(grid, 1) ** 2).sum()
+    assert ((points - base.at(grid)) ** 2).sum() <= 1.01 * half_degree
+
+
+BAD_STROKES = [
+    np.zeros((0, 2)),
+    np.zeros((1, 2)),
+    np.zeros((50, 2)),
+    np.full((5, 2), np.nan),
+    np.array([[0, 0], [np.inf, 0], [0.1, 0.1]]),
+    np.array([[0, 0], [0.001, 0], [0.002, 0.001]]),
+    np.zeros(4),
+]
+
+
+@pytest.mark.parametrize("stroke", BAD_STROKES, ids=str)
+def test_stroke_that_is_none_is_refused_in_words(stroke: np.ndarray) -> None:
+    with pytest.raises(ValueError, match=r"path|stroke"):
+        drawn(stroke)
+
+
+# The editor
+
+
+def test_edit_blends_in_over_its_time_without_a_jump() -> None:
+    editor = PathEditor(ROBOT, presets()["circle"])
+    assert editor.commit(presets()["ellipse"])
+    theta = np.linspace(-np.pi, np.pi, 40)
+    before, steps = editor.curve.at(theta), 0
+    while editor.curve is not presets_curve(editor):
+        editor.advance(1 / 60)
+        after = editor.curve.at(theta)
+        assert np.abs(after - before).max() < 0.002
+        assert np.array_equal(editor.table, editor.curve.table())
+        before, steps = after, steps + 1
+        assert steps < 100
+    assert steps == math.ceil(BLEND * 60 - 1e-9)
+    assert not editor.advance(1 / 60)
+
+
+def presets_curve(editor: PathEditor) -> Curve:
+    return editor.design.curve
+
+
+def test_change_of_kind_is_told_once_as_a_jump() -> None:
+    editor = PathEditor(ROBOT, presets()["circle"])
+    editor.commit(presets()["segment"])
+    assert [editor.advance(0.01) for _ in range(3)] == [True, False, False]
+    assert not editor.curve.closed
+
+
+def test_settling_lets_go_of_what_was_proposed() -> None:
+    editor = PathEditor(ROBOT, presets()["circle"])
+    assert editor.propose(presets()["ellipse"])
+    editor.advance(BLEND / 2)
+    editor.settle()
+    assert editor.curve is editor.blend.target is editor.design.curve
+    assert editor.blend.before is None and not editor.advance(BLEND)
+    assert editor.curve is editor.design.curve
+
+
+def test_refused_edit_leaves_the_path_and_marks_the_places() -> None:
+    editor = PathEditor(ROBOT, presets()["circle"])
+    design = editor.design
+    assert not editor.commit(presets()["figure of eight"])
+    assert editor.design is design and editor.proposed is None
+    assert any("crosses itself" in fault.reason for fault in editor.faults)
+    for _ in range(40):
+        editor.advance(1 / 60)
+    assert editor.curve is design.curve
+    assert editor.commit(presets()["ellipse"]) and editor.faults == []
+
+
+def test_selection_is_of_a_point_that_exists() -> None:
+    editor = PathEditor(ROBOT, presets()["clover"])
+    last = len(editor.design.points) - 1
+    editor.select(last)
+    assert editor.selected == last
+    editor.commit(presets()["segment"])
+    assert editor.selected is None
+    for index in (-1, 2, 99, None):
+        editor.select(index)
+        assert editor.selected is None
+
+
+def test_version_changes_with_everything_that_is_drawn() -> None:
+    editor = PathEditor(ROBOT, presets()["circle"])
+    bad: PathDesign = presets()["figure of eight"]
+    seen = [editor.version]
+    for act in (
+        lambda: editor.select(1),
+        lambda: editor.propose(presets()["ellipse"]),
+        lambda: editor.advance(0.01),
+        lambda: editor.finish(),
+        lambda: editor.commit(bad),
+        lambda: editor.undo(),
+        lambda: editor.redo(),
+    ):
+        act()
+        assert editor.version > seen[-1]
+        seen.append(editor.version)

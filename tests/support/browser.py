@@ -1,0 +1,268 @@
+"""A real browser on a lab: what a user does with mouse and keys, and the lab's side of it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from playwright.sync_api import BrowserContext, Locator, Page
+from viser import ClientHandle
+
+from onpath.app.bench.mouse_latency import ARGUMENTS, NO_TRIANGLES
+from onpath.app.lab.apply import apply
+from onpath.app.lab.class_commands import ClassCommand
+from onpath.app.lab.commands import Command
+from onpath.app.lab.session import Session
+from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.server.lab_server import LabServer
+from onpath.app.simulation.simulation_thread import FRAME, Lab
+from onpath.models.systems.parameters import time_step
+from tests.support import waiting
+
+CHROMIUM = "/usr/bin/chromium"
+PLAIN = (*ARGUMENTS, "--disable-gpu-rasterization", "--disable-gpu-compositing")
+"""Where a GPU is simulated, a page is put together faster without it."""
+SELDOM = "requestAnimationFrame = act => setTimeout(() => act(performance.now()), 100)"
+"""Drawing in software takes most of a browser's time; where a mouse points is found without it."""
+COARSE = "fixedDpr=0.5"  # viser's own switch: half the pixels each way, where a GPU is simulated
+COARSER = "fixedDpr=0.1"  # for those who do not look
+WAIT = 60.0  # [s]; software rendering on a busy machine shows a few frames a second
+
+wait_for = partial(waiting.wait_for, seconds=WAIT)
+THREE_FRAMES = """() => new Promise(done => {
+    let left = 3
+    const frame = () => left-- ? requestAnimationFrame(frame) : done()
+    frame()
+})"""
+
+
+class Note:
+    """A command that only notes that it has been reached."""
+
+    def __init__(self, done: list[bool]) -> None:
+        self.done = done
+
+
+@apply.register(Note)
+def _(note: Note, _: Session) -> None:
+    note.done.append(True)
+
+
+class Elapse:
+    """A command that lets simulated time pass, frame by frame, as quickly as can be computed."""
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+
+
+@apply.register(Elapse)
+def _(elapse: Elapse, session: Session) -> None:
+    dt = time_step(session.parameters)
+    left, each = round(elapse.seconds / dt), round(FRAME / dt)
+    while left > 0:
+        session.simulate(min(each, left))
+        left -= each
+
+
+class Tab:
+    """A tab with its session, client and view in the lab.
+
+    Args:
+        context: a browser context of its own is another browser; a shared one another tab.
+        draws: whether triangles are drawn.
+    """
+
+    def __init__(self, server: LabServer, context: BrowserContext, draws: bool = True) -> None:
+        self.server = server
+        if not draws:
+            context.add_init_script(NO_TRIANGLES + SELDOM)
+        context.set_default_timeout(WAIT * 1e3)
+        self.page: Page = context.new_page()
+        self.errors: list[str] = []
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self._join(lambda: self.page.goto(f"{server.address}/?{COARSE if draws else COARSER}"))
+
+    def reload(self) -> None:
+        """As a user does who presses F5."""
+        self._join(self.page.reload)
+
+    def close(self) -> None:
+        """As a user does; returns when the lab knows."""
+        self.page.close()
+        wait_for(lambda: self.client.client_id not in self.server.server.get_clients())
+        wait_for(lambda: self.lab.view is not self.view)
+
+    def _join(self, load: Callable[[], Any]) -> None:
+        clients, views = self._clients(), {id(lab.view) for lab in self._looked_at()}
+        load()
+        self.client: ClientHandle = wait_for(
+            lambda: next((c for i, c in self._clients().items() if i not in clients), None)
+        )
+        self.lab: Lab = wait_for(
+            lambda: next((lab for lab in self._looked_at() if id(lab.view) not in views), None)
+        )
+        self.view = self.lab.view
+        self.page.get_by_role("button", name="Pause").or_(
+            self.page.get_by_role("button", name="Run", exact=True)
+        ).wait_for()
+        wait_for(self._framed)
+        self.page.get_by_role("alert").get_by_role("button").click()  # "software rendering"
+
+    def _clients(self) -> dict[int, ClientHandle]:
+        return self.server.server.get_clients()
+
+    def _looked_at(self) -> list[Lab]:
+        return [lab for lab in self.server.simulation.labs if lab.view is not None]
+
+    def _framed(self) -> bool:
+        """Whether the browser has taken the camera that the lab chose for its size."""
+        camera = self.client.camera
+        box = self._canvas()
+        same = abs(camera.image_width / camera.image_height * box["height"] - box["width"]) < 10
+        initial = self.server.server.initial_camera.position
+        return same and bool(np.linalg.norm(camera.position - initial) > 1e-6)
+
+    @property
+    def session(self) -> Session:
+        """What the tab shows."""
+        return self.lab.session
+
+    def ask(self, *commands: Command | ClassCommand) -> None:
+        """Commands behind the mouse's back; returns when they have been applied."""
+        done: list[bool] = []
+        for command in commands:
+            self.session.post(command)
+        self.session.post(Note(done))  # type: ignore[arg-type]
+        wait_for(lambda: done)
+
+    def elapse(self, seconds: float) -> None:
+        """Let simulated time pass in a paused lab, to the tick."""
+        self.ask(Elapse(seconds))  # type: ignore[arg-type]
+
+    # Where things are.
+
+    def pixel(self, name: str, point: np.ndarray) -> tuple[float, float]:
+        """Where in the window a point of a robot's frame, shape (3,), [m], is seen."""
+        camera, box = self.client.camera, self._canvas()
+        forward = camera.look_at - camera.position
+        forward = forward / np.linalg.norm(forward)
+        right = np.cross(forward, [0.0, 0.0, 1.0])
+        right /= np.linalg.norm(right)
+        seen = point + stage_of(self.session.robot).bases[name] - camera.position
+        depth, scale = seen @ forward, box["height"] / 2 / np.tan(camera.fov / 2)
+        x = box["width"] / 2 + scale * (seen @ right) / depth
+        y = box["height"] / 2 - scale * (seen @ np.cross(right, forward)) / depth
+        return float(box["x"] + x), float(box["y"] + y)
+
+    def _canvas(self) -> dict[str, float]:
+        """Where the scene is in the window, [px]."""
+        box = self.page.locator("canvas").first.bounding_box()
+        assert box is not None
+        return {"x": box["x"], "y": box["y"], "width": box["width"], "height": box["height"]}
+
+    def placed(self, name: str, z: np.ndarray) -> tuple[float, float]:
+        """Where in the window a point of the path's plane, shape (2,), [m], is seen."""
+        robot = self.session.robot
+        return self.pixel(name, robot.place(robot.frame.lift(np.asarray(z, dtype=float))))
+
+    def tip(self, name: str) -> np.ndarray:
+        """The end-point in the path's plane, shape (2,), [m]."""
+        return self.session.robot.frame.planar(self.session.runs[name].shown()["y"]).copy()
+
+    # What a user does.
+
+    @contextmanager
+    def dragging(self, *way: tuple[float, float]) -> Iterator[None]:
+        """The mouse pressed at the first place and moved through the others, down meanwhile."""
+        mouse = self.page.mouse
+        mouse.move(*way[0])
+        self.settle()
+        mouse.down()
+        for place in way[1:]:
+            mouse.move(*place, steps=2)
+            self.page.wait_for_timeout(60)  # viser passes on twenty places a second,
+        mouse.move(*way[-1])  # and drops those between
+        yield
+        mouse.up()
+
+    @contextmanager
+    def touching(self, *way: tuple[float, float]) -> Iterator[None]:
+        """A finger put down at the first place and moved through the others, down meanwhile."""
+        touched = self.page.context.new_cdp_session(self.page)
+
+        def tell(kind: str, *places: tuple[float, float]) -> None:
+            points = [{"x": x, "y": y} for x, y in places]
+            touched.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+        self.settle()
+        tell("touchStart", way[0])
+        for begin, end in pairwise([*way, way[-1]]):
+            for place in np.linspace(begin, end, 4)[1:].tolist():
+                tell("touchMove", (place[0], place[1]))
+                self.page.wait_for_timeout(60)
+        yield
+        tell("touchEnd")
+        touched.detach()
+
+    def settle(self) -> None:
+        """Return when the page has drawn what the lab has sent by now."""
+        self.page.wait_for_timeout(100)
+        self.page.evaluate(THREE_FRAMES)
+
+    def is_built(self) -> bool:
+        """Whether the page is that of the present robot, and not about to be built anew."""
+        return getattr(self.view, "_robot", None) is self.session.robot
+
+    def press(self, name: str) -> None:
+        """Press a button."""
+        self.button(name).click()
+
+    def button(self, name: str) -> Locator:
+        """By what is written on it."""
+        return self.page.get_by_role("button", name=name, exact=True)
+
+    def open(self, folder: str) -> None:
+        """Open a folder; without effect when it is open."""
+        title = self.page.get_by_text(folder, exact=True).filter(has=self.page.locator("svg"))
+        content = title.locator("xpath=following-sibling::*[1]")
+        if content.get_attribute("aria-hidden") == "true":
+            title.click()
+            wait_for(lambda: content.get_attribute("aria-hidden") != "true")
+
+    def choose(self, label: str, option: str) -> None:
+        """Take an option of a drop-down list."""
+        self.page.get_by_label(label, exact=True).filter(visible=True).first.click()
+        self.page.get_by_role("option", name=option, exact=True).click()
+
+    def slider(self, label: str) -> Locator:
+        """The handle of a slider."""
+        return self._row(label).get_by_role("slider")
+
+    def number(self, label: str) -> Locator:
+        """A box with a number, a slider's too."""
+        return self._row(label).locator("input[inputmode]")
+
+    def field(self, label: str) -> Locator:
+        """A box with a text."""
+        return self._row(label).locator("input:not([type=hidden])")
+
+    def enter(self, label: str, text: str) -> None:
+        """Type into a number's box."""
+        box = self.number(label)
+        box.fill(text)
+        box.press("Enter")
+        box.blur()
+
+    def _row(self, label: str) -> Locator:
+        """The row of a widget: the smallest box around its label and an input."""
+        named = self.page.locator("label").filter(has_text=re.compile(f"^{re.escape(label)}"))
+        return named.first.locator("xpath=ancestor::*[.//input][1]")
+
+    def said(self) -> str:
+        """What the lab says on the page."""
+        return "".join(self.page.get_by_role("status").all_inner_texts())

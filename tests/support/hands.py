@@ -1,0 +1,199 @@
+"""What a student's hands do at a lab: gestures by mouse, keys or touch, one after the other.
+
+The lab stands still while the hands move, and each gesture waits until the lab has heard of it:
+what comes out does not depend on how busy the machine is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from playwright.sync_api import Locator
+
+from onpath.app.lab.session import Session
+from onpath.app.page.panels.widgets import label_of
+from onpath.lessons.words import ENGLISH
+from onpath.models.systems.parameters import specs
+from tests.support.browser import Tab, wait_for
+
+ROBOT = "path_following"
+PACE = 0.1  # [s], simulated, from key to key
+NEAR = 3e-3  # [m]
+Place = tuple[float, float]
+
+
+class Hands:
+    """Of one student.
+
+    Args:
+        touch: whether they touch the screen or use a mouse.
+    """
+
+    def __init__(self, tab: Tab, touch: bool) -> None:
+        self.tab, self._touch = tab, touch
+
+    @property
+    def session(self) -> Session:
+        """What the student looks at."""
+        return self.tab.session
+
+    def press(self, what: Locator) -> None:
+        """A button, a link."""
+        (what.tap if self._touch else what.click)()
+
+    @contextmanager
+    def dragging(self, *way: Place) -> Iterator[None]:
+        """Something taken at the first place and moved through the others, not let go yet."""
+        with (self.tab.touching if self._touch else self.tab.dragging)(*way):
+            yield
+
+    @contextmanager
+    def heard(self) -> Iterator[None]:
+        """What is done within is a command to the lab, and has come there afterwards."""
+        asked = self.session.asked
+        yield
+        wait_for(lambda: self.session.asked > asked)
+
+    def has(self, label: str, value: float, near: float = 0.0) -> bool:
+        """Whether what stands in the lab under a label is near a value."""
+        own = self.session.parameters
+        known = {label_of(ENGLISH, name, spec): name for name, spec in specs(own).items()}
+        name = next(known[full] for full in known if full.startswith(label))
+        return abs(getattr(own, name) - value) <= near + 1e-9
+
+    def is_near(self, output: np.ndarray, z: np.ndarray) -> bool:
+        """Whether an output is at a place of the path's plane, shape (2,), [m]."""
+        return bool(np.linalg.norm(self.session.robot.frame.planar(output) - z) < NEAR)
+
+    @staticmethod
+    def box(what: Locator) -> dict[str, float]:
+        """Where something is in the window, [px]."""
+        box = what.bounding_box()
+        assert box is not None
+        return {"x": box["x"], "y": box["y"], "width": box["width"], "height": box["height"]}
+
+
+@dataclass(frozen=True)
+class Wait:
+    """So many simulated seconds."""
+
+    seconds: float
+
+    def __call__(self, hands: Hands) -> None:
+        hands.tab.elapse(self.seconds)
+
+
+@dataclass(frozen=True)
+class Press:
+    """A button or a link, by what is written on it."""
+
+    label: str
+
+    def __call__(self, hands: Hands) -> None:
+        with hands.heard():
+            hands.press(hands.tab.button(self.label).first)
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key, perhaps several times."""
+
+    key: str
+    times: int = 1
+
+    def __call__(self, hands: Hands) -> None:
+        for _ in range(self.times):
+            with hands.heard():
+                hands.tab.page.keyboard.press(self.key)
+            hands.tab.elapse(PACE)
+
+
+@dataclass(frozen=True)
+class Enter:
+    """A number typed into a box, by its label."""
+
+    label: str
+    value: float
+
+    def __call__(self, hands: Hands) -> None:
+        hands.tab.enter(self.label, f"{self.value:g}")
+        wait_for(lambda: hands.has(self.label, self.value))
+
+
+@dataclass(frozen=True)
+class Slide:
+    """A slider's handle moved to a number, or near it."""
+
+    label: str
+    value: float
+    near: float = 0.05
+
+    def __call__(self, hands: Hands) -> None:
+        handle = hands.tab.slider(self.label)
+        low, high, now = (
+            float(handle.get_attribute(f"aria-value{each}") or "nan")
+            for each in ("min", "max", "now")
+        )
+        bar, grip = hands.box(handle.locator("xpath=..")), hands.box(handle)
+        start = grip["x"] + grip["width"] / 2, grip["y"] + grip["height"] / 2
+        shift = (self.value - now) / (high - low) * bar["width"]
+        with hands.dragging(start, (start[0] + shift, start[1])):
+            pass
+        wait_for(lambda: hands.has(self.label, self.value, self.near))
+
+
+@dataclass(frozen=True)
+class Choose:
+    """An option of a list."""
+
+    label: str
+    option: str
+
+    def __call__(self, hands: Hands) -> None:
+        with hands.heard():
+            hands.tab.choose(self.label, self.option)
+        wait_for(hands.tab.is_built)  # another number of modes is another robot
+        hands.tab.settle()
+
+
+@dataclass(frozen=True)
+class Pull:
+    """The follower's end-point pulled aside, [mm], for a while, and let go."""
+
+    right: float
+    up: float
+    seconds: float
+
+    def __call__(self, hands: Hands) -> None:
+        tab, grips = hands.tab, hands.session.grips
+        tip = tab.tip(ROBOT)
+        hand = tip + np.array([self.right, self.up]) / 1e3
+        with hands.dragging(tab.placed(ROBOT, tip), tab.placed(ROBOT, hand)):
+            wait_for(lambda: grips.grabbed == ROBOT)
+            wait_for(lambda: hands.is_near(grips.hands[ROBOT], hand))
+            hands.tab.elapse(self.seconds)
+        wait_for(lambda: not grips.hands)
+
+
+@dataclass(frozen=True)
+class DragBall:
+    """A ball of the path dragged from one place to another, about, in the path's plane, [mm]."""
+
+    start: Place
+    end: Place
+
+    def __call__(self, hands: Hands) -> None:
+        tab, editor = hands.tab, hands.session.editor
+        points = editor.design.points
+        index = int(np.linalg.norm(points - np.array(self.start) / 1e3, axis=1).argmin())
+        end = np.array(self.end) / 1e3
+        with hands.dragging(tab.placed(ROBOT, points[index]), tab.placed(ROBOT, end)):
+            wait_for(lambda: np.linalg.norm(editor.points()[index] - end) < NEAR)
+        wait_for(lambda: editor.design.points is not points)
+        assert not hands.session.grips.hands
+
+
+Gesture = Wait | Press | Key | Enter | Slide | Choose | Pull | DragBall

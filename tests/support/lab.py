@@ -1,0 +1,84 @@
+"""What the tests of the lab share: a session driven by hand."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from onpath.app.lab.class_commands import ClassCommand
+from onpath.app.lab.commands import Command
+from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.session import Session
+from onpath.app.lab.snapshot import Snapshot
+from onpath.app.lab.take_snapshot import take_snapshot
+from onpath.models.control.laws import NAMES
+from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.systems.parameters import checked, specs
+
+FRAME = 1 / 60
+FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
+
+
+@lru_cache(maxsize=1)
+def store() -> LoopStore:
+    """Loops made once, and for all tests in this process."""
+    return LoopStore()
+
+
+def new_session(seconds: float = 0.0) -> Session:
+    """A lab that has run for a while."""
+    session = Session(store())
+    run(session, seconds)
+    return session
+
+
+def run(session: Session, seconds: float) -> None:
+    """Frame after frame, as the simulation thread does it."""
+    for _ in range(round(seconds / FRAME)):
+        session.drain()
+        session.advance(session.rate * FRAME)
+
+
+def do(session: Session, *commands: Command | ClassCommand) -> None:
+    """Apply commands at once."""
+    for command in commands:
+        session.post(command)
+    session.drain()
+
+
+def states(session: Session) -> dict[str, np.ndarray]:
+    """Copies of both robots' states."""
+    return {name: run.state.copy() for name, run in session.runs.items()}
+
+
+def y(session: Session, name: str) -> np.ndarray:
+    """Where an end-point is, (p,), [m]."""
+    return session.robot.endpoint(session.runs[name].fields()["q"])
+
+
+def assert_sound(session: Session) -> None:
+    """Whatever was asked for: numbers are numbers, settings in range, the path one to follow."""
+    for run_ in session.runs.values():
+        assert np.isfinite(run_.state).all()
+        assert np.isfinite(run_.row).all()
+        assert run_.diverged is None or run_.diverged.reason
+    for name, spec in specs(session.parameters).items():
+        value = getattr(session.parameters, name)
+        assert checked(spec, name, value) == value
+    editor = session.editor
+    assert curve_faults(session.robot.margin, editor.design.curve) == []
+    assert np.isfinite(editor.table).all() and np.isfinite(editor.points()).all()
+    assert editor.selected is None or 0 <= editor.selected < len(editor.design.points)
+    assert 0.125 <= session.rate <= 4
+    assert session.grips.held <= set(NAMES) and set(session.grips.hands) <= set(NAMES)
+    assert session.viewing is None or not session.running
+    assert_drawable(take_snapshot(session, 1.0))
+
+
+def assert_drawable(snapshot: Snapshot) -> None:
+    for view in snapshot.robots.values():
+        for part in (view.bars, view.joints, view.tip, view.marker, view.force, view.trace):
+            assert np.isfinite(part).all()
+        assert np.isfinite([view.distance, view.max_distance, view.speed, *view.torque]).all()
+    assert np.isfinite(snapshot.path.points).all() and np.isfinite(snapshot.time)

@@ -1,0 +1,185 @@
+"""One robot under one law, driven by hand, with every millisecond kept."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache, lru_cache
+from typing import Any
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loops import Loop
+from onpath.models.closed_loop.simulation import (
+    FREE,
+    TICK,
+    Push,
+    brake_at,
+    first_state,
+    kernel_of,
+    kind_of,
+    settings_vector,
+)
+from onpath.models.closed_loop.translated_loop import translate_loop
+from onpath.models.paths.curves import circle
+from onpath.models.paths.distance import path_distance
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.flexible_robot import FlexibleFiveBar
+from onpath.models.systems.robots import Robot
+
+FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
+CURVE = circle(0.05)
+FAST = 6.28  # [rad/s], as lesson 5's scripts have it
+LENGTH = 2.2  # [s], of a hold
+
+
+@lru_cache
+def _loop(robot: Robot, kind: Kind) -> Loop:
+    return translate_loop(kernel_of(robot, kind))
+
+
+class Driven:
+    """A robot at rest on the default circle, at its right-hand end, and what it does from then on.
+
+    Args:
+        who: which controller.
+        robot: its name.
+        settings: parameters, where they differ from the lab's.
+    """
+
+    def __init__(self, who: str = FOLLOWER, robot: str = "five_bar", **settings: object) -> None:
+        self.who, self.push, self.time = who, FREE, 0.0
+        self.parameters = replace(ROBOTS[robot].lab, **settings)  # type: ignore[arg-type]
+        self.robot = ROBOTS[robot].make(self.parameters)
+        kernel = kernel_of(self.robot, kind_of(who, self.parameters, CURVE))
+        begin = self.robot.frame.lift(CURVE.at(np.array(0.0)))
+        self.state = first_state(self.robot, kernel, CURVE, self.robot.rest(begin))
+        self.stopped: float | None = None
+        self._layout, self._log = kernel.state, kernel.log
+        self._rows = list[Array]()
+
+    # What is done to it
+
+    def run(self, until: float) -> Driven:
+        """Go on to an instant, [s]; nothing more once it has been stopped."""
+        ticks = round((until - self.time) / TICK)
+        if self.stopped is None and ticks > 0:
+            kind = kind_of(self.who, self.parameters, CURVE)
+            loop = _loop(self.robot, kind)
+            settings = settings_vector(self.robot, loop.kernel, self.parameters, CURVE, self.push)
+            self.state, rows = loop.run(self.state, settings, CURVE.table(), ticks)
+            fields = self._log.unpack(rows)
+            fault = self.robot.fault(fields["q"], fields["v"], self.parameters)
+            if fault is not None:
+                self.stopped = self.time + fault[0] * TICK
+            self._rows.append(rows[: None if fault is None else fault[0]])
+        self.time = until
+        return self
+
+    def set(self, **settings: object) -> Driven:
+        """Other parameters from now on."""
+        self.parameters = replace(self.parameters, **settings)  # type: ignore[arg-type]
+        return self
+
+    def hold(self) -> Driven:
+        """The brake grips here."""
+        self.push = Push(hold=brake_at(self.robot, CURVE, self.y, self.place))
+        return self
+
+    def pull(self, right: float, up: float) -> Driven:
+        """A hand goes there from where the end-point is, [mm], and stays."""
+        away = np.array([right, up]) / 1e3
+        frame = self.robot.frame
+        self.push = Push(hand=self.y + frame.lift(away) - frame.lift(np.zeros(2)))
+        return self
+
+    def let_go(self) -> Driven:
+        """Neither hand nor brake."""
+        self.push = FREE
+        return self
+
+    # How it is now
+
+    @property
+    def q(self) -> Array:
+        """Configuration, (n,)."""
+        return self._layout.unpack(self.state)["q"]
+
+    @property
+    def v(self) -> Array:
+        """Its rate, (n,)."""
+        return self._layout.unpack(self.state)["v"]
+
+    @property
+    def y(self) -> Array:
+        """End-point, (p,), [m]."""
+        return self.robot.endpoint(self.q)
+
+    @property
+    def place(self) -> float:
+        """theta of the closest point, [rad]."""
+        return float(self._layout.unpack(self.state)["theta"][0])
+
+    # What it has done, a number a millisecond
+
+    def log(self, name: str) -> Array:
+        """A field of the log, (ticks, size), SI."""
+        return self._log.unpack(np.concatenate(self._rows))[name]
+
+    @property
+    def distance(self) -> Array:
+        """Of the actual end-point to the path, (ticks,), [mm]."""
+        return 1e3 * path_distance(self.robot.frame, CURVE, self.log("y"))
+
+    @property
+    def across(self) -> Array:
+        """Of the controlled output, (ticks,), [mm]."""
+        return 1e3 * np.linalg.norm(self.log("xi"), axis=1)
+
+    @property
+    def torque(self) -> Array:
+        """The largest, (ticks,), [N m]."""
+        return np.abs(self.log("u")).max(axis=1)
+
+    @property
+    def deflection(self) -> Array:
+        """Of the flexible link's tip, (ticks,), [mm]."""
+        assert isinstance(self.robot, FlexibleFiveBar)
+        return 1e3 * self.robot.deflection(self.log("q"))
+
+    @property
+    def energy(self) -> Array:
+        """In the flexible link, (ticks,), [mJ]."""
+        assert isinstance(self.robot, FlexibleFiveBar)
+        return 1e3 * self.robot.internal_energy(self.log("q"), self.log("v"), self.parameters)
+
+
+def largest(values: Array, begin: float, end: float) -> float:
+    """Without sign, from one instant to another, [s]."""
+    return float(np.abs(values[round(begin / TICK) : round(end / TICK)]).max())
+
+
+def at(values: Array, time: float) -> float:
+    """At an instant, [s]."""
+    return float(values[round(time / TICK)])
+
+
+@cache
+def way_round(law: str, **gains: Any) -> Array:
+    """theta of a robot that nobody holds, every millisecond of 5 s."""
+    return Driven(law, speed=FAST, **gains).run(5.0).log("theta")[:, 0]
+
+
+@cache
+def held_at(degrees: float, law: str = FOLLOWER, **gains: Any) -> Driven:
+    """Caught by the brake when it comes to a place, after at least 3 s."""
+    away = np.abs(np.exp(1j * way_round(law, **gains)[3000:]) - np.exp(1j * np.radians(degrees)))
+    begin = 3 + 1e-3 * int(np.argmax(away < 0.005))
+    return Driven(law, speed=FAST, **gains).run(begin).hold().run(begin + LENGTH)
+
+
+def most_and_rest(degrees: float, law: str = FOLLOWER, **gains: Any) -> tuple[float, float]:
+    """Largest distance while held, and that at the end, [mm]."""
+    distance = held_at(degrees, law, **gains).distance[-round(1e3 * LENGTH) :]
+    return float(distance.max()), float(distance[-1])

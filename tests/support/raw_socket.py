@@ -1,0 +1,60 @@
+"""A browser's end of a websocket, byte by byte, for those who do not behave like one."""
+
+from __future__ import annotations
+
+import select
+import socket
+from collections.abc import Mapping
+
+from websockets.frames import Frame, Opcode
+from websockets.sync.client import ClientConnection
+
+from onpath.app.bench.client_protocol import SUBPROTOCOL, answer, unpacked
+
+WAIT = 10.0  # [s]
+QUESTIONS = 2  # of a lab to a newcomer
+
+
+def frames(*payloads: bytes, opcode: Opcode = Opcode.BINARY) -> bytes:
+    """What a browser would write to its socket."""
+    return b"".join(Frame(opcode, payload).serialize(mask=True) for payload in payloads)
+
+
+def knock(
+    port: int, subprotocol: str | None = SUBPROTOCOL, source: str = "127.0.0.1"
+) -> socket.socket:
+    """A socket that has asked for a websocket, and read nothing."""
+    lines = [
+        "GET / HTTP/1.1",
+        f"Host: 127.0.0.1:{port}",
+        "Upgrade: websocket",
+        "Connection: Upgrade",
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
+        "Sec-WebSocket-Version: 13",
+        *([f"Sec-WebSocket-Protocol: {subprotocol}"] if subprotocol is not None else []),
+    ]
+    raw = socket.create_connection(("127.0.0.1", port), WAIT, source_address=(source, 0))
+    raw.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
+    return raw
+
+
+def is_closed(raw: socket.socket) -> bool:
+    """Whether the other end has closed; drops what came before."""
+    try:
+        while select.select([raw], [], [], 0)[0]:
+            if not raw.recv(1 << 16):
+                return True
+    except OSError:
+        return True
+    return False
+
+
+def answer_questions(client: ClientConnection, stored: Mapping[str, str] | None = None) -> None:
+    """What a newcomer is asked, and nothing that comes after."""
+    answered = 0
+    while answered < QUESTIONS:
+        raw = client.recv(WAIT)
+        assert isinstance(raw, bytes)
+        for reply in filter(None, (answer(message, stored) for message in unpacked(raw))):
+            client.send(reply)
+            answered += 1

@@ -1,0 +1,73 @@
+"""Set-ups at random, such as students make them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from hypothesis import HealthCheck, settings
+from hypothesis import strategies as st
+
+from onpath.app.lab.setup import Bench, Setup, capture_path, kept
+from onpath.models.paths.path_design import PathDesign, drawn, presets
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import Spec, specs
+
+CALM = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow], max_examples=50)
+PRESETS = presets()
+FOLLOWABLE = sorted(set(PRESETS) - {"figure of eight"})
+
+
+def wave(shape: float, phase: float, closed: bool) -> PathDesign:
+    """What a hand might draw."""
+    t = np.linspace(-1, 1, 60)
+    if closed:
+        radius = 0.05 + 0.01 * shape * np.cos(2 * np.pi * t + phase)
+        return drawn(radius[:, None] * np.column_stack([np.cos(np.pi * t), np.sin(np.pi * t)]))
+    return drawn(np.column_stack([0.06 * t, 0.02 * shape * np.sin(2 * t + phase)]))
+
+
+def _edited(name: str, index: int, dx: float, dy: float) -> PathDesign:
+    design = PRESETS[name]
+    index %= len(design.points)
+    return design.moved(index, design.points[index] + [dx, dy])
+
+
+_UNIT = st.floats(-1, 1)
+_MILLIMETRES = st.floats(-0.004, 0.004)
+_NAMES = st.sampled_from(FOLLOWABLE)
+designs = st.one_of(
+    _NAMES.map(PRESETS.__getitem__),
+    st.builds(_edited, _NAMES, st.integers(0, 23), _MILLIMETRES, _MILLIMETRES),
+    st.builds(wave, _UNIT, st.floats(0, 6), st.booleans()),
+)
+
+
+def _value(spec: Spec) -> st.SearchStrategy[Any]:
+    if spec.options:
+        return st.sampled_from(spec.options)
+    return st.floats(spec.low, spec.high).map(lambda x: kept(spec, x))
+
+
+@st.composite
+def benches(draw: st.DrawFn, robot: str) -> Bench:
+    """One robot's, as `capture` makes it."""
+    lab = ROBOTS[robot].lab
+    some = draw(st.lists(st.sampled_from(list(specs(lab).items())), max_size=6))
+    values = {name: draw(_value(spec)) for name, spec in some}
+    own = {name: value for name, value in values.items() if value != getattr(lab, name)}
+    return Bench(own, capture_path(draw(designs), PRESETS))
+
+
+@st.composite
+def setups(draw: st.DrawFn) -> Setup:
+    """A lab's, as `capture` makes it."""
+    names = draw(st.lists(st.sampled_from(list(ROBOTS)), unique=True, max_size=2))
+    found = {name: draw(benches(name)) for name in sorted(names)}
+    return Setup(
+        robot=draw(st.sampled_from(list(ROBOTS))),
+        benches={name: bench for name, bench in found.items() if bench != Bench()},
+        rate=draw(st.sampled_from([0.125, 0.5, 1.0, 4.0])),
+        copy=draw(st.booleans()),
+        exaggeration=draw(st.sampled_from([1.0, 2.5, 20.0])),
+    )

@@ -1,0 +1,151 @@
+"""A simulated browser that remembers its codes, reads its page and comes back when cut off."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, Self
+
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Subprotocol
+
+from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
+from onpath.app.bench.simulated_browser import MOVING
+
+PATIENCE = 15.0  # [s]
+
+
+class Student:
+    """One tab.
+
+    Args:
+        address: of the websocket.
+        through: the port on this machine to connect to, whatever the address says.
+        headers: of the handshake.
+
+    Attributes:
+        kept: the browser's local storage.
+        widgets: what the page shows, by widget: the properties.
+        moving: how often it was told new poses.
+        received: [B].
+    """
+
+    def __init__(self, address: str, through: int | None = None, **headers: str) -> None:
+        self.address, self.headers = address, headers
+        self._through, self.moving, self.received = through, 0, 0
+        self.kept: dict[str, str] = {}
+        self.widgets: dict[str, dict[str, Any]] = {}
+        self._socket: ClientConnection | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """The tab."""
+        if self._socket is not None:
+            self._socket.close()
+
+    @property
+    def code(self) -> str:
+        """Of the lab."""
+        return self.kept.get("onpath_sessions", "").partition(",")[0]
+
+    def open(self) -> None:
+        """The page; it may have been open already."""
+        self.widgets.clear()
+        way = socket.create_connection(("127.0.0.1", self._through)) if self._through else None
+        self._socket = connect(
+            self.address,
+            subprotocols=[Subprotocol(SUBPROTOCOL)],
+            additional_headers=self.headers,
+            compression=None,
+            max_size=None,
+            close_timeout=1.0,
+            sock=way,
+        )
+        self._socket.send(packed("ViewerCameraMessage", **CAMERA))
+
+    def reopen(self) -> None:
+        """What viser's page does when it is cut off: try until it works."""
+        end = time.monotonic() + PATIENCE
+        while True:
+            try:
+                return self.open()
+            except Exception:
+                if time.monotonic() > end:
+                    raise
+                time.sleep(0.2)
+
+    def read(self, until: Callable[[], Any]) -> None:
+        """Take in what comes until something holds."""
+        end = time.monotonic() + PATIENCE
+        while not until():
+            assert time.monotonic() < end, sorted(map(str, self._labels()))
+            assert self._socket is not None
+            try:
+                raw = self._socket.recv(timeout=0.2)
+            except TimeoutError:
+                continue
+            assert isinstance(raw, bytes)
+            self.received += len(raw)
+            for message in unpacked(raw):
+                self._take(message)
+
+    def stay(self, seconds: float) -> None:
+        """Take in what comes, for a while."""
+        end = time.monotonic() + seconds
+        self.read(lambda: time.monotonic() > end)
+
+    def cut_off(self) -> None:
+        """Wait until the server is gone."""
+        try:
+            self.read(lambda: False)
+        except ConnectionClosed:
+            return
+
+    def find(self, label: str) -> dict[str, Any]:
+        """A widget by the beginning of its label or by an option, once it is there."""
+        self.read(lambda: self.may(label))
+        return next(w for text, w in self._labels().items() if text.startswith(label))
+
+    def set(self, label: str, value: Any) -> None:
+        """Move a slider, choose from a list, press a button."""
+        widget = self.find(label)
+        assert self._socket is not None
+        self._socket.send(packed("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value}))
+
+    def may(self, label: str) -> bool:
+        """Whether there is a widget now whose label or option begins so."""
+        return any(text.startswith(label) for text in self._labels())
+
+    def sees(self, text: str) -> bool:
+        """Whether the page says something."""
+        parts = ("content", "_markdown")
+        return any(text in str(w.get(part)) for w in self.widgets.values() for part in parts)
+
+    def _labels(self) -> dict[str, dict[str, Any]]:
+        shown = [w for w in self.widgets.values() if w["value"] is not None]
+        options = {option: w for w in shown for option in w.get("options") or ()}
+        return {**options, **{str(w["label"]): w for w in shown if w.get("label")}}
+
+    def _take(self, message: dict[str, Any]) -> None:
+        kind = message["type"]
+        self.moving += message.get("name") == MOVING
+        if reply := answer(message, self.kept):
+            assert self._socket is not None
+            self._socket.send(reply)
+        elif kind == "LocalStorageSetItemMessage":
+            self.kept[message["key"]] = message["value"]
+        elif "props" in message and "uuid" in message:
+            widget = {"uuid": message["uuid"], "value": message.get("value")}
+            self.widgets[message["uuid"]] = {**widget, **message["props"]}
+        elif kind == "GuiUpdateMessage":
+            self.widgets.get(message["uuid"], {}).update(message["updates"])
+        elif kind == "GuiRemoveMessage":
+            self.widgets.pop(message["uuid"], None)

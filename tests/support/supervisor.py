@@ -1,0 +1,57 @@
+"""`onpath --workers` as a process of its own, for tests."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import threading
+import time
+from contextlib import suppress
+from pathlib import Path
+
+from tests.support.checkout import ROOT
+
+
+class Supervisor:
+    """`onpath --workers`, and what it says."""
+
+    def __init__(self, folder: Path, *options: str) -> None:
+        self.database = f"sqlite:///{folder / 'labs.db'}"
+        command = [sys.executable, "-m", "onpath", "--database", self.database, *options]
+        self.process = subprocess.Popen(
+            command,
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self.said = ""
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    def _listen(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.said += line
+
+    def wait_for(self, pattern: str, times: int = 1) -> list[str]:
+        end = time.monotonic() + 30
+        while len(found := re.findall(pattern, self.said, re.MULTILINE)) < times:
+            assert time.monotonic() < end, self.said
+            time.sleep(0.05)
+        return found
+
+    def workers(self) -> list[int]:
+        """Process ids of those that live."""
+        children = Path(f"/proc/{self.process.pid}/task").glob("*/children")
+        return [int(word) for file in children for word in file.read_text().split()]
+
+    def sockets(self, worker: int) -> int:
+        """How many connections a worker serves."""
+        own: set[str] = set()
+        for descriptor in Path(f"/proc/{worker}/fd").iterdir():
+            with suppress(OSError):
+                own.add(os.readlink(descriptor).removeprefix("socket:["))
+        rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+        return sum(row[3] == "01" and f"{row[9]}]" in own for row in rows)

@@ -1,0 +1,154 @@
+"""What a lesson tells in numbers, and what the lab does, every millisecond.
+
+A number is taken from the text, so that text and physics cannot drift apart: `said` finds a
+sentence in which each # stands for a number, `agrees` compares to the digits that are written.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from onpath.app.exports.exporter import replay
+from onpath.app.lab.lesson_scene import set_up
+from onpath.app.lab.script_player import ScriptPlayer
+from onpath.app.lab.session import Session
+from onpath.app.lab.setup import Bench, Path, Setup, restore
+from onpath.lessons.course import BUILT_IN
+from onpath.lessons.parse import read_lesson
+from onpath.lessons.record import ROLES
+from onpath.lessons.schema import Action, Lesson, RobotName, Script, Value
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.trajectory import Trajectory
+from tests.support.lab import run, store
+
+NUMBER = r"([−-]?\d+(?:[.,]\d+)?)"
+
+
+def text(lesson: str, language: str = "en") -> str:
+    """All of a lesson, by its number, as "01"."""
+    (home,) = BUILT_IN.glob(f"{lesson}-*")
+    return (home / f"{language}.md").read_text(encoding="utf-8")
+
+
+def numbers(part: str) -> list[float]:
+    """All that occur in a text, in order."""
+    return [value(found) for found in re.findall(NUMBER, part.replace("{,}", ","))]
+
+
+def said(lesson: str, sentence: str) -> list[str]:
+    """The numbers of a sentence as they are written; spaces in it match line breaks, too.
+
+    Args:
+        lesson: its number, as "01".
+        sentence: as in the text, each number as #.
+    """
+    pattern = NUMBER.join(map(re.escape, sentence.split("#")))
+    found = re.findall(pattern, " ".join(text(lesson).split()))
+    assert len(found) == 1, f"{len(found)} times in lesson {lesson}: {sentence}"
+    return [found[0]] if isinstance(found[0], str) else list(found[0])
+
+
+def value(text: str) -> float:
+    """Of a number as it is written."""
+    return float(text.replace("−", "-").replace(",", "."))
+
+
+def agrees(text: str, measured: float) -> bool:
+    """Whether what is measured gives, rounded to the digits that are written, what is told."""
+    digits = len(re.split("[.,]", text)[1]) if re.search("[.,]", text) else 0
+    return abs(measured - value(text)) <= 0.5 * 10.0**-digits + 1e-9
+
+
+def assert_told(texts: list[str], measured: list[float]) -> None:
+    """All of them, in order."""
+    wrong = [(t, m) for t, m in zip(texts, measured, strict=True) if not agrees(t, m)]
+    assert not wrong, wrong
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion:
+    """What one robot did, every millisecond; mm, N m, N, rad and s."""
+
+    t: Array
+    distance: Array
+    across: Array
+    place: Array
+    rate: Array
+    speed: Array
+    torque: Array
+    force: Array
+    y: Array
+
+    def during(self, begin: float, end: float) -> slice:
+        """The milliseconds from one instant to another."""
+        return slice(*np.searchsorted(self.t, (begin - 1e-9, end - 1e-9)))
+
+    def largest(self, begin: float, end: float) -> float:
+        """Distance, [mm]."""
+        return float(self.distance[self.during(begin, end)].max())
+
+    def at(self, time: float, quantity: str = "distance") -> float:
+        """A quantity at an instant."""
+        return float(getattr(self, quantity)[self.during(time, time + 1)][0])
+
+
+Run = dict[RobotName, Motion]
+WORST = 3 + 25 / 36  # [s], the brake then catches the follower at 214 degrees
+
+
+def play(until: float, do: list[Action], path: str = "", **settings: Value) -> Run:
+    """What both robots do, set up with the lab's defaults but for some settings."""
+    session = Session(store())
+    restore(session, Setup("five_bar", {"five_bar": Bench(settings, Path(path or Path().name))}))
+    return _played(session, Script(tuple(do), until))
+
+
+def held(at: float, seconds: float = 2.0, robot: RobotName = "follower", **gains: Any) -> Motion:
+    """A robot that goes round and is held back from `at` to the end."""
+    return play(at + seconds, [Action(at=at, hold=True)], **gains)[robot]
+
+
+def pulled(right: float, up: float = 0.0, robot: RobotName = "follower", **gains: Any) -> Motion:
+    """A robot that stands at the right-hand end, pulled from 1 s on."""
+    return play(4.0, [Action(at=1.0, pull=(right, up))], speed=0.0, **gains)[robot]
+
+
+@cache
+def shown(lesson: str, title: str) -> Run:
+    """What a step that runs by itself shows."""
+    (home,) = BUILT_IN.glob(f"{lesson}-*")
+    told: Lesson = read_lesson(home / "en.md")
+    for index, step in enumerate(told.steps):
+        if step.title == title and step.script is not None:
+            session = Session(store())
+            set_up(session, told, index)
+            return _played(session, step.script)
+    raise AssertionError(f"lesson {lesson} shows no {title!r}")
+
+
+def _played(session: Session, script: Script) -> Run:
+    session.script, session.running = ScriptPlayer(script), True
+    while session.script is not None:
+        run(session, 0.1)
+    runs = replay(session.robot, session.history.all())
+    return {ROLES[name]: _motion(trajectory) for name, trajectory in runs.items()}
+
+
+def _motion(run: Trajectory) -> Motion:
+    fields = run.fields
+    return Motion(
+        t=run.t,
+        distance=run.distance * 1e3,
+        across=fields["xi"][:, 0] * 1e3,
+        place=fields["theta"][:, 0],
+        rate=fields["theta_rate"][:, 0],
+        speed=run.speed * 1e3,
+        torque=np.abs(fields["u"]).max(axis=1),
+        force=np.linalg.norm(fields["force"], axis=1),
+        y=fields["y"] * 1e3,
+    )
