@@ -19,16 +19,16 @@ from onpath.lessons.schema import (
     Block,
     Choice,
     Front,
+    LabLink,
     Lesson,
-    Link,
     Option,
     Prediction,
     Quiz,
-    Scene,
     Script,
     Sketch,
     Step,
     StepKind,
+    StepSetup,
     Task,
     Text,
 )
@@ -69,7 +69,7 @@ class _Draft:
     title: str
     line: int
     blocks: list[Block]
-    scene: Scene | None = None
+    scene: StepSetup | None = None
     script: Script | None = None
     broken: bool = False  # a block of it could not be read
 
@@ -103,7 +103,7 @@ class _Reader:
         self._problems: list[Problem] = []
         self._markdown = reader()
         self._robot = self._home = "five_bar"
-        self._scene = Scene()
+        self._scene = StepSetup()
 
     def lesson(self) -> Lesson:
         """Read all of it.
@@ -128,7 +128,9 @@ class _Reader:
             return None, 0
         front = self._toml("\n".join(lines[1 : ends[1]]), 2, Front)
         if front is not None:
-            self._complain_all(1, vocabulary.scene_faults(Scene(robot=front.robot), front.robot))
+            self._complain_all(
+                1, vocabulary.scene_faults(StepSetup(robot=front.robot), front.robot)
+            )
             self._robot = self._home = front.robot
         return front, ends[1] + 1
 
@@ -161,7 +163,7 @@ class _Reader:
         """A block of TOML."""
         before = len(self._problems)
         if what == "scene":
-            draft.scene = self._checked(content, line, Scene, self._scene_faults)
+            draft.scene = self._checked(content, line, StepSetup, self._scene_faults)
         elif what == "script":
             draft.script = self._checked(content, line, Script, self._script_faults)
         elif what == "predict":
@@ -181,7 +183,7 @@ class _Reader:
         except FormulaError as error:
             self._complain(line, str(error))
 
-    def _scene_faults(self, scene: Scene) -> Iterator[str]:
+    def _scene_faults(self, scene: StepSetup) -> Iterator[str]:
         self._scene = scene.after(self._scene)
         self._robot = self._scene.robot or self._home
         return vocabulary.scene_faults(self._scene, self._robot)
@@ -194,7 +196,7 @@ class _Reader:
 
     def _prose(self, draft: _Draft, tokens: list[Token], line: int) -> None:
         """A paragraph, list, table or picture; links that act on the lab end a text block."""
-        links: list[Link] = []
+        links: list[LabLink] = []
         for token in tokens:
             for child in token.children or ():
                 if child.type == "image":
@@ -225,7 +227,7 @@ class _Reader:
         except ValueError as error:
             self._complain(line, str(error))
 
-    def _links(self, children: list[Token], line: int) -> Iterator[Link]:
+    def _links(self, children: list[Token], line: int) -> Iterator[LabLink]:
         """Links that act on the lab; in the text their words stand out."""
         for i, token in enumerate(children):
             if token.type != "link_open":
@@ -246,7 +248,7 @@ class _Reader:
                 continue
             for action in actions:
                 self._complain_all(line, vocabulary.action_faults(action, self._robot))
-            yield Link(label, actions)
+            yield LabLink(label, actions)
 
     def _checked(
         self, content: str, line: int, kind: Any, faults: Callable[[Any], Iterable[str]]

@@ -20,7 +20,7 @@ class Data(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Read from TOML; an unknown name is an error."""
 
 
-class Scene(Data, frozen=True):
+class StepSetup(Data, frozen=True):
     """How the lab is set up when a step begins.
 
     Attributes:
@@ -41,7 +41,7 @@ class Scene(Data, frozen=True):
     running: bool = True
     keep: bool = False
 
-    def after(self, before: Scene) -> Scene:
+    def after(self, before: StepSetup) -> StepSetup:
         """Itself, with what it keeps of the scene before it."""
         if not self.keep:
             return self
@@ -243,7 +243,7 @@ class Quiz(Data, frozen=True):
     options: tuple[Option, ...]
 
 
-class Link(msgspec.Struct, frozen=True):
+class LabLink(msgspec.Struct, frozen=True):
     """Words in the text that act on the lab."""
 
     label: str
@@ -254,7 +254,7 @@ class Text(msgspec.Struct, frozen=True):
     """Part of a step's text, as safe HTML, and the links that follow it as buttons."""
 
     html: str
-    links: tuple[Link, ...] = ()
+    links: tuple[LabLink, ...] = ()
 
 
 Block = Text | Choice | Sketch | Task | Quiz
@@ -274,7 +274,7 @@ class Step(msgspec.Struct, frozen=True):
     title: str
     line: int
     blocks: tuple[Block, ...]
-    scene: Scene | None = None
+    scene: StepSetup | None = None
     script: Script | None = None
 
     def predictions(self) -> list[Prediction]:
@@ -308,9 +308,9 @@ class Lesson(msgspec.Struct, frozen=True):
     front: Front
     steps: tuple[Step, ...]
 
-    def scene_at(self, index: int) -> Scene:
+    def scene_at(self, index: int) -> StepSetup:
         """What the lab is set to at a step, whichever way one comes to it."""
-        scene = Scene()
+        scene = StepSetup()
         for step in self.steps[: index + 1]:
             scene = step.scene.after(scene) if step.scene is not None else scene
         return scene

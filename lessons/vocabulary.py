@@ -16,16 +16,16 @@ from onpath.lessons.schema import (
     EventName,
     Order,
     Prediction,
-    Scene,
     Script,
     Setting,
     Sketch,
+    StepSetup,
     Task,
     Value,
 )
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import presets
-from onpath.models.systems.catalogue import ROBOTS, Entry
+from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameters import changed, specs, unknown_name
 
 CONTROLS = (
@@ -38,7 +38,7 @@ LONGEST = 60.0
 """Of a script or a sketch [s]: the lab remembers a minute."""
 
 
-def scene_faults(scene: Scene, robot: str) -> Iterator[str]:
+def scene_faults(scene: StepSetup, robot: str) -> Iterator[str]:
     """What is wrong with a scene, in words."""
     if scene.robot:
         yield from _one_of(scene.robot, ROBOTS, "robot")
@@ -111,7 +111,7 @@ def task_faults(task: Task, robot: str) -> Iterator[str]:
         yield from _check_faults(check, ROBOTS.get(robot))
 
 
-def _check_faults(check: Check, entry: Entry | None) -> Iterator[str]:
+def _check_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
     if isinstance(check, Bound | Compare):
         yield from _one_of(check.quantity, QUANTITIES, "quantity")
     if isinstance(check, Bound | Setting):
@@ -127,7 +127,7 @@ def _check_faults(check: Check, entry: Entry | None) -> Iterator[str]:
         yield from _one_of(check.name, specs(entry.parameters), "parameter")
 
 
-def _path_faults(scene: Scene, entry: Entry) -> Iterator[str]:
+def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
     design, parameters = presets().get(scene.path), entry.lab
     if design is None:
         return
@@ -137,7 +137,7 @@ def _path_faults(scene: Scene, entry: Entry) -> Iterator[str]:
         yield f"path {scene.path!r}: {fault.reason}"
 
 
-def _setting_faults(values: dict[str, Value], entry: Entry) -> Iterator[str]:
+def _setting_faults(values: dict[str, Value], entry: RobotEntry) -> Iterator[str]:
     for name, value in values.items():
         try:
             changed(replace(entry.lab), name, value)

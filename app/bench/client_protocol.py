@@ -47,7 +47,7 @@ def answer(message: dict[str, Any], stored: Mapping[str, str] | None = None) -> 
     return None
 
 
-class Told(msgspec.Struct):
+class MessageHeader(msgspec.Struct):
     """What a message is and of which node, if of any."""
 
     type: str
@@ -55,13 +55,13 @@ class Told(msgspec.Struct):
 
 
 class _Window(msgspec.Struct):
-    messages: list[Told]
+    messages: list[MessageHeader]
 
 
 _window = msgspec.msgpack.Decoder(_Window)
 
 
-def told(raw: bytes) -> list[Told]:
+def told(raw: bytes) -> list[MessageHeader]:
     """Of the messages of one frame from the server only that, which takes less than `unpacked`."""
     end = 16 + int.from_bytes(raw[8:16], "little")
     return _window.decode(decompress(raw[16:end])).messages

@@ -17,9 +17,9 @@ from pathlib import Path
 import msgspec
 
 from onpath.app.bench.server_process import Server, serving
-from onpath.app.bench.simulated_browser import Seen
+from onpath.app.bench.simulated_browser import Observations
 from onpath.app.server.workers import MOST as MOST_WORKERS
-from onpath.app.simulation.metrics import LONGEST, Vitals
+from onpath.app.simulation.metrics import LONGEST, Metrics
 from onpath.app.viser_adapter.message_filter import Limits
 
 MOST = Limits().max_connections_each  # clients: to the server they are of one address
@@ -31,7 +31,7 @@ PROCESSOR = Path("/proc/stat")  # Linux alone
 
 
 @dataclass(frozen=True, slots=True)
-class Crowd:
+class ClientLoad:
     """What to measure.
 
     Attributes:
@@ -74,7 +74,7 @@ class Row:
         memory_mb: more than without clients, of all workers, for each client; nan if unknown.
     """
 
-    seen: Seen
+    seen: Observations
     settled: float
     labs: tuple[int, ...]
     simulation_hz: float
@@ -96,7 +96,7 @@ class Row:
         )
 
 
-def measured(crowd: Crowd, environment: Mapping[str, str]) -> Iterator[Row]:
+def measured(crowd: ClientLoad, environment: Mapping[str, str]) -> Iterator[Row]:
     """Rows, each as soon as it is known.
 
     Args:
@@ -124,7 +124,7 @@ def folders(folder: Path, name: str) -> dict[str, str]:
 
 
 @contextmanager
-def _load(server: Server, clients: int, seconds: float) -> Iterator[Iterator[Seen]]:
+def _load(server: Server, clients: int, seconds: float) -> Iterator[Iterator[Observations]]:
     """What a crowd sees: first when it has settled, then every so many seconds."""
     command = [
         sys.executable,
@@ -140,21 +140,21 @@ def _load(server: Server, clients: int, seconds: float) -> Iterator[Iterator[See
             process.kill()
 
 
-def _lines(process: subprocess.Popen[bytes]) -> Iterator[Seen]:
+def _lines(process: subprocess.Popen[bytes]) -> Iterator[Observations]:
     assert process.stdout is not None and process.stderr is not None
     for line in process.stdout:
-        yield msgspec.json.decode(line, type=Seen)
+        yield msgspec.json.decode(line, type=Observations)
     said = process.stderr.read().decode(errors="replace").strip()
     raise ValueError(said.rpartition("\n")[2] or "the simulated browsers have ended")
 
 
 def _row(
-    seen: Seen,
+    seen: Observations,
     settled: float,
     stolen: float,
-    alone: dict[int, Vitals],
-    before: dict[int, Vitals],
-    after: dict[int, Vitals],
+    alone: dict[int, Metrics],
+    before: dict[int, Metrics],
+    after: dict[int, Metrics],
 ) -> Row:
     if not alone.keys() == before.keys() == after.keys():
         raise ValueError("a worker has ended meanwhile")
@@ -184,7 +184,7 @@ def _processor() -> tuple[float, float]:
     return spent[7], sum(spent)
 
 
-def _speeds(before: Vitals, after: Vitals) -> list[float]:
+def _speeds(before: Metrics, after: Metrics) -> list[float]:
     """Simulated seconds per second of each lab; unknown when one has come or gone."""
     if before.labs != after.labs:
         return [nan]

@@ -17,7 +17,7 @@ from typing import IO
 import msgspec
 
 from onpath.app.server.lazy_imports import REST
-from onpath.app.simulation.metrics import WINDOW, Vitals
+from onpath.app.simulation.metrics import WINDOW, Metrics
 from onpath.app.viser_adapter.request_filter import HEALTH
 
 PATIENCE = 60.0  # [s] for all workers to answer
@@ -40,7 +40,7 @@ class Server:
     process: subprocess.Popen[bytes]
     said: IO[bytes]
 
-    def vitals(self, seconds: float = WINDOW) -> dict[int, Vitals]:
+    def vitals(self, seconds: float = WINDOW) -> dict[int, Metrics]:
         """How each worker fares, by process. Whoever has fewest connections answers, so some are
         held until all have.
 
@@ -50,8 +50,8 @@ class Server:
         with ExitStack() as held:
             return self._vitals(seconds, held)
 
-    def _vitals(self, seconds: float, held: ExitStack) -> dict[int, Vitals]:
-        told: dict[int, Vitals] = {}
+    def _vitals(self, seconds: float, held: ExitStack) -> dict[int, Metrics]:
+        told: dict[int, Metrics] = {}
         until, trouble = time.monotonic() + PATIENCE, ""
         while len(told) < self.workers:
             if self.process.poll() is not None:
@@ -70,15 +70,15 @@ class Server:
                 time.sleep(0.05)
         return told
 
-    def _ask(self, seconds: float) -> Vitals:
+    def _ask(self, seconds: float) -> Metrics:
         connection = HTTPConnection("127.0.0.1", self.port, timeout=10.0)
         try:
             connection.request("GET", f"{HEALTH}?seconds={seconds:g}")
-            return msgspec.json.decode(connection.getresponse().read(), type=Vitals)
+            return msgspec.json.decode(connection.getresponse().read(), type=Metrics)
         finally:
             connection.close()
 
-    def at_rest(self) -> dict[int, Vitals]:
+    def at_rest(self) -> dict[int, Metrics]:
         """How it fares before anybody comes, with all ready that `warm_up` makes ready."""
         sizes: list[tuple[float, float]] = []
         while True:

@@ -29,7 +29,7 @@ from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed
 
 LAST = 19  # of all priorities
 TOGETHER = Path("/proc/self/autogroup")  # the priority of a whole session, on Linux
-EVERY = 0.05  # [s] between a hand's messages; no browser sends more often
+HAND_INTERVAL = 0.05  # [s] between a hand's messages; no browser sends more often
 CYCLE = 4.0  # [s]: pull, rest, move a slider, rest
 MOVING = "/links"
 STEADY = 10  # poses shown to a browser that has settled
@@ -37,12 +37,12 @@ ANSWERED = {"LocalStorageGetItemRequestMessage", "SetCameraUpDirectionMessage"}
 ANSWERED |= {"GuiSliderMessage", "BatchedMeshesMessage"}
 
 
-class Unserved(Exception):
+class NotServed(Exception):
     """A server does not serve all of a crowd; the message says what happened."""
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class Observations:
     """What a crowd has seen during a while.
 
     Attributes:
@@ -124,10 +124,10 @@ class Browser:
 
     async def _use(self, socket: ClientConnection, until: float) -> None:
         while not self._slider and time.monotonic() < until:
-            await asyncio.sleep(EVERY)
+            await asyncio.sleep(HAND_INTERVAL)
         held = False
         while (now := time.monotonic()) < until:
-            phase, rest = (now + 0.37 * self.number) % CYCLE, EVERY
+            phase, rest = (now + 0.37 * self.number) % CYCLE, HAND_INTERVAL
             pulls = phase < 1.0
             if pulls or held:
                 step = ("update" if held else "start") if pulls else "end"
@@ -184,7 +184,7 @@ def _is_early(error: Exception) -> bool:
 
 async def crowd(
     port: int, clients: int, seconds: float, patience: float | None = None
-) -> AsyncGenerator[Seen]:
+) -> AsyncGenerator[Observations]:
     """What some browsers see, at once: first until each is shown moving robots, then again and
     again for some seconds.
 
@@ -219,22 +219,24 @@ async def _settle(
         for task in tasks:
             if task.done():
                 error = task.exception() or "the server has closed the connection"
-                raise Unserved(f"one of {clients} clients was turned away: {error}")
+                raise NotServed(f"one of {clients} clients was turned away: {error}")
         if time.monotonic() > until:
-            raise Unserved(
+            raise NotServed(
                 f"only {ready} of {clients} clients were shown moving robots in {patience:g} s"
             )
         await asyncio.sleep(0.02)
 
 
-def _seen(browsers: list[Browser], there: int, seconds: float, cpu: float) -> Seen:
+def _seen(browsers: list[Browser], there: int, seconds: float, cpu: float) -> Observations:
     """What they have seen since they were asked last."""
     rates = [len(browser.shown) / seconds for browser in browsers]
     received = sum(browser.received for browser in browsers) / len(browsers)
     for browser in browsers:
         browser.shown.clear()
         browser.received = 0
-    return Seen(seconds, there, min(rates), median(rates), received / seconds, cpu / seconds)
+    return Observations(
+        seconds, there, min(rates), median(rates), received / seconds, cpu / seconds
+    )
 
 
 async def _report(port: int, clients: int, seconds: float) -> None:
@@ -260,5 +262,5 @@ if __name__ == "__main__":
     _stand_back()
     try:
         asyncio.run(_report(int(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])))
-    except Unserved as unserved:
+    except NotServed as unserved:
         sys.exit(str(unserved))

@@ -17,11 +17,11 @@ from pathlib import Path
 
 import numpy as np
 
-from onpath.app.bench.crowd import HEAD, Crowd, folders, measured
+from onpath.app.bench.crowd import HEAD, ClientLoad, folders, measured
 from onpath.app.bench.mouse_latency import find_browser, mouse_latency
 from onpath.app.bench.server_process import serving
 from onpath.app.bench.simulated_browser import first_poses
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.loops import InterpretedLoop, Loop
 from onpath.models.closed_loop.simulation import (
@@ -34,7 +34,7 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws import NAMES
 from onpath.models.paths.curves import circle
-from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, Entry
+from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, RobotEntry
 from onpath.models.systems.flexible_robot import FlexibleParameters
 from onpath.models.systems.parameters import Parameters
 
@@ -49,7 +49,7 @@ def bench(quick: bool = False) -> None:
         _modes(Path(folder), 10 if quick else 30)
     _making(3 if quick else 9)
     if not quick:
-        _crowds([Crowd(1), Crowd(20), Crowd(20, workers=2)])
+        _crowds([ClientLoad(1), ClientLoad(20), ClientLoad(20, workers=2)])
         _start_up()
         _mouse()
 
@@ -64,7 +64,7 @@ def _loops(folder: Path, repeats: int) -> None:
     print()
 
 
-def _row(entry: Entry, controller: str, lean: bool, folder: Path, repeats: int) -> None:
+def _row(entry: RobotEntry, controller: str, lean: bool, folder: Path, repeats: int) -> None:
     times = _per_tick(_prepared(entry, entry.parameters(), controller, lean, folder), repeats)
     for tier, value in times.items():
         pushed = "no" if lean else "may be"
@@ -72,7 +72,7 @@ def _row(entry: Entry, controller: str, lean: bool, folder: Path, repeats: int) 
 
 
 def _prepared(
-    entry: Entry, parameters: Parameters, controller: str, lean: bool, folder: Path
+    entry: RobotEntry, parameters: Parameters, controller: str, lean: bool, folder: Path
 ) -> dict[str, Callable[[], object]]:
     """The calls to time, of `TICKS` ticks."""
     robot, curve = entry.make(parameters), circle(0.05)
@@ -130,7 +130,7 @@ def _making(repeats: int) -> None:
 def _quiet_lab() -> Iterator[LabServer]:
     """A server in this process, without viser's banner."""
     with redirect_stdout(StringIO()):
-        lab = LabServer("127.0.0.1", 0, LoopStore())
+        lab = LabServer("127.0.0.1", 0, LoopCache())
     try:
         yield lab
     finally:
@@ -138,7 +138,7 @@ def _quiet_lab() -> Iterator[LabServer]:
             lab.stop()
 
 
-def bench_crowds(crowds: list[Crowd]) -> None:
+def bench_crowds(crowds: list[ClientLoad]) -> None:
     """Print the table of crowds: a row for each, or as many as it asks for."""
     _begin()
     _crowds(crowds)
@@ -150,7 +150,7 @@ def _begin() -> None:
     print(f"{platform.platform()}, {os.cpu_count()} cores, load {load:.1f}\n", flush=True)
 
 
-def _crowds(crowds: list[Crowd]) -> None:
+def _crowds(crowds: list[ClientLoad]) -> None:
     with tempfile.TemporaryDirectory() as folder:
         print(HEAD, flush=True)
         for number, crowd in enumerate(crowds):

@@ -12,10 +12,12 @@ from onpath.app.common.access_codes import ALPHABET, normalised
 from onpath.app.common.throttle import Throttle
 
 LONGEST_NAME = 24  # [characters]
-CODE_LENGTH = 6  # of a class code: short enough for a projector, too long to be guessed; see Door
+CODE_LENGTH = (
+    6  # of a class code: short enough for a projector, too long to be guessed; see `Admission`
+)
 
 
-class Door:
+class Admission:
     """Compares what was typed with what is right, for who has not failed too often; any thread.
 
     A tab that has failed too often is told to wait, with the right code as well. Other tabs are

@@ -16,7 +16,13 @@ from typing import Any
 import sqlalchemy as sa
 
 from onpath.app.classroom.admission import new_class_code
-from onpath.app.classroom.class_rows import ClassRow, Ways, class_row, read_member, read_push
+from onpath.app.classroom.class_rows import (
+    ClassRow,
+    ProgressCache,
+    class_row,
+    read_member,
+    read_push,
+)
 from onpath.app.classroom.classroom import Member, Orders, seated
 from onpath.app.storage.leases import NONSENSE
 from onpath.app.storage.schema import OF_A_CLASS, classes, leases, members, passes, watches
@@ -25,7 +31,7 @@ FORGOTTEN = 7 * 24 * 3600.0  # [s] without any change, after which a class is ov
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class ClassState:
     """A class when it was looked at last.
 
     Attributes:
@@ -53,7 +59,7 @@ class Now:
     wall: float
 
 
-class Ledger:
+class ClassLedger:
     """One class.
 
     Args:
@@ -62,21 +68,21 @@ class Ledger:
     """
 
     def __init__(self, class_id: str, owner: str) -> None:
-        self._id, self._owner, self._ways = class_id, owner, Ways()
+        self._id, self._owner, self._ways = class_id, owner, ProgressCache()
         self._own, self._all = classes.c.id == class_id, members.c.class_id == class_id
 
-    def look(self, connection: sa.Connection, seen: Seen, now: Now) -> Seen:
+    def look(self, connection: sa.Connection, seen: ClassState, now: Now) -> ClassState:
         """How the class is, given how it was."""
         row = self._row(connection, now)
         if row.code != seen.code or row.changes < seen.changes:
-            seen = Seen(row.code)  # another class, or one whose number was lost
+            seen = ClassState(row.code)  # another class, or one whose number was lost
         orders, there = seen.orders, seen.members
         if row.changes != seen.changes:
             orders = Orders(bool(row.frozen), row.pushes, read_push(row.push))
             there = self._newer(connection, seen, now)
         present, elsewhere = self._leased(connection, now.wall)
         there = {code: _connected(member, code in present) for code, member in there.items()}
-        return Seen(row.code, row.changes, orders, there, elsewhere)
+        return ClassState(row.code, row.changes, orders, there, elsewhere)
 
     def change(self, connection: sa.Connection, now: Now, **values: object) -> ClassRow:
         """Count a change of the class; nobody else changes it before this transaction ends.
@@ -90,7 +96,7 @@ class Ledger:
         return self._row(connection, now)
 
     def enter(
-        self, connection: sa.Connection, session: str, name: str, seen: Seen, now: Now
+        self, connection: sa.Connection, session: str, name: str, seen: ClassState, now: Now
     ) -> Member:
         """A student joins, or takes another name.
 
@@ -171,7 +177,7 @@ class Ledger:
         new |= dict.fromkeys(("changes", "joined", "frozen", "pushes"), 0)
         connection.execute(sa.insert(classes).values(new))
 
-    def _newer(self, connection: sa.Connection, seen: Seen, now: Now) -> dict[str, Member]:
+    def _newer(self, connection: sa.Connection, seen: ClassState, now: Now) -> dict[str, Member]:
         """All students, in their order; read anew are those that have changed."""
         there = set(connection.execute(sa.select(members.c.session).where(self._all)).scalars())
         found = {code: member for code, member in seen.members.items() if code in there}

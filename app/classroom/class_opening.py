@@ -10,7 +10,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from onpath.app.classroom.local_classroom import Classroom
+from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.classroom.shared_classroom import SharedClassroom
 from onpath.app.common.access_codes import new_code, normalised
 from onpath.app.storage.records import NotKept, Records
@@ -33,7 +33,7 @@ def given_key() -> str | None:
         raise ValueError(f"{KEY}: a key has 12 letters and digits without 0, 1, i, l, o") from None
 
 
-def open_class(records: Records, key: str | None) -> Classroom | SharedClassroom:
+def open_class(records: Records, key: str | None) -> LocalClassroom | SharedClassroom:
     """The class of a server.
 
     Args:
@@ -45,7 +45,7 @@ def open_class(records: Records, key: str | None) -> Classroom | SharedClassroom
         NotKept: it does not work.
     """
     if key is None:
-        return Classroom()
+        return LocalClassroom()
     if not records.is_shared:
         why = records.warning or "--database is in this process's memory"
         raise ValueError(f"a class of several processes needs a database that they share: {why}")

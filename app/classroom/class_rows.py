@@ -59,7 +59,7 @@ def class_row(row: sa.Row[Any]) -> ClassRow | None:
         return None
 
 
-class Ways:
+class ProgressCache:
     """Students' progress as text and back, each text read once."""
 
     def __init__(self) -> None:
@@ -89,7 +89,7 @@ class Ways:
         self._known = {code: known for code, known in self._known.items() if code in sessions}
 
 
-def read_member(row: sa.Row[Any], ways: Ways, since: float) -> tuple[str, Member] | None:
+def read_member(row: sa.Row[Any], ways: ProgressCache, since: float) -> tuple[str, Member] | None:
     """A session code and the student of it; None if it cannot be read.
 
     Args:

@@ -8,19 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from onpath.app.classroom.classroom import Room
-from onpath.app.common.periodic import Rounds
+from onpath.app.classroom.classroom import Classroom
+from onpath.app.common.periodic import Periodic
 from onpath.app.lab.class_commands import Freeze
 from onpath.app.lab.session import Session
 
-EVERY = 0.25  # [s]
+SYNC_INTERVAL = 0.25  # [s]
 
 
 Find = Callable[[str], tuple[Session, bool] | None]
 """The lab of a session code, and whether somebody looks at it; None when it is not here."""
 
 
-class Attendance:
+class ClassSync:
     """Keeps a class and its students' labs together.
 
     Args:
@@ -30,11 +30,11 @@ class Attendance:
         rounds: looks, from their start to their stop.
     """
 
-    def __init__(self, classroom: Room, find: Find) -> None:
+    def __init__(self, classroom: Classroom, find: Find) -> None:
         self._class, self._find = classroom, find
         self._asked: dict[str, int] = {}
         self._bound: dict[str, Session] = {}
-        self.rounds = Rounds("class", EVERY, self.look)
+        self.rounds = Periodic("class", SYNC_INTERVAL, self.look)
 
     def look(self) -> None:
         """Once: take orders to the labs, and news of them to the class."""

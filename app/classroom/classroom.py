@@ -54,7 +54,7 @@ class Orders:
     push: Push | None = None
 
 
-class Room(Protocol):
+class Classroom(Protocol):
     """A class. From any thread.
 
     What is read is at hand; who waits for a database: `look`, `admit`, `is_pass`, `revoke`,
@@ -171,5 +171,5 @@ def seated(members: Mapping[str, Member], session: str, name: str, new: Member) 
 
 
 def noted(member: Member, changes: Mapping[str, object]) -> Member:
-    """A student of whom something is known anew; see `Room.note`."""
+    """A student of whom something is known anew; see `Classroom.note`."""
     return replace(member, **changes)  # pyright: ignore[reportArgumentType]

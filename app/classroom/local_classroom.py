@@ -8,14 +8,14 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from onpath.app.classroom.admission import Door, new_class_code, new_pass
+from onpath.app.classroom.admission import Admission, new_class_code, new_pass
 from onpath.app.classroom.classroom import Member, Orders, Push, noted, seated
 from onpath.app.common.access_codes import new_code
 
 
 @dataclass(slots=True)
-class Classroom:
-    """See `app.classroom.classroom.Room`.
+class LocalClassroom:
+    """See `app.classroom.classroom.Classroom`.
 
     Attributes:
         key: what the teacher types, as `app.common.access_codes` keeps it.
@@ -29,16 +29,16 @@ class Classroom:
     _joined: int = 0
     _passes: set[str] = field(default_factory=set)
     _lock: threading.RLock = field(default_factory=threading.RLock)
-    _door: Door = field(init=False)
+    _door: Admission = field(init=False)
 
     def __post_init__(self) -> None:
         self.code = self.code or new_class_code()
-        self._door = Door(self.clock)
+        self._door = Admission(self.clock)
 
     # Who may teach
 
     def admit(self, typed: str, who: str) -> str:
-        """See `Room.admit`."""
+        """See `Classroom.admit`."""
         self._door.check_key(typed, self.key, who)
         new = new_pass()
         with self._lock:
@@ -46,20 +46,20 @@ class Classroom:
         return new
 
     def is_pass(self, shown: str | None) -> bool:
-        """See `Room.is_pass`."""
+        """See `Classroom.is_pass`."""
         given = (shown or "")[:100].encode(errors="replace")
         with self._lock:
             return any([hmac.compare_digest(given, own.encode()) for own in self._passes])
 
     def revoke(self, shown: str | None) -> None:
-        """See `Room.revoke`."""
+        """See `Classroom.revoke`."""
         with self._lock:
             self._passes.discard(shown or "")
 
     # Who is in it
 
     def join(self, session: str, typed: str, name: str) -> Member:
-        """See `Room.join`."""
+        """See `Classroom.join`."""
         self._door.check_code(typed, self.code, session)
         with self._lock:
             new = Member(self._joined + 1, "", active=self.clock())
@@ -68,16 +68,16 @@ class Classroom:
             return member
 
     def leave(self, session: str) -> None:
-        """See `Room.leave`."""
+        """See `Classroom.leave`."""
         with self._lock:
             self._members.pop(session, None)
 
     def member(self, session: str) -> Member | None:
-        """See `Room.member`."""
+        """See `Classroom.member`."""
         return self._members.get(session)
 
     def members(self) -> dict[str, Member]:
-        """See `Room.members`."""
+        """See `Classroom.members`."""
         with self._lock:
             return dict(self._members)
 
@@ -89,7 +89,7 @@ class Classroom:
         return False
 
     def note(self, session: str, **changes: object) -> None:
-        """See `Room.note`."""
+        """See `Classroom.note`."""
         with self._lock:
             old = self._members.get(session)
             if old is not None:
@@ -99,22 +99,22 @@ class Classroom:
 
     @property
     def orders(self) -> Orders:
-        """See `Room.orders`."""
+        """See `Classroom.orders`."""
         return self._orders
 
     def freeze(self, on: bool) -> None:
-        """See `Room.freeze`."""
+        """See `Classroom.freeze`."""
         with self._lock:
             self._orders = replace(self._orders, frozen=on)
 
     def push(self, push: Push | None) -> None:
-        """See `Room.push`."""
+        """See `Classroom.push`."""
         with self._lock:
             count = self._orders.pushes + (push is not None)
             self._orders = replace(self._orders, pushes=count, push=push)
 
     def end(self) -> int:
-        """See `Room.end`."""
+        """See `Classroom.end`."""
         with self._lock:
             count = len(self._members)
             self._members.clear()

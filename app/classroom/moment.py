@@ -11,7 +11,7 @@ from typing import Annotated
 import msgspec
 import numpy as np
 
-from onpath.app.lab.closed_loop_run import Diverged, PlantRun
+from onpath.app.lab.closed_loop_run import ClosedLoopRun, Diverged
 from onpath.app.lab.commands import EXAGGERATIONS, RATES
 from onpath.app.lab.path_editor import Blend, PathEditor
 from onpath.app.lab.plot_samples import places
@@ -25,7 +25,7 @@ from onpath.models.control.laws import NAMES
 from onpath.models.paths.curve_faults import Fault
 from onpath.models.paths.curves import TERMS, Curve, from_terms, terms_of
 from onpath.models.paths.path_design import MOST_POINTS, PathDesign
-from onpath.models.systems.catalogue import ROBOTS, Entry
+from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameters import Parameters, changed, specs
 
 MOST_MARKS = 2000  # numbers
@@ -44,7 +44,7 @@ class Line(msgspec.Struct, frozen=True):
     terms: Series
 
 
-class Followed(msgspec.Struct, frozen=True):
+class PathMoment(msgspec.Struct, frozen=True):
     """A path as it is edited and followed; see `app.lab.path_editor`."""
 
     name: Word
@@ -56,7 +56,7 @@ class Followed(msgspec.Struct, frozen=True):
     marks: Marks
 
 
-class Robot(msgspec.Struct, frozen=True):
+class RobotMoment(msgspec.Struct, frozen=True):
     """One robot.
 
     Attributes:
@@ -97,8 +97,8 @@ class Moment(msgspec.Struct, frozen=True):
     message: Text
     level: Word
     language: Word
-    path: Followed
-    robots: Annotated[tuple[Robot, ...], msgspec.Meta(min_length=2, max_length=2)]
+    path: PathMoment
+    robots: Annotated[tuple[RobotMoment, ...], msgspec.Meta(min_length=2, max_length=2)]
     is_seen: bool
     achieved: float
 
@@ -141,9 +141,9 @@ def tell(lab: Lab) -> Moment:
     )
 
 
-def _robot(run: PlantRun, push: Push, state: Array, sample: Array, most: float) -> Robot:
+def _robot(run: ClosedLoopRun, push: Push, state: Array, sample: Array, most: float) -> RobotMoment:
     anchor, tangent = push.hold or (np.zeros(0), np.zeros(0))
-    return Robot(
+    return RobotMoment(
         state=tuple(state.tolist()),
         sample=tuple(np.nan_to_num(sample).tolist()),
         max_distance=float(most),
@@ -154,11 +154,11 @@ def _robot(run: PlantRun, push: Push, state: Array, sample: Array, most: float) 
     )
 
 
-def _path(editor: PathEditor, past: Curve | None) -> Followed:
+def _path(editor: PathEditor, past: Curve | None) -> PathMoment:
     followed = editor.blend if past is None else Blend(past)
     points, faults = (editor.points(), editor.faults) if past is None else (np.zeros(0), ())
     marks = [number for fault in faults for number in fault.points.ravel().tolist()]
-    return Followed(
+    return PathMoment(
         name=(editor.proposed or editor.design).name,
         target=_line(followed.target),
         before=None if followed.before is None else _line(followed.before),
@@ -227,7 +227,7 @@ def take_over(session: Session, new: Moment, old: Moment | None) -> None:
     Args:
         new, old: checked ones; this one and the one that was taken over before.
     """
-    entry: Entry = ROBOTS[new.robot]
+    entry: RobotEntry = ROBOTS[new.robot]
     session.choose_robot(entry)
     if old is None or (new.robot, new.parameters) != (old.robot, old.parameters):
         session.set_parameters(parameters_of(new))
@@ -240,13 +240,13 @@ def take_over(session: Session, new: Moment, old: Moment | None) -> None:
     session.time, session.running, session.rate = new.time, new.running, new.rate
     session.exaggeration, grips = new.exaggeration, session.grips
     grips.grabbed, grips.held = new.grabbed, {*new.held}
-    session.say(new.message, new.level)
+    session.show_message(new.message, new.level)
     for name, robot in zip(NAMES, new.robots, strict=True):
         grips.pushes[name] = _push(robot)
         _take_robot(session, session.runs[name], robot)
 
 
-def _take_path(editor: PathEditor, path: Followed) -> None:
+def _take_path(editor: PathEditor, path: PathMoment) -> None:
     target, before = _curve(path.target), path.before and _curve(path.before)
     points = np.array(path.points).reshape(-1, 2)
     marks = [Fault("", np.array(path.marks).reshape(-1, 2))] if path.marks else []
@@ -259,12 +259,12 @@ def _curve(line: Line) -> Curve:
     return from_terms(line.closed, np.array(line.terms).reshape(-1, 2))
 
 
-def _push(robot: Robot) -> Push:
+def _push(robot: RobotMoment) -> Push:
     hold = (np.array(robot.anchor), np.array(robot.tangent)) if robot.anchor else None
     return Push(np.array(robot.hand) if robot.hand else None, hold)
 
 
-def _take_robot(session: Session, run: PlantRun, robot: Robot) -> None:
+def _take_robot(session: Session, run: ClosedLoopRun, robot: RobotMoment) -> None:
     fields, log = session.sample_layout.slices, log_layout(session.robot.system)
     run.state = np.array(robot.state)
     now, row = run.fields(), np.zeros(log.size)

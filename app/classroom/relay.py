@@ -11,13 +11,13 @@ from onpath.app.classroom.mirror import Mirror
 from onpath.app.classroom.moment import Moment, tell
 from onpath.app.classroom.watches import Watches
 from onpath.app.common.error_log import log_warning
-from onpath.app.common.periodic import Rounds
-from onpath.app.lab.class_commands import Tell
+from onpath.app.common.periodic import Periodic
+from onpath.app.lab.class_commands import ShowMessage
 from onpath.app.lab.session import Session
 from onpath.app.simulation.simulation_thread import Lab
 from onpath.app.storage.records import NotKept
 
-EVERY = 0.125  # [s]
+SEND_INTERVAL = 0.125  # [s]
 SELDOM = 4  # looks until labs are asked for again, or it is looked whether any are
 
 
@@ -46,7 +46,7 @@ class Relay:
         self._told: dict[str, Moment] = {}
         self._mirrors: dict[int, tuple[str, Mirror]] = {}
         self._looks = 0
-        self.rounds = Rounds("relay", EVERY, self._try)
+        self.rounds = Periodic("relay", SEND_INTERVAL, self._try)
 
     def mirror(self, client: int, session: str) -> Mirror | None:
         """What a teacher's page shows of a lab that lives elsewhere, once there is anything."""
@@ -77,7 +77,7 @@ class Relay:
         self._told = {c: now for c, now in {**self._told, **new}.items() if c in self._asked}
         for code in self._asked:
             if (lab := self._find(code)) is not None:
-                lab.session.post(Tell(partial(self._hear, code, lab)))
+                lab.session.post(ShowMessage(partial(self._hear, code, lab)))
 
     def _hear(self, code: str, lab: Lab, _: Session) -> None:
         self._heard[code] = tell(lab)

@@ -16,8 +16,8 @@ from typing import Any, TypeVar
 import sqlalchemy as sa
 from sqlalchemy import exc
 
-from onpath.app.classroom.admission import Door, new_pass
-from onpath.app.classroom.class_ledger import Ledger, Now, Seen
+from onpath.app.classroom.admission import Admission, new_pass
+from onpath.app.classroom.class_ledger import ClassLedger, ClassState, Now
 from onpath.app.classroom.class_rows import push_text
 from onpath.app.classroom.classroom import Member, Orders, Push, noted
 from onpath.app.common.error_log import log_warning
@@ -29,7 +29,7 @@ Result = TypeVar("Result")
 
 
 class SharedClassroom:
-    """See `app.classroom.classroom.Room`.
+    """See `app.classroom.classroom.Classroom`.
 
     Whoever has the teacher's key and the database has the same class.
 
@@ -53,11 +53,11 @@ class SharedClassroom:
     ) -> None:
         self.clock, self.key, self._wall = clock, key, wall
         self.id = hashlib.scrypt(key.encode(), salt=b"onpath", n=2**14, r=8, p=1, dklen=20).hex()
-        self._records, self._door = records, Door(clock)
-        self._ledger = Ledger(self.id, records.owner)
+        self._records, self._door = records, Admission(clock)
+        self._ledger = ClassLedger(self.id, records.owner)
         self._database = threading.RLock()  # held while the database is waited for
         self._lock = threading.Lock()
-        self._seen = Seen()
+        self._seen = ClassState()
         self._notes: dict[str, dict[str, Any]] = {}
         self._wanted: list[dict[str, Any]] = []
         self._told: dict[str, float] = {}
@@ -67,30 +67,30 @@ class SharedClassroom:
 
     @property
     def code(self) -> str:
-        """See `Room.code`."""
+        """See `Classroom.code`."""
         return self._seen.code
 
     @property
     def orders(self) -> Orders:
-        """See `Room.orders`."""
+        """See `Classroom.orders`."""
         return self._seen.orders
 
     def member(self, session: str) -> Member | None:
-        """See `Room.member`."""
+        """See `Classroom.member`."""
         return self._seen.members.get(session)
 
     def members(self) -> dict[str, Member]:
-        """See `Room.members`."""
+        """See `Classroom.members`."""
         return dict(self._seen.members)
 
     def is_elsewhere(self, session: str) -> bool:
-        """See `Room.is_elsewhere`."""
+        """See `Classroom.is_elsewhere`."""
         return session in self._seen.elsewhere
 
     # What is written at the next look
 
     def note(self, session: str, **changes: object) -> None:
-        """See `Room.note`. Who is connected is not noted, it stands in the leases."""
+        """See `Classroom.note`. Who is connected is not noted, it stands in the leases."""
         changes.pop("connected", None)
         with self._lock:
             old = self._seen.members.get(session)
@@ -104,19 +104,19 @@ class SharedClassroom:
             self._notes.setdefault(session, {}).update(changes)
 
     def freeze(self, on: bool) -> None:
-        """See `Room.freeze`."""
+        """See `Classroom.freeze`."""
         with self._lock:
             self._wanted.append({"frozen": int(on)})
             self._seen = replace(self._seen, orders=replace(self._seen.orders, frozen=on))
 
     def push(self, push: Push | None) -> None:
-        """See `Room.push`."""
+        """See `Classroom.push`."""
         sent = {} if push is None else {"pushes": classes.c.pushes + 1}
         with self._lock:
             self._wanted.append({**sent, "push": push_text(push)})
 
     def look(self) -> None:
-        """See `Room.look`. When the database does not work, all stays as it is."""
+        """See `Classroom.look`. When the database does not work, all stays as it is."""
         try:
             self._transact(lambda _: None)
         except NotKept as error:
@@ -125,23 +125,23 @@ class SharedClassroom:
     # What is done at once
 
     def admit(self, typed: str, who: str) -> str:
-        """See `Room.admit`."""
+        """See `Classroom.admit`."""
         self._door.check_key(typed, self.key, who)
         new = new_pass()
         self._transact(lambda connection: self._ledger.add_pass(connection, _hash(new)))
         return new
 
     def is_pass(self, shown: str | None) -> bool:
-        """See `Room.is_pass`."""
+        """See `Classroom.is_pass`."""
         with self._records.transaction() as connection:
             return self._ledger.has_pass(connection, _hash(shown or ""))
 
     def revoke(self, shown: str | None) -> None:
-        """See `Room.revoke`."""
+        """See `Classroom.revoke`."""
         self._transact(lambda connection: self._ledger.remove_pass(connection, _hash(shown or "")))
 
     def join(self, session: str, typed: str, name: str) -> Member:
-        """See `Room.join`."""
+        """See `Classroom.join`."""
         self._door.check_code(typed, self.code, session)
         return self._transact(
             lambda connection: self._ledger.enter(
@@ -150,12 +150,12 @@ class SharedClassroom:
         )
 
     def leave(self, session: str) -> None:
-        """See `Room.leave`."""
+        """See `Classroom.leave`."""
         if session in self._seen.members:
             self._transact(lambda connection: self._ledger.leave(connection, session, self._now()))
 
     def end(self) -> int:
-        """See `Room.end`."""
+        """See `Classroom.end`."""
         return self._transact(lambda connection: self._ledger.end(connection, self._now()))
 
     def dissolve(self) -> None:
@@ -191,7 +191,7 @@ class SharedClassroom:
         notes: Mapping[str, dict[str, Any]],
         wanted: list[dict[str, Any]],
         act: Callable[[sa.Connection], Result],
-    ) -> tuple[Result, Seen]:
+    ) -> tuple[Result, ClassState]:
         for last in (False, True):
             try:
                 with self._records.transaction() as connection:
@@ -221,7 +221,7 @@ class SharedClassroom:
                 values["active"] += now.wall - now.here
             self._ledger.write(connection, session, changed, **values)
 
-    def _with_waiting(self, seen: Seen) -> Seen:
+    def _with_waiting(self, seen: ClassState) -> ClassState:
         """A class as it will be when what has come meanwhile is written."""
         orders, there = seen.orders, dict(seen.members)
         for values in self._wanted:

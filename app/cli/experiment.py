@@ -14,7 +14,7 @@ from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 
 
 @dataclass(frozen=True)
-class Experiment:
+class ExperimentCommand:
     """Run one of the paper's experiments and report."""
 
     name: Annotated[str, tyro.conf.Positional]
@@ -59,7 +59,7 @@ class Experiment:
 
 
 @dataclass(frozen=True)
-class ZeroDynamics:
+class ZeroDynamicsCommand:
     """Exponents of the flexible link's internal dynamics against alpha and number of modes."""
 
     at: tuple[float, float] = (0.0, 0.0)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
-from onpath.app.cli.experiment import Experiment, ZeroDynamics
+from onpath.app.cli.experiment import ExperimentCommand, ZeroDynamicsCommand
 from onpath.app.cli.serve import Serve
 
 if TYPE_CHECKING:
@@ -50,9 +50,9 @@ class Lessons:
 
     def _played(self, course: Course, folder: Path) -> list[Problem]:
         from onpath.app.lab.course_check import play_course
-        from onpath.app.lab.loop_cache import LoopStore
+        from onpath.app.lab.loop_cache import LoopCache
 
-        problems = list(play_course(course, folder, LoopStore()))
+        problems = list(play_course(course, folder, LoopCache()))
         if not problems:
             lessons = list(course.lessons.values())
             tasks = sum(len(next(iter(versions.values())).tasks()) for versions in lessons)
@@ -62,7 +62,7 @@ class Lessons:
 
 
 @dataclass(frozen=True)
-class Bench:
+class BenchCommand:
     """Measure the speed of the closed loops and of the lab."""
 
     quick: bool = False
@@ -78,7 +78,7 @@ class Bench:
 
     def run(self) -> None:
         """Print the table."""
-        from onpath.app.bench.crowd import Crowd
+        from onpath.app.bench.crowd import ClientLoad
         from onpath.app.bench.tables import bench, bench_crowds
 
         if self.minutes < 0:
@@ -88,7 +88,7 @@ class Bench:
         if self.clients and self.quick:
             raise ValueError("--quick leaves out what --clients asks for")
         seconds, rows = (60.0, self.minutes) if self.minutes else (self.seconds, 1)
-        crowds = [Crowd(clients, self.workers, seconds, rows) for clients in self.clients]
+        crowds = [ClientLoad(clients, self.workers, seconds, rows) for clients in self.clients]
         if crowds:
             bench_crowds(crowds)
         else:
@@ -142,16 +142,18 @@ def unknown_command(name: str) -> str:
     return f"unknown command {name!r}: there are {', '.join(COMMANDS)}"
 
 
-def _parse(arguments: list[str]) -> Serve | Experiment | ZeroDynamics | Lessons | Bench | Forget:
+def _parse(
+    arguments: list[str],
+) -> Serve | ExperimentCommand | ZeroDynamicsCommand | Lessons | BenchCommand | Forget:
     complaint = io.StringIO()
     try:
         with contextlib.redirect_stderr(complaint):
             return tyro.cli(
                 Annotated[Serve, tyro.conf.subcommand("serve")]
-                | Annotated[Experiment, tyro.conf.subcommand("experiment")]
-                | Annotated[ZeroDynamics, tyro.conf.subcommand("zero-dynamics")]
+                | Annotated[ExperimentCommand, tyro.conf.subcommand("experiment")]
+                | Annotated[ZeroDynamicsCommand, tyro.conf.subcommand("zero-dynamics")]
                 | Annotated[Lessons, tyro.conf.subcommand("lessons")]
-                | Annotated[Bench, tyro.conf.subcommand("bench")]
+                | Annotated[BenchCommand, tyro.conf.subcommand("bench")]
                 | Annotated[Forget, tyro.conf.subcommand("forget")],
                 prog="onpath",
                 description=__doc__,

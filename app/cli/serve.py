@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import tyro
 
 if TYPE_CHECKING:
-    from onpath.app.classroom.classroom import Room
+    from onpath.app.classroom.classroom import Classroom
     from onpath.app.storage.records import Records
 
 
@@ -92,13 +92,13 @@ class Serve:
             supervise(self, {KEY: room.key})
 
 
-def _opener(silent: bool) -> Callable[[Records], Room]:
+def _opener(silent: bool) -> Callable[[Records], Classroom]:
     """What opens a class in a database; it prints code and key unless somebody else does."""
     from onpath.app.classroom.class_opening import given_key, open_class
 
     key = given_key()
 
-    def opened(records: Records) -> Room:
+    def opened(records: Records) -> Classroom:
         room = open_class(records, key)
         if not silent:
             _print_class(room.code, room.key if key is None else None)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from onpath.app.common.error_log import log_error
 
 
-class Rounds:
+class Periodic:
     """A round every so many seconds, from `start` to `stop`; one that fails does not end them.
 
     Args:

@@ -16,7 +16,7 @@ import viser
 
 from onpath.app.common.error_log import log_error
 from onpath.app.exports.recording import record_scene
-from onpath.app.lab.history import Stretch
+from onpath.app.lab.history import Segment
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.session import Session
 from onpath.lessons.words import Words
@@ -57,7 +57,7 @@ class Exporter:
         """Ask for a standalone page with the scene of the last seconds."""
         until = time.monotonic() + PATIENCE
 
-        def make(robot: Robot, history: list[Stretch], words: Words) -> bytes:
+        def make(robot: Robot, history: list[Segment], words: Words) -> bytes:
             return record_scene(robot, _last(history, FILM), words, until)
 
         self._ask("onpath.html", make, film=True)
@@ -104,12 +104,12 @@ class Exporter:
         self._pool.shutdown(wait=False, cancel_futures=True)
 
     def _ask(
-        self, name: str, make: Callable[[Robot, list[Stretch], Words], bytes], film: bool = False
+        self, name: str, make: Callable[[Robot, list[Segment], Words], bytes], film: bool = False
     ) -> None:
         def start(session: Session) -> None:
             robot, history, words = session.robot, session.history.all(), session.lessons.words
             if not history:
-                session.say(words("export.nothing"), "warning")
+                session.show_message(words("export.nothing"), "warning")
                 self._under_way.discard(name)
                 return
             work = partial(make, robot, history, words)
@@ -151,14 +151,14 @@ class Exporter:
         self._under_way.discard(name)
 
 
-def csv_bytes(robot: Robot, history: list[Stretch]) -> bytes:
+def csv_bytes(robot: Robot, history: list[Segment]) -> bytes:
     """Every millisecond of the history as CSV."""
     file = io.StringIO()
     write_csv(file, robot, replay(robot, history).values())
     return file.getvalue().encode()
 
 
-def png_bytes(robot: Robot, history: list[Stretch], words: Words) -> bytes:
+def png_bytes(robot: Robot, history: list[Segment], words: Words) -> bytes:
     """A picture of the plots of the history."""
     from onpath.app.exports.figures import draw_history  # see app/server/lazy_imports.py
 
@@ -172,7 +172,7 @@ def report_bytes(run: LessonRun, code: str, made: datetime) -> bytes:
     return report(run, code, made)
 
 
-def replay(robot: Robot, history: list[Stretch]) -> dict[str, Trajectory]:
+def replay(robot: Robot, history: list[Segment]) -> dict[str, Trajectory]:
     """The history computed again, tick by tick, from its checkpoints and inputs.
 
     While a robot stands still after a divergence there is nothing of it.
@@ -187,7 +187,7 @@ def replay(robot: Robot, history: list[Stretch]) -> dict[str, Trajectory]:
     return runs
 
 
-def _replayed(robot: Robot, name: str, history: list[Stretch]) -> list[Trajectory]:
+def _replayed(robot: Robot, name: str, history: list[Segment]) -> list[Trajectory]:
     loops: dict[object, InterpretedLoop] = {}
     parts: list[Trajectory] = []
     runs = groupby(history, key=lambda s: (id(s.curve), s.dt, s.drives[name].kind))
@@ -204,8 +204,8 @@ def _replayed(robot: Robot, name: str, history: list[Stretch]) -> list[Trajector
 
 
 def _rows(
-    loop: InterpretedLoop, name: str, stretches: list[Stretch]
-) -> Iterable[tuple[Stretch, Array, bool]]:
+    loop: InterpretedLoop, name: str, stretches: list[Segment]
+) -> Iterable[tuple[Segment, Array, bool]]:
     for stretch in stretches:
         drive = stretch.drives[name]
         table = stretch.curve.table()
@@ -223,6 +223,6 @@ def merged(segments: list) -> list:
     return result
 
 
-def _last(history: list[Stretch], seconds: float) -> list[Stretch]:
+def _last(history: list[Segment], seconds: float) -> list[Segment]:
     end = history[-1].time
     return [s for s in history if s.time >= end - seconds]

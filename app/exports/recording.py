@@ -14,7 +14,7 @@ from viser._viser import InitialCameraConfig
 from viser.infra import WebsockServer
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
-from onpath.app.lab.history import Stretch
+from onpath.app.lab.history import Segment
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.robot_geometry import robot_views
 from onpath.app.lab.snapshot import PathView, Snapshot
@@ -28,7 +28,7 @@ from onpath.models.systems.robots import Robot
 RATE = 30.0  # [Hz]
 
 
-class Studio(viser.ViserServer):
+class FilmServer(viser.ViserServer):
     """The scene of a server without the server: no socket, no thread, nobody is connected.
 
     What the scene is told is kept in the queue that nobody empties, and can be serialized.
@@ -48,7 +48,7 @@ class Studio(viser.ViserServer):
 
 
 def record_scene(
-    robot: Robot, history: list[Stretch], words: Words = ENGLISH, until: float = math.inf
+    robot: Robot, history: list[Segment], words: Words = ENGLISH, until: float = math.inf
 ) -> bytes:
     """A standalone page that replays the history.
 
@@ -61,7 +61,7 @@ def record_scene(
         TimeoutError: it takes longer.
     """
     frames = _frames(history)
-    studio, stage = Studio(), stage_of(robot)
+    studio, stage = FilmServer(), stage_of(robot)
     set_initial_camera(studio, stage)
     scene = Scene(studio, stage=stage, words=words)  # type: ignore[arg-type]  # has scene, atomic()
     scene.build(_snapshot(robot, frames[0], 0, []))
@@ -78,14 +78,14 @@ def record_scene(
     return serializer.as_html().encode()
 
 
-def _frames(history: list[Stretch]) -> list[Stretch]:
+def _frames(history: list[Segment]) -> list[Segment]:
     """Stretches at about the film's rate."""
     times = np.array([s.time for s in history])
     wanted = np.arange(times[0], times[-1] + 1e-9, 1 / RATE)
     return [history[i] for i in np.searchsorted(times, wanted).clip(max=len(times) - 1)]
 
 
-def _snapshot(robot: Robot, stretch: Stretch, number: int, before: list[Stretch]) -> Snapshot:
+def _snapshot(robot: Robot, stretch: Segment, number: int, before: list[Segment]) -> Snapshot:
     where = sample_layout(robot).slices["y"]
     traces = np.array([s.sample[:, where] for s in [*before, stretch]], dtype=float)
     views = robot_views(robot, stretch.curve, stretch.instant(), traces[:-1])

@@ -58,8 +58,8 @@ def _(command: c.ChooseRobot, session: Session) -> None:
     session.choose_robot(ROBOTS[command.name])
 
 
-@apply.register(c.Step)
-def _(_: c.Step, session: Session) -> None:
+@apply.register(c.StepOnce)
+def _(_: c.StepOnce, session: Session) -> None:
     return_to_present(session)
     session.step_once()
 
@@ -69,8 +69,8 @@ def _(_: c.Reset, session: Session) -> None:
     session.reset()
 
 
-@apply.register(c.View)
-def _(command: c.View, session: Session) -> None:
+@apply.register(c.LookAt)
+def _(command: c.LookAt, session: Session) -> None:
     look_back(session, _finite(command.ago))
 
 
@@ -148,8 +148,8 @@ def _(command: c.Release, session: Session) -> None:
         session.grips.release()
 
 
-@apply.register(c.Tug)
-def _(command: c.Tug, session: Session) -> None:
+@apply.register(c.MoveHand)
+def _(command: c.MoveHand, session: Session) -> None:
     return_to_present(session)
     name = session.grips.grabbed or NAMES[-1]
     target = session.grips.hands.get(name, session.runs[name].shown()["y"])
@@ -241,12 +241,16 @@ def _(command: c.DrawPath, session: Session) -> None:
 
 @apply.register(c.Undo)
 def _(_: c.Undo, session: Session) -> None:
-    session.say("" if session.editor.undo() else session.lessons.words("say.nothing_to_undo"))
+    session.show_message(
+        "" if session.editor.undo() else session.lessons.words("say.nothing_to_undo")
+    )
 
 
 @apply.register(c.Redo)
 def _(_: c.Redo, session: Session) -> None:
-    session.say("" if session.editor.redo() else session.lessons.words("say.nothing_to_redo"))
+    session.show_message(
+        "" if session.editor.redo() else session.lessons.words("say.nothing_to_redo")
+    )
 
 
 @apply.register(c.Share)
@@ -257,7 +261,7 @@ def _(_: c.Share, session: Session) -> None:
 @apply.register(c.UseShared)
 def _(command: c.UseShared, session: Session) -> None:
     restore(session, decode(command.text))
-    session.say("")
+    session.show_message("")
 
 
 def _commit(session: Session, design: PathDesign) -> None:
@@ -271,13 +275,13 @@ def _finish(session: Session) -> None:
     if session.editor.finish():
         if session.editor.design is not before:
             session.note("path", session.editor.design.name)
-        session.hush()
+        session.clear_message()
         return_to_present(session)
     elif session.editor.faults:
         words = session.lessons.words
         reasons = "; ".join(words.sentence(fault.reason) for fault in session.editor.faults)
         return_to_present(session)
-        session.say(words("say.refused", reasons=reasons), "warning")
+        session.show_message(words("say.refused", reasons=reasons), "warning")
 
 
 def _selected(session: Session) -> int:

@@ -23,7 +23,7 @@ def _(command: c.Freeze, session: Session) -> None:
         if session.editor.proposed is not None:  # a point is being dragged
             apply(commands.EndMove(), session)
     session.frozen = command.on
-    session.hush()
+    session.clear_message()
     _tell(session)
 
 
@@ -31,7 +31,7 @@ def _(command: c.Freeze, session: Session) -> None:
 def _(command: c.TakeSetup, session: Session) -> None:
     run = session.lessons
     run.take(command.setup, session)
-    session.say(run.words("class.setup" if run.lesson is None else "class.setup_in_step"))
+    session.show_message(run.words("class.setup" if run.lesson is None else "class.setup_in_step"))
     _tell(session)
 
 
@@ -40,16 +40,16 @@ def _(command: c.TakeStep, session: Session) -> None:
     run = session.lessons
     elsewhere = run.lesson is not None and run.progress.lesson != command.lesson
     run.open_at(command.lesson, command.step, session)
-    session.say(run.words("class.step_elsewhere" if elsewhere else "class.step"))
+    session.show_message(run.words("class.step_elsewhere" if elsewhere else "class.step"))
     _tell(session)
 
 
-@apply.register(c.Tell)
-def _(command: c.Tell, session: Session) -> None:
+@apply.register(c.ShowMessage)
+def _(command: c.ShowMessage, session: Session) -> None:
     command.to(session)
 
 
 def _tell(session: Session) -> None:
     """Whoever finds the lab standing still reads why."""
     if session.frozen:
-        session.say(session.lessons.words("class.frozen"), "warning")
+        session.show_message(session.lessons.words("class.frozen"), "warning")

@@ -64,7 +64,7 @@ def _(command: c.SetLanguage, session: Session) -> None:
     session.lessons.set_language(command.language)
     if session.locked:
         session.locked = session.lessons.words("lesson.locked")
-    session.hush()
+    session.clear_message()
 
 
 @apply.register(c.SetPresenting)

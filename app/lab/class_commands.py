@@ -38,10 +38,10 @@ class TakeStep:
 
 
 @dataclass(frozen=True, slots=True)
-class Tell:
+class ShowMessage:
     """How the lab is now, to somebody who must not keep it waiting."""
 
     to: Callable[[Session], None]
 
 
-ClassCommand = Freeze | TakeSetup | TakeStep | Tell
+ClassCommand = Freeze | TakeSetup | TakeStep | ShowMessage

@@ -8,7 +8,7 @@ from math import isfinite
 import numpy as np
 
 from onpath.app.lab.history import Drive, Input
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.simulation import (
     Push,
@@ -24,7 +24,7 @@ from onpath.models.paths.distance import near_distance
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
-EVERY = 4  # rows between looks at the distance, where the loop does not log it
+DISTANCE_INTERVAL = 4  # rows between looks at the distance, where the loop does not log it
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Diverged:
     time: float
 
 
-class PlantRun:
+class ClosedLoopRun:
     """State and inputs of one closed loop; only the simulation thread touches it."""
 
     def __init__(
@@ -102,7 +102,7 @@ class PlantRun:
 
     def advance(
         self,
-        store: LoopStore,
+        store: LoopCache,
         parameters: Parameters,
         curve: Curve,
         table: np.ndarray,
@@ -137,7 +137,7 @@ class PlantRun:
         seen = system.controlled_output is system.output and not self.kind.encoder
         if seen and not self.kind.level_set and system.p == 2:
             return [abs(xi) for xi in rows[:, slices["xi"].start].tolist()]
-        some = rows[(len(rows) - 1) % EVERY :: EVERY]
+        some = rows[(len(rows) - 1) % DISTANCE_INTERVAL :: DISTANCE_INTERVAL]
         return near_distance(
             self.robot.frame, curve, some[:, slices["y"]], some[:, slices["theta"].start]
         ).tolist()

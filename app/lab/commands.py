@@ -46,7 +46,7 @@ class SetRunning:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class StepOnce:
     """One step of simulated time while paused."""
 
 
@@ -63,7 +63,7 @@ class SetRate:
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class LookAt:
     """Pause and look at how it was, [s] before now; 0 is now."""
 
     ago: float
@@ -110,7 +110,7 @@ class Release:
 
 
 @dataclass(frozen=True, slots=True)
-class Tug:
+class MoveHand:
     """Move the hand by a little in the path's plane, [m]; it takes hold first if need be."""
 
     right: float
@@ -229,17 +229,17 @@ Command = (
     | Identify
     | ChooseRobot
     | SetRunning
-    | Step
+    | StepOnce
     | Reset
     | SetRate
-    | View
+    | LookAt
     | LookBack
     | GoOn
     | UndoGoOn
     | Hold
     | Grab
     | Release
-    | Tug
+    | MoveHand
     | SetCopy
     | SetExaggeration
     | ChoosePath
@@ -259,5 +259,5 @@ Command = (
     | LessonCommand
 )
 
-LETS_TIME_RUN = (SetRunning, Step, GoOn)
+LETS_TIME_RUN = (SetRunning, StepOnce, GoOn)
 """What a locked session refuses."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.lesson_scene import set_up
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
 from onpath.lessons.checks import Verdict, judge
@@ -20,7 +20,7 @@ FRAME = 1 / 60  # [s]
 LOOKS = 0.1  # [s] between looks at a task's checks
 
 
-def play_course(course: Course, folder: Path, store: LoopStore) -> Iterator[Problem]:
+def play_course(course: Course, folder: Path, store: LoopCache) -> Iterator[Problem]:
     """What is wrong with the scripts, solutions and failures of a folder's lessons.
 
     Args:
@@ -36,7 +36,7 @@ def play_course(course: Course, folder: Path, store: LoopStore) -> Iterator[Prob
         yield from _reference_faults(lesson, home / REFERENCE, store)
 
 
-def lab_at(lesson: Lesson, step: Step, store: LoopStore) -> Session:
+def lab_at(lesson: Lesson, step: Step, store: LoopCache) -> Session:
     """A lab set up for a step of a lesson."""
     session = Session(store)
     set_up(session, lesson, lesson.steps.index(step))
@@ -77,7 +77,7 @@ def solved(session: Session, script: Script, task: Task) -> tuple[bool, list[Ver
     return passed, last
 
 
-def _script_faults(lesson: Lesson, step: Step, file: Path, store: LoopStore) -> Iterator[Problem]:
+def _script_faults(lesson: Lesson, step: Step, file: Path, store: LoopCache) -> Iterator[Problem]:
     if step.script is None:
         return
     try:
@@ -87,7 +87,7 @@ def _script_faults(lesson: Lesson, step: Step, file: Path, store: LoopStore) -> 
         yield Problem(str(file), step.line, f"the script of step {step.title!r}: {error}")
 
 
-def _reference_faults(lesson: Lesson, file: Path, store: LoopStore) -> Iterator[Problem]:
+def _reference_faults(lesson: Lesson, file: Path, store: LoopCache) -> Iterator[Problem]:
     references = read_references(lesson, file)[0]
     for step in lesson.steps:
         for task in step.tasks():
@@ -102,7 +102,7 @@ def _reference_faults(lesson: Lesson, file: Path, store: LoopStore) -> Iterator[
 
 
 def _fault(
-    lesson: Lesson, step: Step, script: Script, task: Task, store: LoopStore, right: bool
+    lesson: Lesson, step: Step, script: Script, task: Task, store: LoopCache, right: bool
 ) -> str:
     """Why a script is not the solution, or not the failure, that it should be."""
     try:

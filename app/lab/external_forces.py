@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from onpath.app.lab.closed_loop_run import PlantRun
+from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.simulation import FREE, Push, brake_at
 from onpath.models.control.laws import NAMES
@@ -23,7 +23,7 @@ class Note(Protocol):
     def __call__(self, name: str, /, *, controllers: tuple[str, ...]) -> None: ...
 
 
-class Grips:
+class ExternalForces:
     """Of one run, from reset to reset.
 
     Args:
@@ -38,7 +38,7 @@ class Grips:
         pushes: what acts on each robot from outside; the same object while nothing changes.
     """
 
-    def __init__(self, robot: Robot, runs: Mapping[str, PlantRun], note: Note) -> None:
+    def __init__(self, robot: Robot, runs: Mapping[str, ClosedLoopRun], note: Note) -> None:
         self._robot, self._runs, self._note = robot, runs, note
         self.held: set[str] = set()
         self.hands: dict[str, Array] = {}

@@ -99,7 +99,7 @@ class Instant:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Frame:
+class HistoryFrame:
     """What has just been simulated.
 
     Attributes:
@@ -122,7 +122,7 @@ class Frame:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Stretch:
+class Segment:
     """Some ticks with the same inputs.
 
     Attributes:
@@ -158,7 +158,7 @@ class History:
         sample: what the plots show of some frames, shape (frames, robots, fields).
     """
 
-    def __init__(self, sample: Callable[[Sequence[Frame]], np.ndarray]) -> None:
+    def __init__(self, sample: Callable[[Sequence[HistoryFrame]], np.ndarray]) -> None:
         self._sample = sample
         self._lock = threading.Lock()  # a page that is being built looks at it, too
         self.clear()
@@ -170,13 +170,13 @@ class History:
     def clear(self) -> None:
         """Forget everything."""
         with self._lock:
-            self._waiting: list[Frame] = []
+            self._waiting: list[HistoryFrame] = []
             self._columns: dict[str, np.ndarray] = {}
-            self._list: list[Stretch] | None = None
+            self._list: list[Segment] | None = None
             self._begin = self._end = 0
             self._before = 0  # rows that have been moved out at the front, ever
 
-    def append(self, frame: Frame) -> None:
+    def append(self, frame: HistoryFrame) -> None:
         """Add what has just been simulated; what is older than a minute is dropped in time."""
         with self._lock:
             waiting = self._waiting
@@ -197,7 +197,7 @@ class History:
                 if frames:  # no other thread has been here
                     self._put(frames)
 
-    def _put(self, frames: Sequence[Frame]) -> None:
+    def _put(self, frames: Sequence[HistoryFrame]) -> None:
         self._list, samples = None, self._sample(frames)
         if not self._columns or self._end + len(frames) > len(self._columns["time"]):
             self._make_room(frames, samples)
@@ -212,7 +212,7 @@ class History:
         reached = self._find(frames[-1].time - SECONDS, "right") - 1
         self._begin = max(self._begin, reached, self._end - MOST)
 
-    def all(self) -> list[Stretch]:
+    def all(self) -> list[Segment]:
         """Everything, oldest first; the same objects until something changes."""
         self.settle()
         if self._list is None:
@@ -225,13 +225,13 @@ class History:
             return 0.0
         return float(self._ends(self._end - 1) - self._columns["time"][self._begin])
 
-    def at(self, time: float) -> Stretch | None:
+    def at(self, time: float) -> Segment | None:
         """The stretch during which it was `time`, or the nearest one; None if there is none."""
         if not len(self):
             return None
         return self._stretch(max(self._find(time, "right") - 1, self._begin))
 
-    def before(self, stretch: Stretch) -> History:
+    def before(self, stretch: Segment) -> History:
         """A copy of what came before `stretch`."""
         self.settle()
         copy = History(self._sample)
@@ -261,7 +261,7 @@ class History:
         times = self._columns["time"][self._begin : self._end]
         return self._begin + int(times.searchsorted(time, side))
 
-    def _stretch(self, row: int) -> Stretch:
+    def _stretch(self, row: int) -> Segment:
         columns = self._columns
         inputs: Inputs = columns["inputs"][row]
         states, most = columns["state"][row].copy(), columns["most"][row]
@@ -270,9 +270,9 @@ class History:
             for (name, one), state, distance in zip(inputs.of.items(), states, most, strict=True)
         }
         time, ticks = float(columns["time"][row]), int(columns["ticks"][row])
-        return Stretch(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())
+        return Segment(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())
 
-    def _make_room(self, frames: Sequence[Frame], samples: np.ndarray) -> None:
+    def _make_room(self, frames: Sequence[HistoryFrame], samples: np.ndarray) -> None:
         """Columns with free rows at their end: thinned out, and larger if that is not enough."""
         kept, old, size = self._kept(), self._columns, len(self._columns.get("time", ()))
         if len(kept):

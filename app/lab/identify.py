@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onpath.app.lab.history import Drive, Stretch
+from onpath.app.lab.history import Drive, Segment
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
@@ -21,7 +21,7 @@ from onpath.models.studies.identification import (
     DRY,
     INERTIA,
     Identified,
-    Record,
+    JointRecord,
     joint_torques,
     simplest,
     smooth_velocities,
@@ -51,17 +51,17 @@ def identify_model(session: Session) -> None:
     found, duration = _learned(robot, tuple(_same_robot(robot, session.history.all())))
     session.set_parameters(believing(robot, parameters, found))
     words = session.lessons.words
-    session.say(_sentence(robot, parameters, session.parameters, found, duration, words))
+    session.show_message(_sentence(robot, parameters, session.parameters, found, duration, words))
 
 
 @lru_cache(maxsize=4)  # whoever keeps the button down learns nothing new
-def _learned(robot: RigidFiveBar, stretches: tuple[Stretch, ...]) -> tuple[Identified, float]:
+def _learned(robot: RigidFiveBar, stretches: tuple[Segment, ...]) -> tuple[Identified, float]:
     """What the stretches say, and how long they are, [s]."""
     record = last_record(robot, list(stretches))
     return simplest(record), len(record.q) * record.dt
 
 
-def last_record(robot: RigidFiveBar, history: list[Stretch]) -> Record:
+def last_record(robot: RigidFiveBar, history: list[Segment]) -> JointRecord:
     """What the follower's sensors saw in the last seconds, while the robot was as it is now.
 
     Raises:
@@ -79,7 +79,7 @@ def last_record(robot: RigidFiveBar, history: list[Stretch]) -> Record:
         step = float(_setting(robot, drive, "encoder_step")[0])
         q = step * np.floor(q / step + 0.5)
         v = smooth_velocities(q, dt)
-    return Record(dt, q, v, torque)
+    return JointRecord(dt, q, v, torque)
 
 
 def believing(robot: RigidFiveBar, parameters: Parameters, found: Identified) -> Parameters:
@@ -93,9 +93,9 @@ def believing(robot: RigidFiveBar, parameters: Parameters, found: Identified) ->
     return dataclasses.replace(parameters, **changes)
 
 
-def _same_robot(robot: Robot, history: list[Stretch]) -> list[Stretch]:
+def _same_robot(robot: Robot, history: list[Segment]) -> list[Segment]:
     """The last stretches without a stop or a change of the plant or of its sensors."""
-    found, ticks = list[Stretch](), 0
+    found, ticks = list[Segment](), 0
     for stretch in reversed(history):
         ticks += stretch.ticks
         later = found[-1] if found else stretch
@@ -120,7 +120,7 @@ def _setting(robot: Robot, drive: Drive, name: str) -> Array:
     return drive.settings[kernel_of(robot, drive.kind).settings.slices[name]]
 
 
-def _rows(robot: Robot, stretches: list[Stretch]) -> Array:
+def _rows(robot: Robot, stretches: list[Segment]) -> Array:
     """Log rows of the follower, computed again; what goes on with the same inputs, at once."""
     rows = list[Array]()
     runs = groupby(stretches, lambda s: (id(s.drives[FOLLOWER].settings), id(s.curve)))

@@ -24,7 +24,7 @@ from onpath.lessons.words import Words
 if TYPE_CHECKING:
     from onpath.app.lab.session import Session
 
-EVERY = 30  # frames between looks at the tasks
+CHECK_INTERVAL = 30  # frames between looks at the tasks
 
 
 class LessonRun:
@@ -273,7 +273,7 @@ class LessonRun:
             if ended.finished:
                 self._note_truth(session)
             self.version += 1
-        if self._frames % EVERY:
+        if self._frames % CHECK_INTERVAL:
             return
         if self._player is not None and self._trace is not None:
             self._trace.follow(session)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from onpath.app.lab.setup import Bench, Path, Setup, restore
+from onpath.app.lab.setup import Path, RobotSetup, Setup, restore
 from onpath.lessons.schema import Lesson
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ def setup_of(lesson: Lesson, index: int) -> Setup:
     """A step's set-up: of the lesson alone, not of what was done in the lab before."""
     scene = lesson.scene_at(index)
     robot, path = scene.robot or lesson.front.robot, Path(scene.path or Path().name)
-    return Setup(robot, {robot: Bench(dict(scene.set), path)})
+    return Setup(robot, {robot: RobotSetup(dict(scene.set), path)})
 
 
 def set_up(session: Session, lesson: Lesson, index: int) -> None:

@@ -11,9 +11,9 @@ from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from onpath.app.lab.closed_loop_run import PlantRun
-from onpath.app.lab.external_forces import Grips
-from onpath.app.lab.history import History, Stretch
+from onpath.app.lab.closed_loop_run import ClosedLoopRun
+from onpath.app.lab.external_forces import ExternalForces
+from onpath.app.lab.history import History, Segment
 from onpath.lessons.record import Happening
 from onpath.models.paths.curves import Curve
 
@@ -37,8 +37,8 @@ class Timeline:
     time: float
     curve: Curve
     history: History
-    runs: dict[str, PlantRun]
-    grips: Grips
+    runs: dict[str, ClosedLoopRun]
+    grips: ExternalForces
     happenings: deque[Happening]
 
 
@@ -49,9 +49,9 @@ def look_back(session: Session, ago: float) -> None:
         return
     words = session.lessons.words
     if session.viewing is None:
-        session.say(words("say.looking_back"))
+        session.show_message(words("say.looking_back"))
     if session.grips.hands:
-        session.say(words("say.looking_back") + " " + words("say.let_go"))
+        session.show_message(words("say.looking_back") + " " + words("say.let_go"))
     session.running = False
     session.grips.release()
     session.viewing = session.time - min(ago, session.history.span())
@@ -69,7 +69,7 @@ def go_on(session: Session) -> None:
     stretch = None if session.viewing is None else session.history.at(session.viewing)
     if stretch is None:
         session.viewing, session.running = None, True
-        session.hush()
+        session.clear_message()
         return
     left = _timeline(session)
     _take(session, _branch(session, stretch))
@@ -85,7 +85,7 @@ def undo_going_on(session: Session) -> None:
     """Bring back what was put aside, paused at its end; what was done instead is put aside."""
     words, back = session.lessons.words, session.put_aside
     if back is None:
-        session.say(words("say.nothing_to_undo"))
+        session.show_message(words("say.nothing_to_undo"))
         return
     session.grips.release()
     session.viewing = None
@@ -97,9 +97,9 @@ def undo_going_on(session: Session) -> None:
 
 def _say(session: Session, message: str) -> None:
     """Something less important than that a robot stands still."""
-    session.hush()
+    session.clear_message()
     if not session.message:
-        session.say(message)
+        session.show_message(message)
 
 
 def _timeline(session: Session) -> Timeline:
@@ -124,7 +124,7 @@ def _take(session: Session, timeline: Timeline) -> None:
             run.change_path(session.editor.curve)
 
 
-def _branch(session: Session, stretch: Stretch) -> Timeline:
+def _branch(session: Session, stretch: Segment) -> Timeline:
     """A timeline that ends where a stretch of this one begins; nobody holds or pulls there."""
     runs = {name: copy(run) for name, run in session.runs.items()}
     for name, run in runs.items():
@@ -136,6 +136,6 @@ def _branch(session: Session, stretch: Stretch) -> Timeline:
         stretch.curve,
         session.history.before(stretch),
         runs,
-        Grips(session.robot, runs, session.note),
+        ExternalForces(session.robot, runs, session.note),
         deque(kept, happenings.maxlen),
     )

@@ -16,7 +16,7 @@ log = logging.getLogger(__name__)
 Key = tuple[Robot, Kind]
 
 
-class LoopStore:
+class LoopCache:
     """Loops by robot and kind. `get` never waits for one to be compiled."""
 
     def __init__(self) -> None:

@@ -19,12 +19,12 @@ import numpy as np
 from onpath.app.lab import commands
 from onpath.app.lab.apply_class import apply
 from onpath.app.lab.class_commands import ClassCommand
-from onpath.app.lab.closed_loop_run import PlantRun
-from onpath.app.lab.external_forces import Grips
-from onpath.app.lab.history import Frame, History, Inputs, Instant
+from onpath.app.lab.closed_loop_run import ClosedLoopRun
+from onpath.app.lab.external_forces import ExternalForces
+from onpath.app.lab.history import History, HistoryFrame, Inputs, Instant
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.looking_back import Timeline
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout, samples_of
 from onpath.app.lab.script_player import ScriptPlayer
@@ -37,7 +37,7 @@ from onpath.models.control.laws import NAMES
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign, presets
-from onpath.models.systems.catalogue import FIVE_BAR, Entry
+from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 from onpath.models.systems.parameters import TICK, Parameters, time_step
 from onpath.models.systems.robots import Robot
 
@@ -71,7 +71,7 @@ class Session:
     """
 
     def __init__(
-        self, store: LoopStore, entry: Entry = FIVE_BAR, course: Course = NO_LESSONS
+        self, store: LoopCache, entry: RobotEntry = FIVE_BAR, course: Course = NO_LESSONS
     ) -> None:
         self._store = store
         self._inbox: deque[commands.Command | ClassCommand] = deque(maxlen=MOST_COMMANDS)
@@ -97,13 +97,13 @@ class Session:
 
     # The robot
 
-    def choose_robot(self, entry: Entry) -> None:
+    def choose_robot(self, entry: RobotEntry) -> None:
         """Another robot, with the parameters and the path that it had before."""
         if entry is not self.entry:
             self._benches[self.entry.name] = (self.parameters, self.editor)
             self._set_up(entry)
             self.note("robot", entry.name)
-            self.say("")
+            self.show_message("")
 
     def set_parameters(self, parameters: Parameters) -> None:
         """New numbers; a structural one makes another robot, which starts anew."""
@@ -116,7 +116,7 @@ class Session:
             self.editor.robot = robot
             self._restart()
 
-    def _set_up(self, entry: Entry) -> None:
+    def _set_up(self, entry: RobotEntry) -> None:
         self.entry = entry
         parameters, editor = self._benches.get(entry.name, (entry.lab, None))
         self.parameters: Parameters = parameters
@@ -146,12 +146,12 @@ class Session:
             if not isinstance(command, ClassCommand):
                 self.asked += 1
                 if refusal := self._refusal(command):
-                    self.say(refusal, "warning")
+                    self.show_message(refusal, "warning")
                     continue
             try:
                 apply(command, self)
             except ValueError as error:
-                self.say(self.lessons.words.sentence(str(error)), "warning")
+                self.show_message(self.lessons.words.sentence(str(error)), "warning")
         taken = perf_counter() - begun
         if not self.frozen:
             self._play()
@@ -173,20 +173,20 @@ class Session:
                 self.script = None
         except ValueError as error:
             self.script = None
-            self.say(self.lessons.words.sentence(str(error)), "warning")
+            self.show_message(self.lessons.words.sentence(str(error)), "warning")
 
     def note(self, name: str, detail: str = "", controllers: tuple[str, ...] = NAMES) -> None:
         """Remember that something has happened."""
         what = Happening(self.run_number, self.time, name, detail, _roles(controllers))
         self.happenings.append(what)
 
-    def say(self, message: str, level: str = "info") -> None:
+    def show_message(self, message: str, level: str = "info") -> None:
         """Show a sentence to the user."""
         self.message, self.message_level = message, level
 
-    def hush(self) -> None:
+    def clear_message(self) -> None:
         """Say nothing more, but for robots that still stand still."""
-        self.say("")
+        self.show_message("")
         for name, run in self.runs.items():
             if run.diverged is not None:
                 self._tell_divergence(name)
@@ -221,10 +221,12 @@ class Session:
         inputs = {run.controller: run.input() for run in runs}
         if self._inputs is None or not self._inputs.are(curve, dt, inputs.values()):
             self._inputs = Inputs(curve, dt, inputs)
-        self.history.append(Frame(self.time, ticks, self._inputs, states, most, rows, distances))
+        self.history.append(
+            HistoryFrame(self.time, ticks, self._inputs, states, most, rows, distances)
+        )
         self.time += ticks * dt
 
-    def _advance(self, run: PlantRun, ticks: int, dt: float) -> None:
+    def _advance(self, run: ClosedLoopRun, ticks: int, dt: float) -> None:
         was, name = run.diverged, run.controller
         editor, push = self.editor, self.grips.pushes[name]
         run.advance(
@@ -251,7 +253,7 @@ class Session:
         """Both robots to the start, at rest. The past is forgotten; path and parameters stay."""
         self._restart()
         self.note("reset")
-        self.say("")
+        self.show_message("")
 
     def _restart(self) -> None:
         self.run_number += 1
@@ -264,9 +266,9 @@ class Session:
         start = self.start_point(self.editor.curve)
         curve = self.editor.curve
         self.runs = {
-            name: PlantRun(self.robot, name, self.parameters, curve, start) for name in NAMES
+            name: ClosedLoopRun(self.robot, name, self.parameters, curve, start) for name in NAMES
         }
-        self.grips = Grips(self.robot, self.runs, self.note)
+        self.grips = ExternalForces(self.robot, self.runs, self.note)
 
     def start_point(self, curve: Curve) -> Array:
         """Where a run begins: on the path, (p,), [m]."""
@@ -283,7 +285,7 @@ class Session:
             time=f"{run.diverged.time:.2f}",
             reason=words.sentence(run.diverged.reason),
         )
-        self.say(said, "error")
+        self.show_message(said, "error")
 
     def targets(self, controller: str) -> list[str]:
         """Which robots a gesture at `controller` acts on."""
@@ -312,7 +314,7 @@ class Session:
         rows, distances = [run.row for run in runs], [run.distance for run in runs]
         return samples_of(self.robot, self.parameters, rows, distances)
 
-    def _samples(self, frames: Sequence[Frame]) -> np.ndarray:
+    def _samples(self, frames: Sequence[HistoryFrame]) -> np.ndarray:
         """What the plots show of some frames, shape (frames, robots, sample_layout.size)."""
         rows = [row for frame in frames for row in frame.rows]
         distances = [distance for frame in frames for distance in frame.distances]

@@ -19,7 +19,7 @@ from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through
 from onpath.models.paths.curves import TERMS, from_terms, terms_of
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, presets
-from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, Entry
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, RobotEntry
 from onpath.models.systems.parameters import NOTHING, Parameters, Spec, changed, specs, unknown_name
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Path(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     numbers: Lengths = ()
 
 
-class Bench(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class RobotSetup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One robot's parameters, where they differ from those the lab starts with, and its path."""
 
     parameters: Annotated[dict[Word, int | float | Word], msgspec.Meta(max_length=100)] = {}
@@ -61,7 +61,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A whole lab: the robot in use, what is set for each, and the lab's own switches."""
 
     robot: Word = FIVE_BAR.name
-    benches: Annotated[dict[Word, Bench], msgspec.Meta(max_length=100)] = {}
+    benches: Annotated[dict[Word, RobotSetup], msgspec.Meta(max_length=100)] = {}
     rate: float = 1.0
     copy: bool = True
     exaggeration: float = 1.0
@@ -71,7 +71,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Wanted:
     """A bench as a session takes it."""
 
-    entry: Entry
+    entry: RobotEntry
     parameters: Parameters
     design: PathDesign
 
@@ -103,12 +103,12 @@ def capture(session: Session) -> Setup:
     benches = {name: (own, editor.design) for name, (own, editor) in session._benches.items()}
     benches[session.entry.name] = session.parameters, session.editor.design
     found = {
-        name: Bench(_differences(ROBOTS[name].lab, own), capture_path(design, session.presets))
+        name: RobotSetup(_differences(ROBOTS[name].lab, own), capture_path(design, session.presets))
         for name, (own, design) in sorted(benches.items())
     }
     return Setup(
         robot=session.entry.name,
-        benches={name: bench for name, bench in found.items() if bench != Bench()},
+        benches={name: bench for name, bench in found.items() if bench != RobotSetup()},
         rate=_rounded(session.rate),
         copy=session.copy,
         exaggeration=_rounded(session.exaggeration),
@@ -123,7 +123,7 @@ def restore(session: Session, setup: Setup) -> None:
     """
     wanted = planned(setup, session.presets)
     for name in (session.entry.name, *session._benches):
-        wanted.setdefault(name, _wanted(name, Bench(), session.presets))
+        wanted.setdefault(name, _wanted(name, RobotSetup(), session.presets))
     for name, bench in wanted.items():
         faults = curve_faults(bench.entry.make(bench.parameters).margin, bench.design.curve)
         if faults:
@@ -153,10 +153,10 @@ def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
     _within("speed", setup.rate, RATES)
     _within("exaggeration", setup.exaggeration, EXAGGERATIONS)
     names = dict.fromkeys((*setup.benches, setup.robot))
-    return {name: _wanted(name, setup.benches.get(name, Bench()), paths) for name in names}
+    return {name: _wanted(name, setup.benches.get(name, RobotSetup()), paths) for name in names}
 
 
-def _wanted(name: str, bench: Bench, paths: Mapping[str, PathDesign]) -> Wanted:
+def _wanted(name: str, bench: RobotSetup, paths: Mapping[str, PathDesign]) -> Wanted:
     if name not in ROBOTS:
         raise unknown_name(name, list(ROBOTS), "robot")
     parameters = ROBOTS[name].lab

@@ -20,7 +20,7 @@ MOST_REST = 0.5  # [s] after a newcomer's page; else as long as that took
 FEW = 2  # so many pages are built while a newcomer looks at nothing
 
 
-class Newcomers:
+class BuildQueue:
     """Builds the pages of those who come, in the order in which they have come.
 
     In a thread of its own: viser's, which many waiting for their page would take up, are for

@@ -13,18 +13,18 @@ from onpath.app.lab.take_snapshot import take_snapshot
 from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel
-from onpath.app.page.page_context import Desk
-from onpath.app.page.panel_factory import Controls, Part
+from onpath.app.page.page_context import PageContext
+from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.app.page.panels.class_panel import ClassPanel
 from onpath.app.page.panels.keys import add_keys
 from onpath.app.page.panels.readout import Readout
 from onpath.app.page.plots import DISTANCE, LivePlot
 from onpath.app.page.step_controls import StepControls
-from onpath.app.scene.scene import Hooks, Scene
+from onpath.app.scene.scene import Scene, SceneCallbacks
 from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.simulation.display_rate import STRIDES, is_turn
-from onpath.app.viser_adapter.frame_channel import Channel
+from onpath.app.viser_adapter.frame_channel import FrameChannel
 
 WIDE_SHEET = """<style>@media (max-width:36em){
 .mantine-Paper-root[style*="bottom: 0"],
@@ -36,13 +36,13 @@ SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
 
 
-class LabView:
+class Page:
     """What one client sees. Built in a thread of its own, then used by the simulation thread."""
 
-    def __init__(self, client: viser.ClientHandle, session: Session, desk: Desk) -> None:
+    def __init__(self, client: viser.ClientHandle, session: Session, desk: PageContext) -> None:
         self._client = client
         self._desk = desk
-        self._channel = Channel(client)
+        self._channel = FrameChannel(client)
         self._offset = client.client_id  # spreads the clients' slow updates over the frames
         self._exporter = Exporter(client)
         self._framed, self._settling = 0.0, SETTLING
@@ -62,7 +62,7 @@ class LabView:
         self._exporter.close()
 
     def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
-        """See `app.simulation.simulation_thread.View`."""
+        """See `app.simulation.simulation_thread.Display`."""
         count = frame + self._offset
         if session.grips.grabbed and stride == AT_EASE:
             stride = 1.0  # the hand feels every frame of delay
@@ -81,12 +81,12 @@ class LabView:
         self._framed = 0.0
 
     def send(self) -> None:
-        """See `app.simulation.simulation_thread.View`."""
+        """See `app.simulation.simulation_thread.Display`."""
         self._channel.send()
 
     @property
     def told(self) -> int:
-        """See `app.server.tab_visibility.Telling`."""
+        """See `app.server.tab_visibility.CountingDisplay`."""
         return self._channel.frames
 
     def _show(self, session: Session, achieved: float, slow: bool) -> None:
@@ -158,9 +158,9 @@ class LabView:
                 self._parts += controls.everything()
         self._parts.append(LessonPanel(self._client, session, post, self._scene, submit, tab))
 
-    def _controls(self, session: Session, post: Callable[[c.Command], None]) -> Controls:
+    def _controls(self, session: Session, post: Callable[[c.Command], None]) -> PanelFactory:
         gui, exporter, scene = self._client.gui, self._exporter, self._scene
-        return Controls(gui, session, post, exporter, scene, self._desk, self.reset_view)
+        return PanelFactory(gui, session, post, exporter, scene, self._desk, self.reset_view)
 
     def _build_head(self, session: Session, post: Callable[[c.Command], None]) -> None:
         """What is always there: numbers, the way to the lessons, the distance."""
@@ -202,8 +202,8 @@ class LabView:
             self._scene.frame_camera(Insets(bottom=below))
 
 
-def _hooks(post: Callable[[c.Command], None]) -> Hooks:
-    return Hooks(
+def _hooks(post: Callable[[c.Command], None]) -> SceneCallbacks:
+    return SceneCallbacks(
         on_grab=lambda name, target: post(c.Grab(name, target)),
         on_release=lambda name: post(c.Release(name)),
         on_point_dragged=lambda index, at: post(c.MovePoint(index, at, finished=False)),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Seat:
+class ClassSeat:
     """A lab's place in the class.
 
     Attributes:
@@ -24,7 +24,7 @@ class Seat:
 
 
 @dataclass(frozen=True, slots=True)
-class Desk:
+class PageContext:
     """For one client.
 
     Attributes:
@@ -37,4 +37,4 @@ class Desk:
     code: str
     keeps: bool
     enter: Callable[[str], None]
-    seat: Seat | None = None
+    seat: ClassSeat | None = None

@@ -10,7 +10,7 @@ import viser
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.session import Session
-from onpath.app.page.page_context import Desk
+from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.flexible_panel import FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
 from onpath.app.page.panels.keep_panel import KeepPanel
@@ -23,7 +23,7 @@ from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press, on_
 from onpath.app.page.plots import MORE, LivePlot, MorePlots
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.lessons.schema import Scene as LessonScene
+from onpath.lessons.schema import StepSetup
 from onpath.models.systems.flexible_robot import FlexibleParameters
 from onpath.models.systems.parameters import specs
 
@@ -41,7 +41,7 @@ class Part(Protocol):
         ...
 
 
-class Controls:
+class PanelFactory:
     """Makes panels for one client.
 
     Args:
@@ -56,7 +56,7 @@ class Controls:
         post: Post,
         exporter: Exporter,
         scene: Scene,
-        desk: Desk,
+        desk: PageContext,
         reset_view: Callable[[], None],
     ) -> None:
         self._reset_view = reset_view
@@ -71,7 +71,7 @@ class Controls:
         on_press(helping, self._help)
         return parts
 
-    def of_step(self, scene: LessonScene) -> list[Part]:
+    def of_step(self, scene: StepSetup) -> list[Part]:
         """Run and hold, and what a lesson's scene names."""
         self._scene.path_first = "editor" in scene.controls
         parts = list(self._add("hold"))

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.lab.session import Session
-from onpath.app.page.panel_factory import Controls, Part
-from onpath.lessons.schema import Scene
+from onpath.app.page.panel_factory import PanelFactory, Part
+from onpath.lessons.schema import StepSetup
 
 
 class StepControls:
@@ -23,13 +23,13 @@ class StepControls:
         gui: viser.GuiApi,
         tab: viser.GuiTabHandle,
         session: Session,
-        controls: Controls,
+        controls: PanelFactory,
         submit: Callable[[Callable[[], None]], None],
     ) -> None:
         self._gui, self._controls, self._submit = gui, controls, submit
         self._tab, self._title = tab, session.lessons.words("lesson.controls")
         self._folder: viser.GuiFolderHandle | None = None
-        self._scene: Scene | None = None
+        self._scene: StepSetup | None = None
         self._parts: list[Part] = []
         self._fill(_scene_of(session))
 
@@ -42,7 +42,7 @@ class StepControls:
         for part in self._parts:
             part.follow(session)
 
-    def _fill(self, scene: Scene) -> None:
+    def _fill(self, scene: StepSetup) -> None:
         if self._folder is not None:
             self._folder.remove()
         self._scene = scene
@@ -52,10 +52,10 @@ class StepControls:
             self._parts = self._controls.of_step(scene)
 
 
-EMPTY = Scene()
+EMPTY = StepSetup()
 
 
-def _scene_of(session: Session) -> Scene:
+def _scene_of(session: Session) -> StepSetup:
     """Of the open step."""
     run = session.lessons
     return EMPTY if run.lesson is None else run.lesson.scene_at(run.index)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from onpath.app.classroom.classroom import Room
+from onpath.app.classroom.classroom import Classroom
 from onpath.app.simulation.simulation_thread import Lab
 from onpath.lessons.words import Words
 
 
 @dataclass(slots=True)
-class Chosen:
+class TeacherChoices:
     """On one teacher's page; outlives its rebuilding.
 
     Attributes:
@@ -27,7 +27,7 @@ class Chosen:
 
 
 @dataclass(frozen=True, slots=True)
-class Teaching:
+class TeacherContext:
     """For one teacher's page.
 
     Attributes:
@@ -36,8 +36,8 @@ class Teaching:
         stop: back to a lab's own page.
     """
 
-    classroom: Room
-    chosen: Chosen
+    classroom: Classroom
+    chosen: TeacherChoices
     lab: Callable[[str], Lab | None]
     forget: Callable[[], int]
     stop: Callable[[], None]

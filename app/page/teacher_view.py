@@ -10,29 +10,29 @@ from onpath.app.classroom.mirror import Mirror
 from onpath.app.lab import commands as c
 from onpath.app.lab.lesson_commands import CloseLesson
 from onpath.app.lab.session import Session
-from onpath.app.page.page import LabView
-from onpath.app.page.page_context import Desk
-from onpath.app.page.panels.teacher_controls import Following, TeacherControls
+from onpath.app.page.page import Page
+from onpath.app.page.page_context import PageContext
+from onpath.app.page.panels.teacher_controls import FollowedStudent, TeacherControls
 from onpath.app.page.panels.teacher_panel import TeacherPanel
-from onpath.app.page.teacher_context import Teaching
+from onpath.app.page.teacher_context import TeacherContext
 
 
-class TeacherView(LabView):
+class TeacherView(Page):
     """What a teacher sees; a followed lab is shown and not touched."""
 
     def __init__(
         self,
         client: viser.ClientHandle,
         session: Session,
-        desk: Desk,
-        teaching: Teaching,
+        desk: PageContext,
+        teaching: TeacherContext,
     ) -> None:
         self._own, self._teaching = session, teaching
         session.post(CloseLesson())
         super().__init__(client, session, desk)
 
     def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
-        """See `app.simulation.simulation_thread.View`."""
+        """See `app.simulation.simulation_thread.Display`."""
         lab = self._teaching.followed()
         if lab is None:
             super().show(session, achieved, frame, stride)
@@ -57,7 +57,7 @@ class TeacherView(LabView):
             self._build_distance(session)
             self._parts += self._controls(own, post).everything()
         else:
-            self._parts.append(Following(gui, own, self._teaching))
+            self._parts.append(FollowedStudent(gui, own, self._teaching))
             self._build_numbers(session)
             self._build_distance(session)
         submit = self._exporter.submit

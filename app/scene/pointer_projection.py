@@ -14,7 +14,7 @@ PARALLEL_COSINE = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
-class Plane:
+class DragPlane:
     """A plane in a robot's frame.
 
     Attributes:
@@ -43,7 +43,7 @@ class Box:
         return np.minimum(np.maximum(point, self.lower), self.upper)
 
 
-VERTICAL_PLANE = Plane(np.zeros(3), np.array([0.0, 1.0, 0.0]))
+VERTICAL_PLANE = DragPlane(np.zeros(3), np.array([0.0, 1.0, 0.0]))
 REACHABLE = Box(np.full(3, -0.6), np.full(3, 0.6))
 
 
@@ -81,7 +81,11 @@ def _dot(a: Iterable[float], b: Iterable[float]) -> float:
 
 
 def pointer_on_plane(
-    camera: np.ndarray, pointer: np.ndarray, base: np.ndarray, plane: Plane, box: Box = REACHABLE
+    camera: np.ndarray,
+    pointer: np.ndarray,
+    base: np.ndarray,
+    plane: DragPlane,
+    box: Box = REACHABLE,
 ) -> np.ndarray | None:
     """What the pointer means on a robot's plane.
 

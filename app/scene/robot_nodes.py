@@ -117,7 +117,7 @@ class Bars:
         update_node(self._node, **arrays)
 
 
-class Machine:
+class RobotNodes:
     """Nodes for all robots together, as few as can be.
 
     Args:

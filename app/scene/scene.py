@@ -17,9 +17,9 @@ from onpath.app.lab.snapshot import PathView, RobotView, Snapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.freehand import Freehand
 from onpath.app.scene.path_nodes import PathNodes
-from onpath.app.scene.pointer_projection import Plane, pointer_on_plane
+from onpath.app.scene.pointer_projection import DragPlane, pointer_on_plane
 from onpath.app.scene.poses import poses_of
-from onpath.app.scene.robot_nodes import Machine
+from onpath.app.scene.robot_nodes import RobotNodes
 from onpath.app.scene.stage import (
     FIELD_OF_VIEW,
     Insets,
@@ -50,7 +50,7 @@ def _ignore(*_: object) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Hooks:
+class SceneCallbacks:
     """What the scene tells; called on viser's event loop, so they must only enqueue.
 
     Attributes:
@@ -87,7 +87,7 @@ class Scene:
     def __init__(
         self,
         client: viser.ClientHandle,
-        hooks: Hooks | None = None,
+        hooks: SceneCallbacks | None = None,
         stage: Stage = RIGID,
         words: Words = ENGLISH,
     ) -> None:
@@ -95,11 +95,11 @@ class Scene:
         self._stage, self._words = stage, words
         self._names = list(stage.bases)
         self._origins = stage.origins
-        self._hooks = hooks or Hooks()
+        self._hooks = hooks or SceneCallbacks()
         self.pull = next(iter(stage.pulls))
         self.path_first = False
         self._snapshot: Snapshot | None = None
-        self._grip: tuple[Plane, np.ndarray] | None = None
+        self._grip: tuple[DragPlane, np.ndarray] | None = None
         self._path: PathView | None = None
         self._path_nodes = PathNodes(client.scene, self._origins, self._connect_points)
         self._point_offset = np.zeros(3)
@@ -112,7 +112,7 @@ class Scene:
         robots = self._robots(snapshot)
         self._titles = build_stage(self._client.scene, self._stage, self._words)
         poses = poses_of(self._stage, robots)
-        self._machine = Machine(self._client.scene, self._stage, robots, poses, self._words)
+        self._machine = RobotNodes(self._client.scene, self._stage, robots, poses, self._words)
         self._machine.grips.on_drag("left")(self._tip_dragged)
         self._snapshot = snapshot
         scale = self._words("scene.true_scale")
@@ -214,12 +214,12 @@ class Scene:
         if target is not None:
             self._hooks.on_grab(name, target + offset)
 
-    def _grip_of(self, name: str) -> tuple[Plane, np.ndarray]:
+    def _grip_of(self, name: str) -> tuple[DragPlane, np.ndarray]:
         """The plane of a pull that begins, and from the drawn end-point to the actual one, [m]."""
         assert self._snapshot is not None
         robot = self._snapshot.robots[name]
         normal = self._stage.pulls[self.pull].normal
-        return Plane(robot.tip, normal), robot.end - robot.tip
+        return DragPlane(robot.tip, normal), robot.end - robot.tip
 
     def _covered_point(self, event: DragEvent, name: str) -> int | None:
         """The control point that a press on an end-point means instead of it, if any."""
@@ -264,7 +264,7 @@ class Scene:
         event: DragEvent,
         pointer: tuple[float, float, float],
         name: str,
-        plane: Plane | None = None,
+        plane: DragPlane | None = None,
     ) -> np.ndarray | None:
         """Where a pointer is, in a robot's frame, on the path's plane unless another is given."""
         camera, base = event.client.camera.position, self._stage.bases[name]

@@ -12,7 +12,7 @@ import trimesh
 
 from onpath.app.common import palette
 from onpath.app.scene import meshes
-from onpath.app.scene.pointer_projection import Plane
+from onpath.app.scene.pointer_projection import DragPlane
 from onpath.lessons.words import ENGLISH, Words
 
 if TYPE_CHECKING:
@@ -51,8 +51,8 @@ class Stage:
     high: np.ndarray
     elevation: float
     azimuth: float
-    path_plane: Plane
-    pulls: dict[str, Plane]
+    path_plane: DragPlane
+    pulls: dict[str, DragPlane]
     away: np.ndarray
     depths: tuple[float, float, float, float]
     title: np.ndarray

@@ -8,7 +8,7 @@ import trimesh
 from onpath.app.common import palette
 from onpath.app.lab.snapshot import FollowerName, TrackerName
 from onpath.app.scene import meshes
-from onpath.app.scene.pointer_projection import VERTICAL_PLANE, Plane
+from onpath.app.scene.pointer_projection import VERTICAL_PLANE, DragPlane
 from onpath.app.scene.stage import Stage
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.systems.robots import Robot
@@ -54,7 +54,7 @@ RIGID = Stage(
 # Drawn with (y1, y2, y3) at (y2, -y1, l1 + y3): the plane y1 = b y2 + d is b x + y = -d.
 _SLANTED = SlantedPlane()
 _ASIDE = float(np.radians(24.0))
-_PATH_PLANE = Plane(np.array([0.0, -_SLANTED.d, 0.0]), np.array([_SLANTED.b, 1.0, 0.0]))
+_PATH_PLANE = DragPlane(np.array([0.0, -_SLANTED.d, 0.0]), np.array([_SLANTED.b, 1.0, 0.0]))
 FLEXIBLE = Stage(
     bases=_side_by_side(0.56, _ASIDE),
     low=np.array([-0.12, -0.54, -meshes.FLOOR_DEPTH]),
@@ -62,7 +62,10 @@ FLEXIBLE = Stage(
     elevation=float(np.radians(30.0)),
     azimuth=_ASIDE,
     path_plane=_PATH_PLANE,
-    pulls={IN_PATH_PLANE: _PATH_PLANE, HORIZONTAL: Plane(np.zeros(3), np.array([0.0, 0.0, 1.0]))},
+    pulls={
+        IN_PATH_PLANE: _PATH_PLANE,
+        HORIZONTAL: DragPlane(np.zeros(3), np.array([0.0, 0.0, 1.0])),
+    },
     away=np.array([-1.0, 0.0, 0.0]),
     depths=(meshes.BACK_LAYER - meshes.FRONT_LAYER, 0.0, meshes.BOSS - meshes.FRONT_LAYER, 0.0),
     title=np.array([0.0, 0.0, 0.475]),

@@ -11,7 +11,7 @@ from onpath.app.page.notice import show_notice
 from onpath.lessons.words import Words
 
 
-class WaitingRoom:
+class AdmissionQueue:
     """Who is inside and who waits; the first to come is the first to get in.
 
     Args:

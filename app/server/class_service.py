@@ -7,25 +7,25 @@ from functools import partial
 
 import viser
 
-from onpath.app.classroom.class_sync import Attendance
-from onpath.app.classroom.classroom import Room
+from onpath.app.classroom.class_sync import ClassSync
+from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.relay import Relay
 from onpath.app.classroom.shared_classroom import SharedClassroom
 from onpath.app.classroom.watches import Watches
-from onpath.app.lab.class_commands import Tell
+from onpath.app.lab.class_commands import ShowMessage
 from onpath.app.lab.session import Session
-from onpath.app.page.page_context import Seat
-from onpath.app.page.teacher_context import Chosen, Teaching
-from onpath.app.server.lab_registry import Sessions
+from onpath.app.page.page_context import ClassSeat
+from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
+from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.simulation.simulation_thread import Lab
 from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import Records
-from onpath.app.storage.write_behind import Keeper
+from onpath.app.storage.write_behind import WriteBehind
 
 TEACHER_KEY = "onpath_teacher"  # in the browser's storage
 
 
-class ClassDesk:
+class ClassService:
     """The class of one server process.
 
     Args:
@@ -34,15 +34,15 @@ class ClassDesk:
 
     def __init__(
         self,
-        classroom: Room,
-        sessions: Sessions,
+        classroom: Classroom,
+        sessions: LabRegistry,
         records: Records | None = None,
-        keeper: Keeper | None = None,
+        keeper: WriteBehind | None = None,
     ) -> None:
         self._class, self._sessions = classroom, sessions
         self._records, self._keeper = records, keeper
-        self._teachers: dict[int, tuple[str, Chosen]] = {}
-        self._attendance = Attendance(classroom, self._student)
+        self._teachers: dict[int, tuple[str, TeacherChoices]] = {}
+        self._attendance = ClassSync(classroom, self._student)
         self._attendance.rounds.start()
         self._relay: Relay | None = None
         if isinstance(classroom, SharedClassroom) and records is not None:
@@ -64,7 +64,7 @@ class ClassDesk:
         """
         try:
             if shown is not None and self._class.is_pass(shown):
-                self._teachers[client.client_id] = (shown, Chosen())
+                self._teachers[client.client_id] = (shown, TeacherChoices())
         except OSError:
             return  # a student's page is open to everybody
 
@@ -72,7 +72,7 @@ class ClassDesk:
         """A browser has left."""
         self._teachers.pop(client, None)
 
-    def seat(self, client: viser.ClientHandle, code: str, reopen: Callable[[], None]) -> Seat:
+    def seat(self, client: viser.ClientHandle, code: str, reopen: Callable[[], None]) -> ClassSeat:
         """A lab's place in the class.
 
         Args:
@@ -87,7 +87,7 @@ class ClassDesk:
         def teach(key: str) -> None:
             shown = self._class.admit(key, code)
             self._class.leave(code)
-            self._teachers[client.client_id] = (shown, Chosen())
+            self._teachers[client.client_id] = (shown, TeacherChoices())
             client.local_storage.set_item(TEACHER_KEY, shown)
             reopen()
 
@@ -96,16 +96,18 @@ class ClassDesk:
             entry, keeper = self._sessions.find(code), self._keeper
             if entry is not None and keeper is not None:  # to be found again by another process
                 submit = partial(keeper.submit, code)
-                entry.lab.session.post(Tell(lambda session: keep(session, submit)))
+                entry.lab.session.post(ShowMessage(lambda session: keep(session, submit)))
 
-        return Seat(
+        return ClassSeat(
             name=name,
             join=join,
             leave=lambda: self._class.leave(code),
             teach=teach,
         )
 
-    def teaching(self, client: viser.ClientHandle, reopen: Callable[[], None]) -> Teaching | None:
+    def teaching(
+        self, client: viser.ClientHandle, reopen: Callable[[], None]
+    ) -> TeacherContext | None:
         """For a teacher's page; None for everybody else."""
         teacher = self._teachers.get(client.client_id)
         if teacher is None:
@@ -119,7 +121,7 @@ class ClassDesk:
             self._class.revoke(shown)
 
         lab = partial(self._lab, client.client_id)
-        return Teaching(self._class, chosen, lab, self._forget, stop)
+        return TeacherContext(self._class, chosen, lab, self._forget, stop)
 
     def _student(self, code: str) -> tuple[Session, bool] | None:
         entry = self._sessions.find(code)

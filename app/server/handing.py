@@ -110,7 +110,7 @@ class Handed(socket.socket):
         _, descriptors, _, _ = socket.recv_fds(self, 1, 1)
         if not descriptors:
             raise BlockingIOError
-        connection = _Connection(fileno=descriptors[0])
+        connection = _WorkerConnection(fileno=descriptors[0])
         connection.channel = self
         try:
             return connection, connection.getpeername()
@@ -119,7 +119,7 @@ class Handed(socket.socket):
             raise ConnectionAbortedError from None
 
 
-class _Connection(socket.socket):
+class _WorkerConnection(socket.socket):
     """Says when it is closed.
 
     Attributes:

@@ -18,10 +18,10 @@ from onpath.app.common.access_codes import new_code
 from onpath.app.common.throttle import Throttle
 from onpath.app.lab.session import Session
 from onpath.app.simulation.simulation_thread import Lab, SimulationThread
-from onpath.app.storage.lab_state import State, Watch, put_back
+from onpath.app.storage.lab_state import LabState, StateObserver, put_back
 from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import NotKept
-from onpath.app.storage.write_behind import Keeper
+from onpath.app.storage.write_behind import WriteBehind
 
 log = logging.getLogger(__name__)
 
@@ -32,7 +32,7 @@ MOST_ABANDONED = 60
 
 
 @dataclass(slots=True)
-class Entry:
+class RegisteredLab:
     """A lab and who looks at it.
 
     Attributes:
@@ -47,7 +47,7 @@ class Entry:
 
 
 @dataclass(slots=True)
-class Sessions:
+class LabRegistry:
     """All sessions by code.
 
     Attributes:
@@ -60,16 +60,16 @@ class Sessions:
     simulation: SimulationThread
     make: Callable[[], Session]
     clock: Callable[[], float] = time.monotonic
-    load: Callable[[str], State | None] = lambda _: None
-    keeper: Keeper | None = None
+    load: Callable[[str], LabState | None] = lambda _: None
+    keeper: WriteBehind | None = None
     leases: Leases | None = None
-    _entries: dict[str, Entry] = field(default_factory=dict)
+    _entries: dict[str, RegisteredLab] = field(default_factory=dict)
     _opening: set[str] = field(default_factory=set)
     _lock: threading.Condition = field(default_factory=threading.Condition)
     _making: threading.Lock = field(default_factory=threading.Lock)
     _throttle: Throttle = field(default_factory=Throttle)
 
-    def join(self, client: int, known: str | None) -> Entry:
+    def join(self, client: int, known: str | None) -> RegisteredLab:
         """The session for a new client.
 
         Args:
@@ -87,10 +87,10 @@ class Sessions:
             remark = f"Your lab is kept, but cannot be opened now: {error}"
         entry = self._made(new_code())
         if remark:
-            entry.lab.session.say(remark, "warning")
+            entry.lab.session.show_message(remark, "warning")
         return self._give(client, entry)
 
-    def enter(self, client: int, code: str) -> Entry:
+    def enter(self, client: int, code: str) -> RegisteredLab:
         """The session of a code that somebody typed, for a client that leaves its own.
 
         Raises:
@@ -116,7 +116,7 @@ class Sessions:
         waiting.sort(key=lambda entry: entry.left, reverse=True)
         return [*(entry.code for entry in waiting), *(code for code in codes if code not in here)]
 
-    def _open(self, client: int, code: str) -> Entry | None:
+    def _open(self, client: int, code: str) -> RegisteredLab | None:
         """The lab of a code, a client's from now on; None if there is none that it can have.
 
         Raises:
@@ -154,7 +154,7 @@ class Sessions:
                 self._opening.discard(code)
                 self._lock.notify_all()
 
-    def _made(self, code: str, state: State | None = None) -> Entry:
+    def _made(self, code: str, state: LabState | None = None) -> RegisteredLab:
         """A new session, or one as it was kept; one is made at a time, for the simulation's sake.
 
         Raises:
@@ -169,10 +169,10 @@ class Sessions:
                 log.warning("what was kept cannot be read: %s", error)
                 raise NotKept("what was kept of this lab cannot be read") from None
         if (keeper := self.keeper) is not None:
-            session.watch = Watch(lambda make: keeper.submit(code, make), session)
-        return Entry(code, Lab(session))
+            session.watch = StateObserver(lambda make: keeper.submit(code, make), session)
+        return RegisteredLab(code, Lab(session))
 
-    def _give(self, client: int, entry: Entry) -> Entry:
+    def _give(self, client: int, entry: RegisteredLab) -> RegisteredLab:
         with self._lock:
             self._abandon(client)
             entry.client = client
@@ -181,11 +181,11 @@ class Sessions:
                 self.simulation.add(entry.lab)
             return entry
 
-    def find(self, code: str) -> Entry | None:
+    def find(self, code: str) -> RegisteredLab | None:
         """The session of a code, if it is here now."""
         return self._entries.get(code)
 
-    def leave(self, client: int) -> Entry | None:
+    def leave(self, client: int) -> RegisteredLab | None:
         """A client is gone; its session waits, paused, for it to come back, here or elsewhere."""
         with self._lock:
             entry = self._abandon(client)
@@ -208,7 +208,7 @@ class Sessions:
                 self._remove(entry)
             return entry.client if entry is not None else None
 
-    def _kept(self, code: str) -> State | None:
+    def _kept(self, code: str) -> LabState | None:
         """What is kept under a code that no other process has; now this one has it.
 
         Raises:
@@ -219,14 +219,14 @@ class Sessions:
             return state
         return None if self.leases.claim(code) is None else self.load(code)
 
-    def _is_up_to_date(self, entry: Entry) -> bool:
+    def _is_up_to_date(self, entry: RegisteredLab) -> bool:
         """Whether nobody else had a lab that has waited here; then it is not theirs now."""
         try:
             return self.leases is None or self.leases.claim(entry.code) is True
         except NotKept:
             return True
 
-    def _let_go(self, entry: Entry) -> None:
+    def _let_go(self, entry: RegisteredLab) -> None:
         """Other processes may have a lab, as it was left."""
         if self.keeper is not None:
             self.keeper.flush(entry.code)
@@ -234,11 +234,11 @@ class Sessions:
             if self.leases is not None and entry.client is None:
                 self.leases.release(entry.code)
 
-    def _remove(self, entry: Entry) -> None:
+    def _remove(self, entry: RegisteredLab) -> None:
         self.simulation.remove(entry.lab)
         self._entries.pop(entry.code, None)
 
-    def _abandon(self, client: int) -> Entry | None:
+    def _abandon(self, client: int) -> RegisteredLab | None:
         for entry in self._entries.values():
             if entry.client == client:
                 entry.client, entry.left = None, self.clock()

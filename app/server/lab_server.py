@@ -13,28 +13,28 @@ from typing import Any
 
 import viser
 
-from onpath.app.classroom.classroom import Room
+from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import normalised
 from onpath.app.common.error_log import log_error
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
-from onpath.app.page.build_queue import Newcomers
-from onpath.app.page.page import LabView
-from onpath.app.page.page_context import Desk
+from onpath.app.page.build_queue import BuildQueue
+from onpath.app.page.page import Page
+from onpath.app.page.page_context import PageContext
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.scene.stage import set_initial_camera
 from onpath.app.scene.stage_catalogue import RIGID
-from onpath.app.server.admission_queue import WaitingRoom
+from onpath.app.server.admission_queue import AdmissionQueue
 from onpath.app.server.arrivals import Arrivals, Kept
-from onpath.app.server.class_service import TEACHER_KEY, ClassDesk
-from onpath.app.server.lab_registry import Entry, Sessions
+from onpath.app.server.class_service import TEACHER_KEY, ClassService
+from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.lazy_imports import warm_up
-from onpath.app.server.tab_visibility import Onlookers
+from onpath.app.server.tab_visibility import TabVisibilities
 from onpath.app.simulation.metrics import asked_vitals
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import Records
-from onpath.app.storage.write_behind import Keeper
+from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.parse import LessonError
@@ -65,31 +65,31 @@ class LabServer:
         self,
         host: str,
         port: int,
-        store: LoopStore,
+        store: LoopCache,
         course: Course | None = None,
         records: Records | None = None,
-        classroom: Room | None = None,
+        classroom: Classroom | None = None,
         most_clients: int = MOST_CLIENTS,
         **listening: Any,
     ) -> None:
         self._store = store
-        self._room = WaitingRoom(most_clients)
+        self._room = AdmissionQueue(most_clients)
         lessons = course or read_course([BUILT_IN])[0]
         self.simulation = SimulationThread()
         health = partial(asked_vitals, self.simulation)
         self.server = make_server(host, port, label="OnPath", health=health, **listening)
         self._records = records
         self._leases = Leases(records) if records else None
-        self._keeper = Keeper(self._leases) if self._leases else None
-        self.sessions = Sessions(self.simulation, lambda: Session(store, FIVE_BAR, lessons))
+        self._keeper = WriteBehind(self._leases) if self._leases else None
+        self.sessions = LabRegistry(self.simulation, lambda: Session(store, FIVE_BAR, lessons))
         if records is not None:
             self.sessions.load, self.sessions.keeper = records.load, self._keeper
             self.sessions.leases = self._leases
-        self._class: ClassDesk | None = None
+        self._class: ClassService | None = None
         if classroom is not None:
-            self._class = ClassDesk(classroom, self.sessions, records, self._keeper)
-        self._views: dict[int, LabView] = {}
-        self._newcomers, self._onlookers = Newcomers(self.server), Onlookers(self.server)
+            self._class = ClassService(classroom, self.sessions, records, self._keeper)
+        self._views: dict[int, Page] = {}
+        self._newcomers, self._onlookers = BuildQueue(self.server), TabVisibilities(self.server)
         set_initial_camera(self.server, RIGID)
         self._arrivals = Arrivals(self.server, [STORAGE_KEY, TEACHER_KEY], self._connected)
         self.server.on_client_disconnect(self._disconnected)
@@ -133,7 +133,7 @@ class LabServer:
             entry = self.sessions.join(client.client_id, known)
             self._newcomers.submit(client, partial(self._show, client, entry, known))
 
-    def _show(self, client: viser.ClientHandle, entry: Entry, known: str | None) -> None:
+    def _show(self, client: viser.ClientHandle, entry: RegisteredLab, known: str | None) -> None:
         """A client's page is that of a session, if both are still there."""
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
@@ -152,16 +152,18 @@ class LabServer:
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
 
-    def _view(self, client: viser.ClientHandle, entry: Entry) -> LabView:
+    def _view(self, client: viser.ClientHandle, entry: RegisteredLab) -> Page:
         """The page of a lab, or the teacher's."""
         reopen = partial(self._reopen, client, entry)
         taught = self._class and self._class.teaching(client, reopen)
         seat = self._class.seat(client, entry.code, reopen) if self._class else None
-        desk = Desk(entry.code, self._records is not None, partial(self._enter, client), seat)
+        desk = PageContext(
+            entry.code, self._records is not None, partial(self._enter, client), seat
+        )
         session = entry.lab.session
         if taught:
             return TeacherView(client, session, desk, taught)
-        return LabView(client, session, desk)
+        return Page(client, session, desk)
 
     def _enter(self, client: viser.ClientHandle, text: str) -> None:
         """Another session for a client, by a code that was typed.
@@ -178,7 +180,7 @@ class LabServer:
         if client is not None:
             self._reopen(client, self.sessions.join(client.client_id, None))
 
-    def _reopen(self, client: viser.ClientHandle, entry: Entry) -> None:
+    def _reopen(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:
         """A client's page anew, with a session that is its own already."""
         self._onlookers.leave(client.client_id)
         view = self._views.pop(client.client_id, None)
@@ -205,7 +207,7 @@ def serve(
     lessons: Path | None = None,
     database: str | None = None,
     open_browser: bool = False,
-    open_class: Callable[[Records], Room] | None = None,
+    open_class: Callable[[Records], Classroom] | None = None,
     **listening: Any,
 ) -> None:
     """Serve the lab until Ctrl-C or SIGTERM.
@@ -225,7 +227,7 @@ def serve(
     records = Records(database)
     if records.warning:
         log.warning("%s", records.warning)
-    store = LoopStore()
+    store = LoopCache()
     classroom = open_class(records) if open_class else None
     lab = LabServer(host, port, store, course, records, classroom, **listening)
     signal.signal(signal.SIGTERM, signal.default_int_handler)

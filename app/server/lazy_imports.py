@@ -10,7 +10,7 @@ from dataclasses import replace
 from importlib import import_module
 from threading import Thread
 
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 
 LATER = (
@@ -22,7 +22,7 @@ LATER = (
 REST = 3.0  # [s] for the first browser to open its lab
 
 
-def warm_up(store: LoopStore, rest: float = REST) -> Thread:
+def warm_up(store: LoopCache, rest: float = REST) -> Thread:
     """Import the rest and have a new lab's loops compiled, in a thread, after a while."""
 
     def work() -> None:

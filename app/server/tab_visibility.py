@@ -16,14 +16,14 @@ from typing import Protocol
 import viser
 from viser import _messages
 
-from onpath.app.simulation.simulation_thread import Lab, View
+from onpath.app.simulation.simulation_thread import Display, Lab
 
-EVERY = 2.0  # [s] between questions, while the browser is told anything
+QUESTION_INTERVAL = 2.0  # [s] between questions, while the browser is told anything
 PATIENCE = 4.0  # [s] with the answer; a browser that draws in software may stall for two
 TICK = 0.5  # [s]
 
 
-class Telling(View, Protocol):
+class CountingDisplay(Display, Protocol):
     """A view that counts."""
 
     @property
@@ -32,7 +32,7 @@ class Telling(View, Protocol):
         ...
 
 
-class Onlooker:
+class TabVisibility:
     """One browser; the view is its lab's as long as it draws. From any thread."""
 
     def __init__(
@@ -41,13 +41,13 @@ class Onlooker:
         self._client, self._clock = client, clock
         self._lock = threading.Lock()
         self._lab: Lab | None = None
-        self._view: Telling | None = None
+        self._view: CountingDisplay | None = None
         self._heard = self._questioned = clock()
         self._told = 0  # when it was heard
         self._unanswered: float | None = None  # since when, [s]
         client.camera.on_update(self._hear)
 
-    def watch(self, lab: Lab, view: Telling) -> None:
+    def watch(self, lab: Lab, view: CountingDisplay) -> None:
         """Look at a lab from now on."""
         with self._lock:
             self._lab, self._view = lab, view
@@ -69,10 +69,10 @@ class Onlooker:
             if lab is None or view is None:
                 return
             if self._unanswered is None:
-                if view.told == self._told or now - self._heard < EVERY:
+                if view.told == self._told or now - self._heard < QUESTION_INTERVAL:
                     return
                 self._unanswered = now
-            elif now - self._questioned < EVERY:
+            elif now - self._questioned < QUESTION_INTERVAL:
                 return
             elif now - self._unanswered >= PATIENCE and lab.view is view:
                 lab.view = None
@@ -91,19 +91,19 @@ class Onlooker:
                 self._lab.view = self._view
 
 
-class Onlookers:
+class TabVisibilities:
     """All browsers of a server, looked at by its event loop."""
 
     def __init__(self, server: viser.ViserServer) -> None:
-        self._all: dict[int, Onlooker] = {}
+        self._all: dict[int, TabVisibility] = {}
         self._loop = server.get_event_loop()
         self._loop.call_soon_threadsafe(self._look)
 
-    def watch(self, client: viser.ClientHandle, lab: Lab, view: Telling) -> None:
+    def watch(self, client: viser.ClientHandle, lab: Lab, view: CountingDisplay) -> None:
         """A browser looks at a lab, and at no other."""
         number = client.client_id
         if number not in self._all:
-            self._all[number] = Onlooker(client)
+            self._all[number] = TabVisibility(client)
         self._all[number].watch(lab, view)
 
     def leave(self, client: int) -> None:

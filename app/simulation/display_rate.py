@@ -17,7 +17,7 @@ WORTH = 0.1  # share of the time that drawing takes, from which on less of it ma
 PATIENCE, CAUTION = 60, 300  # frames from one change to the next, slower and faster
 
 
-class Pace:
+class DisplayRate:
     """Chooses the stride from how busy the simulation thread is."""
 
     def __init__(self) -> None:

@@ -19,7 +19,7 @@ MEMORY = Path("/proc/self/statm")  # Linux alone
 
 
 @dataclass(frozen=True, slots=True)
-class Vitals:
+class Metrics:
     """Of one process.
 
     Attributes:
@@ -60,7 +60,7 @@ def asked_vitals(simulation: SimulationThread, query: str) -> str:
     return msgspec.json.encode(vitals(simulation, seconds)).decode() + "\n"
 
 
-def vitals(simulation: SimulationThread, seconds: float = WINDOW) -> Vitals:
+def vitals(simulation: SimulationThread, seconds: float = WINDOW) -> Metrics:
     """How this process fares; `seconds` are looked back at."""
     now = time.perf_counter()
     frames = simulation.frames.copy()
@@ -68,7 +68,7 @@ def vitals(simulation: SimulationThread, seconds: float = WINDOW) -> Vitals:
     late = sorted(late for began, late in frames if began > since)
     p50, p95, p99 = (_quantile_ms(late, part) for part in QUANTILES)
     seen = [lab for lab in simulation.labs if lab.view is not None]
-    return Vitals(
+    return Metrics(
         pid=os.getpid(),
         clock=round(now, 4),
         frames_per_s=round(len(late) / max(now - since, 0.1), 2),

@@ -15,7 +15,7 @@ from typing import Protocol
 
 from onpath.app.common.error_log import log_error
 from onpath.app.lab.session import Session
-from onpath.app.simulation.display_rate import Pace
+from onpath.app.simulation.display_rate import DisplayRate
 
 log = logging.getLogger(__name__)
 
@@ -27,7 +27,7 @@ SELDOM = (1_000, 4, 1_000)  # allocations before a collection: it stops all thre
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones are paid for by waiting
 
 
-class View(Protocol):
+class Display(Protocol):
     """Whatever shows a session; called by the simulation thread only."""
 
     def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
@@ -49,7 +49,7 @@ class Lab:
 
     def __init__(self, session: Session) -> None:
         self.session = session
-        self.view: View | None = None
+        self.view: Display | None = None
         self._credit = 0.0  # [s] of computing for commands
         self._simulated = self._passed = 1e-6  # lately, each fading over about a second
 
@@ -148,7 +148,7 @@ class SimulationThread:
 
     def run(self) -> None:
         """Frame after frame, each at its deadline."""
-        last, pace = self._clock(), Pace()
+        last, pace = self._clock(), DisplayRate()
         count, deadline = 0, last + FRAME
         while not self._stop.is_set():
             now = self._clock()

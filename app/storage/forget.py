@@ -11,7 +11,7 @@ from onpath.app.storage.records import NotKept, Records, default_file
 
 
 @dataclass(frozen=True, slots=True)
-class Forgotten:
+class ForgetCounts:
     """What there was.
 
     Attributes:
@@ -23,7 +23,7 @@ class Forgotten:
     files: tuple[Path, ...]
 
 
-def forget(url: str | None = None) -> Forgotten:
+def forget(url: str | None = None) -> ForgetCounts:
     """Delete all labs of a database, of the user's file if there is no URL.
 
     Raises:
@@ -40,7 +40,7 @@ def forget(url: str | None = None) -> Forgotten:
     files = tuple(sorted(_broken(url)))
     for file in files:
         file.unlink()
-    return Forgotten(labs, files)
+    return ForgetCounts(labs, files)
 
 
 def _broken(url: str | None) -> list[Path]:

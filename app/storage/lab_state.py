@@ -11,12 +11,12 @@ from onpath.app.lab.session import Session
 from onpath.app.lab.setup import Setup, capture, from_data, restore, to_data
 from onpath.lessons.progress import Progress, read_progress
 
-EVERY = 60  # frames between two looks at what has changed
-State = dict[str, Any]
+SAVE_INTERVAL = 60  # frames between two looks at what has changed
+LabState = dict[str, Any]
 NEW = (Setup(), Progress(), None)
 
 
-class Watch:
+class StateObserver:
     """Called by a session at every frame; submits what has changed, once a second.
 
     Args:
@@ -25,7 +25,7 @@ class Watch:
     """
 
     def __init__(
-        self, submit: Callable[[Callable[[], State]], None], session: Session | None = None
+        self, submit: Callable[[Callable[[], LabState]], None], session: Session | None = None
     ) -> None:
         self._submit = submit
         self._seen = NEW if session is None else _now(session)
@@ -34,7 +34,7 @@ class Watch:
     def __call__(self, session: Session) -> None:
         """See `Session.watch`."""
         self._frames += 1
-        if self._frames % EVERY:
+        if self._frames % SAVE_INTERVAL:
             return
         now = _now(session)
         if now != self._seen:
@@ -42,13 +42,13 @@ class Watch:
             self._submit(lambda: _state(*now))
 
 
-def keep(session: Session, submit: Callable[[Callable[[], State]], None]) -> None:
-    """Keep a lab even if nothing in it has changed; on the simulation thread. See `Watch`."""
+def keep(session: Session, submit: Callable[[Callable[[], LabState]], None]) -> None:
+    """Keep a lab even if nothing in it has changed; on the simulation thread."""
     now = _now(session)
     submit(lambda: _state(*now))
 
 
-def put_back(session: Session, state: State) -> None:
+def put_back(session: Session, state: LabState) -> None:
     """Make a new session what was kept.
 
     Raises:
@@ -66,7 +66,7 @@ def _now(session: Session) -> tuple[Setup, Progress, Setup | None]:
     return capture(session), session.lessons.progress, session.lessons.before
 
 
-def _state(setup: Setup, progress: Progress, before: Setup | None) -> State:
+def _state(setup: Setup, progress: Progress, before: Setup | None) -> LabState:
     return {
         "setup": to_data(setup),
         "lessons": msgspec.to_builtins(progress),

@@ -14,7 +14,7 @@ from typing import Any
 import sqlalchemy as sa
 from sqlalchemy import exc
 
-from onpath.app.common.periodic import Rounds
+from onpath.app.common.periodic import Periodic
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.schema import leases
 
@@ -43,7 +43,7 @@ class Leases:
     ) -> None:
         self._records, self._clock, self._sleep = records, clock, sleep
         self._owner = owner or records.owner
-        self._rounds: Rounds | None = None
+        self._rounds: Periodic | None = None
 
     def save(self, code: str, state: dict[str, Any]) -> None:
         """See `Records.save`; raises HeldElsewhere for a lab that another owner has."""
@@ -126,7 +126,7 @@ class Leases:
             except NotKept as error:
                 log.debug("leases are not renewed: %s", error)
 
-        self._rounds = Rounds("leases", RENEWAL, renew)
+        self._rounds = Periodic("leases", RENEWAL, renew)
         self._rounds.start()
 
     def close(self) -> None:

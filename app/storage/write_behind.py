@@ -25,7 +25,7 @@ class Store(Protocol):
         ...
 
 
-class Keeper:
+class WriteBehind:
     """Keeps the latest state of each lab, at most every few seconds.
 
     Attributes:

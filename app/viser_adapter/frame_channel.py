@@ -3,7 +3,7 @@
 viser takes 60 µs for an assignment to a property, wakes its event loop for every message and then
 waits for more of them; for twenty browsers that is more than a core. Here several properties of a
 node are one message (`update_node`), and all messages of a frame one write to the network, done
-for all browsers together (`Channel`). This uses viser's private parts; tests pin them.
+for all browsers together (`FrameChannel`). This uses viser's private parts; tests pin them.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ UPDATES = {
 }
 MOST_UNSENT = 1 << 16  # [B] that a slow network may owe a browser, before viser merges what is late
 _DTYPES = {np.dtype(kind): np.dtype(kind).str for kind in (np.float32, np.float64)}  # it is slow
-_ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[Channel]] = WeakKeyDictionary()
+_ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[FrameChannel]] = WeakKeyDictionary()
 """Channels with something to send, by the event loop that does it."""
 
 
@@ -55,7 +55,7 @@ def update_gui(handle: Any, name: str, value: str | tuple[np.ndarray, ...]) -> N
     handle._queue_update(name, value)
 
 
-class Channel:
+class FrameChannel:
     """All that the simulation thread tells one browser during a frame, as one message.
 
     It goes past viser's queue when that is empty, and else through it, so that the order is kept.
@@ -129,7 +129,7 @@ class Channel:
         return not self._buffer.message_from_id and not self._recorders and unsent < MOST_UNSENT
 
 
-def _write(frames: list[tuple[Channel, list[Message], bytes]]) -> None:
+def _write(frames: list[tuple[FrameChannel, list[Message], bytes]]) -> None:
     for channel, messages, data in frames:
         channel.write(messages, data)
 

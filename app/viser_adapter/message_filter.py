@@ -51,7 +51,7 @@ class Limits:
     farewell: float = 2.0
 
 
-class Gate:
+class MessageFilter:
     """Stands before viser's handlers of one scope: the whole server's, or one client's own."""
 
     def __init__(

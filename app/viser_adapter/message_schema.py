@@ -12,7 +12,7 @@ UNREADABLE = (ValueError, RecursionError, MemoryError)
 """What msgspec raises of bytes that nobody sends in earnest, deeply nested ones for instance."""
 
 
-class WireForms:
+class MessageSchemas:
     """The messages that may come.
 
     Args:

@@ -18,7 +18,7 @@ def well(_query: str) -> str:
     return "well\n"
 
 
-class Door:
+class RequestFilter:
     """Decides on requests. Closed to websockets until `open` is set, lest one slip in early."""
 
     def __init__(

@@ -1,8 +1,9 @@
 """Protects a viser server from an untrusted browser.
 
-What a browser sends passes the handshake (`origin`), the websocket (`_Connection`: size and rate;
-`wire_form`) and the gate (`gate`: which widget; `widget_values`). What a callback raises is logged
-(`error_log`). Written against viser 1.1.1; a test pins the private names.
+What a browser sends passes the handshake (request_filter.py), the websocket (`_SecureConnection`:
+size and rate; message_schema.py) and then message_filter.py (which widget) and widget_validation.py
+(which value). What a callback raises is logged (error_log.py). Written against viser 1.1.1; a test
+pins the private names.
 """
 
 from __future__ import annotations
@@ -30,10 +31,10 @@ from websockets.http11 import Request, Response
 from onpath.app.common.error_log import log_error
 from onpath.app.viser_adapter.compression import share_compressors
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, CountedConnection, Proxies
-from onpath.app.viser_adapter.message_filter import Gate, Limits, warn_once
-from onpath.app.viser_adapter.message_schema import WireForms
+from onpath.app.viser_adapter.message_filter import Limits, MessageFilter, warn_once
+from onpath.app.viser_adapter.message_schema import MessageSchemas
 from onpath.app.viser_adapter.page_scripts import add_scripts
-from onpath.app.viser_adapter.request_filter import Door, is_loopback, well
+from onpath.app.viser_adapter.request_filter import RequestFilter, is_loopback, well
 from onpath.app.viser_adapter.sockets import PortInUse, listen, listen_unix
 
 __all__ = ["Limits", "PortInUse", "harden", "make_server"]
@@ -87,7 +88,7 @@ def make_server(
         unix_socket: listen on this file alone, for a proxy of this user's that puts the page
             into a folder of its own.
         listener: listen with this instead.
-        health: see `Door`.
+        health: see `RequestFilter`.
 
     Raises:
         ValueError: there can be no such proxy.
@@ -101,7 +102,7 @@ def make_server(
         listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
     port = 0 if unix_socket else listener.getsockname()[1]
     local_only = is_loopback(host) and not unix_socket
-    door = Door(allowed_origins, local_only=local_only, health=health)
+    door = RequestFilter(allowed_origins, local_only=local_only, health=health)
     with _guarded_serve(listener, door, limits, connections, in_folder=unix_socket is not None):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     harden(server, limits=limits)
@@ -129,9 +130,9 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
 
     def guard(connection: WebsockClientConnection) -> None:
         handler: Any = connection._incoming_handlers[wire.GuiUpdateMessage][0]
-        Gate(server, connection, handler.__self__, limits)
+        MessageFilter(server, connection, handler.__self__, limits)
 
-    Gate(server, websock, server.gui, limits)
+    MessageFilter(server, websock, server.gui, limits)
     websock.on_client_connect(guard)
 
 
@@ -148,17 +149,21 @@ _patching = threading.Lock()
 
 @contextmanager
 def _guarded_serve(
-    listener: socket.socket, door: Door, limits: Limits, counts: ConnectionLimits, in_folder: bool
+    listener: socket.socket,
+    requests: RequestFilter,
+    limits: Limits,
+    counts: ConnectionLimits,
+    in_folder: bool,
 ) -> Iterator[None]:
-    """Lead the one call of websockets' `serve`, which viser makes on construction, to our gates."""
+    """Put our checks into the one call of websockets' `serve` that viser makes on construction."""
     library: Any = websockets.asyncio.server
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
-        async def knock(connection: CountedConnection, request: Request) -> Response | None:
-            until = time.monotonic() + STARTING
-            while not door.open and time.monotonic() < until:  # who asks is told when it is ready
-                await asyncio.sleep(0.02)
-            if refusal := door.refusal(request):  # or health, whoever is here
+        async def answer_request(
+            connection: CountedConnection, request: Request
+        ) -> Response | None:
+            await _opened(requests)
+            if refusal := requests.refusal(request):  # or health, whoever is here
                 return connection.respond(*refusal)
             if not counts.admits(connection, request):
                 return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
@@ -176,8 +181,8 @@ def _guarded_serve(
         options["max_size"] = limits.max_message_bytes
         options["ping_interval"] = options["ping_timeout"] = limits.silence
         options["close_timeout"] = limits.farewell
-        options["create_connection"] = partial(_Connection, limits=limits, connections=counts)
-        return genuine(admit, sock=listener, process_request=knock, **options)
+        options["create_connection"] = partial(_SecureConnection, limits=limits, connections=counts)
+        return genuine(admit, sock=listener, process_request=answer_request, **options)
 
     with _patching:
         genuine = library.serve  # read in here: outside it may be another thread's replacement
@@ -188,12 +193,19 @@ def _guarded_serve(
             library.serve = genuine
 
 
+async def _opened(requests: RequestFilter) -> None:
+    """Wait until the server is ready, but not for ever."""
+    until = time.monotonic() + STARTING
+    while not requests.open and time.monotonic() < until:
+        await asyncio.sleep(0.02)
+
+
 @cache
-def _forms(max_magnitude: float) -> WireForms:
-    return WireForms(_FROM_BROWSER, max_magnitude)
+def _forms(max_magnitude: float) -> MessageSchemas:
+    return MessageSchemas(_FROM_BROWSER, max_magnitude)
 
 
-class _Connection(CountedConnection):
+class _SecureConnection(CountedConnection):
     """A websocket that yields only well-formed messages, and is closed when they are too many."""
 
     def __init__(self, *args: Any, limits: Limits, **kwargs: Any) -> None:

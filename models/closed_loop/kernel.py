@@ -18,7 +18,7 @@ from onpath.models.closed_loop.plant_tick import held_torque, integrate, push
 from onpath.models.closed_loop.sensing import logged, look_ahead, measure, remembered
 from onpath.models.control import composite_control as composite
 from onpath.models.control import laws as controllers
-from onpath.models.control.laws import Gains, Task
+from onpath.models.control.laws import Gains, PathReference
 from onpath.models.control.virtual_output import LevelSet, VirtualOutput, virtual_output
 from onpath.models.layout import Fields, Layout
 from onpath.models.paths.curves import TABLE_SHAPE
@@ -223,7 +223,7 @@ def _coordinates(
 def _reference(kind: Kind, state: Fields, settings: Fields) -> tuple[ca.SX, ca.SX]:
     """The tracker's reference point half a tick ahead, and its speed."""
     speed = state["speed_chain"][0] if kind.law == "composite" else settings["speed"]
-    task = Task(settings["position"], settings["target"], speed)
+    task = PathReference(settings["position"], settings["target"], speed)
     theta_ref, dt = state["theta_ref"], settings["dt"]
     rate = controllers.reference_rate(theta_ref, kind.closed, task, dt)
     return theta_ref + dt / 2 * rate, rate
@@ -243,7 +243,7 @@ def _command(
     gains = Gains(*[settings[name] for name in GAINS])
     k5, speed = settings["K5"], settings["speed"]
     speed = speed if beam is None else composite.wanted_speed(beam, output, k5)
-    task = Task(settings["position"], settings["target"], speed)
+    task = PathReference(settings["position"], settings["target"], speed)
     integral = state["integral"]
     if not _tracks(kind):
         across = integral[: frame.p - 1]

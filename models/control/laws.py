@@ -31,7 +31,7 @@ class Gains:
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class PathReference:
     """Motion along the path: hold `target` [rad] where `position` is 1, else `speed` [rad/s]."""
 
     position: ca.SX
@@ -40,7 +40,7 @@ class Task:
 
 
 def path_following(
-    output: VirtualOutput, closed: bool, gains: Gains, task: Task, integral: ca.SX
+    output: VirtualOutput, closed: bool, gains: Gains, task: PathReference, integral: ca.SX
 ) -> ca.SX:
     """Commanded y'', (p, 1), [m/s^2].
 
@@ -64,7 +64,7 @@ def _fading(theta: ca.SX, speed: ca.SX, k5: ca.SX) -> ca.SX:
     return ca.fmin(ca.fmax(speed, pull * (-np.pi - theta)), pull * (np.pi - theta))
 
 
-def reference_rate(theta_ref: ca.SX, closed: bool, task: Task, dt: ca.SX) -> ca.SX:
+def reference_rate(theta_ref: ca.SX, closed: bool, task: PathReference, dt: ca.SX) -> ca.SX:
     """Speed of the tracker's reference point, by the clock alone, [rad/s].
 
     With the position task it runs to the target at |speed| and stays; on an open curve it stops

@@ -42,7 +42,7 @@ EXACT = 1e-3  # of the torque: a residual that needs no explanation
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Record:
+class JointRecord:
     """What was measured, at uniform steps.
 
     Attributes:
@@ -101,7 +101,7 @@ def smooth_velocities(q: Array, dt: float) -> Array:
     return np.asarray(savgol_filter(q, SMOOTHING, 2, deriv=1, delta=dt, axis=0), dtype=float)
 
 
-def identify(record: Record, names: tuple[str, ...] = INERTIA) -> Identified:
+def identify(record: JointRecord, names: tuple[str, ...] = INERTIA) -> Identified:
     """Least squares for the parameters in `names`; what is not named is taken to be zero.
 
     Raises:
@@ -112,7 +112,7 @@ def identify(record: Record, names: tuple[str, ...] = INERTIA) -> Identified:
     return _estimated(names, *_equations(record))
 
 
-def simplest(record: Record) -> Identified:
+def simplest(record: JointRecord) -> Identified:
     """With the fewest kinds of terms that explain the record about as well as all of them.
 
     Raises:
@@ -193,7 +193,7 @@ def _standard_errors(regressor: Array, residual: Array) -> Array:
     return np.sqrt(np.maximum(np.diag(inverse @ middle @ inverse), 0.0) * freedom)
 
 
-def _equations(record: Record) -> tuple[Array, Array]:
+def _equations(record: JointRecord) -> tuple[Array, Array]:
     """Regressor (k, 2, len(ALL)) and right side (k, 2), one row for each place of the bump.
 
     Raises:
@@ -225,7 +225,7 @@ def _equations(record: Record) -> tuple[Array, Array]:
     return columns, torque
 
 
-def _check(record: Record) -> None:
+def _check(record: JointRecord) -> None:
     if record.dt > BUMP / FEWEST:
         raise ValueError(f"samples every {record.dt:g} s: at most {BUMP / FEWEST:g} s apart")
     duration = len(record.q) * record.dt

@@ -11,7 +11,7 @@ from onpath.models.systems.robots import Robot, rigid_five_bar
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class RobotEntry:
     """One robot to choose.
 
     Attributes:
@@ -33,7 +33,7 @@ class Entry:
     make: Callable[[Parameters], Robot]
 
 
-FIVE_BAR = Entry(
+FIVE_BAR = RobotEntry(
     name="five_bar",
     label="Five-bar linkage",
     text="Two motors, rigid links, a pen in a vertical plane.",
@@ -43,7 +43,7 @@ FIVE_BAR = Entry(
     make=lambda _: rigid_five_bar(),
 )
 
-FLEXIBLE = Entry(
+FLEXIBLE = RobotEntry(
     name="flexible",
     label="Five-bar with a flexible link",
     text="Three motors, a last link that bends: the tip is not where the motors put it.",
@@ -53,4 +53,4 @@ FLEXIBLE = Entry(
     make=robot_for,
 )
 
-ROBOTS: dict[str, Entry] = {entry.name: entry for entry in (FIVE_BAR, FLEXIBLE)}
+ROBOTS: dict[str, RobotEntry] = {entry.name: entry for entry in (FIVE_BAR, FLEXIBLE)}

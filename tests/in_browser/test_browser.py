@@ -20,7 +20,7 @@ from playwright.sync_api import Browser, BrowserContext, Download, Page, sync_pl
 
 from onpath.app.bench.mouse_latency import NO_TRIANGLES
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.trajectory import read_csv
@@ -40,7 +40,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopStore())
+    server = LabServer("127.0.0.1", 0, LoopCache())
     yield server
     server.stop()
 
@@ -89,7 +89,7 @@ def stop_between_control_points(tab: Tab) -> None:
     points = tab.session.editor.points()
 
     def clear() -> bool:
-        tab.ask(*[c.Step()] * 5)
+        tab.ask(*[c.StepOnce()] * 5)
         tips = [tab.tip(name) for name in tab.session.runs]
         return min(np.linalg.norm(points - tip, axis=1).min() for tip in tips) > 0.012
 
@@ -184,7 +184,7 @@ def test_holding_both_back_tells_the_story(tab: Tab) -> None:
     tab.press("Reset")
     wait_for(lambda: session.time == 0.0)
     for _ in range(5):  # two laps: as in the paper's experiment, held back at the rightmost point
-        tab.ask(*[c.Step()] * 400)
+        tab.ask(*[c.StepOnce()] * 400)
     tab.press("Hold both back")
     wait_for(lambda: len(session.grips.held) == 2)
     tab.press("Run")
@@ -276,7 +276,7 @@ def test_a_path_is_refused_in_words_and_the_old_one_kept(tab: Tab) -> None:
 
 def test_a_robot_that_leaves_its_workspace_stops_and_says_why(tab: Tab) -> None:
     tab.ask(c.SetParameter("K1", 0.0), c.SetParameter("K2", 0.0))
-    tab.ask(*[c.Tug(-0.1, -0.1)] * 4)
+    tab.ask(*[c.MoveHand(-0.1, -0.1)] * 4)
     tab.page.get_by_role("status").filter(has_text="Reset brings it back").wait_for()
     assert any(run.diverged for run in tab.session.runs.values())
     tab.ask(c.ResetParameters())
@@ -470,9 +470,9 @@ def test_a_narrow_screen_shows_both_robots_and_the_buttons(
 def test_hostile_text_is_not_rendered(tab: Tab) -> None:
     """No browser can make the lab say this, but nothing may rely on that."""
     tab.page.evaluate("window.harmed = false")
-    tab.session.say("<img src=x onerror='window.harmed = true'><b>bold</b>", "warning")
+    tab.session.show_message("<img src=x onerror='window.harmed = true'><b>bold</b>", "warning")
     tab.page.get_by_role("status").filter(has_text="<b>bold</b>").wait_for()
     tab.page.wait_for_timeout(300)
     assert tab.page.get_by_role("status").locator("b, img").count() == 0
     assert tab.page.evaluate("window.harmed") is False
-    tab.session.say("")
+    tab.session.show_message("")

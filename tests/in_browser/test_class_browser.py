@@ -12,11 +12,11 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser, sync_playwright
 
-from onpath.app.classroom.local_classroom import Classroom
+from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.common.access_codes import shown
 from onpath.app.lab import commands as c
 from onpath.app.lab import lesson_commands as lc
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
@@ -29,15 +29,15 @@ WINDOWS = ((1100, 600), (800, 400), (800, 400))
 class Class:
     """Three tabs."""
 
-    room: Classroom
+    room: LocalClassroom
     teacher: Tab
     students: list[Tab]
 
 
 @pytest.fixture(scope="module")
 def tabs() -> Iterator[Class]:
-    room = Classroom()
-    store = LoopStore()
+    room = LocalClassroom()
+    store = LoopCache()
     server = LabServer("127.0.0.1", 0, store, classroom=room)
     with sync_playwright() as playwright:
         browser: Browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)

@@ -12,7 +12,7 @@ pytest.importorskip("playwright")
 from playwright.sync_api import sync_playwright
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.scene.stage_catalogue import HORIZONTAL, IN_PATH_PLANE
 from onpath.app.server.lab_server import LabServer
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
@@ -25,7 +25,7 @@ FOLLOWER = "path_following"
 @pytest.fixture(scope="module")
 def tab() -> Iterator[Tab]:
     """A tab in which the flexible link has been chosen from the menu."""
-    store = LoopStore()
+    store = LoopCache()
     server = LabServer("127.0.0.1", 0, store)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
@@ -63,7 +63,7 @@ def test_the_tip_is_pulled_in_the_plane_that_was_chosen(tab: Tab, plane: str) ->
     session = tab.session
     tab.choose("Pull in", plane)
     tab.ask(c.SetParameter("speed", 0.0), c.Reset(), c.SetRunning(False))
-    tab.ask(*[c.Step()] * 50)
+    tab.ask(*[c.StepOnce()] * 50)
     tab.settle()
     before, start = tip(tab), tab.pixel(FOLLOWER, tip(tab))
 

@@ -20,9 +20,9 @@ import websockets.sync.client
 pytest.importorskip("playwright")
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from onpath.app.server.tab_visibility import EVERY, PATIENCE, TICK
+from onpath.app.server.tab_visibility import PATIENCE, QUESTION_INTERVAL, TICK
 from tests.support.browser import CHROMIUM, COARSER, PLAIN, wait_for
 
 VALUES = "[...document.querySelectorAll('input')].map(each => each.value)"
@@ -72,7 +72,7 @@ class Window:
 
 @pytest.fixture
 def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopStore())
+    server = LabServer("127.0.0.1", 0, LoopCache())
     yield server
     server.stop()
 
@@ -111,7 +111,7 @@ def test_a_covered_tab_costs_nothing_and_then_shows_what_is(
     wait_for(lambda: lab.session.time > 1.0)
 
     def seen_throughout() -> float:
-        rate = meter.rate(EVERY + PATIENCE + TICK)
+        rate = meter.rate(QUESTION_INTERVAL + PATIENCE + TICK)
         return rate if lab.view is view else 0.0
 
     visible = wait_for(seen_throughout)  # drawn in software, but seen, once the page has settled
@@ -131,5 +131,5 @@ def test_a_covered_tab_costs_nothing_and_then_shows_what_is(
     assert meter.rate(1.0) > 0.3 * visible and lab.session.time > simulated
     assert np.allclose(client.camera.position, camera, atol=1e-9)  # for all that it was asked
     lab.session.post(c.SetRunning(False))
-    time.sleep(EVERY + TICK)
+    time.sleep(QUESTION_INTERVAL + TICK)
     assert meter.rate(2.0) < PAUSED and lab.view is view

@@ -15,7 +15,7 @@ from viser import _messages
 
 from onpath.app.lab import commands as c
 from onpath.app.lab import lesson_commands as lc
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.panels.keys import KEYS
 from onpath.app.server.lab_server import LabServer
 from onpath.models.systems.parameters import specs
@@ -38,7 +38,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopStore())
+    server = LabServer("127.0.0.1", 0, LoopCache())
     yield server
     server.stop()
 

@@ -12,7 +12,7 @@ pytest.importorskip("playwright")
 from playwright.sync_api import Page, sync_playwright
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
 
@@ -22,7 +22,7 @@ LESSON = "01-path-or-timetable"
 @pytest.fixture(scope="module")
 def tab() -> Iterator[Tab]:
     """A tab in which lesson 1 has been opened from the overview."""
-    store = LoopStore()
+    store = LoopCache()
     server = LabServer("127.0.0.1", 0, store)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)

@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, sync_playwright
 
 from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.class_commands import TakeStep
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
 
@@ -34,7 +34,7 @@ SEEN = """(heading) => {
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopStore())
+    server = LabServer("127.0.0.1", 0, LoopCache())
     yield server
     server.stop()
 

@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, sync_playwright
 
 from onpath.app.lab import commands as c
 from onpath.app.lab import lesson_commands as lc
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.schema import Task
@@ -141,7 +141,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopStore())
+    server = LabServer("127.0.0.1", 0, LoopCache())
     yield server
     server.stop()
 

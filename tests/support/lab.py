@@ -8,7 +8,7 @@ import numpy as np
 
 from onpath.app.lab.class_commands import ClassCommand
 from onpath.app.lab.commands import Command
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshot import Snapshot
 from onpath.app.lab.take_snapshot import take_snapshot
@@ -21,9 +21,9 @@ FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
 
 
 @lru_cache(maxsize=1)
-def store() -> LoopStore:
+def store() -> LoopCache:
     """Loops made once, and for all tests in this process."""
-    return LoopStore()
+    return LoopCache()
 
 
 def new_session(seconds: float = 0.0) -> Session:

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
-from onpath.app.lab.setup import Bench, Setup, capture_path, kept
+from onpath.app.lab.setup import RobotSetup, Setup, capture_path, kept
 from onpath.models.paths.path_design import PathDesign, drawn, presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Spec, specs
@@ -50,13 +50,13 @@ def _value(spec: Spec) -> st.SearchStrategy[Any]:
 
 
 @st.composite
-def benches(draw: st.DrawFn, robot: str) -> Bench:
+def benches(draw: st.DrawFn, robot: str) -> RobotSetup:
     """One robot's, as `capture` makes it."""
     lab = ROBOTS[robot].lab
     some = draw(st.lists(st.sampled_from(list(specs(lab).items())), max_size=6))
     values = {name: draw(_value(spec)) for name, spec in some}
     own = {name: value for name, value in values.items() if value != getattr(lab, name)}
-    return Bench(own, capture_path(draw(designs), PRESETS))
+    return RobotSetup(own, capture_path(draw(designs), PRESETS))
 
 
 @st.composite
@@ -66,7 +66,7 @@ def setups(draw: st.DrawFn) -> Setup:
     found = {name: draw(benches(name)) for name in sorted(names)}
     return Setup(
         robot=draw(st.sampled_from(list(ROBOTS))),
-        benches={name: bench for name, bench in found.items() if bench != Bench()},
+        benches={name: bench for name, bench in found.items() if bench != RobotSetup()},
         rate=draw(st.sampled_from([0.125, 0.5, 1.0, 4.0])),
         copy=draw(st.booleans()),
         exaggeration=draw(st.sampled_from([1.0, 2.5, 20.0])),

@@ -17,7 +17,7 @@ from onpath.app.exports.exporter import replay
 from onpath.app.lab.lesson_scene import set_up
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
-from onpath.app.lab.setup import Bench, Path, Setup, restore
+from onpath.app.lab.setup import Path, RobotSetup, Setup, restore
 from onpath.lessons.course import BUILT_IN
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.record import ROLES
@@ -104,7 +104,9 @@ WORST = 3 + 25 / 36  # [s], the brake then catches the follower at 214 degrees
 def play(until: float, do: list[Action], path: str = "", **settings: Value) -> Run:
     """What both robots do, set up with the lab's defaults but for some settings."""
     session = Session(store())
-    restore(session, Setup("five_bar", {"five_bar": Bench(settings, Path(path or Path().name))}))
+    restore(
+        session, Setup("five_bar", {"five_bar": RobotSetup(settings, Path(path or Path().name))})
+    )
     return _played(session, Script(tuple(do), until))
 
 

@@ -8,14 +8,14 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.lab.session import Session
-from onpath.app.page.page_context import Seat
+from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.panels.widgets import on_slow_press
 
 
 class ClassPanel:
     """A folder: class code and nickname, or who one is in the class."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, seat: Seat) -> None:
+    def __init__(self, gui: viser.GuiApi, session: Session, seat: ClassSeat) -> None:
         self._seat, self._words = seat, session.lessons.words
         words = self._words
         with gui.add_folder(words("class.title"), expand_by_default=not seat.name()):

@@ -10,7 +10,7 @@ from onpath.app.common.access_codes import shown
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.session import Session
-from onpath.app.page.page_context import Desk
+from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.widgets import Post, on_press, on_slow_press
 
 
@@ -18,7 +18,7 @@ class KeepPanel:
     """A folder with codes to note down, to send and to type in."""
 
     def __init__(
-        self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter, desk: Desk
+        self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter, desk: PageContext
     ) -> None:
         words = session.lessons.words
         self._desk, self._words, self._code = desk, words, ""

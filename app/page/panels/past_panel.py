@@ -43,7 +43,7 @@ class PastPanel:
             table = gui.add_button(words("export.table"), icon=viser.Icon.TABLE)
             picture = gui.add_button(words("export.picture"), icon=viser.Icon.PHOTO)
             film = gui.add_button(words("export.film"), icon=viser.Icon.MOVIE)
-        on_user_update(self._ago, lambda ago: post(c.View(ago)))
+        on_user_update(self._ago, lambda ago: post(c.LookAt(ago)))
         on_press(self._go_on, lambda: post(c.GoOn()))
         on_press(self._undo, lambda: post(c.UndoGoOn()))
         on_press(table, exporter.csv)

@@ -14,7 +14,7 @@ from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import Post, on_press
 from onpath.assets import asset_path
 from onpath.lessons.words import Words
-from onpath.models.systems.catalogue import ROBOTS, Entry
+from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 
 
 class RobotPanel:
@@ -52,7 +52,7 @@ class RobotPanel:
         self._post(ChooseRobot(name))
 
 
-def label_of(entry: Entry, words: Words) -> str:
+def label_of(entry: RobotEntry, words: Words) -> str:
     """A robot's name as shown."""
     return words.get(f"machine.{entry.name}.label", entry.label)
 

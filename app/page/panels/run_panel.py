@@ -40,7 +40,7 @@ class RunPanel:
             words("run.pause"), icon=viser.Icon.PLAYER_PAUSE, hint=words("run.run_hint")
         )
         row: dict[str, Callable[[], None]] = {
-            words("run.step"): lambda: post(c.Step()),
+            words("run.step"): lambda: post(c.StepOnce()),
             words("run.reset"): lambda: post(c.Reset()),
             words("run.view"): reset_view,
         }

@@ -12,13 +12,13 @@ from onpath.app.lab.session import Session
 from onpath.app.lab.setup import capture
 from onpath.app.lab.share_code import decode
 from onpath.app.page.panels.widgets import on_press
-from onpath.app.page.teacher_context import Teaching
+from onpath.app.page.teacher_context import TeacherContext
 
 
 class TeacherControls:
     """Above the teacher's own lab."""
 
-    def __init__(self, gui: viser.GuiApi, own: Session, teaching: Teaching) -> None:
+    def __init__(self, gui: viser.GuiApi, own: Session, teaching: TeacherContext) -> None:
         self._class, self._words, self._own = teaching.classroom, own.lessons.words, own
         self._wanted: list[Callable[[], None]] = []
         words = self._words
@@ -55,10 +55,10 @@ class TeacherControls:
         self._said.content = _text(self._words("class.sent", count=len(self._class.members())))
 
 
-class Following:
+class FollowedStudent:
     """Above a student's lab."""
 
-    def __init__(self, gui: viser.GuiApi, own: Session, teaching: Teaching) -> None:
+    def __init__(self, gui: viser.GuiApi, own: Session, teaching: TeacherContext) -> None:
         self._own, self._class = own, teaching.classroom
         self._freezing = _add_freezing(gui, own, teaching)
         member = self._class.member(teaching.chosen.followed)
@@ -76,7 +76,9 @@ class Following:
         _show_freezing(self._freezing, self._own, self._class.orders.frozen)
 
 
-def _add_freezing(gui: viser.GuiApi, own: Session, teaching: Teaching) -> viser.GuiButtonHandle:
+def _add_freezing(
+    gui: viser.GuiApi, own: Session, teaching: TeacherContext
+) -> viser.GuiButtonHandle:
     classroom = teaching.classroom
     button = gui.add_button(
         own.lessons.words("class.freeze"), color="red", icon=viser.Icon.HAND_STOP

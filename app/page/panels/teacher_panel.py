@@ -13,10 +13,10 @@ from onpath.app.lab import lesson_commands as c
 from onpath.app.lab.class_commands import TakeStep
 from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import on_press, on_user_update
-from onpath.app.page.teacher_context import Teaching
+from onpath.app.page.teacher_context import TeacherContext
 
 WIDTH, WIDE = 480, 760  # [px]; wide for a projector
-EVERY = 1.0  # [s] between two looks at the class
+REFRESH_INTERVAL = 1.0  # [s] between two looks at the class
 
 Submit = Callable[[Callable[[], None]], None]
 
@@ -30,7 +30,7 @@ class TeacherPanel:
     """
 
     def __init__(
-        self, client: viser.ClientHandle, own: Session, teaching: Teaching, submit: Submit
+        self, client: viser.ClientHandle, own: Session, teaching: TeacherContext, submit: Submit
     ) -> None:
         self._client, self._gui, self._submit = client, client.gui, submit
         self._teaching, self._class, self._chosen = teaching, teaching.classroom, teaching.chosen
@@ -54,7 +54,7 @@ class TeacherPanel:
         """Once a second, in another thread: the class may be large."""
         now = self._class.clock()
         if now >= self._next and not self._busy:
-            self._next, self._busy = now + EVERY, True
+            self._next, self._busy = now + REFRESH_INTERVAL, True
             self._submit(self._refresh)
 
     def _refresh(self) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from onpath.app.bench.crowd import HEAD, Crowd, folders, measured
+from onpath.app.bench.crowd import HEAD, ClientLoad, folders, measured
 from onpath.app.bench.server_process import serving
 from onpath.app.cli.main import run_command
 
@@ -20,7 +20,7 @@ WORKERS = 2 if sys.platform == "linux" else 1
 
 
 def test_a_small_crowd_on_a_real_server(tmp_path: Path) -> None:
-    crowd = Crowd(CLIENTS, WORKERS, SECONDS, rows=2)
+    crowd = ClientLoad(CLIENTS, WORKERS, SECONDS, rows=2)
     rows = list(measured(crowd, folders(tmp_path, "data")))
     assert len(rows) == 2
     for row in rows:

@@ -13,8 +13,8 @@ import pytest
 import websockets.exceptions
 import websockets.sync.client
 
-from onpath.app.bench.simulated_browser import Seen, Unserved, crowd, first_poses
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.bench.simulated_browser import NotServed, Observations, crowd, first_poses
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.simulation import (
     FREE,
@@ -45,11 +45,11 @@ def test_filling_in_a_push_is_the_same_as_packing_anew(name: str) -> None:
 
 
 def test_simulated_browsers_see_and_do_what_real_ones_do() -> None:
-    async def look(port: int) -> list[Seen]:
+    async def look(port: int) -> list[Observations]:
         async with aclosing(crowd(port, 2, seconds=4.5)) as seen:
             return [await anext(seen) for _ in range(2)]
 
-    server = LabServer("127.0.0.1", 0, LoopStore())
+    server = LabServer("127.0.0.1", 0, LoopCache())
     try:
         first, then = asyncio.run(look(server.server.get_port()))
         labs = server.simulation.labs
@@ -69,15 +69,15 @@ def test_a_crowd_that_is_not_served_says_so() -> None:
         async with aclosing(crowd(port, 2, 1.0, patience)) as seen:
             await anext(seen)
 
-    server = LabServer("127.0.0.1", 0, LoopStore(), most_clients=1)
+    server = LabServer("127.0.0.1", 0, LoopCache(), most_clients=1)
     try:
-        with pytest.raises(Unserved, match=r"only 1 of 2 clients .* moving robots in 3 s"):
+        with pytest.raises(NotServed, match=r"only 1 of 2 clients .* moving robots in 3 s"):
             asyncio.run(settle(server.server.get_port(), 3.0))
     finally:
         server.stop()
     with (
         answering(REFUSED, REFUSED) as (port, _),
-        pytest.raises(Unserved, match=r"turned away: .*503"),
+        pytest.raises(NotServed, match=r"turned away: .*503"),
     ):
         asyncio.run(settle(port, 5.0))
 
@@ -108,7 +108,7 @@ def test_the_bench_waits_for_a_server_that_is_not_ready() -> None:
         waiting = asyncio.create_task(first_poses(port))
         await asyncio.to_thread(early.join, 5.0)
         assert not early.is_alive() and not waiting.done()
-        server = LabServer("127.0.0.1", port, LoopStore())
+        server = LabServer("127.0.0.1", port, LoopCache())
         try:
             await asyncio.wait_for(waiting, 20.0)
         finally:

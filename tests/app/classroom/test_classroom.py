@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.admission import CODE_LENGTH, LONGEST_NAME, cleaned
-from onpath.app.classroom.class_sync import Attendance
-from onpath.app.classroom.local_classroom import Classroom
+from onpath.app.classroom.class_sync import ClassSync
+from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.classroom.results import HEADER, class_csv, distribution, prediction_at, truth_of
 from onpath.app.classroom.shared_classroom import SharedClassroom
 from onpath.app.common.access_codes import ALPHABET, new_code, shown
@@ -31,7 +31,7 @@ from onpath.app.lab.setup import Setup, capture
 from onpath.app.storage.forget import forget
 from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import Records, file_url
-from onpath.app.storage.write_behind import Keeper
+from onpath.app.storage.write_behind import WriteBehind
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.progress import Answer, Notes, Progress, Truth
 from onpath.lessons.schema import Choice, Sketch
@@ -65,12 +65,12 @@ class Watched:
     labs: dict[str, tuple[Session, bool]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.room: Classroom | SharedClassroom = Classroom(lambda: self.now)
+        self.room: LocalClassroom | SharedClassroom = LocalClassroom(lambda: self.now)
         if self.records is not None:
             wall = lambda: 1.8e9 + self.now  # noqa: E731
             self.room = SharedClassroom(self.records, new_code(), lambda: self.now, wall)
             self.leases = Leases(self.records, clock=wall)
-        self.attendance = Attendance(self.room, self.labs.get)
+        self.attendance = ClassSync(self.room, self.labs.get)
 
     def student(self, name: str) -> Session:
         """One more, in the class."""
@@ -199,7 +199,7 @@ def test_a_flood_of_wrong_codes_from_throwaway_labs_locks_nobody_out(
 
 def test_a_class_code_is_not_to_be_guessed_within_a_lesson(klass: Watched) -> None:
     assert len(klass.room.code) == CODE_LENGTH and set(klass.room.code) <= set(ALPHABET)
-    guesses = 90 * 1700  # of a lesson; see `app.classroom.admission.Door`
+    guesses = 90 * 1700  # of a lesson; see `app.classroom.admission.Admission`
     assert guesses / len(ALPHABET) ** CODE_LENGTH < 1e-3
 
 
@@ -233,13 +233,18 @@ def test_attempts_under_way_count_and_only_failures_go_on_counting() -> None:
 def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -> None:
     session = klass.student("Ada")
     outside = Session(store(), FIVE_BAR, klass.course)
-    do(session, c.Tug(0.01, 0.0))
+    do(session, c.MoveHand(0.01, 0.0))
     klass.room.freeze(True)
     klass.look()
     before = session.time
     assert session.message == ENGLISH("class.frozen") and not session.grips.hands
-    for command in (c.SetRunning(False), c.Step(), c.SetParameter("K1", 1.0), c.Tug(0.01, 0.0)):
-        session.say("")
+    for command in (
+        c.SetRunning(False),
+        c.StepOnce(),
+        c.SetParameter("K1", 1.0),
+        c.MoveHand(0.01, 0.0),
+    ):
+        session.show_message("")
         do(session, command)
         assert session.message == ENGLISH("class.frozen")
     run(session, 0.5)
@@ -533,7 +538,7 @@ def test_no_cell_is_a_formula(klass: Watched, name: str) -> None:
 def test_everything_that_is_kept_is_deleted(tmp_path: Path) -> None:
     file = tmp_path / "labs.db"
     records = Records(file_url(file))
-    keeper = Keeper(records, interval=60.0)
+    keeper = WriteBehind(records, interval=60.0)
     for code in ("a" * 12, "b" * 12):
         records.save(code, {"secret": "Ada"})
     keeper.submit("c" * 12, lambda: {"secret": "late"})

@@ -142,7 +142,7 @@ def test_a_hand_that_pulls_is_near_meanwhile_and_exact_after() -> None:
     both.run(1.0)
 
     def pull(time: float) -> c.Command | None:
-        return c.Tug(0.002 * np.cos(3 * time), 0.002 * np.sin(3 * time))
+        return c.MoveHand(0.002 * np.cos(3 * time), 0.002 * np.sin(3 * time))
 
     both.run(1.0, pull)
     assert both.distance() < 5 * SAME and both.mirror.session.grips.grabbed
@@ -152,7 +152,7 @@ def test_a_hand_that_pulls_is_near_meanwhile_and_exact_after() -> None:
 
 
 @pytest.mark.parametrize(
-    "still", [c.SetRunning(False), c.View(0.4), Freeze(True)], ids=lambda s: type(s).__name__
+    "still", [c.SetRunning(False), c.LookAt(0.4), Freeze(True)], ids=lambda s: type(s).__name__
 )
 def test_a_lab_that_stands_still_is_shown_where_it_stands(still: Any) -> None:
     both = Followed()

@@ -13,9 +13,9 @@ import sqlalchemy as sa
 
 from onpath.app.classroom.class_ledger import FORGOTTEN
 from onpath.app.classroom.class_opening import KEY, class_of_workers, given_key, open_class
-from onpath.app.classroom.class_sync import Attendance
+from onpath.app.classroom.class_sync import ClassSync
 from onpath.app.classroom.classroom import MOST_MEMBERS, Orders
-from onpath.app.classroom.local_classroom import Classroom
+from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.classroom.mirror import Mirror
 from onpath.app.classroom.relay import Relay
 from onpath.app.classroom.shared_classroom import LIVELY, SharedClassroom
@@ -26,7 +26,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.class_commands import TakeSetup, TakeStep
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import capture
-from onpath.app.page.teacher_context import Chosen, Teaching
+from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
 from onpath.app.simulation.simulation_thread import Lab
 from onpath.app.storage.forget import forget
 from onpath.app.storage.leases import TERM, Leases
@@ -64,7 +64,7 @@ class Process:
         mine = lambda: self.clock.now - self.begun  # noqa: E731
         self.room = SharedClassroom(self.records, self.key, mine, self.wall)
         self.leases = Leases(self.records, clock=self.wall)
-        self.attendance = Attendance(self.room, self._find)
+        self.attendance = ClassSync(self.room, self._find)
         self.watches = Watches(self.records, self.room.id, self.wall)
 
     def wall(self) -> float:
@@ -293,7 +293,7 @@ def test_nothing_is_written_while_nothing_happens(two: Two) -> None:
         two.look()
     for _ in range(10):  # hands that move all the time are noted now and then
         two.clock.now += LIVELY / 12
-        do(session, c.Tug(0.0, 0.001))
+        do(session, c.MoveHand(0.0, 0.001))
         two.look()
     assert changes() <= before + 1
     assert other.room.members()["a"].progress is way
@@ -427,7 +427,7 @@ def test_which_class_a_server_has(
     with pytest.raises(ValueError, match=KEY):
         given_key()
     records = two.both[0].records
-    assert isinstance(open_class(records, None), Classroom)
+    assert isinstance(open_class(records, None), LocalClassroom)
     assert isinstance(open_class(records, CODE), SharedClassroom)
     alone = Records("sqlite://")
     with pytest.raises(ValueError, match="share"):
@@ -513,8 +513,8 @@ def test_the_teacher_reads_why_a_lab_stands_still(two: Two) -> None:
     two.look()
     lab = Lab(new_session())
     shown_lab: list[Lab | None] = [lab]
-    teaching = Teaching(
-        one.room, Chosen(), lambda _: shown_lab[0], forget=lambda: 0, stop=lambda: None
+    teaching = TeacherContext(
+        one.room, TeacherChoices(), lambda _: shown_lab[0], forget=lambda: 0, stop=lambda: None
     )
     assert teaching.why_still(ENGLISH) == ""
     for code in ("a", "b"):

@@ -65,7 +65,7 @@ def test_replay_is_what_was_simulated_to_the_last_bit() -> None:
 
 def test_replay_after_going_on_from_the_past() -> None:
     session = new_session(1.0)
-    do(session, c.View(0.5), c.GoOn(), c.SetParameter("K1", 100))
+    do(session, c.LookAt(0.5), c.GoOn(), c.SetParameter("K1", 100))
     seen = watched(session, 20)
     for name, trajectory in replay(session.robot, session.history.all()).items():
         assert np.allclose(np.diff(trajectory.t), 1e-3, atol=1e-9)

@@ -197,7 +197,7 @@ def test_a_server_built_while_another_is_being_built_listens(
         server.stop()
 
     with hardening.listen("127.0.0.1", 0) as listener:
-        door, limits = hardening.Door((), local_only=True), hardening.Limits()
+        door, limits = hardening.RequestFilter((), local_only=True), hardening.Limits()
         connections = hardening.ConnectionLimits(limits, hardening.Proxies())
         with hardening._guarded_serve(listener, door, limits, connections, in_folder=False):
             lock.asked.clear()

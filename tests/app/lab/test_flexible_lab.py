@@ -82,7 +82,7 @@ def test_going_on_from_the_past_is_the_same_motion_again() -> None:
     session = flexible(1.0)
     stretch = session.history.at(0.5)
     assert stretch is not None
-    do(session, c.View(session.time - 0.5))
+    do(session, c.LookAt(session.time - 0.5))
     shown = take_snapshot(session, 1.0).robots[FOLLOWER]
     q = stretch.drives[FOLLOWER].state[: session.robot.system.n]
     np.testing.assert_allclose(shown.bars, drawn(session.robot.skeleton, q, 1.0)[0], atol=1e-15)

@@ -20,11 +20,11 @@ from onpath.app.lab.history import (
     MOST,
     RECENT,
     SECONDS,
-    Frame,
     History,
+    HistoryFrame,
     Input,
     Inputs,
-    Stretch,
+    Segment,
 )
 from onpath.app.lab.session import Session
 from onpath.app.lab.take_snapshot import take_snapshot
@@ -47,7 +47,7 @@ def add(
 ) -> None:
     """A stretch of one robot, whose state and sample are the time."""
     state, inputs = np.array([time]), inputs_of(curve, dt, id(settings), frozen)
-    history.append(Frame(time, ticks, inputs, [state], [0.0], [state], [0.0]))
+    history.append(HistoryFrame(time, ticks, inputs, [state], [0.0], [state], [0.0]))
 
 
 @lru_cache
@@ -131,7 +131,7 @@ def test_a_minute_takes_little_memory() -> None:
     assert used < 1e6 and peak < 2e6
 
 
-def memory_of_a_minute(session: Session, one: Stretch) -> tuple[int, int]:
+def memory_of_a_minute(session: Session, one: Segment) -> tuple[int, int]:
     """What a history has in the end, and what all threads had meanwhile at most, [B]."""
     names, rows = list(session.runs), list(one.sample)
     inputs = Inputs(one.curve, one.dt, {name: session.runs[name].input() for name in names})
@@ -139,7 +139,7 @@ def memory_of_a_minute(session: Session, one: Stretch) -> tuple[int, int]:
     tracemalloc.start()
     history = new_history()
     for k in range(8000):
-        history.append(Frame(k * 0.017, 17, inputs, states, [0.0, 0.0], rows, [0.0, 0.0]))
+        history.append(HistoryFrame(k * 0.017, 17, inputs, states, [0.0, 0.0], rows, [0.0, 0.0]))
     assert history.span() > 59
     _, peak = tracemalloc.get_traced_memory()
     snapshot = tracemalloc.take_snapshot()
@@ -241,7 +241,7 @@ def test_past_is_shown_as_it_was() -> None:
         session.advance(FRAME)
         seen.append((session.time, take_snapshot(session, 1.0)))
     for ago in (0.1, 0.4, 0.9):
-        do(session, c.View(ago))
+        do(session, c.LookAt(ago))
         assert not session.running and session.viewing == pytest.approx(session.time - ago)
         now = take_snapshot(session, 1.0)
         at = session.history.at(session.viewing or 0.0)
@@ -255,7 +255,7 @@ def test_past_is_shown_as_it_was() -> None:
             assert shown.distance == pytest.approx(was.distance, abs=1e-7)
             assert shown.max_distance == was.max_distance
             assert shown.speed == pytest.approx(was.speed, rel=1e-5)
-    do(session, c.View(0.0))
+    do(session, c.LookAt(0.0))
     assert session.viewing is None
     assert take_snapshot(session, 1.0).robots[TRACKER].tip == pytest.approx(
         seen[-1][1].robots[TRACKER].tip
@@ -283,7 +283,7 @@ def test_going_on_gives_the_same_future_to_the_last_bit(values: dict[str, float]
     for _ in range(40):
         session.advance(FRAME)
         passed[round(session.time * 1e3)] = states(session)
-    do(session, c.View(0.4), c.GoOn())
+    do(session, c.LookAt(0.4), c.GoOn())
     begin = session.time
     assert session.viewing is None and session.running
     assert begin == pytest.approx(1.667 - 0.4, abs=0.035)
@@ -301,7 +301,7 @@ def test_going_on_gives_the_same_future_to_the_last_bit(values: dict[str, float]
 def test_going_on_forgets_what_came_after() -> None:
     session = busy()
     most = session.runs[TRACKER].max_distance
-    do(session, c.View(session.time - 0.2), c.GoOn())
+    do(session, c.LookAt(session.time - 0.2), c.GoOn())
     assert session.time < 0.21 and session.history.span() < 0.21
     assert not session.grips.held and not session.grips.hands
     assert session.runs[TRACKER].max_distance < most / 3
@@ -315,7 +315,7 @@ def test_going_on_from_a_time_with_another_path_finds_the_new_one() -> None:
     session = new_session(0.5)
     do(session, c.ChoosePath("segment"))
     run(session, 0.5)
-    do(session, c.View(0.8), c.GoOn())
+    do(session, c.LookAt(0.8), c.GoOn())
     run(session, 2.0)
     for run_ in session.runs.values():
         assert run_.diverged is None and run_.distance < 1e-3
@@ -323,18 +323,18 @@ def test_going_on_from_a_time_with_another_path_finds_the_new_one() -> None:
 
 
 def test_acting_on_the_lab_ends_looking_back() -> None:
-    for command in (c.Hold(True), c.Tug(0.01, 0.0), c.Step(), c.ChoosePath("ellipse")):
+    for command in (c.Hold(True), c.MoveHand(0.01, 0.0), c.StepOnce(), c.ChoosePath("ellipse")):
         session = new_session(0.5)
         time = session.time
-        do(session, c.View(0.3), command)
+        do(session, c.LookAt(0.3), command)
         assert session.viewing is None and session.time >= time
 
 
 def test_reset_forgets_the_past() -> None:
     session = new_session(0.5)
-    do(session, c.View(0.3), c.Reset())
+    do(session, c.LookAt(0.3), c.Reset())
     assert session.viewing is None and len(session.history) == 0 and session.time == 0.0
-    do(session, c.View(0.3))
+    do(session, c.LookAt(0.3))
     assert session.viewing is None
 
 
@@ -343,9 +343,9 @@ def test_a_robot_that_had_diverged_stands_still_again_and_one_that_had_not_runs(
     session.runs[FOLLOWER].fields()["v"][:] = 500.0
     run(session, 0.5)
     assert session.runs[FOLLOWER].diverged
-    do(session, c.View(0.2), c.GoOn())
+    do(session, c.LookAt(0.2), c.GoOn())
     assert session.runs[FOLLOWER].diverged and "Path following stopped" in session.message
-    do(session, c.View(session.time - 0.3), c.GoOn())
+    do(session, c.LookAt(session.time - 0.3), c.GoOn())
     assert session.runs[FOLLOWER].diverged is None and session.message_level == "info"
     run(session, 0.3)
     assert session.runs[FOLLOWER].diverged is None and session.runs[FOLLOWER].distance < 1e-3

@@ -62,7 +62,7 @@ def test_a_scene_sets_the_lab_up_and_the_free_lab_comes_back(course: Course) -> 
 
 def test_nothing_happens_before_a_prediction(session: Session) -> None:
     do(session, lc.GoToStep(1))
-    for command in (c.SetRunning(True), c.Step(), c.GoOn(), lc.PlayStep()):
+    for command in (c.SetRunning(True), c.StepOnce(), c.GoOn(), lc.PlayStep()):
         do(session, command)
         run(session, 0.2)
         assert session.time == 0.0 and not session.running
@@ -149,7 +149,7 @@ def test_pulled_off_let_go_and_back_again(frame: float) -> None:
     session = Session(store(), FIVE_BAR, read_course([BUILT_IN])[0])
     do(session, TakeStep("01-path-or-timetable", 9))
     for _ in range(6):
-        do(session, c.Tug(0.005, 0.0))
+        do(session, c.MoveHand(0.005, 0.0))
         run(session, 0.1)
     run(session, 1.0)
     do(session, c.Release())
@@ -163,7 +163,7 @@ def test_the_marks_of_a_passed_task_stay_until_the_next_attempt(session: Session
     do(session, lc.GoToStep(3), lc.GoToStep(3), c.Hold(True))
     run(session, 2.0)
     assert all(verdict.passed for verdict in session.lessons.verdicts["hold"])
-    do(session, c.SetParameter("K1", 20), c.SetParameter("K2", 1), c.Tug(0.1, 0.1))
+    do(session, c.SetParameter("K1", 20), c.SetParameter("K2", 1), c.MoveHand(0.1, 0.1))
     run(session, 2.0)  # far off
     assert all(verdict.passed for verdict in session.lessons.verdicts["hold"])
     do(session, c.Reset())
@@ -179,7 +179,7 @@ def test_what_is_undone_by_rewinding_passes_no_task(session: Session) -> None:
     run(session, 1.0)
     do(session, c.Hold(True))
     run(session, 0.5)
-    do(session, c.View(1.0), c.GoOn())
+    do(session, c.LookAt(1.0), c.GoOn())
     run(session, 0.5)
     assert not judge(held, record_of(session, begin), Words())[0].passed
     do(session, c.Hold(True))
@@ -237,7 +237,7 @@ def test_what_is_given_up_half_way_has_not_been_seen(session: Session, command: 
     do(session, lc.PlayStep())
     run(session, 1.0)
     if isinstance(command, c.GoOn):
-        do(session, c.View(0.5))
+        do(session, c.LookAt(0.5))
     do(session, command)  # type: ignore[arg-type]
     run(session, 3.0)
     notes = session.lessons.notes

@@ -16,7 +16,7 @@ from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.class_commands import TakeSetup, TakeStep
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import Setup, capture
-from onpath.app.storage.lab_state import State, keep, put_back
+from onpath.app.storage.lab_state import LabState, keep, put_back
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.models.closed_loop.simulation import FREE
 from onpath.models.control.laws import NAMES
@@ -133,7 +133,7 @@ def left_and_opened(session: Session) -> Session:
 
 def reloaded(session: Session) -> Session:
     """In another process, as it was left, at the start."""
-    kept: list[State] = []
+    kept: list[LabState] = []
     keep(session, lambda make: kept.append(make()))
     again = new_lab()
     put_back(again, kept[0])
@@ -168,9 +168,9 @@ MEDDLING = (
     asked(*(c.ChooseRobot(name) for name in ROBOTS), c.SetParameter("K1", 55.0)),
     asked(c.SetRate(0.25), c.SetCopy(False)),
     asked(c.Hold(True)),
-    asked(c.Tug(0.02, 0.01)),
+    asked(c.MoveHand(0.02, 0.01)),
     asked(c.SetRunning(True)),
-    asked(c.SetRunning(True), c.View(0.05)),
+    asked(c.SetRunning(True), c.LookAt(0.05)),
 )
 meddling = st.sampled_from(MEDDLING)
 ways = st.one_of(

@@ -64,10 +64,10 @@ ACTIONS = [
 COMMANDS: dict[str, c.Command] = {
     "back": c.LookBack(0.2),
     "forward": c.LookBack(-0.1),
-    "present": c.View(0.0),
+    "present": c.LookAt(0.0),
     "Run": c.SetRunning(True),
     "hold": c.Hold(),
-    "step": c.Step(),
+    "step": c.StepOnce(),
     "go on": c.GoOn(),
     "undo": c.UndoGoOn(),
 }
@@ -113,7 +113,7 @@ def test_a_lab_brought_back_goes_on_as_if_nothing_had_been() -> None:
         run(lab, 0.5)
         do(lab, c.Hold(True))
         run(lab, 0.5)
-    do(session, c.View(0.7), c.GoOn())
+    do(session, c.LookAt(0.7), c.GoOn())
     assert not session.grips.held
     run(session, 0.3)
     do(session, c.UndoGoOn())
@@ -131,7 +131,7 @@ def test_a_robot_that_had_stopped_stands_still_again_after_undo() -> None:
     run(session, 0.3)
     stopped = session.runs[FOLLOWER].diverged
     assert stopped
-    do(session, c.View(0.6), c.GoOn())
+    do(session, c.LookAt(0.6), c.GoOn())
     assert session.runs[FOLLOWER].diverged is None
     do(session, c.UndoGoOn())
     assert session.runs[FOLLOWER].diverged == stopped
@@ -141,7 +141,7 @@ def test_a_robot_that_had_stopped_stands_still_again_after_undo() -> None:
 def test_what_was_set_meanwhile_stays_when_the_past_comes_back() -> None:
     session = new_session(0.6)
     end = y(session, FOLLOWER)
-    do(session, c.View(0.4), c.GoOn(), c.ChoosePath("segment"), c.SetParameter("K1", 300))
+    do(session, c.LookAt(0.4), c.GoOn(), c.ChoosePath("segment"), c.SetParameter("K1", 300))
     run(session, 0.8)
     do(session, c.UndoGoOn())
     assert session.time == pytest.approx(0.6, abs=0.02)
@@ -156,7 +156,7 @@ def test_what_was_set_meanwhile_stays_when_the_past_comes_back() -> None:
 @pytest.mark.parametrize("command", [c.Reset(), c.ChooseRobot("flexible")])
 def test_a_new_beginning_leaves_nothing_to_bring_back(command: c.Command) -> None:
     session = new_session(0.5)
-    do(session, c.View(0.3), c.GoOn(), command)
+    do(session, c.LookAt(0.3), c.GoOn(), command)
     before = states(session)
     do(session, c.UndoGoOn())
     assert session.time == 0.0 and "nothing" in session.message
@@ -170,22 +170,22 @@ def test_a_step_of_a_lesson_cannot_be_passed_by_bringing_back_what_came_before(
     session = Session(store(), FIVE_BAR, read_course([tmp_path])[0])
     do(session, lc.OpenLesson("01-a"), c.SetRunning(True))
     run(session, 0.5)
-    do(session, c.View(0.3), c.GoOn())
+    do(session, c.LookAt(0.3), c.GoOn())
     assert session.put_aside is not None
     do(session, lc.GoToStep(1))
     assert session.put_aside is None
 
 
 def test_whoever_acts_on_the_lab_while_looking_back_is_told_that_it_is_the_present() -> None:
-    for command in (c.Hold(True), c.Tug(0.01, 0.0), c.Step(), c.ChoosePath("ellipse")):
+    for command in (c.Hold(True), c.MoveHand(0.01, 0.0), c.StepOnce(), c.ChoosePath("ellipse")):
         session = new_session(0.5)
-        do(session, c.View(0.3))
+        do(session, c.LookAt(0.3))
         assert "the past" in session.message
         do(session, command)
         assert "present" in session.message
     session = new_session(0.5)
-    do(session, c.Tug(0.01, 0.0), c.View(0.3))
+    do(session, c.MoveHand(0.01, 0.0), c.LookAt(0.3))
     assert "let go" in session.message and not session.grips.hands
     session = new_session(0.5)
-    do(session, c.View(0.3), c.ChoosePath("figure of eight"))
+    do(session, c.LookAt(0.3), c.ChoosePath("figure of eight"))
     assert "refused" in session.message

@@ -15,7 +15,7 @@ import pytest
 
 from onpath.app.lab import commands as c
 from onpath.app.lab import loop_cache as loop_store
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.app.server.lazy_imports import LATER, warm_up
 from onpath.models.closed_loop.kernel import Kernel
@@ -29,8 +29,8 @@ PATIENCE = 60.0  # [s]
 
 
 @pytest.fixture
-def store() -> Iterator[LoopStore]:
-    made = LoopStore()
+def store() -> Iterator[LoopCache]:
+    made = LoopCache()
     yield made
     made.close()
 
@@ -59,19 +59,19 @@ def gate(monkeypatch: pytest.MonkeyPatch) -> Iterator[Gate]:
     made.set()
 
 
-def finish(store: LoopStore) -> None:
+def finish(store: LoopCache) -> None:
     """Wait until all loops that were asked for are compiled, or given up."""
     for wanted in list(store._wanted.values()):
         with suppress(CancelledError):
             wanted.result(PATIENCE)
 
 
-def loops(session: Session, store: LoopStore) -> list[Loop]:
+def loops(session: Session, store: LoopCache) -> list[Loop]:
     return [store.get(run.robot, run.kind) for run in session.runs.values()]
 
 
-def test_loops_are_interpreted_at_once_and_compiled_later(store: LoopStore, gate: Gate) -> None:
-    never = LoopStore()
+def test_loops_are_interpreted_at_once_and_compiled_later(store: LoopCache, gate: Gate) -> None:
+    never = LoopCache()
     never.close()
     session, reference = Session(store), Session(never)
     for tier in (InterpretedLoop, CompiledLoop):
@@ -90,7 +90,7 @@ def test_loops_are_interpreted_at_once_and_compiled_later(store: LoopStore, gate
 
 
 def test_what_cannot_be_compiled_is_told_once_and_the_lab_goes_on(
-    store: LoopStore, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    store: LoopCache, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setitem(sys.modules, "llvmlite.binding", None)
     session = Session(store)
@@ -108,7 +108,7 @@ def test_what_cannot_be_compiled_is_told_once_and_the_lab_goes_on(
     assert all(isinstance(loop, InterpretedLoop) for loop in loops(session, store))
 
 
-def test_closing_gives_up_what_is_waiting(store: LoopStore, gate: Gate) -> None:
+def test_closing_gives_up_what_is_waiting(store: LoopCache, gate: Gate) -> None:
     kinds = [Kind(NAMES[0], closed, encoder=e) for closed in (True, False) for e in (True, False)]
     for kind in kinds:
         store.get(rigid_five_bar(), kind)
@@ -123,7 +123,7 @@ def test_closing_gives_up_what_is_waiting(store: LoopStore, gate: Gate) -> None:
     assert len(store._wanted) == len(kinds)
 
 
-def test_a_first_lab_finds_its_loops_compiled(store: LoopStore) -> None:
+def test_a_first_lab_finds_its_loops_compiled(store: LoopCache) -> None:
     """Free and held: whoever comes after a while meets no interpreted loop."""
     warm_up(store, rest=0.0).join(PATIENCE)
     finish(store)

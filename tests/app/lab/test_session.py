@@ -103,10 +103,10 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.Identify: st.builds(c.Identify),
     c.ChooseRobot: st.builds(c.ChooseRobot, st.sampled_from(["five_bar", "", "hexapod"])),
     c.SetRunning: st.builds(c.SetRunning, st.sampled_from([None, True, True, False])),
-    c.Step: st.builds(c.Step),
+    c.StepOnce: st.builds(c.StepOnce),
     c.Reset: st.builds(c.Reset),
     c.SetRate: st.builds(c.SetRate, st.one_of(st.sampled_from([0.125, 1, 4, 4]), WILD)),
-    c.View: st.builds(c.View, st.one_of(st.floats(-1, 5), WILD)),
+    c.LookAt: st.builds(c.LookAt, st.one_of(st.floats(-1, 5), WILD)),
     c.LookBack: st.builds(c.LookBack, st.one_of(st.floats(-1, 5), WILD)),
     c.GoOn: st.builds(c.GoOn),
     c.UndoGoOn: st.builds(c.UndoGoOn),
@@ -115,7 +115,7 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     ),
     c.Grab: st.builds(c.Grab, CONTROLLERS, points(1)),
     c.Release: st.builds(c.Release, st.one_of(st.none(), CONTROLLERS)),
-    c.Tug: st.builds(c.Tug, WILD, WILD),
+    c.MoveHand: st.builds(c.MoveHand, WILD, WILD),
     c.SetCopy: st.builds(c.SetCopy, st.booleans()),
     c.SetExaggeration: st.builds(c.SetExaggeration, WILD),
     c.ChoosePath: st.builds(c.ChoosePath, st.sampled_from([*new_session().presets, "", "hexagon"])),
@@ -260,7 +260,7 @@ def test_paused_lab_stands_still_and_steps_by_one_action() -> None:
     for rate, step in ((1000, 1e-3), (50, 0.02), (2000, 1e-3), (250, 4e-3)):
         do(session, c.SetParameter("control_rate", rate))
         time = session.time
-        do(session, c.Step())
+        do(session, c.StepOnce())
         assert session.time - time == pytest.approx(step) and not session.running
     time = session.time
     do(session, c.SetRunning(True))
@@ -378,7 +378,7 @@ def test_tug_takes_hold_and_adds_up() -> None:
     session = new_session(0.2)
     do(session, c.SetRunning(False))
     start = session.runs[FOLLOWER].shown()["y"].copy()
-    do(session, c.Tug(0.01, 0.0), c.Tug(0.01, -0.01))
+    do(session, c.MoveHand(0.01, 0.0), c.MoveHand(0.01, -0.01))
     assert session.grips.grabbed == FOLLOWER
     assert session.grips.hands[FOLLOWER] - start == pytest.approx([0.02, -0.01])
 

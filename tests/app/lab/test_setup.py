@@ -21,8 +21,8 @@ from onpath.app.lab.commands import (
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import (
     DRAWN_POINTS,
-    Bench,
     Path,
+    RobotSetup,
     Setup,
     capture,
     capture_path,
@@ -42,7 +42,7 @@ RIGID, FLEXIBLE = "five_bar", "flexible"
 
 
 def own(**path: Any) -> Setup:
-    return Setup(benches={RIGID: Bench(path=Path(**path))})
+    return Setup(benches={RIGID: RobotSetup(path=Path(**path))})
 
 
 def followable(setup: Setup) -> bool:
@@ -83,7 +83,7 @@ def test_what_is_restored_is_captured_again(setup: Setup) -> None:
 def test_what_a_parameter_takes_for_nothing_is_kept_as_nothing() -> None:
     for gain in (NOTHING, NOTHING / 2, 2 * NOTHING):
         session = new_session()
-        restore(session, Setup(benches={"five_bar": Bench({"K1": gain})}))
+        restore(session, Setup(benches={"five_bar": RobotSetup({"K1": gain})}))
         value = session.parameters.K1
         assert value == kept(specs(session.parameters)["K1"], gain) == (gain > NOTHING) * gain
 
@@ -152,17 +152,20 @@ def test_numbers_with_a_tail_are_rounded_within_their_range() -> None:
 
 BAD: dict[str, tuple[Setup, str]] = {
     "robot": (Setup(robot="six_bar"), "unknown robot"),
-    "bench": (Setup(benches={"six_bar": Bench()}), "unknown robot"),
-    "parameter": (Setup(benches={RIGID: Bench({"K9": 1.0})}), "unknown parameter"),
-    "another robot's parameter": (Setup(benches={RIGID: Bench({"alpha": 1.0})}), "unknown param"),
-    "range": (Setup(benches={RIGID: Bench({"K1": 1e9})}), "not between"),
-    "not a number": (Setup(benches={RIGID: Bench({"K1": math.nan})}), "not between"),
-    "infinity": (Setup(benches={RIGID: Bench({"K1": -math.inf})}), "not between"),
-    "huge": (Setup(benches={RIGID: Bench({"K1": 10**400})}), "not a number"),
-    "word": (Setup(benches={RIGID: Bench({"K1": "much"})}), "not a number"),
-    "option": (Setup(benches={RIGID: Bench({"control_rate": 3})}), "not one of"),
-    "script": (Setup(benches={RIGID: Bench({"<script>": 3})}), "matching"),
-    "list": (Setup(benches={RIGID: Bench({"K1": [1.0]})}), "Expected"),  # pyright: ignore[reportArgumentType]
+    "bench": (Setup(benches={"six_bar": RobotSetup()}), "unknown robot"),
+    "parameter": (Setup(benches={RIGID: RobotSetup({"K9": 1.0})}), "unknown parameter"),
+    "another robot's parameter": (
+        Setup(benches={RIGID: RobotSetup({"alpha": 1.0})}),
+        "unknown param",
+    ),
+    "range": (Setup(benches={RIGID: RobotSetup({"K1": 1e9})}), "not between"),
+    "not a number": (Setup(benches={RIGID: RobotSetup({"K1": math.nan})}), "not between"),
+    "infinity": (Setup(benches={RIGID: RobotSetup({"K1": -math.inf})}), "not between"),
+    "huge": (Setup(benches={RIGID: RobotSetup({"K1": 10**400})}), "not a number"),
+    "word": (Setup(benches={RIGID: RobotSetup({"K1": "much"})}), "not a number"),
+    "option": (Setup(benches={RIGID: RobotSetup({"control_rate": 3})}), "not one of"),
+    "script": (Setup(benches={RIGID: RobotSetup({"<script>": 3})}), "matching"),
+    "list": (Setup(benches={RIGID: RobotSetup({"K1": [1.0]})}), "Expected"),  # pyright: ignore[reportArgumentType]
     "rate": (Setup(rate=9.0), "speed 9"),
     "no rate": (Setup(rate=math.nan), "speed nan"),
     "exaggeration": (Setup(exaggeration=0.0), "exaggeration 0"),
@@ -179,7 +182,7 @@ BAD: dict[str, tuple[Setup, str]] = {
     "crossing": (own(name="figure of eight"), "crosses itself"),
     "not reached": (own(name="drawn", closed=False, numbers=(500_000,) * 26), "workspace"),
     "the other robot's path": (
-        Setup(benches={FLEXIBLE: Bench(path=Path("figure of eight"))}),
+        Setup(benches={FLEXIBLE: RobotSetup(path=Path("figure of eight"))}),
         "flexible link cannot follow",
     ),
 }

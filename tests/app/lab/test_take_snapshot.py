@@ -27,13 +27,13 @@ def test_looking_back_shows_the_path_of_then() -> None:
     run(session, 3.0)
     ellipse = take_snapshot(session, 1.0)
     assert np.abs(circle.path.points - ellipse.path.points).max() > 5e-3
-    do(session, c.View(3.5))
+    do(session, c.LookAt(3.5))
     then = take_snapshot(session, 1.0)
     np.testing.assert_array_equal(then.path.points, circle.path.points)
     assert then.path.version != ellipse.path.version
     assert away(then) < 2e-3  # the drawn path is a polygon with sides of 2 mm
     assert not len(then.path.control_points)  # only the present path can be bent
-    do(session, c.View(0.0))
+    do(session, c.LookAt(0.0))
     now = take_snapshot(session, 1.0)
     assert now.path.version == ellipse.path.version
     assert len(now.path.control_points) and away(now) < 2e-3
@@ -49,7 +49,7 @@ def test_an_instant_is_the_same_object_until_something_changes() -> None:
     changed = session.instant()
     run(session, 0.1)
     assert session.instant() is not changed
-    do(session, c.View(0.3), c.GoOn())
+    do(session, c.LookAt(0.3), c.GoOn())
     again = session.instant()
     assert again.time < changed.time + 0.1
     np.testing.assert_allclose(again.sample, session.sample())

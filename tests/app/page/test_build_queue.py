@@ -10,10 +10,10 @@ from contextlib import ExitStack
 import pytest
 
 from onpath.app.lab import lesson_commands as lc
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.app.page.build_queue import FEW
-from onpath.app.page.page import LabView
+from onpath.app.page.page import Page
 from onpath.app.server.lab_server import LabServer
 from tests.support.student import Student
 from tests.support.waiting import wait_for
@@ -30,9 +30,9 @@ class Builds:
         self.done, self.most, self._now = 0, 0, 0
 
     def watch(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        genuine = LabView._build
+        genuine = Page._build
 
-        def build(view: LabView, session: Session) -> None:
+        def build(view: Page, session: Session) -> None:
             self._now += 1
             self.most = max(self.most, self._now)
             time.sleep(LONG)
@@ -40,12 +40,12 @@ class Builds:
             self._now -= 1
             self.done += 1
 
-        monkeypatch.setattr(LabView, "_build", build)
+        monkeypatch.setattr(Page, "_build", build)
 
 
 @pytest.fixture
 def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopStore())
+    server = LabServer("127.0.0.1", 0, LoopCache())
     yield server
     server.stop()
 

@@ -16,7 +16,7 @@ from onpath.app.common import palette
 from onpath.app.lab.snapshot import Counts, FollowerName, PathView, RobotView, Snapshot, TrackerName
 from onpath.app.scene.poses import bar_quaternions, trace_segments, waist_angle
 from onpath.app.scene.robot_nodes import TRACE_SEGMENTS
-from onpath.app.scene.scene import Hooks, Scene, meshes
+from onpath.app.scene.scene import Scene, SceneCallbacks, meshes
 from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Stage, view_of
 from onpath.app.scene.stage_catalogue import FLEXIBLE, RIGID
 from tests.support.drags import play
@@ -70,7 +70,7 @@ def lab(server, monkeypatch):
     """A built scene, the messages it sent since, and what its hooks heard."""
     server.scene.reset()
     heard: list[tuple[Any, ...]] = []
-    hooks = Hooks(
+    hooks = SceneCallbacks(
         on_grab=lambda *a: heard.append(("grab", *a)),
         on_release=lambda *a: heard.append(("release", *a)),
         on_point_dragged=lambda *a: heard.append(("dragged", *a)),

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from onpath.app.common import palette
 from onpath.app.lab import lesson_commands as lc
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.scene.ink import MOST, Ink
 from onpath.app.scene.stage_catalogue import RIGID
 from onpath.app.server.lab_server import LabServer
@@ -85,7 +85,7 @@ class Page:
 
 @pytest.fixture
 def page() -> Iterator[Page]:
-    lab = LabServer("127.0.0.1", 0, LoopStore())
+    lab = LabServer("127.0.0.1", 0, LoopCache())
     with Student(f"ws://127.0.0.1:{lab.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.may("Path") and lab._views)

@@ -14,7 +14,7 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.arrivals import MOST_EACH, Arrivals, Kept
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.secure_server import Limits, make_server
@@ -44,7 +44,7 @@ def all_threads_are_free(server: viser.ViserServer) -> bool:
 
 @pytest.fixture
 def lab() -> Iterator[LabServer]:
-    lab = LabServer("127.0.0.1", 0, LoopStore())
+    lab = LabServer("127.0.0.1", 0, LoopCache())
     yield lab
     lab.stop()
 

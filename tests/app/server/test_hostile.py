@@ -33,7 +33,7 @@ from websockets.typing import Subprotocol
 
 from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from onpath.app.bench.simulated_browser import Browser
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.frame_channel import MOST_UNSENT
 from onpath.app.viser_adapter.secure_server import Limits, make_server
@@ -151,7 +151,7 @@ class Witness:
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopStore())
+    server = LabServer("127.0.0.1", 0, LoopCache())
     yield server
     server.stop()
 
@@ -436,7 +436,7 @@ def test_200_connections_a_second(server: LabServer, witness: Witness, quiet_log
 
 
 def test_beyond_capacity_a_newcomer_is_told_to_wait_and_gets_the_first_free_place() -> None:
-    server = LabServer("127.0.0.1", 0, LoopStore(), most_clients=2)
+    server = LabServer("127.0.0.1", 0, LoopCache(), most_clients=2)
     try:
         inside = Witness(server.server.get_port())
         leaving = Guest(server)
@@ -481,9 +481,9 @@ def test_a_clock_that_jumps_is_not_noticed(
 
 SUSPENDED = """
 import sys
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-server = LabServer("127.0.0.1", 0, LoopStore())
+server = LabServer("127.0.0.1", 0, LoopCache())
 print("told", server.server.get_port(), flush=True)
 for _ in sys.stdin:
     (lab,) = server.simulation.labs

@@ -6,7 +6,14 @@ import re
 
 import pytest
 
-from onpath.app.server.lab_registry import CODE, KEPT, MOST_ABANDONED, MOST_CODES, Entry, Sessions
+from onpath.app.server.lab_registry import (
+    CODE,
+    KEPT,
+    MOST_ABANDONED,
+    MOST_CODES,
+    LabRegistry,
+    RegisteredLab,
+)
 from onpath.app.simulation.simulation_thread import SimulationThread
 from tests.support.lab import new_session
 
@@ -17,11 +24,11 @@ class Desk:
     def __init__(self) -> None:
         self.now = 1000.0
         self.simulation = SimulationThread()
-        self.sessions = Sessions(self.simulation, new_session, lambda: self.now)
+        self.sessions = LabRegistry(self.simulation, new_session, lambda: self.now)
         self.storage: dict[str, str | None] = {}
         self._clients = 0
 
-    def open(self, browser: str) -> tuple[int, Entry]:
+    def open(self, browser: str) -> tuple[int, RegisteredLab]:
         """A tab: (client, its entry)."""
         self._clients += 1
         known = self.storage.get(browser)

@@ -11,13 +11,13 @@ import pytest
 
 from onpath.app.common.access_codes import new_code
 from onpath.app.common.throttle import TRIES
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import on_slow_press
-from onpath.app.server.lab_registry import Sessions
+from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import SimulationThread
-from onpath.app.storage.lab_state import State
+from onpath.app.storage.lab_state import LabState
 from onpath.app.storage.records import Records, file_url
 from onpath.app.viser_adapter.secure_server import Limits
 from onpath.lessons.words import ENGLISH
@@ -63,7 +63,7 @@ class Held:
     def release(self, code: str) -> None:
         self._hold("release", [code])
 
-    def load(self, code: str) -> State:
+    def load(self, code: str) -> LabState:
         self._hold("load", [code])
         return {"setup": {}, "lessons": {}}
 
@@ -93,10 +93,10 @@ def ends(act: Callable[[], Any]) -> bool:
     return done.wait(WAIT / 2)
 
 
-def new_sessions(held: Held) -> Sessions:
+def new_sessions(held: Held) -> LabRegistry:
     leases: Any = held
     make = lambda: Session(store())  # noqa: E731
-    return Sessions(SimulationThread(), make, load=held.load, leases=leases)
+    return LabRegistry(SimulationThread(), make, load=held.load, leases=leases)
 
 
 @pytest.mark.parametrize("way", ["enter", "join"])
@@ -153,7 +153,7 @@ def test_codes_that_nobody_has_make_no_session_and_soon_are_refused_unasked() ->
         made.append(Session(store()))
         return made[-1]
 
-    sessions = Sessions(SimulationThread(), make, load=asked.append)  # type: ignore[arg-type]
+    sessions = LabRegistry(SimulationThread(), make, load=asked.append)  # type: ignore[arg-type]
     entry = sessions.join(1, None)
     said = set()
     for _ in range(PRESSES):
@@ -204,7 +204,7 @@ def test_presses_while_one_is_under_way_are_dropped() -> None:
 
 def test_a_tab_that_presses_for_ever_is_one_of_many(tmp_path: Path) -> None:
     records = Records(file_url(tmp_path / "labs.db"))
-    own = LoopStore()  # ends with the server
+    own = LoopCache()  # ends with the server
     server = LabServer("127.0.0.1", 0, own, records=records, limits=WIDE)
     gate, loads = Gate(), []
 

@@ -12,15 +12,15 @@ import pytest
 
 from onpath.app.bench.client_protocol import answer
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server import tab_visibility as onlooker
 from onpath.app.server.lab_server import LabServer
-from onpath.app.server.tab_visibility import EVERY, PATIENCE, TICK, Onlooker
+from onpath.app.server.tab_visibility import PATIENCE, QUESTION_INTERVAL, TICK, TabVisibility
 from onpath.app.simulation.simulation_thread import Lab
 from tests.support.lab import new_session
 from tests.support.student import Student
 
-QUIET = EVERY + PATIENCE + 2 * TICK  # [s] after which nothing more is sent
+QUIET = QUESTION_INTERVAL + PATIENCE + 2 * TICK  # [s] after which nothing more is sent
 HIDDEN, PAUSED = 150.0, 1000.0  # [B/s]
 
 
@@ -36,7 +36,7 @@ class Browser:
             on_update=lambda react: setattr(self, "_answer", react),
         )
         self._websock_connection = SimpleNamespace(queue_message=self._take)
-        self.onlooker = Onlooker(self, lambda: self.now)  # type: ignore[arg-type]
+        self.onlooker = TabVisibility(self, lambda: self.now)  # type: ignore[arg-type]
         self.lab = Lab(new_session())
         self.onlooker.watch(self.lab, self)
 
@@ -70,8 +70,8 @@ class Browser:
 def test_who_answers_late_is_looked_for_and_not_taken_for_gone() -> None:
     browser = Browser()
     browser.wait(60.0, answers=True)
-    assert 60 / (EVERY + TICK) - 1 <= browser.asked <= 60 / EVERY
-    browser.wait(EVERY + PATIENCE - TICK)
+    assert 60 / (QUESTION_INTERVAL + TICK) - 1 <= browser.asked <= 60 / QUESTION_INTERVAL
+    browser.wait(QUESTION_INTERVAL + PATIENCE - TICK)
     assert browser.lab.view is browser
 
 
@@ -83,7 +83,7 @@ def test_a_lab_waits_for_who_does_not_answer_and_goes_on() -> None:
     told, asked, simulated = browser.told, browser.asked, session.time
     browser.wait(100.0)
     assert (browser.told, session.time) == (told, simulated) and simulated > 0
-    assert browser.asked - asked <= 100 / EVERY
+    assert browser.asked - asked <= 100 / QUESTION_INTERVAL
     browser.answer()
     assert browser.lab.view is browser
     browser.wait(10.0, answers=True)
@@ -136,7 +136,7 @@ class Tab(Student):
         return (self.received - before) / seconds
 
 
-SOON = {"EVERY": 0.5, "PATIENCE": 1.0, "TICK": 0.1}
+SOON = {"QUESTION_INTERVAL": 0.5, "PATIENCE": 1.0, "TICK": 0.1}
 GONE = sum(SOON.values()) + 0.5  # [s]
 
 
@@ -144,7 +144,7 @@ GONE = sum(SOON.values()) + 0.5  # [s]
 def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[LabServer]:
     for name, seconds in SOON.items():
         monkeypatch.setattr(onlooker, name, seconds)
-    server = LabServer("127.0.0.1", 0, LoopStore())
+    server = LabServer("127.0.0.1", 0, LoopCache())
     yield server
     server.stop()
 
@@ -165,7 +165,7 @@ def test_a_hidden_tab_gets_nothing_and_then_the_present_whole(server: LabServer,
     tab.rate(GONE)
     simulated, moving = lab.session.time, tab.moving
     hidden = tab.rate(2.0)
-    assert hidden * SOON["EVERY"] / EVERY < min(HIDDEN, 0.01 * visible)
+    assert hidden * SOON["QUESTION_INTERVAL"] / QUESTION_INTERVAL < min(HIDDEN, 0.01 * visible)
     assert lab.session.time == simulated and tab.moving == moving
     lab.session.post(c.ChoosePath("clover"))  # a teacher does, say
     tab.show()

@@ -7,12 +7,12 @@ import math
 
 import pytest
 
-from onpath.app.simulation.display_rate import BUSY, STRIDES, Pace, is_turn
+from onpath.app.simulation.display_rate import BUSY, STRIDES, DisplayRate, is_turn
 
 FRAME = 1 / 60
 
 
-def strides(pace: Pace, share: float, frames: int, drawing: float = 0.0) -> list[float]:
+def strides(pace: DisplayRate, share: float, frames: int, drawing: float = 0.0) -> list[float]:
     found: list[float] = []
     for _ in range(frames):
         pace.note(share * FRAME, drawing * FRAME, FRAME)
@@ -21,7 +21,7 @@ def strides(pace: Pace, share: float, frames: int, drawing: float = 0.0) -> list
 
 
 def test_a_busy_thread_draws_less_often_step_by_step_and_recovers() -> None:
-    pace = Pace()
+    pace = DisplayRate()
     assert set(strides(pace, 0.2, 600)) == {STRIDES[0]}
     busy = strides(pace, 1.2, 600)
     assert busy == sorted(busy) and busy[-1] == STRIDES[-1]
@@ -33,7 +33,7 @@ def test_a_busy_thread_draws_less_often_step_by_step_and_recovers() -> None:
 @pytest.mark.parametrize("work", [0.3, 0.6, 0.8, 1.0, 1.3, 1.9])
 def test_it_settles_where_there_is_time(work: float, drawing: float) -> None:
     """`work`: share of the time at the first stride; `drawing`: share of the work."""
-    pace, found = Pace(), list[float]()
+    pace, found = DisplayRate(), list[float]()
 
     def shares() -> tuple[float, float]:
         drawn = drawing * work * STRIDES[0] / pace.stride
@@ -47,7 +47,7 @@ def test_it_settles_where_there_is_time(work: float, drawing: float) -> None:
 
 
 def test_one_slow_frame_changes_nothing() -> None:
-    pace = Pace()
+    pace = DisplayRate()
     strides(pace, 0.3, 300)
     pace.note(5 * FRAME, 5 * FRAME, FRAME)
     assert set(strides(pace, 0.3, 300)) == {STRIDES[0]}

@@ -10,9 +10,9 @@ import urllib.request
 import msgspec
 import pytest
 
-from onpath.app.lab.loop_cache import LoopStore
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from onpath.app.simulation.metrics import LONGEST, Vitals, asked_vitals, vitals
+from onpath.app.simulation.metrics import LONGEST, Metrics, asked_vitals, vitals
 from onpath.app.simulation.simulation_thread import SimulationThread
 
 
@@ -51,7 +51,7 @@ def test_nonsense_is_answered_as_if_it_were_not_there(query: str, thread: Simula
 
 
 def test_a_server_tells_its_vitals() -> None:
-    server = LabServer("127.0.0.1", 0, LoopStore())
+    server = LabServer("127.0.0.1", 0, LoopCache())
     try:
         time.sleep(0.5)
         address = f"http://127.0.0.1:{server.server.get_port()}/health"
@@ -59,7 +59,7 @@ def test_a_server_tells_its_vitals() -> None:
             with urllib.request.urlopen(address + query, timeout=9) as reply:
                 body = reply.read()
                 assert reply.status == 200 and len(body) < 400
-            told = msgspec.json.decode(body, type=Vitals)
+            told = msgspec.json.decode(body, type=Metrics)
             assert told.pid == os.getpid() and told.frames_per_s > 0 and told.cpu_s > 0
     finally:
         server.stop()

@@ -28,7 +28,7 @@ from onpath.app.lab.setup import capture, from_data, restore, to_data
 from onpath.app.storage import records as database
 from onpath.app.storage.records import LARGEST, NotKept, Records, default_file, file_url
 from onpath.app.storage.schema import labs, metadata
-from onpath.app.storage.write_behind import Keeper
+from onpath.app.storage.write_behind import WriteBehind
 from tests.support import waiting
 from tests.support.checkout import ROOT
 from tests.support.lab import new_session
@@ -501,7 +501,7 @@ def number(n: int) -> Callable[[], dict[str, Any]]:
 
 def test_only_the_latest_state_is_written_and_the_rest_on_close() -> None:
     store = Memory()
-    keeper = Keeper(store, interval=60.0)
+    keeper = WriteBehind(store, interval=60.0)
     keeper.submit("a", number(0))
     until(lambda: store.saved)
     for n in range(1, 1000):
@@ -514,7 +514,7 @@ def test_only_the_latest_state_is_written_and_the_rest_on_close() -> None:
 
 def test_states_are_written_every_few_seconds() -> None:
     store = Memory()
-    keeper = Keeper(store, interval=0.05)
+    keeper = WriteBehind(store, interval=0.05)
     began, n = time.monotonic(), 0
     while time.monotonic() - began < 0.5:
         keeper.submit("a", number(n))
@@ -529,7 +529,7 @@ def test_states_are_written_every_few_seconds() -> None:
 def test_a_database_that_hangs_keeps_nobody_waiting() -> None:
     store = Memory()
     store.gate.clear()
-    keeper = Keeper(store, interval=0.0)
+    keeper = WriteBehind(store, interval=0.0)
     began = time.perf_counter()
     for n in range(2000):
         keeper.submit(f"code{n % 60}", number(n))
@@ -543,7 +543,7 @@ def test_a_database_that_hangs_keeps_nobody_waiting() -> None:
 def test_a_lab_is_kept_when_it_is_let_go_though_its_turn_was_under_way() -> None:
     store = Memory()
     store.gate.clear()
-    keeper = Keeper(store, interval=0.0)
+    keeper = WriteBehind(store, interval=0.0)
     keeper.submit("a", number(1))
     until(lambda: not keeper._pending)  # it is being written
     kept: list[list[Any]] = []
@@ -561,7 +561,7 @@ def test_what_could_not_be_kept_is_tried_again_and_told_once(caplog: Any) -> Non
     caplog.set_level(logging.WARNING)
     store = Memory()
     store.fault = NotKept("the disk is full")
-    keeper = Keeper(store, interval=0.002)
+    keeper = WriteBehind(store, interval=0.002)
     keeper.submit("a", number(1))
     until(lambda: keeper.warning)
     assert keeper.warning == "the disk is full"
@@ -581,7 +581,7 @@ def test_an_older_state_never_overwrites_a_newer_one() -> None:
     store = Memory()
     store.gate.clear()
     store.fault = NotKept("the disk is full")
-    keeper = Keeper(store, interval=0.0)
+    keeper = WriteBehind(store, interval=0.0)
     keeper.submit("a", number(1))
     until(lambda: not keeper._pending)  # 1 is being written
     keeper.submit("a", number(2))
@@ -595,7 +595,7 @@ def test_an_older_state_never_overwrites_a_newer_one() -> None:
 
 def test_one_lab_s_mistake_is_its_own(caplog: Any) -> None:
     store = Memory()
-    keeper = Keeper(store, interval=0.002)
+    keeper = WriteBehind(store, interval=0.002)
 
     def fails() -> dict[str, Any]:
         raise KeyError("lost")
@@ -611,7 +611,7 @@ def test_one_lab_s_mistake_is_its_own(caplog: Any) -> None:
 
 def test_the_keeper_writes_a_real_database(file: Path) -> None:
     with opened(file) as records:
-        keeper = Keeper(records, interval=0.01)
+        keeper = WriteBehind(records, interval=0.01)
         for n in range(200):
             keeper.submit(f"code{n % 60}", number(n))
         keeper.submit("huge", lambda: {"text": "x" * LARGEST})

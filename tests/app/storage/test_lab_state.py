@@ -11,10 +11,10 @@ from onpath.app.common.access_codes import normalised, shown
 from onpath.app.lab import commands as c
 from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.session import Session
-from onpath.app.server.lab_registry import Sessions
+from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.records import Records, file_url
-from onpath.app.storage.write_behind import Keeper
+from onpath.app.storage.write_behind import WriteBehind
 from onpath.lessons.course import Course, read_course
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.lab import do, run, store
@@ -32,8 +32,8 @@ class Server:
 
     def __init__(self, file: Path, course: Course) -> None:
         self.records = Records(file_url(file))
-        self.keeper = Keeper(self.records, interval=0.0)
-        self.sessions = Sessions(
+        self.keeper = WriteBehind(self.records, interval=0.0)
+        self.sessions = LabRegistry(
             SimulationThread(),
             lambda: Session(store(), FIVE_BAR, course),
             load=self.records.load,

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.session import Session
-from onpath.app.server.lab_registry import Sessions
+from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.leases import FORGOTTEN, NONSENSE, RENEWAL, TERM, Leases
 from onpath.app.storage.records import HeldElsewhere, Records, file_url
-from onpath.app.storage.write_behind import Keeper
+from onpath.app.storage.write_behind import WriteBehind
 from tests.support.lab import do, run, store
 
 CODES = ["a" * 12, "b" * 12, "c" * 12]
@@ -153,9 +153,9 @@ class Worker:
     """Sessions of one process, without a network."""
 
     def __init__(self, records: Records, leases: Leases) -> None:
-        self.keeper = Keeper(leases, interval=0.0)
+        self.keeper = WriteBehind(leases, interval=0.0)
         make = lambda: Session(store())  # noqa: E731
-        self.sessions = Sessions(
+        self.sessions = LabRegistry(
             SimulationThread(), make, load=records.load, keeper=self.keeper, leases=leases
         )
 

@@ -18,7 +18,7 @@ from viser.infra import Message
 from websockets.typing import Subprotocol
 
 from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, packed, unpacked
-from onpath.app.viser_adapter.frame_channel import Channel, _wire, update_gui, update_node
+from onpath.app.viser_adapter.frame_channel import FrameChannel, _wire, update_gui, update_node
 from onpath.app.viser_adapter.secure_server import make_server
 
 
@@ -121,7 +121,7 @@ def test_what_one_thread_tells_in_a_frame_arrives_at_once_and_in_order(
     server: viser.ViserServer,
 ) -> None:
     with browser(server) as (client, socket):
-        channel = Channel(client)
+        channel = FrameChannel(client)
         names = [f"/{i}" for i in range(5)]
         nodes = [client.scene.add_point_cloud(n, np.zeros((1, 3)), (0, 0, 0)) for n in names]
         for node in nodes[:2]:  # nodes wait in viser's queue: these must wait behind them
@@ -148,7 +148,7 @@ def test_nobody_is_told_anything_when_he_is_gone(
     server: viser.ViserServer, recwarn: pytest.WarningsRecorder
 ) -> None:
     with browser(server) as (client, _):
-        channel = Channel(client)
+        channel = FrameChannel(client)
         node = client.scene.add_point_cloud("/node", np.zeros((1, 3)), (0, 0, 0))
         assert not channel.closed
     while server.get_clients():
@@ -190,7 +190,7 @@ def test_messages_are_put_as_viser_puts_them(message: Message) -> None:
 def test_a_page_is_not_told_what_it_has_just_said(server: viser.ViserServer) -> None:
     with browser(server) as (client, socket):
         slider = client.gui.add_slider("gain", 0.0, 9.0, 1.0, 0.0)
-        Channel(client)
+        FrameChannel(client)
         said = {"uuid": slider._impl.uuid, "updates": {"value": 4.0}}
         socket.send(packed("GuiUpdateMessage", **said))
         while slider.value != 4.0:

@@ -6,14 +6,14 @@ import pytest
 from websockets import Headers
 from websockets.http11 import Request
 
-from onpath.app.viser_adapter.request_filter import Door
+from onpath.app.viser_adapter.request_filter import RequestFilter
 
 
 def request(path: str = "/", **headers: str) -> Request:
     return Request(path, Headers({name.replace("_", "-"): text for name, text in headers.items()}))
 
 
-def status(door: Door, asked: Request) -> int:
+def status(door: RequestFilter, asked: Request) -> int:
     refusal = door.refusal(asked)
     return 200 if refusal is None else refusal[0].value
 
@@ -34,14 +34,14 @@ def status(door: Door, asked: Request) -> int:
 def test_origin_rule(origin: str, host: str, local: int, public: int) -> None:
     asked = request(Origin=origin, Host=host, Upgrade="websocket")
     for local_only, expected in ((True, local), (False, public)):
-        door = Door(("https://Friend.example/",), local_only=local_only)
+        door = RequestFilter(("https://Friend.example/",), local_only=local_only)
         assert status(door, asked) == 503  # before the guards are in place
         door.open = True
         assert status(door, asked) == expected
 
 
 def test_neither_spelling_nor_repetition_evades_the_origin_rule() -> None:
-    door = Door((), local_only=True)
+    door = RequestFilter((), local_only=True)
     door.open = True
     evil = "http://evil.example"
     assert status(door, request(Origin=evil, Host="localhost", Upgrade="WebSocket")) == 403
@@ -56,4 +56,4 @@ def test_neither_spelling_nor_repetition_evades_the_origin_rule() -> None:
     ["/C:/Windows/win.ini", "/c%3A/x", "/..%5cx", "/a/%2e%2e/b", "/..", "/a%00b", "/" + "x" * 300],
 )
 def test_door_turns_away_paths_that_leave(path: str) -> None:
-    assert status(Door((), local_only=True), request(path)) == 404
+    assert status(RequestFilter((), local_only=True), request(path)) == 404

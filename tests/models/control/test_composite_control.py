@@ -11,7 +11,7 @@ import pytest
 
 from onpath.models.arrays import Array
 from onpath.models.control import composite_control as composite
-from onpath.models.control.laws import Gains, Task, linearization, path_following
+from onpath.models.control.laws import Gains, PathReference, linearization, path_following
 from onpath.models.control.virtual_output import VirtualOutput, virtual_output
 from onpath.models.paths.curves import circle, nearest
 from onpath.models.paths.frames import SlantedPlane
@@ -84,14 +84,14 @@ def tick(law: str, alpha: float, changes: tuple[tuple[str, float], ...]) -> ca.F
     if law == "composite":
         now = composite.compensation(SYSTEM, q, v, model, memory, turned(**dict(changes)))
         output = coordinates(now.y, now.y_rate)
-        task = Task(ca.SX(0), ca.SX(0), composite.wanted_speed(now, output, GAINS.k5))
+        task = PathReference(ca.SX(0), ca.SX(0), composite.wanted_speed(now, output, GAINS.k5))
         command = path_following(output, True, GAINS, task, ca.SX.zeros(2))
         rate = composite.rates(now, speed, command)
         u = composite.torques(now, rate, command)
         chain = chain + DT * composite.MEMORY.join(rate)
     else:
         output = coordinates(*SYSTEM.with_rate(SYSTEM.controlled_output)(q, v, model))
-        task = Task(ca.SX(0), ca.SX(0), speed)
+        task = PathReference(ca.SX(0), ca.SX(0), speed)
         command = path_following(output, True, GAINS, task, ca.SX.zeros(2))
         u = linearization(SYSTEM, q, v, model, command)
     after = ca.vertcat(moved(q, v, u, force), chain)

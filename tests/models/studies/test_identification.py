@@ -20,7 +20,7 @@ from onpath.models.studies.identification import (
     BALANCE,
     DRY,
     INERTIA,
-    Record,
+    JointRecord,
     identify,
     joint_torques,
     simplest,
@@ -33,7 +33,7 @@ from tests.support.rig import FOLLOWING, Rig, jacobian
 COULOMB = 0.04
 
 
-def recorded(rig: Rig, curve: Curve, seconds: float = 4.0, **changes: Any) -> Record:
+def recorded(rig: Rig, curve: Curve, seconds: float = 4.0, **changes: Any) -> JointRecord:
     """The follower starts at rest off the path and changes its speed halfway."""
     log, ticks = list[dict[str, Array]](), round(seconds * 500)
     state = rig.state(FOLLOWING, curve.at(np.array(0.3)) + 0.01, theta=0.3, theta_ref=0.3)
@@ -42,22 +42,22 @@ def recorded(rig: Rig, curve: Curve, seconds: float = 4.0, **changes: Any) -> Re
         state, rows = rig.loop(FOLLOWING).run(state, settings, curve.table(), ticks)
         log.append(rig.kernel(FOLLOWING).log.unpack(rows))
     q, v, u, force = [np.concatenate([part[f] for part in log]) for f in ("q", "v", "u", "force")]
-    return Record(1e-3, q, v, u + joint_torques(q, force, 0.2, 0.2))
+    return JointRecord(1e-3, q, v, u + joint_torques(q, force, 0.2, 0.2))
 
 
 def true_values(rig: Rig, plant: Array) -> dict[str, float]:
     return dict(zip(rig.system.parameter_names, plant.tolist(), strict=True))
 
 
-def noisy(record: Record, seed: int) -> Record:
+def noisy(record: JointRecord, seed: int) -> JointRecord:
     """Angles and torques with white noise of some size."""
     rng = np.random.default_rng(seed)
     q = record.q + 1e-3 * rng.normal(size=record.q.shape)
     torque = record.torque + 0.02 * rng.normal(size=q.shape)
-    return Record(record.dt, q, smooth_velocities(q, record.dt), torque)
+    return JointRecord(record.dt, q, smooth_velocities(q, record.dt), torque)
 
 
-def wave(amplitude: float, torque_noise: float = 0.0) -> Record:
+def wave(amplitude: float, torque_noise: float = 0.0) -> JointRecord:
     """Both joints of a balanced linkage oscillate at one frequency about home."""
     t, omega = 1e-3 * np.arange(4001), 2 * np.pi
     q = [np.pi / 2, np.pi] + amplitude * np.stack([np.sin(omega * t), np.cos(omega * t)], axis=1)
@@ -65,7 +65,7 @@ def wave(amplitude: float, torque_noise: float = 0.0) -> Record:
     gained, turned = np.diff(v, axis=0) / 1e-3, np.diff(q, axis=0) / 1e-3  # means over a step
     noise = torque_noise * np.random.default_rng(1).normal(size=gained.shape)
     torque = [0.0226, 0.012] * gained + [0.05, 0.03] * turned + noise
-    return Record(1e-3, q[:-1], v[:-1], torque)
+    return JointRecord(1e-3, q[:-1], v[:-1], torque)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -218,7 +218,7 @@ def test_lab_takes_what_was_pushed_into_account() -> None:
     run(session, 1)
     do(session, c.Hold(True))
     run(session, 0.7)
-    do(session, c.Hold(False), c.Tug(0.05, 0.0))
+    do(session, c.Hold(False), c.MoveHand(0.05, 0.0))
     run(session, 1)
     do(session, c.Release())
     run(session, 1)
