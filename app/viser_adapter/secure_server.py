@@ -12,7 +12,7 @@ import asyncio
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
 from functools import cache, partial
 from http import HTTPStatus
@@ -171,18 +171,13 @@ def _guarded_serve(
                 return _to_page(connection, request)
             return add_scripts(process_request(connection, request))
 
-        async def admit(connection: ServerConnection) -> None:
-            if connection.subprotocol == _SUBPROTOCOL:
-                await handler(connection)
-            else:  # before viser, which would print what it was told
-                reason = "this page is of another version of the server: reload it"
-                await connection.close(CloseCode.PROTOCOL_ERROR, reason)
-
         options["max_size"] = limits.max_message_bytes
         options["ping_interval"] = options["ping_timeout"] = limits.silence
         options["close_timeout"] = limits.farewell
         options["create_connection"] = partial(_SecureConnection, limits=limits, connections=counts)
-        return genuine(admit, sock=listener, process_request=answer_request, **options)
+        return genuine(
+            _of_our_version(handler), sock=listener, process_request=answer_request, **options
+        )
 
     with _patching:
         genuine = library.serve  # read in here: outside it may be another thread's replacement
@@ -191,6 +186,19 @@ def _guarded_serve(
             yield
         finally:
             library.serve = genuine
+
+
+def _of_our_version(handler: Any) -> Callable[[ServerConnection], Awaitable[None]]:
+    """The handler for pages of this version; others are closed with a reason."""
+
+    async def handle(connection: ServerConnection) -> None:
+        if connection.subprotocol == _SUBPROTOCOL:
+            await handler(connection)
+        else:  # before viser, which would print what it was told
+            reason = "this page is of another version of the server: reload it"
+            await connection.close(CloseCode.PROTOCOL_ERROR, reason)
+
+    return handle
 
 
 async def _opened(requests: RequestFilter) -> None:
