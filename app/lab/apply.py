@@ -14,9 +14,10 @@ from onpath.app.lab.looking_back import go_on, look_back, return_to_present, und
 from onpath.app.lab.setup import capture, restore
 from onpath.app.lab.share_code import decode, encode
 from onpath.models.control.laws import NAMES
+from onpath.models.errors import CodedError
 from onpath.models.paths.path_design import PathDesign, drawn
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import changed
+from onpath.models.systems.parameters import changed, out_of_range, unknown_name
 
 if TYPE_CHECKING:
     from onpath.app.lab.session import Session
@@ -54,7 +55,7 @@ def _(_: c.Identify, session: Session) -> None:
 @apply.register(c.ChooseRobot)
 def _(command: c.ChooseRobot, session: Session) -> None:
     if command.name not in ROBOTS:
-        raise ValueError(f"no robot {command.name!r}: there are {', '.join(ROBOTS)}")
+        raise unknown_name(command.name, list(ROBOTS), "robot")
     session.choose_robot(ROBOTS[command.name])
 
 
@@ -93,7 +94,7 @@ def _(command: c.SetCopy, session: Session) -> None:
 def _(command: c.SetExaggeration, session: Session) -> None:
     factor = _finite(command.factor)
     if not c.EXAGGERATIONS[0] <= factor <= c.EXAGGERATIONS[-1]:
-        raise ValueError(f"exaggeration {factor:g}: between 1 and {c.EXAGGERATIONS[-1]:g}")
+        raise out_of_range("exaggeration", f"{factor:g}", "1", f"{c.EXAGGERATIONS[-1]:g}")
     session.exaggeration = factor
 
 
@@ -119,7 +120,7 @@ def _(command: c.SetRunning, session: Session) -> None:
 def _(command: c.SetRate, session: Session) -> None:
     rate = _finite(command.rate)
     if not c.RATES[0] <= rate <= c.RATES[-1]:
-        raise ValueError(f"speed {rate:g}: between {c.RATES[0]:g} and {c.RATES[-1]:g}")
+        raise out_of_range("speed", f"{rate:g}", f"{c.RATES[0]:g}", f"{c.RATES[-1]:g}")
     session.rate = rate
 
 
@@ -176,7 +177,7 @@ def _(_: c.SelectNext, session: Session) -> None:
 @apply.register(c.ChoosePath)
 def _(command: c.ChoosePath, session: Session) -> None:
     if command.name not in session.presets:
-        raise ValueError(f"no path {command.name!r}: there are {', '.join(session.presets)}")
+        raise unknown_name(command.name, list(session.presets), "path")
     _commit(session, session.presets[command.name])
 
 
@@ -234,7 +235,7 @@ def _(_: c.RemovePoint, session: Session) -> None:
 def _(command: c.DrawPath, session: Session) -> None:
     stroke = np.asarray(command.stroke, dtype=float)
     if stroke.ndim != 2 or stroke.shape[1] != 3 or len(stroke) > 5000:
-        raise ValueError("a stroke needs points")
+        raise CodedError("error.stroke_without_points")
     points = session.robot.frame.planar(session.robot.unplace(stroke))
     _commit(session, drawn(points, session.editor.design.curve))
 
@@ -286,7 +287,7 @@ def _finish(session: Session) -> None:
 
 def _selected(session: Session) -> int:
     if session.editor.selected is None:
-        raise ValueError(session.lessons.words("say.select_first"))
+        raise CodedError("say.select_first")
     return session.editor.selected
 
 
@@ -296,17 +297,17 @@ def _finite(value: float) -> float:
     except (TypeError, ValueError, OverflowError):
         result = math.nan
     if not math.isfinite(result):
-        raise ValueError("that is not a number")
+        raise CodedError("error.not_a_number")
     return result
 
 
 def _point(value: np.ndarray) -> np.ndarray:
     point = np.asarray(value, dtype=float)
     if point.shape != (3,) or not np.all(np.isfinite(point)):
-        raise ValueError("that is not a point")
+        raise CodedError("error.not_a_point")
     return point
 
 
 def _known(controller: str) -> None:
     if controller not in NAMES:
-        raise ValueError(f"no robot {controller!r}: there are {', '.join(NAMES)}")
+        raise unknown_name(controller, list(NAMES), "robot")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import lru_cache
+from operator import itemgetter
 from typing import Protocol
 
 import casadi as ca
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
+from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, Plane
 from onpath.models.systems import five_bar
 from onpath.models.systems.forces import Grip
@@ -86,7 +88,7 @@ class Robot(Protocol):
         """How far points of the path's plane are from singular, (n, 2) -> (n,); 0: out of reach."""
         ...
 
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """First row at which a run is no longer to be believed, and why. q, v: (rows, n)."""
         ...
 
@@ -162,7 +164,7 @@ class RigidFiveBar:
         cosine = (l1**2 + l4**2 - squared) / (2 * l1 * l4)
         return np.sqrt(np.maximum(1 - cosine**2, 0.0))
 
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """See `Robot.fault`."""
         return None if is_calm(q, v) else first_fault(q, v, collapse(q))
 
@@ -218,15 +220,11 @@ def rigid_five_bar() -> RigidFiveBar:
     return RigidFiveBar()
 
 
-def collapse(q: Array) -> tuple[NDArray[np.bool_], str]:
+def collapse(q: Array) -> tuple[NDArray[np.bool_], Message]:
     """Where a five-bar has collapsed, for `first_fault`. q: (rows, at least 2). Eq. (14)."""
     with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
         collapsed = five_bar.singularity_margin(q) < COLLAPSED
-    return (
-        collapsed,
-        "the linkage has collapsed (all links in one line): the controller cannot see"
-        " its way out of a singular configuration",
-    )
+    return collapsed, Message("stop.collapsed")
 
 
 def is_calm(q: Array, v: Array) -> bool:
@@ -241,9 +239,11 @@ def is_calm(q: Array, v: Array) -> bool:
 
 
 def first_fault(
-    q: Array, v: Array, *checks: tuple[NDArray[np.bool_], str]
-) -> tuple[int, str] | None:
-    """The earliest of: numbers that are not finite, joints too fast, and the given checks.
+    q: Array, v: Array, *checks: tuple[NDArray[np.bool_], Message]
+) -> tuple[int, Message] | None:
+    """The earliest of: joints too fast, the given checks, and numbers that are not finite.
+
+    Of several in one row, the first in this order.
 
     Args:
         checks: (bad rows as booleans, reason).
@@ -254,12 +254,12 @@ def first_fault(
     finite = np.isfinite(q).all(-1) & np.isfinite(v).all(-1)
     fast = np.abs(np.where(np.isfinite(v), v, 0)).max(-1) > FASTEST_JOINT
     every = [
-        (~finite, "the numbers have left the range of a computer"),
-        (fast, f"a joint turns faster than {FASTEST_JOINT:.0f} rad/s: the motion has diverged"),
+        (fast, Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})),
         *checks,
+        (~finite, Message("stop.range")),
     ]
     found = [(int(bad.argmax()), why) for bad, why in every if bad.any()]
-    return min(found, default=None)
+    return min(found, default=None, key=itemgetter(0))
 
 
 def _own(parameters: Parameters) -> FiveBarParameters:

@@ -54,7 +54,7 @@ class ClassPanel:
             try:
                 act()  # may build the page anew, without this panel
             except (ValueError, OSError) as error:
-                self._said.content = _text(html.escape(self._words.sentence(str(error))))
+                self._said.content = _text(html.escape(self._words.sentence(error)))
 
         on_slow_press(button, tried)
 

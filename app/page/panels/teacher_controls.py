@@ -47,7 +47,7 @@ class TeacherControls:
         try:
             self._class.push(TakeSetup(decode(text)))
         except ValueError as error:
-            self._said.content = _text(self._words.sentence(str(error)))
+            self._said.content = _text(self._words.sentence(error))
             return
         self._tell_sent()
 
