@@ -12,7 +12,7 @@ from onpath.assets import asset_path
 
 if TYPE_CHECKING:
     from fluent.runtime import FluentBundle
-    from fluent.syntax.ast import Pattern
+    from fluent.syntax.ast import Pattern, Resource
 
 DEFAULT = "en"
 
@@ -43,21 +43,15 @@ class Catalogue:
     """
 
     def __init__(self, language: str) -> None:
-        from fluent.runtime import FluentBundle, FluentResource
         from fluent.syntax.ast import Message
 
-        resource = FluentResource((asset_path("words") / f"{language}.ftl").read_text("utf-8"))
-        bundle = FluentBundle([language], use_isolating=False)
-        bundle.add_resource(resource)
         self._messages: dict[str, str | _Choice] = {}
         if language != DEFAULT:
             self._messages |= catalogue(DEFAULT)._messages
-        for entry in resource.body:
+        for entry in _resource(language).body:
             if isinstance(entry, Message) and entry.value is not None:
-                name = entry.id.name
-                self._messages[name] = _Choice(bundle, name)
-                if (template := _template(entry.value)) is not None:
-                    self._messages[name] = template
+                name, template = entry.id.name, _template(entry.value)
+                self._messages[name] = _Choice(language, name) if template is None else template
 
     def __contains__(self, key: str) -> bool:
         return identifier(key) in self._messages
@@ -68,15 +62,31 @@ class Catalogue:
         Raises:
             KeyError: no such message, or an argument is missing.
         """
-        message = self._messages[identifier(key)]
-        return message.format_map(arguments)
+        return self._messages[identifier(key)].format_map(arguments)
+
+
+@lru_cache
+def _resource(language: str) -> Resource:
+    from fluent.syntax import FluentParser
+
+    text = (asset_path("words") / f"{language}.ftl").read_text("utf-8")
+    return FluentParser(with_spans=False).parse(text)
+
+
+@lru_cache
+def _bundle(language: str) -> FluentBundle:
+    from fluent.runtime import FluentBundle  # brings Babel, which takes long
+
+    bundle = FluentBundle([language], use_isolating=False)
+    bundle.add_resource(_resource(language))
+    return bundle
 
 
 @dataclass(frozen=True)
 class _Choice:
     """A message of Fluent's that chooses between forms; formatted as a string is."""
 
-    bundle: FluentBundle
+    language: str
     name: str
 
     def format_map(self, arguments: Mapping[str, object]) -> str:
@@ -86,9 +96,10 @@ class _Choice:
             key: fluent_number(value, useGrouping=False) if isinstance(value, int) else str(value)
             for key, value in arguments.items()
         }
-        pattern = self.bundle.get_message(self.name).value
+        bundle = _bundle(self.language)
+        pattern = bundle.get_message(self.name).value
         assert pattern is not None
-        text, errors = self.bundle.format_pattern(pattern, values)
+        text, errors = bundle.format_pattern(pattern, values)
         if errors:
             raise KeyError(f"{self.name}: {errors[0]}")
         return str(text)

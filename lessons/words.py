@@ -35,13 +35,14 @@ class Words:
         """
         if values:
             return self._catalogue.text(key, values)
-        if key not in self._plain:
-            self._plain[key] = self._catalogue.text(key, values)
-        return self._plain[key]
+        try:
+            return self._plain[key]
+        except KeyError:
+            return self._plain.setdefault(key, self._catalogue.text(key, values))
 
     def get(self, key: str, default: str) -> str:
         """The words for a key, or others."""
-        return self(key) if key in self._catalogue else default
+        return self(key) if key in self._plain or key in self._catalogue else default
 
     def sentence(self, said: Message | Exception) -> str:
         """A message, or what an error says; one without a code stays as it is."""
