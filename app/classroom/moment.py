@@ -63,9 +63,10 @@ class Stopped(msgspec.Struct, frozen=True):
     time: float
     code: Text
     arguments: Annotated[dict[Word, Text], msgspec.Meta(max_length=10)]
+    english: Text
 
     def reason(self) -> Message:
-        return Message(self.code, self.arguments)
+        return Message(self.code, self.arguments, self.english)
 
 
 class RobotMoment(msgspec.Struct, frozen=True):
@@ -169,7 +170,7 @@ def _robot(run: ClosedLoopRun, push: Push, state: Array, sample: Array, most: fl
 def _stopped(diverged: Diverged) -> Stopped:
     reason = diverged.reason
     arguments = {name: str(value) for name, value in reason.arguments.items()}
-    return Stopped(diverged.time, reason.code, arguments)
+    return Stopped(diverged.time, reason.code, arguments, reason.english)
 
 
 def _path(editor: PathEditor, past: Curve | None) -> PathMoment:
@@ -244,7 +245,7 @@ def _numbers(numbers: tuple[float, ...], size: int) -> None:
 def _sayable(message: Message) -> None:
     try:
         str(message)
-    except KeyError:
+    except (KeyError, IndexError, AttributeError):
         raise ValueError(f"no message {message.code!r} with these arguments") from None
 
 

@@ -22,8 +22,15 @@ from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
 
 MOST_BENT = 0.3  # of the beam's length: far beyond what small deflections allow
 FASTEST_TIP = 20.0  # [m/s], of the deflection
-BENT = Message("stop.bent")
-UNSTABLE = Message("stop.unstable")
+BENT = Message(
+    "stop.bent",
+    english="the link bends too far although its zero dynamics are stable: the pull is too strong,"
+    " the control too slow or the controller's model too wrong",
+)
+UNSTABLE = Message(
+    "stop.unstable",
+    english="the output is on the path, the inside is not: unstable zero dynamics",
+)
 # The bare tip is light and soft (15 N/m): a stiff grip held over a tick would chatter.
 SOFT_GRIP = Grip(SpringLimits(100.0, 2.0, 1.0), SpringLimits(500.0, 4.0, 5.0))
 PIECES = 10  # straight bars that the bent link is drawn with

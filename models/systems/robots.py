@@ -22,6 +22,11 @@ from onpath.models.systems.system import MechanicalSystem
 
 FASTEST_JOINT = 100.0  # [rad/s], beyond it a run counts as diverged
 COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed
+COLLAPSE = Message(
+    "stop.collapsed",
+    english="the linkage has collapsed (all links in one line): the controller cannot see its way"
+    " out of a singular configuration",
+)
 SHORT = 20  # rows
 SLOW, FAR = 20.0, 0.5  # [rad/s] and of sin(q1 - q2): nowhere near a fault, nor since some ms
 
@@ -224,7 +229,7 @@ def collapse(q: Array) -> tuple[NDArray[np.bool_], Message]:
     """Where a five-bar has collapsed, for `first_fault`. q: (rows, at least 2). Eq. (14)."""
     with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
         collapsed = five_bar.singularity_margin(q) < COLLAPSED
-    return collapsed, Message("stop.collapsed")
+    return collapsed, COLLAPSE
 
 
 def is_calm(q: Array, v: Array) -> bool:
@@ -254,9 +259,9 @@ def first_fault(
     finite = np.isfinite(q).all(-1) & np.isfinite(v).all(-1)
     fast = np.abs(np.where(np.isfinite(v), v, 0)).max(-1) > FASTEST_JOINT
     every = [
-        (fast, Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})),
+        (fast, Message("diverged.fast", {"limit": f"{FASTEST_JOINT:.0f}"})),
         *checks,
-        (~finite, Message("stop.range")),
+        (~finite, Message("diverged.range")),
     ]
     found = [(int(bad.argmax()), why) for bad, why in every if bad.any()]
     return min(found, default=None, key=itemgetter(0))

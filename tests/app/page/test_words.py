@@ -214,6 +214,7 @@ def test_nothing_is_translated_that_there_is_not(language: str) -> None:
         for name, spec in specs(entry.parameters).items():
             parts = ("label", "help", "unit", *(f"option.{option}" for option in spec.options))
             there_are |= {f"parameter.{name}.{part}" for part in parts}
+    there_are |= {code for code, _, english, _ in said_in_code() if english}
     only_here = messages(language).keys() - messages("en").keys()
     assert only_here <= {identifier(key) for key in there_are}
 
@@ -224,37 +225,47 @@ HANDED_ON = {"models/errors.py", "app/classroom/moment.py"}
 """Modules that make messages of codes that others have chosen."""
 
 
-def said_in_code() -> Iterator[tuple[str, set[str], str]]:
-    """The code, the arguments and the file of every error and reason in the source."""
+def said_in_code() -> Iterator[tuple[str, set[str], str, str]]:
+    """The code, the arguments, the English and the file of every error and reason in the source.
+
+    English is "" where the catalogue has it.
+    """
     for file in CODED:
         where = str(file.relative_to(ROOT))
         for name, call in calls(parsed(file)):
             if name in ("CodedError", "Message") and where not in HANDED_ON:
                 first = call.args[0]
                 branches = [first.body, first.orelse] if isinstance(first, ast.IfExp) else [first]
-                given = {keyword.arg or "**" for keyword in call.keywords}
+                named = {keyword.arg or "**": keyword.value for keyword in call.keywords}
+                english = text_of(named.pop("english")) if name == "Message" and named else ""
+                given = set(named)
                 if len(call.args) > 1:
                     assert isinstance(call.args[1], ast.Dict), where
                     given |= {str(key and text_of(key)) for key in call.args[1].keys}
-                yield from ((str(text_of(branch)), given, where) for branch in branches)
+                for branch in branches:
+                    yield str(text_of(branch)), given, str(english), where
 
 
 def test_every_code_has_words_and_exactly_its_arguments() -> None:
     said = list(said_in_code())
     assert len(said) > 50
-    for code, given, where in said:
+    for code, given, english, where in said:
         known = messages("en").get(identifier(code))
-        assert known is not None, (code, where)
-        assert given == arguments(known), (code, where)
+        assert (known is None) is code.startswith(ELSEWHERE) is bool(english), (code, where)
+        fields = set(re.findall(r"\{(\w+)\}", english)) if known is None else arguments(known)
+        assert given == fields, (code, where)
 
 
 @pytest.mark.parametrize("language", OTHERS)
 def test_an_error_is_told_by_its_code_whatever_its_english_is(language: str) -> None:
-    for code, given, _ in said_in_code():
-        error = CodedError(code, **dict.fromkeys(given, "7"))
-        own = Words(language).sentence(error)
-        assert own == error.message.told(language) and "{" not in own
-        assert own != str(error) == ENGLISH.sentence(error) == error.message.told(), code
+    for code, given, english, _ in said_in_code():
+        message = Message(code, dict.fromkeys(given, "7"), english)
+        own = Words(language).sentence(message)
+        assert own == message.told(language) and "{" not in own
+        assert own != str(message) == ENGLISH.sentence(message) == message.told(), code
+        if not english:
+            error = CodedError(code, **message.arguments)
+            assert Words(language).sentence(error) == own and str(error) == str(message)
 
 
 def test_a_changed_english_text_keeps_its_translation(monkeypatch: pytest.MonkeyPatch) -> None:
