@@ -23,7 +23,7 @@ from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import near_distance
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.robots import Robot
+from onpath.models.systems.robots import NOT_FINITE, Robot
 
 DISTANCE_INTERVAL = 4  # rows between looks at the distance, where the loop does not log it
 
@@ -120,7 +120,7 @@ class ClosedLoopRun:
         slices = self.log.slices
         fault = self.robot.fault(rows[:, slices["q"]], rows[:, slices["v"]], parameters)
         if fault is None and not isfinite(sum(state.tolist())):
-            fault = (len(rows), "the numbers have left the range of a computer")
+            fault = (len(rows), NOT_FINITE)
         if fault is not None:
             self.diverged = Diverged(fault[1], time + fault[0] * dt)
             good = np.flatnonzero(np.isfinite(rows[: fault[0]]).all(axis=1))

@@ -22,6 +22,7 @@ from onpath.models.systems.system import MechanicalSystem
 
 FASTEST_JOINT = 100.0  # [rad/s], beyond it a run counts as diverged
 COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed
+NOT_FINITE = Message("diverged.range")
 COLLAPSE = Message(
     "stop.collapsed",
     english="the linkage has collapsed (all links in one line): the controller cannot see its way"
@@ -261,7 +262,7 @@ def first_fault(
     every = [
         (fast, Message("diverged.fast", {"limit": f"{FASTEST_JOINT:.0f}"})),
         *checks,
-        (~finite, Message("diverged.range")),
+        (~finite, NOT_FINITE),
     ]
     found = [(int(bad.argmax()), why) for bad, why in every if bad.any()]
     return min(found, default=None, key=itemgetter(0))
