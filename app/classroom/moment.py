@@ -12,11 +12,10 @@ import msgspec
 import numpy as np
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun, Diverged
-from onpath.app.lab.commands import EXAGGERATIONS, RATES
 from onpath.app.lab.path_editor import Blend, PathEditor
 from onpath.app.lab.plot_samples import places
 from onpath.app.lab.session import Session
-from onpath.app.lab.setup import Word
+from onpath.app.lab.setup import EXAGGERATIONS, RATES, Word
 from onpath.app.simulation.simulation_thread import Lab
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import log_layout, state_layout

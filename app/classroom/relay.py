@@ -12,7 +12,7 @@ from onpath.app.classroom.moment import Moment, tell
 from onpath.app.classroom.watches import Watches
 from onpath.app.common.error_log import log_warning
 from onpath.app.common.periodic import Periodic
-from onpath.app.lab.class_commands import ShowMessage
+from onpath.app.lab.commands import ReportState
 from onpath.app.lab.session import Session
 from onpath.app.simulation.simulation_thread import Lab
 from onpath.app.storage.records import NotKept
@@ -77,7 +77,7 @@ class Relay:
         self._told = {c: now for c, now in {**self._told, **new}.items() if c in self._asked}
         for code in self._asked:
             if (lab := self._find(code)) is not None:
-                lab.session.post(ShowMessage(partial(self._hear, code, lab)))
+                lab.session.post(ReportState(partial(self._hear, code, lab)))
 
     def _hear(self, code: str, lab: Lab, _: Session) -> None:
         self._heard[code] = tell(lab)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import viser
 
-from onpath.app.lab import lesson_commands as c
+from onpath.app.lab import commands as c
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.session import Session
 from onpath.app.page import lesson_html as page
@@ -291,7 +291,7 @@ class LessonPanel:
         return handle
 
     def _button(
-        self, label: str, command: c.LessonCommand, colour: Any, icon: viser.IconName | None
+        self, label: str, command: c.Command, colour: Any, icon: viser.IconName | None
     ) -> viser.GuiButtonHandle:
         button = self._gui.add_button(label, color=colour, icon=icon)
         on_press(button, lambda: self._post(command))

@@ -20,11 +20,14 @@ from onpath.app.page.panels.keys import add_keys
 from onpath.app.page.panels.readout import Readout
 from onpath.app.page.plots import DISTANCE, LivePlot
 from onpath.app.page.step_controls import StepControls
+from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene, SceneCallbacks
 from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.simulation.display_rate import STRIDES, is_turn
 from onpath.app.viser_adapter.frame_channel import FrameChannel
+from onpath.models.arrays import Array
+from onpath.models.systems.robots import Robot
 
 WIDE_SHEET = """<style>@media (max-width:36em){
 .mantine-Paper-root[style*="bottom: 0"],
@@ -125,7 +128,7 @@ class Page:
         robot, post = session.robot, self._poster(session)
         self._built = self._page(session)
         words = session.lessons.words
-        self._scene = Scene(self._client, _hooks(post), stage_of(robot), words)
+        self._scene = Scene(self._client, _hooks(post, robot), stage_of(robot), words)
         self._scene.build(take_snapshot(session, 1.0))
         self._build_panels(session, post)
         add_keys(self._client.gui, words, post, self.reset_view)
@@ -202,11 +205,14 @@ class Page:
             self._scene.frame_camera(Insets(bottom=below))
 
 
-def _hooks(post: Callable[[c.Command], None]) -> SceneCallbacks:
+def _hooks(post: Callable[[c.Command], None], robot: Robot) -> SceneCallbacks:
+    def move(index: int, at: Array) -> None:
+        post(c.MovePoint(index, plane_coordinates(robot, at), finished=False))
+
     return SceneCallbacks(
-        on_grab=lambda name, target: post(c.Grab(name, target)),
+        on_grab=lambda name, at: post(c.Grab(name, robot.unplace(at))),
         on_release=lambda name: post(c.Release(name)),
-        on_point_dragged=lambda index, at: post(c.MovePoint(index, at, finished=False)),
+        on_point_dragged=move,
         on_point_drag_end=lambda _: post(c.EndMove()),
         on_point_selected=lambda index: post(c.SelectPoint(index)),
     )

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import viser
 
-from onpath.app.lab.class_commands import TakeSetup
+from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import capture
 from onpath.app.lab.share_code import decode
