@@ -92,7 +92,7 @@ def from_stroke(points: Array, closed: bool, passes: int = 40) -> Curve:
 
 
 def _smoothed(line: Array, closed: bool, passes: int) -> Array:
-    """Repeats z_i <- (z_(i-1) + 2 z_i + z_(i+1)) / 4; the ends of an open line stay where they are."""
+    """Repeats z_i <- (z_(i-1) + 2 z_i + z_(i+1)) / 4; the ends of an open line stay fixed."""
     for _ in range(passes):
         padded = np.vstack([line[-1:], line, line[:1]] if closed else [line[:1], line, line[-1:]])
         between = (padded[:-2] + 2 * line + padded[2:]) / 4
@@ -166,5 +166,5 @@ def _equal_arc(spline: CubicSpline, endpoint: bool) -> Array:
 
 
 def _half_turns() -> Array:
-    """The factors (-1)^k, shape (HARMONICS,): θ starts at -π, the discrete Fourier transform at 0."""
+    """The factors (-1)^k, shape (HARMONICS,): θ starts at -π, the Fourier transform at 0."""
     return np.array([(-1.0) ** k for k in range(1, HARMONICS + 1)])

@@ -88,7 +88,7 @@ class Curve:
         return self.series[0, : terms_of(self.closed)]
 
     def sample(self, count: int = 256) -> Array:
-        """`count` evenly spaced θ, shape (count,), [rad], without the end point of a closed curve."""
+        """`count` evenly spaced θ, shape (count,), [rad]; a closed curve's end point is omitted."""
         return np.linspace(-np.pi, np.pi, count, endpoint=not self.closed)
 
     def curvature(self, theta: Array) -> Array:

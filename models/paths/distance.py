@@ -1,4 +1,4 @@
-"""Euclidean distance from points of the output space to the path, independent of the control laws."""
+"""Euclidean distance from points of the output space to the path, without any control law."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> A
 
 
 def _beyond_the_ends(frame: Frame, curve: Curve, y: Array) -> Array:
-    """Distance to the two half-lines by which an open curve continues, shape (n, p) -> (n,), [m]."""
+    """Distance to the half-lines by which an open curve continues, shape (n, p) -> (n,), [m]."""
     ends = np.array([-np.pi, np.pi])
     points = frame.lift(curve.at(ends))
     tangents = frame.lift(curve.at(ends, 1)) - frame.lift(np.zeros(2))
