@@ -17,7 +17,7 @@ from onpath.app.cli.serve import Serve
 
 if TYPE_CHECKING:
     from onpath.lessons.course import Course
-    from onpath.lessons.parse import Problem
+    from onpath.lessons.problems import Problem
 
 COMMANDS = ("serve", "experiment", "zero-dynamics", "lessons", "bench", "forget")
 INTERRUPTED = 130

@@ -37,7 +37,7 @@ from onpath.app.storage.records import Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import BUILT_IN, Course, read_course
-from onpath.lessons.parse import LessonError
+from onpath.lessons.problems import LessonError
 from onpath.models.systems.catalogue import FIVE_BAR
 
 log = logging.getLogger(__name__)

@@ -1,6 +1,6 @@
-"""The paper's experiments, headless: a task, a schedule, both controllers, a summary.
+"""The paper's experiments without a display: task, schedule, both control laws, summary.
 
-They run in the interpreted loop: the same input gives the same bytes on any machine of a kind.
+They run in the interpreted loop. The same input gives the same bytes on machines of the same kind.
 """
 
 from __future__ import annotations
@@ -40,18 +40,21 @@ from onpath.models.systems.parameters import (
 )
 from onpath.models.systems.robots import Robot
 
-CHUNK = 200  # ticks between looks for a divergence
+CHUNK = 200  # ticks between checks for divergence
 
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """What an experiment has besides the robot's parameters.
+    """The settings of an experiment besides the robot's parameters.
 
     Attributes:
         r: radius of the path, [m].
         duration: [s].
-        hold_from, hold_to: when the end-point is held back, [s]; equal: never.
-        reverse_at: when the wanted speed changes its sign, [s]; 0: never.
+        hold_from, hold_to: interval in which a brake holds the end-point, [s]; equal: never.
+        reverse_at: time at which the wanted speed changes its sign, [s]; 0: never.
+
+    Raises:
+        ValueError: a value is out of range, or hold_to < hold_from.
     """
 
     r: float = 0.05
@@ -82,8 +85,12 @@ class Experiment:
     """A named experiment, ready to run.
 
     Attributes:
-        make: the robot for the parameters.
-        start: end-point at rest at the start, from r, (p,), [m].
+        name: as on the command line.
+        title: one line for the user.
+        make: the robot for given parameters.
+        parameters: of the robot, the control laws and the task.
+        schedule: what happens when.
+        start: r -> the end-point at rest at the start, shape (p,), [m].
     """
 
     name: str
@@ -94,14 +101,17 @@ class Experiment:
     start: Callable[[float], Array]
 
     def robot(self) -> Robot:
-        """The instance that serves the parameters."""
+        """The robot for the parameters."""
         return self.make(self.parameters)
 
     def with_values(self, assignments: dict[str, str]) -> Experiment:
-        """The same with values set by name.
+        """The experiment with values set by name.
+
+        Args:
+            assignments: name -> value as text, of the schedule or the parameters.
 
         Raises:
-            ValueError: an unknown name or a bad value; the message says which.
+            ValueError: an unknown name or a bad value; the message names it.
         """
         parameters, times = self.parameters, dict[str, float]()
         own = {f.name for f in dataclasses.fields(Schedule)}
@@ -112,7 +122,7 @@ class Experiment:
                 parameters = changed(parameters, name, text)
             else:
                 raise unknown_name(name, [*specs(parameters), *sorted(own)])
-        schedule = dataclasses.replace(self.schedule, **times)  # at once: they bound each other
+        schedule = dataclasses.replace(self.schedule, **times)  # at once: hold_from <= hold_to
         return dataclasses.replace(self, parameters=parameters, schedule=schedule)
 
 
@@ -158,7 +168,10 @@ def _off_the_ellipse() -> Array:
 
 
 def run(experiment: Experiment, controller: str) -> Trajectory:
-    """Simulate one controller.
+    """Simulate an experiment under one control law.
+
+    Returns:
+        One row per millisecond; shorter than the schedule, with `diverged_at`, if the run diverged.
 
     Raises:
         ValueError: the controller is unknown, or the path is out of the robot's reach.
@@ -187,7 +200,7 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
 def _segments(
     experiment: Experiment, kernel: Kernel, curve: Curve, state: Array
 ) -> Iterator[tuple[Array, bool]]:
-    """(log rows, held) of consecutive stretches of the run."""
+    """(log rows, held) of consecutive parts of the run."""
     robot, parameters, schedule = experiment.robot(), experiment.parameters, experiment.schedule
     loop, table, dt = InterpretedLoop(kernel), curve.table(), time_step(parameters)
     hold = range(round(schedule.hold_from / dt), round(schedule.hold_to / dt))
@@ -215,6 +228,7 @@ def _finished(
     experiment: Experiment,
     fault: tuple[int, str] | None,
 ) -> Trajectory:
+    """The trajectory of a run, cut off at the fault if there was one."""
     dt = time_step(experiment.parameters)
     whole = record(robot, kernel.log, controller, segments, dt)
     if fault is None:
@@ -224,7 +238,7 @@ def _finished(
 
 
 def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
-    """What `--json` prints; numbers to nine digits."""
+    """The content of `--json`; numbers have nine significant digits."""
     return {
         "experiment": experiment.name,
         "controllers": {run.controller: _summary(run) for run in runs},
