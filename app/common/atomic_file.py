@@ -9,8 +9,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 
-def check_plot(path: Path | None) -> None:
+def check_plot(path: Path | None, asked_by: str = "--plot") -> None:
     """Complain of a picture that cannot be made.
+
+    Args:
+        asked_by: the option or function that the picture is for.
 
     Raises:
         ValueError: an unknown kind of file, or nothing can be written there.
@@ -18,7 +21,7 @@ def check_plot(path: Path | None) -> None:
     if path is None:
         return
     if path.suffix not in (".png", ".svg", ".pdf"):
-        raise ValueError(f"--plot {path}: expected a name ending in .png, .svg or .pdf")
+        raise ValueError(f"{asked_by} {path}: expected a name ending in .png, .svg or .pdf")
     check_writable(path)
 
 

@@ -6,7 +6,7 @@ They run in the interpreted loop. The same input gives the same bytes on machine
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -17,7 +17,6 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.simulation import (
-    FREE,
     Push,
     brake_at,
     first_state,
@@ -41,6 +40,7 @@ from onpath.models.systems.parameters import (
 from onpath.models.systems.robots import Robot
 
 CHUNK = 200  # ticks between checks for divergence
+FARTHEST_HAND = 0.4  # [m], from the middle of the path's plane, along each axis
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,10 +51,12 @@ class Schedule:
         r: radius of the path, [m].
         duration: [s].
         hold_from, hold_to: interval in which a brake holds the end-point, [s]; equal: never.
+        push_from, push_to: interval in which a hand pulls at the end-point, [s]; equal: never.
+        push_z1, push_z2: where the hand is, in the path's plane, [m].
         reverse_at: time at which the wanted speed changes its sign, [s]; 0: never.
 
     Raises:
-        ValueError: a value is out of range, or hold_to < hold_from.
+        ValueError: a value is out of range, or an interval ends before it begins.
     """
 
     r: float = 0.05
@@ -62,17 +64,26 @@ class Schedule:
     hold_from: float = 0.0
     hold_to: float = 0.0
     reverse_at: float = 0.0
+    push_from: float = 0.0
+    push_to: float = 0.0
+    push_z1: float = 0.0
+    push_z2: float = 0.0
 
     def __post_init__(self) -> None:
         _within("r", self.r, 0.005, 0.12, "m")
         _within("duration", self.duration, 0.01, 600.0, "s")
-        _within("hold_from", self.hold_from, 0.0, 600.0, "s")
-        _within("hold_to", self.hold_to, 0.0, 600.0, "s")
         _within("reverse_at", self.reverse_at, 0.0, 600.0, "s")
-        if self.hold_to < self.hold_from:
-            raise ValueError(
-                f"hold_to ({self.hold_to:g} s) lies before hold_from ({self.hold_from:g} s)"
-            )
+        _window("hold", self.hold_from, self.hold_to)
+        _window("push", self.push_from, self.push_to)
+        _within("push_z1", self.push_z1, -FARTHEST_HAND, FARTHEST_HAND, "m")
+        _within("push_z2", self.push_z2, -FARTHEST_HAND, FARTHEST_HAND, "m")
+
+
+def _window(what: str, begin: float, end: float) -> None:
+    _within(f"{what}_from", begin, 0.0, 600.0, "s")
+    _within(f"{what}_to", end, 0.0, 600.0, "s")
+    if end < begin:
+        raise ValueError(f"{what}_to ({end:g} s) lies before {what}_from ({begin:g} s)")
 
 
 def _within(name: str, value: float, low: float, high: float, unit: str) -> None:
@@ -91,6 +102,7 @@ class Experiment:
         parameters: of the robot, the control laws and the task.
         schedule: what happens when.
         start: r -> the end-point at rest at the start, shape (p,), [m].
+        path: what is followed; None: the circle of the schedule.
     """
 
     name: str
@@ -99,16 +111,21 @@ class Experiment:
     parameters: Parameters
     schedule: Schedule
     start: Callable[[float], Array]
+    path: Curve | None = None
 
     def robot(self) -> Robot:
         """The robot for the parameters."""
         return self.make(self.parameters)
 
-    def with_values(self, assignments: dict[str, str]) -> Experiment:
+    def curve(self) -> Curve:
+        """What is followed."""
+        return circle(self.schedule.r) if self.path is None else self.path
+
+    def with_values(self, assignments: Mapping[str, Any]) -> Experiment:
         """The experiment with values set by name.
 
         Args:
-            assignments: name -> value as text, of the schedule or the parameters.
+            assignments: name -> value, or value as text, of the schedule or the parameters.
 
         Raises:
             ValueError: an unknown name or a bad value; the message names it.
@@ -126,10 +143,10 @@ class Experiment:
         return dataclasses.replace(self, parameters=parameters, schedule=schedule)
 
 
-def _float(name: str, text: str) -> float:
+def _float(name: str, text: Any) -> float:
     try:
         return float(text)
-    except ValueError:
+    except (TypeError, ValueError):
         raise ValueError(f"{name}: {text!r} is not a number") from None
 
 
@@ -178,7 +195,7 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
     """
     if controller not in NAMES:
         raise ValueError(f"controller {controller!r}: expected one of {', '.join(NAMES)}")
-    robot, curve = experiment.robot(), circle(experiment.schedule.r)
+    robot, curve = experiment.robot(), experiment.curve()
     kernel = kernel_of(robot, kind_of(controller, experiment.parameters, curve))
     start = robot.rest(experiment.start(experiment.schedule.r))
     state = first_state(robot, kernel, curve, start)
@@ -204,17 +221,21 @@ def _segments(
     robot, parameters, schedule = experiment.robot(), experiment.parameters, experiment.schedule
     loop, table, dt = InterpretedLoop(kernel), curve.table(), time_step(parameters)
     hold = range(round(schedule.hold_from / dt), round(schedule.hold_to / dt))
+    push = range(round(schedule.push_from / dt), round(schedule.push_to / dt))
     last, turn = round(schedule.duration / dt), round(schedule.reverse_at / dt)
-    push, back = FREE, dataclasses.replace(parameters, speed=-parameters.speed)
-    times = sorted({0, last, *(t for t in (hold.start, hold.stop, turn) if 0 < t < last)})
+    hand = robot.frame.lift(np.array([schedule.push_z1, schedule.push_z2]))
+    brake, back = None, dataclasses.replace(parameters, speed=-parameters.speed)
+    events = (hold.start, hold.stop, push.start, push.stop, turn)
+    times = sorted({0, last, *(t for t in events if 0 < t < last)})
     for begin, end in pairwise(times):
         held = begin in hold
-        if held and push is FREE:
+        if held and brake is None:
             fields = kernel.state.unpack(state)
             end_point = robot.endpoint(fields["q"])
-            push = Push(hold=brake_at(robot, curve, end_point, float(fields["theta"][0])))
+            brake = brake_at(robot, curve, end_point, float(fields["theta"][0]))
+        acting = Push(hand if begin in push else None, brake if held else None)
         wanted = back if 0 < turn <= begin else parameters
-        settings = settings_vector(robot, kernel, wanted, curve, push if held else FREE)
+        settings = settings_vector(robot, kernel, wanted, curve, acting)
         for first in range(begin, end, CHUNK):
             state, rows = loop.run(state, settings, table, min(CHUNK, end - first))
             yield rows, held
