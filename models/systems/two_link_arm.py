@@ -37,7 +37,7 @@ from onpath.models.systems.system import MechanicalSystem, mechanical_system
 
 GRAVITY = 9.81  # [m/s^2]
 NAMES = ("a1", "a2", "a3", "g1", "g2", "b1", "b2", "l1", "l2")
-STRETCHED = 0.02  # |sin q2| below which the arm counts as stretched or folded
+STRETCHED = 0.02  # -sin q2 below which the arm counts as stretched or folded
 SINGULAR = (
     "the arm is stretched or folded (both links in one line): in such a singular configuration the"
     " motors cannot move the end-point in every direction"
@@ -207,9 +207,9 @@ class TwoLinkArm(PlanarRobot):
         return np.sqrt(np.maximum(1 - cosine**2, 0.0))
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
-        """See `Robot.fault`."""
+        """See `Robot.fault`: too near a singular configuration, or beyond it, the elbow down."""
         with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
-            singular = np.abs(np.sin(q[:, 1])) < STRETCHED
+            singular = np.sin(q[:, 1]) > -STRETCHED
         return first_fault(q, v, (singular, SINGULAR))
 
     def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:

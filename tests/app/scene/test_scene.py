@@ -21,7 +21,7 @@ from onpath.app.scene.robot_nodes import TRACE_SEGMENTS
 from onpath.app.scene.scene import Scene, SceneCallbacks, meshes
 from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Stage, view_of
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.models.paths.curves import circle
+from onpath.models.paths.curves import TABLE_SHAPE, circle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.drawing import BACK_LAYER, FRONT_LAYER
 from onpath.models.systems.five_bar_robot import rigid_five_bar
@@ -40,7 +40,8 @@ def robot(q1: float, q2: float, force: tuple[float, float, float] = (0.0, 0.0, 0
     seen = np.concatenate([FIVE_BAR.endpoint(q), pull, [0.0]])
     function, counts = geometry_function(FIVE_BAR, closed=True)
     both = np.tile(q[:, None], 2), np.tile(seen[:, None], 2)
-    flat = np.array(function(*both, circle(0.05).table(), 1.0))[:, 0]
+    table = circle(0.05).table().reshape(TABLE_SHAPE, order="F")
+    flat = np.array(function(*both, table, 1.0))[:, 0]
     points, poses = np.split(flat, [3 * counts.points])
     points = points.reshape(-1, 3)
     trace = np.linspace(np.zeros(3), points[TIP], 50)
