@@ -12,7 +12,8 @@ import viser
 
 from onpath.app.bench.client_protocol import unpacked
 from onpath.app.lab import commands as c
-from onpath.app.scene.stage_catalogue import RIGID
+from onpath.app.lab.snapshot import FollowerName, TrackerName
+from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import Lab
 
@@ -28,6 +29,7 @@ NO_TRIANGLES = """
 """
 WINDOW = {"width": 1000, "height": 700}
 ROBOT = "path_following"
+SHOWN = (TrackerName, FollowerName)  # from left to right
 STEP = 30.0  # [px]
 MOVED = 1e-4  # [m]
 
@@ -139,7 +141,7 @@ class _Watch:
         for message in unpacked(raw) if isinstance(raw, bytes) else ():
             tips = message.get("updates", {}).get("batched_positions")
             if message.get("name") == "/grips" and tips is not None:
-                self.tip = np.reshape(tips, (-1, 3))[list(RIGID.bases).index(ROBOT)]
+                self.tip = np.reshape(tips, (-1, 3))[SHOWN.index(ROBOT)]
                 if self.rest is None or np.abs(self.tip - self.rest).max() > MOVED:
                     self.moved_at = self.moved_at or now
 
@@ -147,4 +149,5 @@ class _Watch:
 def _tip(lab: Lab) -> np.ndarray:
     """The end-point in the world, shape (3,), [m]."""
     session = lab.session
-    return RIGID.bases[ROBOT] + session.robot.place(session.runs[ROBOT].shown()["y"])
+    base = stage_of(session.robot).bases[ROBOT]
+    return base + session.robot.place(session.runs[ROBOT].shown()["y"])

@@ -18,7 +18,9 @@ class ExperimentCommand:
     """Run one of the paper's experiments and report."""
 
     name: Annotated[str, tyro.conf.Positional]
-    """position, obstruction or flexible."""
+    """position, obstruction or flexible (that one with the flexible link alone)."""
+    robot: str = ""
+    """Which robot does it, by name; the paper's unless told otherwise."""
     controller: Literal["path_following", "trajectory_tracking", "both"] = "both"
     """Which controller to run."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -38,7 +40,7 @@ class ExperimentCommand:
         from onpath.models.studies.experiments import experiments, run, summary
         from onpath.models.systems.parameters import unknown_name
 
-        known = experiments()
+        known = experiments(self.robot)
         if self.name not in known:
             raise unknown_name(self.name, list(known), what="experiment")
         check_plot(self.plot)

@@ -125,7 +125,7 @@ class Page:
         robot, post = session.robot, self._poster(session)
         self._built = self._page(session)
         words = session.lessons.words
-        self._scene = Scene(self._client, _hooks(post), stage_of(robot), words)
+        self._scene = Scene(self._client, stage_of(robot), _hooks(post), words)
         self._scene.build(take_snapshot(session, 1.0))
         self._build_panels(session, post)
         add_keys(self._client.gui, words, post, self.reset_view)

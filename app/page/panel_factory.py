@@ -24,7 +24,7 @@ from onpath.app.page.plots import MORE, LivePlot, MorePlots
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.lessons.schema import StepSetup
-from onpath.models.systems.flexible_robot import FlexibleParameters
+from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.parameters import specs
 
 ALL = (
@@ -111,7 +111,7 @@ class PanelFactory:
             self._scene.begin_freehand(lambda stroke: self._post(c.DrawPath(stroke)))
 
         def shade(visible: bool) -> None:
-            self._scene.show_singular_zone(0.0, 0.4, 0.02, visible)
+            self._scene.show_singular_zone(visible)
 
         with self._gui.add_folder(self._words("controls.editor"), expand_by_default=False):
             return PathPanel(self._gui, self._session, self._post, draw, shade)

@@ -14,10 +14,6 @@ import trimesh
 SHARP = np.radians(30.0)
 ROUND = 40  # points of a full circle
 
-FRONT_LAYER = 0.022  # centre of the layer of links 2 and 4 behind the robot's plane [m]
-BACK_LAYER = 0.038  # the same for links 1 and 3 [m]
-BOSS = (FRONT_LAYER + BACK_LAYER) / 2  # centre of the bearings, which span both layers [m]
-PEN_DEPTH = 0.0103  # of the pen's centre, such that it touches the robot's plane [m]
 LINK_THICKNESS = 0.012
 GRIP = (0.02, 0.009, 0.02)  # half-axes of the area at an end-point that can be grabbed [m]
 FLOOR_DEPTH = 0.17  # of the floor below the base pivot [m]
@@ -140,9 +136,9 @@ def motors() -> trimesh.Trimesh:
 
 
 @lru_cache
-def base() -> trimesh.Trimesh:
-    """The base plate on the floor, and two uprights that carry the motors."""
-    floor = -FLOOR_DEPTH
+def base(height: float = FLOOR_DEPTH) -> trimesh.Trimesh:
+    """The base plate on the floor, and two uprights that carry the motors at a height, [m]."""
+    floor = -height
     angle = np.linspace(0.0, np.pi, ROUND)
     head = 0.03 * np.column_stack([np.cos(angle), np.sin(angle)])
     upright = np.concatenate([head, [(-0.042, floor + 0.008), (0.042, floor + 0.008)]])

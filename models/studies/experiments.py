@@ -29,16 +29,11 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.closed_loop.trajectory import Trajectory, record
 from onpath.models.control.laws import NAMES
 from onpath.models.paths.curves import Curve, circle
-from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
-from onpath.models.systems.flexible_robot import FlexibleParameters, flexible_five_bar_robot
-from onpath.models.systems.parameters import (
-    FiveBarParameters,
-    Parameters,
-    changed,
-    specs,
-    unknown_name,
-)
-from onpath.models.systems.robots import Robot
+from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
+from onpath.models.systems.flexible_parameters import FlexibleParameters
+from onpath.models.systems.flexible_robot import flexible_five_bar_robot
+from onpath.models.systems.parameters import Parameters, changed, specs, unknown_name
+from onpath.models.systems.robots import Robot, RobotEntry
 
 CHUNK = 200  # ticks between checks for divergence
 
@@ -133,25 +128,50 @@ def _float(name: str, text: str) -> float:
         raise ValueError(f"{name}: {text!r} is not a number") from None
 
 
-def experiments() -> dict[str, Experiment]:
-    """All experiments by name, with their defaults."""
-    position = Experiment(
+def experiments(robot: str = "") -> dict[str, Experiment]:
+    """All experiments by name, with their defaults.
+
+    Args:
+        robot: who does them, by its name in the catalogue; empty: the paper's. The last one is for
+            the flexible link alone.
+
+    Raises:
+        ValueError: an unknown robot.
+    """
+    if robot and robot not in ROBOTS:
+        raise unknown_name(robot, list(ROBOTS), "robot")
+    entry = ROBOTS[robot or FIVE_BAR.name]
+    known = [_position(entry), _obstruction(entry)]
+    if robot in ("", FLEXIBLE.name):
+        known.append(_there_and_back())
+    return {e.name: e for e in known}
+
+
+def _position(entry: RobotEntry) -> Experiment:
+    off = np.array([np.cos(-np.pi / 3), np.sin(-np.pi / 3)])
+    return Experiment(
         name="position",
         title="Experiment 1: to a place on the circle",
-        make=FIVE_BAR.make,
-        parameters=FiveBarParameters(task="position"),
+        make=entry.make,
+        parameters=entry.parameters(task="position"),
         schedule=Schedule(duration=4.0),
-        start=lambda r: 0.6 * r * np.array([np.cos(-np.pi / 3), np.sin(-np.pi / 3)]),
+        start=lambda r: _lifted(entry, 0.6 * r * off),
     )
-    obstruction = Experiment(
+
+
+def _obstruction(entry: RobotEntry) -> Experiment:
+    return Experiment(
         name="obstruction",
         title="Experiment 2: the end-point is held back for a while",
-        make=FIVE_BAR.make,
-        parameters=FiveBarParameters(),
+        make=entry.make,
+        parameters=entry.parameters(),
         schedule=Schedule(duration=8.0, hold_from=3.0, hold_to=5.0),
-        start=lambda r: np.array([r, 0.0]),
+        start=lambda r: _lifted(entry, np.array([r, 0.0])),
     )
-    flexible = Experiment(
+
+
+def _there_and_back() -> Experiment:
+    return Experiment(
         name="flexible",
         title="Flexible link: there and back along the ellipse",
         make=FLEXIBLE.make,
@@ -159,7 +179,11 @@ def experiments() -> dict[str, Experiment]:
         schedule=Schedule(duration=6.0, reverse_at=3.0),
         start=lambda _: _off_the_ellipse(),
     )
-    return {e.name: e for e in (position, obstruction, flexible)}
+
+
+def _lifted(entry: RobotEntry, z: Array) -> Array:
+    """A point of the path's plane in the output space, (p,), [m]."""
+    return entry.make(entry.parameters()).frame.lift(z)
 
 
 def _off_the_ellipse() -> Array:

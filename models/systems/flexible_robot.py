@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -12,10 +13,13 @@ from onpath.models.arrays import Array
 from onpath.models.paths.frames import Frame, SlantedPlane
 from onpath.models.systems import five_bar, flexible_five_bar
 from onpath.models.systems.beam import MOST_MODES, BeamModes, beam_modes
-from onpath.models.systems.flexible_five_bar import FORMER_PLANTS, PLANTS, RIGID, FlexibleLinks
+from onpath.models.systems.drawing import BACK_LAYER, BOSS, FRONT_LAYER, Depths, Drawing
+from onpath.models.systems.five_bar_robot import collapse
+from onpath.models.systems.flexible_five_bar import RIGID, FlexibleLinks
+from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.forces import Grip, SpringLimits
-from onpath.models.systems.parameters import Parameters, choice, number
-from onpath.models.systems.robots import collapse, first_fault
+from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import BalancedLinkage, RobotEntry, first_fault
 from onpath.models.systems.system import MechanicalSystem, conditioning, decoupling_matrix
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
 
@@ -30,159 +34,21 @@ UNSTABLE = "the output is on the path, the inside is not: unstable zero dynamics
 SOFT_GRIP = Grip(SpringLimits(100.0, 2.0, 1.0), SpringLimits(500.0, 4.0, 5.0))
 PIECES = 10  # straight bars that the bent link is drawn with
 _SHARES = np.linspace(0.0, 1.0, PIECES + 1)
-
-
-@dataclass(frozen=True, slots=True)
-class FlexibleParameters(Parameters):
-    """The flexible five-bar's own: beam, output, model errors. `modes` and `plant` pick a robot."""
-
-    K5: float = number(
-        5.0,
-        "1/s",
-        (0, 100, 0.5),
-        "how hard the speed along the path is held",
-        group="gains",
-        label="K5 along",
-    )
-    speed: float = number(
-        2.0,
-        "rad/s",
-        (-10, 10, 0.1),
-        "wanted speed along the path; negative: backwards",
-        group="task",
-        label="Speed",
-    )
-    alpha: float = number(
-        0.5,
-        "",
-        (-1, 1, 0.01),
-        "share of the deflection that the controller sees: 1 the tip, 0 the straight link",
-        group="basic",
-        label="α",
-    )
-    law: str = choice(
-        "redefined",
-        ("redefined", "composite"),
-        "what the controller puts on the path: y with a share of the deflection, or the tip itself",
-        group="basic",
-        label="Output",
-    )
-    tip_damping: float = number(
-        0.3,
-        "",
-        (0.02, 0.7, 0.01),
-        "damping ratio that the waist gives the beam",
-        group="gains",
-        label="Tip damping",
-    )
-    tip_prediction: float = number(
-        1.2,
-        "ω₁",
-        (0.3, 2, 0.1),
-        "how quickly the deflection is foreseen",
-        group="gains",
-        label="Tip prediction",
-    )
-    tip_shaping: float = number(
-        0.25,
-        "ω₁",
-        (0.05, 2, 0.05),
-        "how quickly the wanted speed may change",
-        group="gains",
-        label="Speed shaping",
-    )
-    tip_yielding: float = number(
-        100.0,
-        "1/s²",
-        (0, 200, 5),
-        "how much progress gives way to a tip held back",
-        group="gains",
-        label="Yielding",
-    )
-    plant: str = choice(
-        "lagrangian",
-        PLANTS,
-        "Lagrange's equations, or (20)-(21) read with ∫φ² = 1, whose coupling has odd units",
-        group="robot",
-        label="Plant",
-        former=FORMER_PLANTS,
-    )
-    modes: int = choice(
-        3,
-        tuple(range(1, MOST_MODES + 1)),
-        "how many modes of the beam are simulated",
-        group="robot",
-        label="Modes",
-    )
-    rho: float = number(
-        0.2,
-        "kg/m",
-        (0.05, 1, 0.01),
-        "mass of the beam per metre",
-        group="robot",
-        label="ρ",
-    )
-    frequency: float = number(
-        4.0,
-        "Hz",
-        (1, 10, 0.1),
-        "first frequency of the clamped beam",
-        group="robot",
-        label="First frequency",
-    )
-    zeta: float = number(
-        0.01,
-        "",
-        (0, 0.2, 0.005),
-        "damping ratio of every mode",
-        group="robot",
-        label="Damping ζ",
-    )
-    error_M11: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's M11 is off by this",
-        group="realism",
-        label="M11 wrong",
-        on=30.0,
-    )
-    error_M22: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's M22 is off by this",
-        group="realism",
-        label="M22 wrong",
-        on=30.0,
-    )
-    error_J0: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's waist inertia J0 is off by this",
-        group="realism",
-        label="J0 wrong",
-        on=30.0,
-    )
-    error_rho: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's ρ is off by this",
-        group="realism",
-        label="ρ wrong",
-        on=30.0,
-    )
-    error_omega1: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's first frequency is off by this",
-        group="realism",
-        label="Frequency wrong",
-        on=10.0,
-    )
+DRAWING = Drawing(
+    strip=PIECES,
+    base="pedestal",
+    away=(-1.0, 0.0),
+    depths=Depths(back=BACK_LAYER - FRONT_LAYER, front=0.0, boss=BOSS - FRONT_LAYER, pen=0.0),
+    elevation=math.radians(30.0),
+    azimuth=math.radians(24.0),
+    box=((-0.12, -0.54, -0.17), (0.12, 0.12, 0.47)),
+    apart=0.56,
+    title=(0.0, 0.0, 0.475),
+    note=(0.0, -0.5, 0.08),
+    force=(0.0, -0.5, 0.13),
+    force_scale=0.04,
+    sheet=((-0.24, 0.1), (0.24, 0.5), -0.56),
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -205,6 +71,8 @@ class FlexibleFiveBar:
     label: str = "Five-bar with a flexible link"
     substeps: int = 2
     grip: Grip = SOFT_GRIP
+    drawing: Drawing = DRAWING
+    linkage: BalancedLinkage | None = None
 
     def __post_init__(self) -> None:
         system = flexible_five_bar.flexible_five_bar(self.modes, self.plant_name)
@@ -217,6 +85,12 @@ class FlexibleFiveBar:
     def start(self) -> Array:
         """At rest 10 mm off the default path, shape (n,)."""
         return np.concatenate([[np.pi / 2, np.pi - 0.12, 0.0], np.zeros(self.modes)])
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """See `Robot.reach`: of the linkage in its vertical plane."""
+        l1, beam = self.links.link1, self.links.beam
+        return abs(l1 - beam), l1 + beam
 
     @property
     def coordinate_names(self) -> tuple[str, ...]:
@@ -370,3 +244,14 @@ def _own(parameters: Parameters) -> FlexibleParameters:
         kind = type(parameters).__name__
         raise TypeError(f"the flexible five-bar takes FlexibleParameters, got {kind}")
     return parameters
+
+
+ROBOT = RobotEntry(
+    name="flexible",
+    label="Five-bar with a flexible link",
+    text="Three motors, a last link that bends: the tip is not where the motors put it.",
+    picture="flexible_five_bar.png",
+    parameters=FlexibleParameters,
+    lab=FlexibleParameters(law="composite"),  # the only one that survives every pull at the tip
+    make=robot_for,
+)

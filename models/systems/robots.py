@@ -1,10 +1,14 @@
-"""The robots as the lab and the experiments use them: one interface around each model."""
+"""What a robot is for the lab and the experiments: one interface around each model.
+
+A module of this folder that has a `ROBOT`, a `RobotEntry`, is found by the catalogue: one file
+with M, c, B, h, parameters and reach makes a robot. What bars and joints do not tell of its
+drawing is in `drawing.py`, and every field there has a default.
+"""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
-from functools import lru_cache
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Protocol
 
 import casadi as ca
@@ -13,15 +17,26 @@ from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.paths.frames import Frame, Plane
-from onpath.models.systems import five_bar
+from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
-from onpath.models.systems.parameters import FiveBarParameters, Parameters
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.system import MechanicalSystem
 
 FASTEST_JOINT = 100.0  # [rad/s], beyond it a run counts as diverged
-COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed
-SHORT = 20  # rows
-SLOW, FAR = 20.0, 0.5  # [rad/s] and of sin(q1 - q2): nowhere near a fault, nor since some ms
+
+
+@dataclass(frozen=True, slots=True)
+class BalancedLinkage:
+    """What the identification needs to know of a balanced five-bar.
+
+    Attributes:
+        l1, l4: lengths of links 1 and 4, [m].
+        built: M11, M22, b1 and b2 as built, (SI).
+    """
+
+    l1: float
+    l4: float
+    built: Mapping[str, float]
 
 
 class Robot(Protocol):
@@ -118,126 +133,113 @@ class Robot(Protocol):
         """Their values, shape (size,) each, by name; q and v: (n,)."""
         ...
 
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Smallest and largest distance of the end-point from the base pivot, [m].
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RigidFiveBar:
-    """The planar five-bar linkage of section III."""
-
-    links: five_bar.FiveBarLinks = field(default_factory=five_bar.load_links)
-    system: MechanicalSystem = field(default_factory=five_bar.five_bar, repr=False)
-    frame: Frame = field(default_factory=Plane)
-    name: str = "five_bar"
-    label: str = "Five-bar linkage"
-    substeps: int = 1
-    grip: Grip = field(default_factory=Grip)
-    coordinate_names: tuple[str, ...] = ("q1_rad", "q2_rad")
-    extra_fields: tuple[tuple[str, int], ...] = ()
+        At either the robot is singular; a hand's target stays within the larger one of home.
+        """
+        ...
 
     @property
-    def _lengths(self) -> tuple[float, float]:
-        return self.links.link1.length, self.links.link4.length
+    def drawing(self) -> Drawing:
+        """What bars and joints do not tell of how it is drawn."""
+        ...
 
-    def plant(self, parameters: Parameters) -> Array:
-        """See `Robot.plant`."""
-        own = _own(parameters)
-        return _plant(self, own.counterweights_removed / 100, own.payload)
+    @property
+    def linkage(self) -> BalancedLinkage | None:
+        """What can be identified from a record of its motion; None: nothing."""
+        ...
 
-    def model(self, parameters: Parameters) -> Array:
-        """See `Robot.model`: the balanced robot of (12), each entry wrong as asked."""
-        own = _own(parameters)
-        return _model(self, own.error_M11, own.error_M22, own.error_b1, own.error_b2)
 
-    def rest(self, y: Array) -> Array:
-        """See `Robot.rest`."""
-        return five_bar.inverse_kinematics(y, *self._lengths)
+class PlanarRobot:
+    """Most of `Robot` for rigid links that move in the vertical plane y = 0.
 
-    def endpoint(self, q: Array) -> Array:
-        """See `Robot.endpoint`."""
-        return five_bar.end_point(q, *self._lengths)
+    The end-point is y = 0 at `home`; the output space is the plane itself.
+    """
 
-    def margin(self, z: Array) -> Array:
-        """See `Robot.margin`: |sin(q1 - q2)|, eq. (14)."""
-        l1, l4 = self._lengths
-        squared = (z[..., 0] + l4) ** 2 + (z[..., 1] + l1) ** 2
-        cosine = (l1**2 + l4**2 - squared) / (2 * l1 * l4)
-        return np.sqrt(np.maximum(1 - cosine**2, 0.0))
+    __slots__ = ()
 
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
-        """See `Robot.fault`."""
-        return None if is_calm(q, v) else first_fault(q, v, collapse(q))
+    @property
+    def home(self) -> tuple[float, float]:
+        """Where the end-point y = 0 lies in the robot's frame, (x, z), [m]."""
+        raise NotImplementedError
 
-    def place(self, y: Array) -> Array:
-        """See `Robot.place`."""
-        l1, l4 = self._lengths
-        points = np.zeros((*y.shape[:-1], 3))
-        points[..., 0], points[..., 2] = y[..., 0] + l4, y[..., 1] + l1
-        return points
+    @property
+    def frame(self) -> Frame:
+        """See `Robot.frame`."""
+        return _PLANE
 
-    def unplace(self, point: Array) -> Array:
-        """See `Robot.unplace`."""
-        l1, l4 = self._lengths
-        return np.stack([point[..., 0] - l4, point[..., 2] - l1], axis=-1)
+    @property
+    def substeps(self) -> int:
+        """See `Robot.substeps`."""
+        return 1
 
-    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """See `Robot.skeleton`: nothing bends."""
-        l1, l4 = self._lengths
-        return five_bar.skeleton(q, l1, self.links.link2.length, l4)
+    @property
+    def grip(self) -> Grip:
+        """See `Robot.grip`."""
+        return _GRIP
 
-    def marks(self, q: ca.SX) -> ca.SX:
-        """See `Robot.marks`: none."""
-        return ca.SX(3, 0)
+    @property
+    def drawing(self) -> Drawing:
+        """See `Robot.drawing`: all from the bars."""
+        return _DRAWING
+
+    @property
+    def linkage(self) -> BalancedLinkage | None:
+        """See `Robot.linkage`."""
+        return None
+
+    @property
+    def extra_fields(self) -> tuple[tuple[str, int], ...]:
+        """See `Robot.extra_fields`: none."""
+        return ()
 
     def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
         """See `Robot.extras`: none."""
         return {}
 
+    def marks(self, q: ca.SX) -> ca.SX:
+        """See `Robot.marks`: none."""
+        return ca.SX(3, 0)
 
-@lru_cache(maxsize=64)
-def _plant(robot: RigidFiveBar, removed: float, payload: float) -> Array:
-    links = robot.links.spoiled(removed, payload)
-    return _constant(robot.system.parameter_vector(links.lumped()))
+    def place(self, y: Array) -> Array:
+        """See `Robot.place`."""
+        x, z = self.home
+        points = np.zeros((*y.shape[:-1], 3))
+        points[..., 0], points[..., 2] = y[..., 0] + x, y[..., 1] + z
+        return points
 
-
-@lru_cache(maxsize=64)
-def _model(robot: RigidFiveBar, *percent: float) -> Array:
-    values = robot.links.lumped()
-    for name, error in zip(("M11", "M22", "b1", "b2"), percent, strict=True):
-        values[name] *= 1 + error / 100
-    return _constant(robot.system.parameter_vector(values))
-
-
-def _constant(array: Array) -> Array:
-    """The same, for all who ask."""
-    array.flags.writeable = False
-    return array
+    def unplace(self, point: Array) -> Array:
+        """See `Robot.unplace`."""
+        x, z = self.home
+        return np.stack([point[..., 0] - x, point[..., 2] - z], axis=-1)
 
 
-@lru_cache(maxsize=1)
-def rigid_five_bar() -> RigidFiveBar:
-    """The one instance: its kernels are built once."""
-    return RigidFiveBar()
+_PLANE, _GRIP, _DRAWING = Plane(), Grip(), Drawing()  # one each: what is built is kept by them
 
 
-def collapse(q: Array) -> tuple[NDArray[np.bool_], str]:
-    """Where a five-bar has collapsed, for `first_fault`. q: (rows, at least 2). Eq. (14)."""
-    with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
-        collapsed = five_bar.singularity_margin(q) < COLLAPSED
-    return (
-        collapsed,
-        "the linkage has collapsed (all links in one line): the controller cannot see"
-        " its way out of a singular configuration",
-    )
+@dataclass(frozen=True, slots=True)
+class RobotEntry:
+    """One robot to choose.
 
-
-def is_calm(q: Array, v: Array) -> bool:
-    """Whether the last row is so far from any fault that those before it were none, either.
-
-    Args:
-        q, v: of some milliseconds, at most `SHORT` rows, (rows, 2). A NaN or an infinity stays.
+    Attributes:
+        name: as on the command line and in files.
+        label: as shown.
+        text: a sentence about it.
+        parameters: the type of its parameters, with the defaults of the experiments.
+        lab: what the lab starts with.
+        make: the instance for some parameters; structural ones select it, others do not matter.
+        picture: name of an asset; without one the bars are sketched.
     """
-    (first, second), (fast, faster) = q[-1].tolist(), v[-1].tolist()
-    apart = abs(math.sin(first - second))  # false for NaN, as all comparisons with it are
-    return len(q) <= SHORT and abs(fast) < SLOW and abs(faster) < SLOW and apart > FAR
+
+    name: str
+    label: str
+    text: str
+    parameters: type[Parameters]
+    lab: Parameters
+    make: Callable[[Parameters], Robot]
+    picture: str = ""
 
 
 def first_fault(
@@ -260,9 +262,3 @@ def first_fault(
     ]
     found = [(int(bad.argmax()), why) for bad, why in every if bad.any()]
     return min(found, default=None)
-
-
-def _own(parameters: Parameters) -> FiveBarParameters:
-    if not isinstance(parameters, FiveBarParameters):
-        raise TypeError(f"the five-bar takes FiveBarParameters, got {type(parameters).__name__}")
-    return parameters

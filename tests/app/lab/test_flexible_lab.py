@@ -15,12 +15,14 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.session import Session
 from onpath.app.lab.take_snapshot import take_snapshot
 from onpath.app.page.panels.flexible_panel import alpha_bar, critical_alpha
-from onpath.app.scene.stage_catalogue import FLEXIBLE as STAGE
+from onpath.app.scene.stage_catalogue import stage_of
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
 from onpath.models.systems.flexible_robot import UNSTABLE, FlexibleFiveBar, FlexibleParameters
 from tests.support.drawing import drawn
 from tests.support.lab import FOLLOWER, TRACKER, do, run, states, store
+
+STAGE = stage_of(FLEXIBLE.make(FLEXIBLE.lab))
 
 
 def flexible(seconds: float = 0.0, **changes: object) -> Session:

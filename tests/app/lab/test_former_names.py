@@ -24,7 +24,7 @@ from onpath.app.storage.lab_state import keep, put_back
 from onpath.lessons.checks import judge
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.words import Words
-from onpath.models.systems.flexible_robot import FlexibleParameters
+from onpath.models.systems.flexible_parameters import FlexibleParameters
 from tests.support.lab import do, new_session, run, store
 from tests.support.lesson_texts import LESSON, write_lesson
 

@@ -25,9 +25,10 @@ from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FLEXIBLE, ROBOTS
+from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.flexible_robot import BENT, UNSTABLE
 from onpath.models.systems.parameters import FiveBarParameters, specs
-from onpath.models.systems.robots import first_fault, rigid_five_bar
+from onpath.models.systems.robots import first_fault
 from tests.support.checkout import ROOT
 from tests.support.lab import do, run, store
 

@@ -16,9 +16,10 @@ from onpath.app.common import palette
 from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.scene.ink import MOST, Ink
-from onpath.app.scene.stage_catalogue import RIGID
+from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.schema import Sketch
+from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support import waiting
 from tests.support.drags import play
 from tests.support.student import Student
@@ -102,7 +103,7 @@ def around(k: int) -> np.ndarray:
 def test_an_endless_freehand_stroke_is_drawn_ten_times_a_second_of_few_points(page: Page) -> None:
     strokes: list[np.ndarray] = []
     page.view._scene.begin_freehand(strokes.append)
-    base = next(iter(RIGID.bases.values()))
+    base = next(iter(stage_of(rigid_five_bar()).bases.values()))
     page.scribble("/freehand/sheet", lambda k: base + around(k))
     page.assert_bounded()
     page.end()

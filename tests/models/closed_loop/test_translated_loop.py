@@ -20,8 +20,9 @@ from onpath.models.closed_loop.translated_loop import OPERATIONS, translate, tra
 from onpath.models.control.laws import NAMES
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import TABLE_SHAPE, TERMS, circle
+from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
-from onpath.models.systems.robots import Robot, rigid_five_bar
+from onpath.models.systems.robots import Robot
 
 NUMBERS = [0.0, -0.0, 1.0, -1.0, 0.3, -2.5, 1e3, 5e-324, 1e300, np.inf, -np.inf, np.nan]
 PLANTS = ("unit_modes", "lagrangian")
