@@ -6,11 +6,11 @@ import html
 from collections.abc import Callable
 
 import viser
-from onpath.app.page.robot_picture import picture_of
 
 from onpath.app.lab.commands import ChooseRobot
 from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import Post, on_press
+from onpath.app.page.robot_picture import picture_of
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 
