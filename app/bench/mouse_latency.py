@@ -1,4 +1,4 @@
-"""From a real mouse in Chromium to the changed pose that comes back. Needs Playwright."""
+"""Latency from a real mouse in Chromium to the changed pose that comes back. Needs Playwright."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ MOVED = 1e-4  # [m]
 
 
 def find_browser() -> str | None:
-    """Path of a Chromium, or None; None too when Playwright is not installed."""
+    """Path of a Chromium; None if there is none, or Playwright is not installed."""
     try:
         import playwright.sync_api  # noqa: F401
     except ImportError:
@@ -44,7 +44,13 @@ def find_browser() -> str | None:
 
 
 def seen_at(camera: viser.CameraHandle, box: dict[str, float], point: np.ndarray) -> np.ndarray:
-    """Where a point of the world, shape (3,), [m], is seen on a canvas at `box`; (2,), [px]."""
+    """Pixel at which a point of the world is seen, shape (2,), [px].
+
+    Args:
+        camera: of the browser.
+        box: position and size of the canvas, [px].
+        point: shape (3,), [m].
+    """
     forward = camera.look_at - camera.position
     forward = forward / np.linalg.norm(forward)
     right = np.cross(forward, [0.0, 0.0, 1.0])
@@ -56,14 +62,17 @@ def seen_at(camera: viser.CameraHandle, box: dict[str, float], point: np.ndarray
 
 
 def mouse_latency(server: LabServer, browser: str, times: int, draws: bool = True) -> np.ndarray:
-    """Delays of `times` moves of an end-point that the mouse holds, [s].
+    """Latencies of `times` mouse moves that drag an end-point, shape (times,), [s].
 
-    The robots stand still, with a position for a task, so that the first changed pose is the
-    answer to the move. Measured from the order to move the mouse to the arrival of the frame.
+    The robots rest at a position task, so that the first changed pose is the response to the move.
+    Measured from the command to move the mouse to the arrival of the frame.
 
     Args:
-        draws: whether triangles are drawn; without a GPU that is most of the browser's work, and
-            a mouse event waits for it.
+        server: of a lab.
+        browser: path of a Chromium.
+        times: number of moves.
+        draws: whether triangles are drawn. Without a GPU that is most of the browser's work, and
+            mouse events wait for it.
     """
     from playwright.sync_api import sync_playwright
 
@@ -102,7 +111,7 @@ def mouse_latency(server: LabServer, browser: str, times: int, draws: bool = Tru
 def _moves(
     page: Any, watch: _Watch, start: np.ndarray, times: int, until: Callable[..., None]
 ) -> list[float]:
-    """Take hold of what is at `start`, (2,), [px], and move it to and fro; delays, [s]."""
+    """Grab what is at `start`, (2,), [px], and move it to and fro; latencies, [s]."""
     page.mouse.move(*start)
     page.mouse.down()
     page.mouse.move(start[0] + STEP / 3, start[1], steps=3)  # now it is a drag, not a click
@@ -120,7 +129,7 @@ def _moves(
 
 
 class _Watch:
-    """Sees where the end-point is in the frames that come in."""
+    """Reads the end-point's position from the frames that arrive."""
 
     def __init__(self) -> None:
         self.tip: np.ndarray | None = None

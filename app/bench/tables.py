@@ -1,4 +1,4 @@
-"""How fast the lab is: closed loops, frames under load, start-up, mouse to picture."""
+"""Tables of the lab's speed: closed loops, frames under load, start-up, mouse to picture."""
 
 from __future__ import annotations
 

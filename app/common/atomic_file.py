@@ -1,4 +1,4 @@
-"""Files that somebody has asked for: whole, or not at all, and refused before the work is done."""
+"""Output files that are written completely or not at all, and checked before the work begins."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ def check_plot(path: Path | None, asked_by: str = "--plot") -> None:
 
 
 def check_writable(path: Path) -> None:
-    """Complain before the work is done, not after it.
+    """Check that a file can be written, before the work is done.
 
     Raises:
-        ValueError: nothing can be written there.
+        ValueError: it cannot.
     """
     if path.is_dir():
         raise ValueError(f"{path}: that is a folder")

@@ -1,7 +1,7 @@
-"""The colours of the lab: one meaning, one colour, in the scene, the plots and the figures.
+"""The colours of the lab: one colour for one meaning, in the scene, the plots and the figures.
 
-The controllers' colours are Okabe and Ito's vermillion and blue, which stay apart for every common
-form of colour blindness and on a pale projector.
+The controllers' colours are Okabe and Ito's vermillion and blue, which remain distinguishable for
+every common form of colour blindness and on a pale projector.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Colour:
     def linear(self) -> np.ndarray:
         """As linear light, shape (3,), uint8.
 
-        viser takes the colours of instances and of vertices as linear, all others as sRGB.
+        viser interprets the colours of instances and of vertices as linear, all others as sRGB.
         """
         s = np.array(self.rgb) / 255.0
         light = np.where(s <= 0.04045, s / 12.92, ((s + 0.055) / 1.055) ** 2.4)
@@ -42,13 +42,13 @@ class Colour:
         return f"#{self.red:02x}{self.green:02x}{self.blue:02x}"
 
     def toward(self, other: Colour, share: float) -> Colour:
-        """This colour with `share` (0 to 1) of another mixed in."""
+        """This colour mixed with another: (1 - share) self + share other, share from 0 to 1."""
         mixed = (round(a + (b - a) * share) for a, b in zip(self.rgb, other.rgb, strict=True))
         return Colour(*mixed)
 
 
 GREEN, GREY, AMBER = "#1d7a4f", "#667085", "#8a5a00"
-"""Of words on a page."""
+"""Colours of text on a page."""
 WHITE = Colour(255, 255, 255)
 INK = Colour(31, 41, 55)
 

@@ -1,4 +1,4 @@
-"""The robots there are, by name: every module of this folder that has a `ROBOT`."""
+"""The catalogue of robots: every module of this folder that defines a `ROBOT`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from onpath.models.systems.robots import RobotEntry
 
 
 def found_robots() -> dict[str, RobotEntry]:
-    """The entries of the modules of `models/systems`, in the order of the modules' names.
+    """The robots of the modules of `models/systems`, by name, in the order of the modules' names.
 
     Raises:
         ValueError: two robots have the same name.
@@ -30,6 +30,6 @@ def found_robots() -> dict[str, RobotEntry]:
 
 ROBOTS = found_robots()
 FIVE_BAR = ROBOTS["five_bar"]
-"""The paper's robot of section III, with which a lab begins."""
+"""The robot of section III of the paper, with which a lab begins."""
 FLEXIBLE = ROBOTS["flexible"]
-"""The paper's robot of section IV."""
+"""The robot of section IV of the paper."""

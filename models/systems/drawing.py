@@ -1,7 +1,7 @@
-"""How a robot is drawn besides its bars and joints: pure data that a model may carry.
+"""How a robot is drawn, beyond its bars and joints: data that a model may provide.
 
 Points are in the robot's frame (x right, y away from the viewer, z up, base pivot at the origin),
-in metres. The defaults serve a robot whose links move in the vertical plane y = 0.
+in metres. The defaults suit a robot whose links move in the vertical plane y = 0.
 """
 
 from __future__ import annotations
@@ -34,24 +34,24 @@ class Depths:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """What the scene needs to know of a robot; whatever is None follows from its bars and reach.
+    """What the scene needs to know about a robot. None: derived from its bars and reach.
 
-    Links lie in the back layer and the front layer in turn, so that none runs through another.
+    Links lie alternately in the back and the front layer, so that they do not intersect.
 
     Attributes:
-        strip: how many of the last bars are pieces of one strip that bends; the others are links.
+        strip: number of the last bars that are pieces of one flexible strip; the others are links.
         motors: joints that are drawn as motors, besides those at the base pivot.
         base: what carries the robot: two uprights with motors, or a column with a turntable.
         away: horizontal direction (x, y) across the links, away from the viewer, of unit length.
         depths: of the layers.
-        elevation, azimuth: the camera looks down, and comes from the right, by these, [rad].
+        elevation, azimuth: angles of the camera, downward and from the right, [rad].
         box: opposite corners of what the camera shows of one robot.
-        apart: between the base pivots of neighbouring robots, [m].
-        title: where the title is.
-        note: where the drawing says that it is not to scale.
-        force: where the force's size is written.
+        apart: distance between the base pivots of neighbouring robots, [m].
+        title: place of the title.
+        note: place of the note that the drawing is not to scale.
+        force: place of the force's magnitude.
         force_scale: length of the force's arrow, [m/N].
-        sheet: low and high corner (x, z), and y, of the sheet that takes a freehand stroke.
+        sheet: low and high corner (x, z), and y, of the area for freehand strokes.
     """
 
     strip: int = 0

@@ -1,4 +1,4 @@
-"""The rigid five-bar as the lab and the experiments use it: limits, model errors, drawing."""
+"""The rigid five-bar for the lab and the experiments: limits, model errors, drawing."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from onpath.models.systems.robots import BalancedLinkage, PlanarRobot, RobotEntr
 from onpath.models.systems.system import MechanicalSystem
 
 COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed
-SHORT = 20  # rows
-SLOW, FAR = 20.0, 0.5  # [rad/s] and of sin(q1 - q2): nowhere near a fault, nor since some ms
+SHORT = 20  # rows, one per tick
+SLOW, FAR = 20.0, 0.5  # [rad/s], |sin(q1 - q2)|: too far from a fault to have had one in SHORT rows
 DRAWING = Drawing(box=((-0.16, -0.03, -0.19), (0.31, 0.03, 0.425)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RigidFiveBar(PlanarRobot):
-    """The planar five-bar linkage of section III."""
+    """The planar five-bar linkage of section III of the paper."""
 
     links: five_bar.FiveBarLinks = field(default_factory=five_bar.load_links)
     system: MechanicalSystem = field(default_factory=five_bar.five_bar, repr=False)
@@ -39,7 +39,7 @@ class RigidFiveBar(PlanarRobot):
 
     @property
     def home(self) -> tuple[float, float]:
-        """See `PlanarRobot.home`: link 1 upright, link 4 level."""
+        """See `PlanarRobot.home`: link 1 upright, link 4 horizontal."""
         l1, l4 = self._lengths
         return l4, l1
 
@@ -65,7 +65,7 @@ class RigidFiveBar(PlanarRobot):
         return _plant(self, own.counterweights_removed / 100, own.payload)
 
     def model(self, parameters: Parameters) -> Array:
-        """See `Robot.model`: the balanced robot of (12), each entry wrong as asked."""
+        """See `Robot.model`: the balanced robot of (12), with the chosen model errors."""
         own = _own(parameters)
         return _model(self, own.error_M11, own.error_M22, own.error_b1, own.error_b2)
 
@@ -89,7 +89,7 @@ class RigidFiveBar(PlanarRobot):
         return None if is_calm(q, v) else first_fault(q, v, collapse(q))
 
     def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """See `Robot.skeleton`: nothing bends."""
+        """See `Robot.skeleton`; rigid links have no deflection to exaggerate."""
         l1, l4 = self._lengths
         return five_bar.skeleton(q, l1, self.links.link2.length, l4)
 
@@ -109,20 +109,26 @@ def _model(robot: RigidFiveBar, *percent: float) -> Array:
 
 
 def _constant(array: Array) -> Array:
-    """The same, for all who ask."""
+    """The same array, made read-only because it is shared."""
     array.flags.writeable = False
     return array
 
 
 @lru_cache(maxsize=1)
 def rigid_five_bar() -> RigidFiveBar:
-    """The one instance: its kernels are built once."""
+    """The only instance, so that its kernels are built once."""
     return RigidFiveBar()
 
 
 def collapse(q: Array) -> tuple[NDArray[np.bool_], str]:
-    """Where a five-bar has collapsed, for `first_fault`. q: (rows, at least 2). Eq. (14)."""
-    with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
+    """A check for `first_fault`: |sin(q1 - q2)| < COLLAPSED, and the reason.
+
+    Args:
+        q: shape (rows, at least 2), [rad].
+
+    Source: eq. (14).
+    """
+    with np.errstate(invalid="ignore"):  # `first_fault` finds numbers that are not finite
         collapsed = five_bar.singularity_margin(q) < COLLAPSED
     return (
         collapsed,
@@ -132,13 +138,13 @@ def collapse(q: Array) -> tuple[NDArray[np.bool_], str]:
 
 
 def is_calm(q: Array, v: Array) -> bool:
-    """Whether the last row is so far from any fault that those before it were none, either.
+    """Whether the last row is so far from any fault that none of the rows before can have one.
 
     Args:
-        q, v: of some milliseconds, at most `SHORT` rows, (rows, 2). A NaN or an infinity stays.
+        q, v: shape (rows, 2), at most `SHORT` rows. NaN and infinity persist to the last row.
     """
     (first, second), (fast, faster) = q[-1].tolist(), v[-1].tolist()
-    apart = abs(math.sin(first - second))  # false for NaN, as all comparisons with it are
+    apart = abs(math.sin(first - second))  # comparisons with NaN are false
     return len(q) <= SHORT and abs(fast) < SLOW and abs(faster) < SLOW and apart > FAR
 
 

@@ -11,7 +11,7 @@ from onpath.models.systems.parameters import Parameters, choice, number
 
 @dataclass(frozen=True, slots=True)
 class FlexibleParameters(Parameters):
-    """The flexible five-bar's own: beam, output, model errors. `modes` and `plant` pick a robot."""
+    """Parameters of the flexible five-bar. `modes` and `plant` select the instance of the robot."""
 
     K5: float = number(
         5.0,

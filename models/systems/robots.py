@@ -1,8 +1,8 @@
-"""What a robot is for the lab and the experiments: one interface around each model.
+"""The interface of robots, as the lab and the experiments use them.
 
-A module of this folder that has a `ROBOT`, a `RobotEntry`, is found by the catalogue: one file
-with M, c, B, h, parameters and reach makes a robot. What bars and joints do not tell of its
-drawing is in `drawing.py`, and every field there has a default.
+A module of this folder that defines a `ROBOT`, a `RobotEntry`, is found by the catalogue: one file
+with M, c, B, h, parameters and reach is a robot. Details of its drawing that do not follow from
+bars and joints are in `drawing.py`, with a default for each.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.system import MechanicalSystem
 
-FASTEST_JOINT = 100.0  # [rad/s], beyond it a run counts as diverged
+FASTEST_JOINT = 100.0  # [rad/s]; a run with faster joints counts as diverged
 
 
 @dataclass(frozen=True, slots=True)
 class BalancedLinkage:
-    """What the identification needs to know of a balanced five-bar.
+    """What the identification needs to know about a balanced five-bar.
 
     Attributes:
         l1, l4: lengths of links 1 and 4, [m].
-        built: M11, M22, b1 and b2 as built, (SI).
+        built: true values of M11, M22, b1 and b2 (SI).
     """
 
     l1: float
@@ -40,7 +40,10 @@ class BalancedLinkage:
 
 
 class Robot(Protocol):
-    """A model with all that surrounds it. Planar coordinates z are those of the path's plane."""
+    """A robot: equations of motion, parameters, kinematics, limits and drawing.
+
+    Planar coordinates z are those of the path's plane.
+    """
 
     @property
     def name(self) -> str:
@@ -54,12 +57,12 @@ class Robot(Protocol):
 
     @property
     def system(self) -> MechanicalSystem:
-        """The equations."""
+        """The equations of motion."""
         ...
 
     @property
     def frame(self) -> Frame:
-        """Where the path's plane lies."""
+        """How the plane of the path lies in the output space."""
         ...
 
     @property
@@ -69,7 +72,7 @@ class Robot(Protocol):
 
     @property
     def grip(self) -> Grip:
-        """How a hand and a brake take hold of its end-point."""
+        """The springs by which a hand and a brake act on its end-point."""
         ...
 
     @property
@@ -82,87 +85,94 @@ class Robot(Protocol):
         ...
 
     def model(self, parameters: Parameters) -> Array:
-        """The system's parameters as the controller believes them, shape (k,)."""
+        """The system's parameters as the controller assumes them, shape (k,)."""
         ...
 
     def rest(self, y: Array) -> Array:
-        """A configuration at rest with the end-point at y, (p,) -> (n,).
+        """A configuration at rest with the end-point at y, shape (p,) -> (n,).
 
         Raises:
-            ValueError: out of reach.
+            ValueError: y is out of reach.
         """
         ...
 
     def endpoint(self, q: Array) -> Array:
-        """The actual end-point, (..., n) -> (..., p), [m]."""
+        """The actual end-point, shape (..., n) -> (..., p), [m]."""
         ...
 
     def margin(self, z: Array) -> Array:
-        """How far points of the path's plane are from singular, (n, 2) -> (n,); 0: out of reach."""
+        """Distance of points of the path's plane from singular configurations, (n, 2) -> (n,).
+
+        A number in [0, 1] or of that order; 0 out of reach.
+        """
         ...
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
-        """First row at which a run is no longer to be believed, and why. q, v: (rows, n)."""
+        """The first row in which the simulation has diverged, and why; None if in none.
+
+        Args:
+            q, v: shape (rows, n).
+        """
         ...
 
     def place(self, y: Array) -> Array:
-        """Points of the output space in the robot's frame for drawing, (..., p) -> (..., 3)."""
+        """Points of the output space in the frame for drawing, (..., p) -> (..., 3), [m]."""
         ...
 
     def unplace(self, point: Array) -> Array:
-        """The inverse of `place`, (..., 3) -> (..., p)."""
+        """The inverse of `place`, (..., 3) -> (..., p), [m]."""
         ...
 
     def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
         """Bars (3, 2 n), begin and end as columns, and joints (3, m) in the robot's frame, [m].
 
-        The last bar ends at the end-point. A deflection is drawn so many times larger than it is.
+        The last bar ends at the end-point. Deflections are multiplied by `exaggeration`.
         """
         ...
 
     def marks(self, q: ca.SX) -> ca.SX:
-        """Further points worth a mark, (n,) -> (3, k) in the robot's frame, [m]."""
+        """Further points to mark, in the robot's frame, (3, k), [m]."""
         ...
 
     @property
     def extra_fields(self) -> tuple[tuple[str, int], ...]:
-        """Names and sizes of what is worth a plot besides what every robot has."""
+        """Names and sizes of quantities to plot, besides those of every robot."""
         ...
 
     def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
-        """Their values, shape (size,) each, by name; q and v: (n,)."""
+        """The values of `extra_fields`, shape (size,) each; q and v: (n,)."""
         ...
 
     @property
     def reach(self) -> tuple[float, float]:
         """Smallest and largest distance of the end-point from the base pivot, [m].
 
-        At either the robot is singular; a hand's target stays within the larger one of home.
+        The robot is singular at both. The hand's target stays within the larger one of home.
         """
         ...
 
     @property
     def drawing(self) -> Drawing:
-        """What bars and joints do not tell of how it is drawn."""
+        """What does not follow from bars and joints about its drawing."""
         ...
 
     @property
     def linkage(self) -> BalancedLinkage | None:
-        """What can be identified from a record of its motion; None: nothing."""
+        """What can be identified from a record of its motion, or None."""
         ...
 
 
 class PlanarRobot:
-    """Most of `Robot` for rigid links that move in the vertical plane y = 0.
+    """Common parts of robots with rigid links that move in the vertical plane y = 0.
 
-    The end-point is y = 0 at `home`; the output space is the plane itself.
+    The output space is that plane, and the end-point y = 0 lies at `home`.
     """
 
     __slots__ = ()
 
     @property
     def home(self) -> tuple[float, float]:
-        """Where the end-point y = 0 lies in the robot's frame, (x, z), [m]."""
+        """The end-point y = 0 in the robot's frame, (x, z), [m]."""
         raise NotImplementedError
 
     @property
@@ -182,7 +192,7 @@ class PlanarRobot:
 
     @property
     def drawing(self) -> Drawing:
-        """See `Robot.drawing`: all from the bars."""
+        """See `Robot.drawing`: everything follows from the bars."""
         return _DRAWING
 
     @property
@@ -216,21 +226,21 @@ class PlanarRobot:
         return np.stack([point[..., 0] - x, point[..., 2] - z], axis=-1)
 
 
-_PLANE, _GRIP, _DRAWING = Plane(), Grip(), Drawing()  # one each: what is built is kept by them
+_PLANE, _GRIP, _DRAWING = Plane(), Grip(), Drawing()  # shared, because they are keys of caches
 
 
 @dataclass(frozen=True, slots=True)
 class RobotEntry:
-    """One robot to choose.
+    """An entry of the catalogue.
 
     Attributes:
         name: as on the command line and in files.
         label: as shown.
-        text: a sentence about it.
+        text: one sentence about the robot.
         parameters: the type of its parameters, with the defaults of the experiments.
-        lab: what the lab starts with.
-        make: the instance for some parameters; structural ones select it, others do not matter.
-        picture: name of an asset; without one the bars are sketched.
+        lab: parameters with which the lab starts.
+        make: the instance for given parameters; only structural parameters select it.
+        picture: name of an asset; if empty, the bars are sketched.
     """
 
     name: str
@@ -245,12 +255,13 @@ class RobotEntry:
 def first_fault(
     q: Array, v: Array, *checks: tuple[NDArray[np.bool_], str]
 ) -> tuple[int, str] | None:
-    """The earliest of: numbers that are not finite, joints too fast, and the given checks.
+    """The first row with a fault, and the reason: not finite, too fast, or one of the checks.
 
     Args:
+        q, v: shape (rows, n).
         checks: (bad rows as booleans, reason).
     """
-    quiet = np.abs(v).max() <= FASTEST_JOINT and np.isfinite(q).all()  # not so if v has a NaN
+    quiet = np.abs(v).max() <= FASTEST_JOINT and np.isfinite(q).all()  # false if v has a NaN
     if quiet and not any(bad.any() for bad, _ in checks):
         return None
     finite = np.isfinite(q).all(-1) & np.isfinite(v).all(-1)

@@ -1,22 +1,22 @@
-"""The planar two-link arm in a vertical plane, a motor at either joint.
+"""The planar two-link arm in a vertical plane, with a motor at each joint.
 
-Coordinates q = (q1, q2), [rad]: q1 is link 1's angle from the horizontal, q2 link 2's angle
-relative to link 1. The motor of joint 2 sits on link 1 at the elbow, so u2 acts between the links,
-B = I, and u = (u1, u2) does the work u1 q1' + u2 q2'. Links of length l, mass m, centre of mass at
-r from their joint, inertia I about it; mR is the mass of the elbow motor. With
+Coordinates q = (q1, q2), [rad]: q1 is the angle of link 1 from the horizontal, q2 that of link 2
+relative to link 1. The motor of joint 2 sits on link 1 at the elbow and acts between the links, so
+that B = I and the motors' power is u1 q1' + u2 q2'. Links have length l, mass m, centre of mass at
+r from their joint, and inertia I about it; mR is the mass of the elbow motor. With
 
-    a1 = I1 + m1 r1^2 + mR l1^2 + I2 + m2 (l1^2 + r2^2),  a2 = m2 l1 r2,  a3 = I2 + m2 r2^2,
+    a1 = I1 + m1 r1² + mR l1² + I2 + m2 (l1² + r2²),  a2 = m2 l1 r2,  a3 = I2 + m2 r2²,
     g1 = g (m1 r1 + mR l1 + m2 l1),  g2 = g m2 r2,  s = a2 sin q2,
 
     M(q)    = [[a1 + 2 a2 cos q2, a3 + a2 cos q2], [a3 + a2 cos q2, a3]],
-    c(q, v) = (-s (2 v1 v2 + v2^2) + g1 cos q1 + g2 cos(q1 + q2) + b1 v1,
-               s v1^2 + g2 cos(q1 + q2) + b2 v2),
+    c(q, v) = (-s (2 v1 v2 + v2²) + g1 cos q1 + g2 cos(q1 + q2) + b1 v1,
+               s v1² + g2 cos(q1 + q2) + b2 v2),
     h(q)    = (l1 cos q1 + l2 cos(q1 + q2) - l2, l1 sin q1 + l2 sin(q1 + q2) - l1), [m].
 
-y = 0 is reached with link 1 upright and link 2 level, q = (pi/2, -pi/2). The Jacobian's determinant
-is l1 l2 sin q2: the arm is singular stretched (q2 = 0, at the distance l1 + l2 from its base) and
-folded (q2 = +-pi, at |l1 - l2|). Between them a point has two poses; the one with the elbow up is
-taken, -pi < q2 < 0, and no path leads continuously from one branch to the other.
+At y = 0 link 1 is upright and link 2 horizontal, q = (π/2, -π/2). The determinant of the Jacobian
+is l1 l2 sin q2: the arm is singular when stretched (q2 = 0, at the distance l1 + l2 from its base)
+and when folded (q2 = ±π, at |l1 - l2|). Every other point in reach has two poses. The one with the
+elbow up is taken, -π < q2 < 0; no path leads continuously from one to the other.
 
 Source: Spong and Vidyasagar, Robot Dynamics and Control, 6.4, the planar elbow manipulator.
 """
@@ -46,7 +46,7 @@ SINGULAR = (
 
 @dataclass(frozen=True, slots=True)
 class ArmLinks:
-    """Illustrative values, no particular arm's. Units: m, kg, kg m^2, N m s."""
+    """Illustrative values. Units: m, kg, kg m², N m s."""
 
     l1: float = 0.22
     l2: float = 0.20
@@ -61,7 +61,11 @@ class ArmLinks:
     b2: float = 0.03
 
     def lumped(self, payload: float = 0.0) -> dict[str, float]:
-        """The numbers of the equations by name (SI), with a mass at the end-point, [kg]."""
+        """The parameters of the equations of motion by name (SI), with a mass at the end-point.
+
+        Args:
+            payload: [kg].
+        """
         moment = self.m2 * self.r2 + payload * self.l2
         a3 = self.I2 + self.m2 * self.r2**2 + payload * self.l2**2
         beyond = self.motor + self.m2 + payload  # what link 1 carries at the elbow
@@ -80,7 +84,7 @@ class ArmLinks:
 
 @dataclass(frozen=True, slots=True)
 class TwoLinkParameters(Parameters):
-    """The arm's own: a wrong model and a payload."""
+    """Additional parameters of the arm: model errors and payload."""
 
     error_inertia: float = number(
         0.0,
@@ -112,7 +116,7 @@ class TwoLinkParameters(Parameters):
 
 
 def two_link_arm() -> MechanicalSystem:
-    """The arm as symbols, parameters named as in `NAMES`; the formulas head this file."""
+    """The arm's equations of motion, given in this module's docstring."""
     parameters = ca.SX.sym("parameters", len(NAMES))
     p = dict(zip(NAMES, ca.vertsplit(parameters), strict=True))
     q, v = ca.SX.sym("q", 2), ca.SX.sym("v", 2)
@@ -141,7 +145,7 @@ def two_link_arm() -> MechanicalSystem:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TwoLinkArm(PlanarRobot):
-    """The arm as the lab and the experiments use it."""
+    """The arm for the lab and the experiments."""
 
     links: ArmLinks = field(default_factory=ArmLinks)
     system: MechanicalSystem = field(default_factory=two_link_arm, repr=False)
@@ -151,17 +155,17 @@ class TwoLinkArm(PlanarRobot):
 
     @property
     def home(self) -> tuple[float, float]:
-        """See `PlanarRobot.home`: link 1 upright, link 2 level."""
+        """See `PlanarRobot.home`: link 1 upright, link 2 horizontal."""
         return self.links.l2, self.links.l1
 
     @property
     def reach(self) -> tuple[float, float]:
-        """See `Robot.reach`: folded, stretched."""
+        """See `Robot.reach`: folded and stretched."""
         return abs(self.links.l1 - self.links.l2), self.links.l1 + self.links.l2
 
     @property
     def drawing(self) -> Drawing:
-        """See `Robot.drawing`: a motor at the elbow, too."""
+        """See `Robot.drawing`: one more motor, at the elbow."""
         return Drawing(motors=(1,))
 
     def plant(self, parameters: Parameters) -> Array:
@@ -169,7 +173,7 @@ class TwoLinkArm(PlanarRobot):
         return self.system.parameter_vector(self.links.lumped(_own(parameters).payload))
 
     def model(self, parameters: Parameters) -> Array:
-        """See `Robot.model`: without payload, inertias and weights wrong as asked."""
+        """See `Robot.model`: without payload, with the chosen model errors."""
         own, values = _own(parameters), self.links.lumped()
         for name in ("a1", "a2", "a3"):
             values[name] *= 1 + own.error_inertia / 100
@@ -200,7 +204,7 @@ class TwoLinkArm(PlanarRobot):
         return np.stack([x - l2, z - l1], axis=-1)
 
     def margin(self, z: Array) -> Array:
-        """See `Robot.margin`: |sin q2|, the determinant of the Jacobian over l1 l2."""
+        """See `Robot.margin`: |sin q2| = |det J| / (l1 l2)."""
         l1, l2 = self.links.l1, self.links.l2
         squared = (z[..., 0] + l2) ** 2 + (z[..., 1] + l1) ** 2
         cosine = (squared - l1**2 - l2**2) / (2 * l1 * l2)
@@ -213,7 +217,7 @@ class TwoLinkArm(PlanarRobot):
         return first_fault(q, v, (singular, SINGULAR))
 
     def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """See `Robot.skeleton`: link 1, link 2; base, elbow."""
+        """See `Robot.skeleton`: bars of links 1 and 2; joints at base and elbow."""
         one, two = (
             length * ca.vertcat(ca.cos(angle), 0, ca.sin(angle))
             for length, angle in ((self.links.l1, q[0]), (self.links.l2, q[0] + q[1]))
@@ -224,7 +228,7 @@ class TwoLinkArm(PlanarRobot):
 
 @lru_cache(maxsize=1)
 def two_link_arm_robot() -> TwoLinkArm:
-    """The one instance: its kernels are built once."""
+    """The only instance, so that its kernels are built once."""
     return TwoLinkArm()
 
 
