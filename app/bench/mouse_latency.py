@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import time
 from collections.abc import Callable
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -34,11 +35,22 @@ STEP = 30.0  # [px]
 MOVED = 1e-4  # [m]
 
 
+def check_installed() -> None:
+    """Complain before all the other tables are measured.
+
+    Raises:
+        ValueError: Playwright is not installed.
+    """
+    if find_spec("playwright") is None:
+        raise ValueError(
+            'bench needs Playwright to move a mouse: pip install "onpath[bench]"'
+            " (--quick and --clients do without)"
+        )
+
+
 def find_browser() -> str | None:
     """Path of a Chromium; None if there is none, or Playwright is not installed."""
-    try:
-        import playwright.sync_api  # noqa: F401
-    except ImportError:
+    if find_spec("playwright") is None:
         return None
     return next(filter(None, map(shutil.which, BROWSERS)), None)
 

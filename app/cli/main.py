@@ -79,6 +79,7 @@ class BenchCommand:
     def run(self) -> None:
         """Print the table."""
         from onpath.app.bench.crowd import ClientLoad
+        from onpath.app.bench.mouse_latency import check_installed
         from onpath.app.bench.tables import bench, bench_crowds
 
         if self.minutes < 0:
@@ -92,6 +93,8 @@ class BenchCommand:
         if crowds:
             bench_crowds(crowds)
         else:
+            if not self.quick:
+                check_installed()
             bench(quick=self.quick)
 
 
