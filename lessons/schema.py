@@ -1,10 +1,14 @@
-"""What a lesson is made of. A lesson file is read into these by lessons/parse.py."""
+"""What a lesson is made of. A lesson file is read into these by lessons/parse.py.
+
+There the words of questions, answers, tasks and hints, markdown in the file, become Markup.
+"""
 
 from __future__ import annotations
 
 from typing import Literal
 
 import msgspec
+from markupsafe import Markup
 
 StepKind = Literal["play", "predict", "run", "explain", "task", "quiz"]
 RobotName = Literal["follower", "tracker"]
@@ -253,7 +257,7 @@ class LabLink(msgspec.Struct, frozen=True):
 class Text(msgspec.Struct, frozen=True):
     """Part of a step's text, as safe HTML, and the links that follow it as buttons."""
 
-    html: str
+    html: Markup
     links: tuple[LabLink, ...] = ()
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import base64
-import html
 from collections.abc import Callable
 from functools import lru_cache
 
 import viser
+from markupsafe import Markup
 
+from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseRobot
 from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import Post, on_press
@@ -58,11 +59,7 @@ def label_of(entry: RobotEntry, words: Words) -> str:
 
 
 @lru_cache
-def _card(asset: str, label: str, text: str) -> str:
+def _card(asset: str, label: str, text: str) -> Markup:
     """Picture and a sentence."""
     picture = base64.b64encode(asset_path(asset).read_bytes()).decode()
-    return (
-        f'<div style="padding:0.6em 0 0.2em 0"><img alt="{html.escape(label)}" style="width:100%;'
-        f'border:1px solid #dde" src="data:image/png;base64,{picture}"/>'
-        f'<div style="font-size:0.9em;color:#445">{html.escape(text)}</div></div>'
-    )
+    return render("panel/robot.html", label=label, text=text, picture=picture)
