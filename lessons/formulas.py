@@ -11,6 +11,7 @@ from typing import Any
 from latex2mathml.converter import convert
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
+from markupsafe import Markup
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 MIME = {
@@ -52,16 +53,16 @@ def reader() -> MarkdownIt:
     return markdown.use(dollarmath_plugin, renderer=mathml, double_inline=True)
 
 
-def render(markdown: MarkdownIt, tokens: Sequence[Token]) -> str:
-    """The HTML of parsed Markdown.
+def render(markdown: MarkdownIt, tokens: Sequence[Token]) -> Markup:
+    """The HTML of parsed Markdown; it is markup, since `reader` lets no HTML through.
 
     Raises:
         FormulaError: see `mathml`.
     """
-    return str(markdown.renderer.render(tokens, markdown.options, {}))
+    return Markup(markdown.renderer.render(tokens, markdown.options, {}))
 
 
-def to_html(text: str) -> str:
+def to_html(text: str) -> Markup:
     """The HTML of a short text such as a question or a hint; a single paragraph loses its <p>.
 
     Raises:

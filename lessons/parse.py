@@ -11,6 +11,7 @@ from typing import Any, TypeVar, get_args
 
 import msgspec
 from markdown_it.token import Token
+from markupsafe import Markup
 
 from onpath.lessons import vocabulary
 from onpath.lessons.formulas import FormulaError, embedded, reader, render, to_html
@@ -191,7 +192,7 @@ class _Reader:
             self._complain(line, str(error))
             return
         if links and not _has_prose(tokens):
-            html = ""  # the buttons show the same words
+            html = Markup()  # the buttons show the same words
         last = draft.blocks[-1] if draft.blocks else None
         if isinstance(last, Text) and not last.links:
             draft.blocks[-1] = Text(last.html + html, tuple(links))

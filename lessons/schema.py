@@ -1,10 +1,14 @@
-"""The data that a lesson consists of. lessons/parse.py reads a lesson file into them."""
+"""The data that a lesson consists of. lessons/parse.py reads a lesson file into them.
+
+Questions, answers, tasks and hints are Markdown in the file and Markup here.
+"""
 
 from __future__ import annotations
 
 from typing import Literal
 
 import msgspec
+from markupsafe import Markup
 
 StepKind = Literal["play", "predict", "run", "explain", "task", "quiz"]
 RobotName = Literal["follower", "tracker"]
@@ -253,7 +257,7 @@ class LabLink(msgspec.Struct, frozen=True):
 class Text(msgspec.Struct, frozen=True):
     """Part of a step's text, as safe HTML, and its lab links, which follow it as buttons."""
 
-    html: str
+    html: Markup
     links: tuple[LabLink, ...] = ()
 
 

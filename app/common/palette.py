@@ -47,10 +47,21 @@ class Colour:
         return Colour(*mixed)
 
 
-GREEN, GREY, AMBER = "#1d7a4f", "#667085", "#8a5a00"
-"""Colours of text on a page."""
 WHITE = Colour(255, 255, 255)
 INK = Colour(31, 41, 55)
+
+# Text on a page, from the strongest to the weakest, and what is right, wrong or told
+SLATE = Colour(63, 74, 90)
+GREY = Colour(102, 112, 133)
+GREEN = Colour(29, 122, 79)
+AMBER = Colour(138, 90, 0)
+BLUE = Colour(51, 80, 107)
+
+# Lines and grounds on a page
+MUTED = Colour(170, 180, 192)
+BORDER = Colour(213, 218, 225)
+SHADE = Colour(238, 241, 245)
+PANEL = Colour(247, 249, 251)
 
 TRACKER = Colour(213, 94, 0)
 FOLLOWER = Colour(0, 114, 178)
@@ -65,5 +76,8 @@ MOTOR = Colour(66, 74, 88)
 STEEL = Colour(118, 128, 142)
 FLOOR = Colour(244, 246, 248)
 GRID = Colour(222, 226, 232)
+
+SEEN = FOLLOWER.toward(WHITE, 0.6)
+"""Of the steps of a lesson that have been opened."""
 
 CONTROLLERS: dict[str, Colour] = dict(zip(NAMES, (TRACKER, FOLLOWER), strict=True))

@@ -6,6 +6,8 @@ from collections.abc import Callable
 
 import viser
 
+from onpath.app.common.palette import FOLLOWER
+from onpath.app.common.templates import render
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.session import Session
@@ -29,10 +31,6 @@ from onpath.app.viser_adapter.frame_channel import FrameChannel
 from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot
 
-WIDE_SHEET = """<style>@media (max-width:36em){
-.mantine-Paper-root[style*="bottom: 0"],
-.mantine-Paper-root[style*="bottom: 0"] [style*="width: 20em"]{width:100%!important}}</style>"""
-"""On a telephone viser's sheet is no wider than on a desk, and leaves a gap beside it."""
 AT_EASE = STRIDES[0]  # the stride of a thread that has time
 SLOW, SLOWER = 6, 12  # frames or so per update of traces, plots, readouts: 10 Hz, 5 of many labs
 SETTLING = 30  # slow updates after the page is built
@@ -51,7 +49,7 @@ class Page:
         self._framed, self._settling = 0.0, SETTLING
         self._shown: tuple[object, ...] = ()
         client.gui.configure_theme(
-            show_logo=False, show_share_button=False, brand_color=(0, 114, 178)
+            show_logo=False, show_share_button=False, brand_color=FOLLOWER.rgb
         )
         client.gui.set_panel_label("OnPath")
         if not self._is_narrow():
@@ -136,7 +134,7 @@ class Page:
 
     def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
         gui, run = self._client.gui, session.lessons
-        self._client.gui.add_html(WIDE_SHEET)
+        self._client.gui.add_html(render("panel/wide_sheet.html"))
         self._parts: list[Part] = []
         controls = self._controls(session, post)
         if run.lesson is None:

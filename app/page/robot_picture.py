@@ -8,7 +8,7 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
-from onpath.app.common import palette
+from onpath.app.common.templates import render
 from onpath.assets import asset_path
 from onpath.models.systems.robots import Robot, RobotEntry
 
@@ -40,14 +40,7 @@ def robot_sketch(robot: Robot) -> str:
     def seen(points: np.ndarray) -> np.ndarray:
         return np.array(SIZE) / 2 + scale * (points - (low + high) / 2) * [1, -1]
 
-    lines = "".join(
-        f'<line x1="{a:.1f}" y1="{b:.1f}" x2="{c:.1f}" y2="{d:.1f}"/>'
-        for a, b, c, d in seen(bars).reshape(-1, 4)
-    )
-    circles = "".join(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="13"/>' for x, y in seen(joints))
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {SIZE[0]} {SIZE[1]}">'
-        f'<rect width="100%" height="100%" fill="{palette.FLOOR.hex}"/>'
-        f'<g stroke="{palette.FOLLOWER.hex}" stroke-width="20" stroke-linecap="round">{lines}</g>'
-        f'<g fill="{palette.STEEL.hex}">{circles}</g></svg>'
+    lines, circles = seen(bars).reshape(-1, 4), seen(joints)
+    return render(
+        "panel/robot_sketch.svg", size=SIZE, lines=lines.tolist(), circles=circles.tolist()
     )

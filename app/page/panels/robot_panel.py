@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable
 
 import viser
+from markupsafe import Markup
 
+from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseRobot
 from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import Post, on_press
@@ -55,10 +56,6 @@ def label_of(entry: RobotEntry, words: Words) -> str:
     return words.get(f"machine.{entry.name}.label", entry.label)
 
 
-def _card(picture: str, label: str, text: str) -> str:
+def _card(picture: str, label: str, text: str) -> Markup:
     """Picture and a sentence."""
-    return (
-        f'<div style="padding:0.6em 0 0.2em 0"><img alt="{html.escape(label)}" style="width:100%;'
-        f'border:1px solid #dde" src="{picture}"/>'
-        f'<div style="font-size:0.9em;color:#445">{html.escape(text)}</div></div>'
-    )
+    return render("panel/robot.html", label=label, text=text, picture=picture)
