@@ -1,40 +1,15 @@
-"""Everything the interface says, in one catalogue per language: assets/words/<language>.toml."""
+"""Everything the interface says, in the language of its user."""
 
 from __future__ import annotations
 
-import re
-import tomllib
-from functools import lru_cache
+from functools import cached_property
 from typing import Any
 
-from onpath.assets import asset_path
+from onpath.assets.messages import DEFAULT, Catalogue, catalogue, languages
+from onpath.models.errors import CodedError, Message
 
-DEFAULT = "en"
-SENTENCE = "sentence."
-ELSEWHERE = (SENTENCE, "parameter.", "machine.", "path.")
+ELSEWHERE = ("parameter.", "machine.", "path.")
 """Beginnings of keys whose English stands in models/, so that other languages alone have them."""
-
-
-def languages() -> list[str]:
-    """Those that there is a catalogue for."""
-    return sorted(path.stem for path in asset_path("words").glob("*.toml"))
-
-
-@lru_cache
-def catalogue(language: str) -> dict[str, str]:
-    """Dotted key -> words. What a language lacks is in English."""
-    own = _flat(tomllib.loads((asset_path("words") / f"{language}.toml").read_text("utf-8")))
-    return own if language == DEFAULT else catalogue(DEFAULT) | own
-
-
-@lru_cache
-def sentences(language: str) -> list[tuple[re.Pattern[str], str]]:
-    """Sentences of models/ as patterns, and what they are in a language."""
-    return [
-        (re.compile(re.sub(r"\\{(\w+)\\}", r"(?P<\1>.+?)", re.escape(key[len(SENTENCE) :]))), own)
-        for key, own in catalogue(language).items()
-        if key.startswith(SENTENCE)
-    ]
 
 
 class Words:
@@ -46,36 +21,33 @@ class Words:
 
     def __init__(self, language: str = DEFAULT) -> None:
         self.language = language if language in languages() else DEFAULT
-        self._words = catalogue(self.language)
+        self._plain = dict[str, str]()
+
+    @cached_property
+    def _catalogue(self) -> Catalogue:
+        return catalogue(self.language)
 
     def __call__(self, key: str, **values: Any) -> str:
-        """The words for a key, with values filled in.
+        """The words for a key, with values filled in; a count as a whole number, for the plural.
 
         Raises:
-            KeyError: there is no such key.
+            KeyError: there is no such key, or a value is missing.
         """
-        return self._words[key].format(**values) if values else self._words[key]
+        if values:
+            return self._catalogue.text(key, values)
+        try:
+            return self._plain[key]
+        except KeyError:
+            return self._plain.setdefault(key, self._catalogue.text(key, values))
 
     def get(self, key: str, default: str) -> str:
         """The words for a key, or others."""
-        return self._words.get(key, default)
+        return self(key) if key in self._plain or key in self._catalogue else default
 
-    def sentence(self, english: str) -> str:
-        """A sentence that models/ says; as it is where this language has nothing for it."""
-        for pattern, own in sentences(self.language):
-            if found := pattern.fullmatch(english):
-                return own.format(**{k: self.sentence(v) for k, v in found.groupdict().items()})
-        return english
-
-
-def _flat(table: dict[str, Any], prefix: str = "") -> dict[str, str]:
-    flat: dict[str, str] = {}
-    for key, value in table.items():
-        if isinstance(value, dict):
-            flat |= _flat(value, f"{prefix}{key}.")  # pyright: ignore[reportUnknownArgumentType]
-        else:
-            flat[prefix + key] = str(value)
-    return flat
+    def sentence(self, said: Message | Exception) -> str:
+        """A message, or what an error says; one without a code stays as it is."""
+        message = said.message if isinstance(said, CodedError) else said
+        return message.told(self.language) if isinstance(message, Message) else str(message)
 
 
 ENGLISH = Words()

@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 from onpath.app.common.access_codes import ALPHABET, normalised
 from onpath.app.common.throttle import Throttle
+from onpath.models.errors import CodedError
 
 LONGEST_NAME = 24  # [characters]
 CODE_LENGTH = (
@@ -51,19 +52,19 @@ class Admission:
         except ValueError:
             given = ""
         with self._keys.attempt(who):
-            _compare(given, key, "this is not the teacher's key")
+            _compare(given, key, CodedError("error.not_the_key"))
 
     def check_code(self, typed: str, code: str, who: str) -> None:
         """Check the class code; see `check_key`."""
         given = "".join(typed[:40].split()).lower()
         with self._codes.attempt(who):
-            _compare(given, code, "this is not the class code on the projector")
+            _compare(given, code, CodedError("error.not_the_class_code"))
 
 
-def _compare(typed: str, right: str, refusal: str) -> None:
+def _compare(typed: str, right: str, refusal: CodedError) -> None:
     """Compare in constant time, so that timing does not reveal partial matches."""
     if not hmac.compare_digest(typed.encode(errors="replace"), right.encode()):
-        raise ValueError(refusal)
+        raise refusal
 
 
 def new_pass() -> str:
@@ -81,7 +82,7 @@ def cleaned(name: str) -> str:
     seen = "".join(c if unicodedata.category(c)[0] not in "CZ" else " " for c in text)
     short = " ".join(seen.split())[:LONGEST_NAME].strip()
     if not short:
-        raise ValueError("a nickname has at least one character")
+        raise CodedError("error.no_nickname")
     return short
 
 

@@ -12,6 +12,7 @@ from typing import Protocol
 from onpath.app.classroom.admission import cleaned, not_among
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.lessons.progress import Progress
+from onpath.models.errors import CodedError
 
 MOST_MEMBERS = 300
 Push = TakeSetup | TakeStep
@@ -165,7 +166,7 @@ def seated(members: Mapping[str, Member], session: str, name: str, new: Member) 
     """
     name, old = cleaned(name), members.get(session)
     if old is None and len(members) >= MOST_MEMBERS:
-        raise ValueError("this class is full")
+        raise CodedError("error.class_full")
     others = {member.name.casefold() for code, member in members.items() if code != session}
     return replace(old or new, name=not_among(others, name))
 

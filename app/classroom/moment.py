@@ -21,6 +21,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import log_layout, state_layout
 from onpath.models.closed_loop.simulation import Push
 from onpath.models.control.laws import NAMES
+from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import Fault
 from onpath.models.paths.curves import TERMS, Curve, from_terms, terms_of
 from onpath.models.paths.path_design import MOST_POINTS, PathDesign
@@ -55,6 +56,17 @@ class PathMoment(msgspec.Struct, frozen=True):
     marks: Marks
 
 
+class Stopped(msgspec.Struct, frozen=True):
+    """That a robot stands still: since when, [s], and the `Message` that says why."""
+
+    time: float
+    code: Text
+    arguments: Annotated[dict[Word, Text], msgspec.Meta(max_length=10)]
+
+    def reason(self) -> Message:
+        return Message(self.code, self.arguments)
+
+
 class RobotMoment(msgspec.Struct, frozen=True):
     """One robot.
 
@@ -69,7 +81,7 @@ class RobotMoment(msgspec.Struct, frozen=True):
     state: Vector
     sample: Vector
     max_distance: float
-    diverged: tuple[Text, float] | None
+    diverged: Stopped | None
     hand: Vector
     anchor: Vector
     tangent: Vector
@@ -148,11 +160,17 @@ def _robot(run: ClosedLoopRun, push: Push, state: Array, sample: Array, most: fl
         state=tuple(state.tolist()),
         sample=tuple(np.nan_to_num(sample).tolist()),
         max_distance=float(most),
-        diverged=run.diverged and (run.diverged.reason, run.diverged.time),
+        diverged=run.diverged and _stopped(run.diverged),
         hand=() if push.hand is None else tuple(push.hand.tolist()),
         anchor=tuple(anchor.tolist()),
         tangent=tuple(tangent.tolist()),
     )
+
+
+def _stopped(diverged: Diverged) -> Stopped:
+    reason = diverged.reason
+    arguments = {name: str(value) for name, value in reason.arguments.items()}
+    return Stopped(diverged.time, reason.code, arguments)
 
 
 def _path(editor: PathEditor, past: Curve | None) -> PathMoment:
@@ -196,6 +214,8 @@ def read_moment(text: str) -> Moment:
         _numbers(each.sample, len(samples))
         for pull in (each.hand, each.anchor, each.tangent):
             _numbers(pull, robot.system.p if pull else 0)
+        if each.diverged is not None:
+            _sayable(each.diverged.reason())
         if bool(each.anchor) != bool(each.tangent):
             raise ValueError("half a brake")
     most = [each.max_distance for each in moment.robots]
@@ -220,6 +240,13 @@ def parameters_of(moment: Moment) -> Parameters:
 def _numbers(numbers: tuple[float, ...], size: int) -> None:
     if len(numbers) != size or not np.isfinite(numbers).all():
         raise ValueError(f"expected {size} finite numbers, got {len(numbers)}")
+
+
+def _sayable(message: Message) -> None:
+    try:
+        str(message)
+    except KeyError:
+        raise ValueError(f"no message {message.code!r} with these arguments") from None
 
 
 def take_over(session: Session, new: Moment, old: Moment | None) -> None:
@@ -252,7 +279,8 @@ def take_over(session: Session, new: Moment, old: Moment | None) -> None:
 def _take_path(editor: PathEditor, path: PathMoment) -> None:
     target, before = _curve(path.target), path.before and _curve(path.before)
     points = np.array(path.points).reshape(-1, 2)
-    marks = [Fault("", np.array(path.marks).reshape(-1, 2))] if path.marks else []
+    marked = np.array(path.marks).reshape(-1, 2)
+    marks = [Fault(Message("fault.outside"), marked)] if path.marks else []
     shown = PathDesign(path.name, target, points)
     editor.show(shown, Blend(target, before, path.progress), marks)
     editor.select(path.selected)
@@ -276,4 +304,6 @@ def _take_robot(session: Session, run: ClosedLoopRun, robot: RobotMoment) -> Non
     log.unpack(row)["q"][:], log.unpack(row)["v"][:] = now["q"], now["v"]
     run.row, run.distance = row, float(sample[fields["distance"].start])
     run.max_distance = robot.max_distance
-    run.diverged = None if robot.diverged is None else Diverged(*robot.diverged)
+    run.diverged = (
+        None if robot.diverged is None else Diverged(robot.diverged.reason(), robot.diverged.time)
+    )

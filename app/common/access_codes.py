@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 import secrets
 
+from onpath.models.errors import CodedError
+
 ALPHABET = "23456789abcdefghjkmnpqrstuvwxyz"  # no characters that are easily confused
 LENGTH, GROUP = 12, 4  # 59 bits, which cannot be guessed
 _BETWEEN = re.compile(r"[\s.,_\-\u2010-\u2015]+")
@@ -28,11 +30,10 @@ def normalised(text: str) -> str:
     """
     code = _BETWEEN.sub("", text[:100]).lower()
     if len(code) != LENGTH:
-        raise ValueError(f"a session code has {LENGTH} letters and digits, like {shown(_EXAMPLE)}")
+        raise CodedError("error.session_code_length", length=LENGTH, example=shown(_EXAMPLE))
     strange = sorted(set(code) - set(ALPHABET))
     if strange:
-        hint = "there is no 0, 1, i, l or o in one"
-        raise ValueError(f"this is no session code: {hint}, like {shown(_EXAMPLE)}")
+        raise CodedError("error.session_code_letters", example=shown(_EXAMPLE))
     return code
 
 

@@ -8,6 +8,8 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
+from onpath.models.errors import CodedError
+
 TRIES, WITHIN = 5, 60.0  # wrong codes that one tab may type in so many seconds
 
 
@@ -45,7 +47,7 @@ class Throttle:
             while self._failures and self._failures[0][0] <= now - WITHIN:
                 self._failures.popleft()
             if sum(failed == who for _, failed in self._failures) >= TRIES:
-                raise ValueError("too many wrong codes: wait a minute")
+                raise CodedError("error.too_many_codes")
             begun = now, who
             self._failures.append(begun)
             return begun

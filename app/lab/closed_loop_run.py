@@ -18,6 +18,7 @@ from onpath.models.closed_loop.simulation import (
     pushed,
     settings_vector,
 )
+from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import near_distance
@@ -31,7 +32,7 @@ DISTANCE_INTERVAL = 4  # rows between looks at the distance, where the loop does
 class Diverged:
     """Why a robot stands still, and since when, [s]."""
 
-    reason: str
+    reason: Message
     time: float
 
 

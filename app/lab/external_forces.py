@@ -11,6 +11,7 @@ from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.simulation import FREE, Push, brake_at
 from onpath.models.control.laws import NAMES
+from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import Frame
 from onpath.models.systems.robots import Robot
@@ -75,7 +76,7 @@ class ExternalForces:
             ValueError: the target is not finite.
         """
         if not np.isfinite(target).all():
-            raise ValueError("the hand's target is not a point")
+            raise CodedError("error.not_a_point")
         if self.grabbed != controller:
             self.release()
             own = self._runs[controller].shown()["y"].copy()

@@ -16,6 +16,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.simulation import kernel_of
+from onpath.models.errors import CodedError
 from onpath.models.studies.identification import (
     BALANCE,
     DRY,
@@ -48,7 +49,7 @@ def identify_model(session: Session) -> None:
     robot, parameters = session.robot, session.parameters
     linkage = robot.linkage
     if linkage is None:
-        raise ValueError(session.lessons.words("identified.other_robot"))
+        raise CodedError("identified.other_robot")
     found, duration = _learned(robot, tuple(_same_robot(robot, session.history.all())))
     session.set_parameters(believing(linkage, parameters, found))
     words = session.lessons.words
@@ -70,7 +71,7 @@ def last_record(robot: Robot, history: list[Segment]) -> JointRecord:
     """
     linkage, stretches = robot.linkage, _same_robot(robot, history)
     if linkage is None or not stretches:
-        raise ValueError("there is nothing to learn from yet: let it run for a few seconds first")
+        raise CodedError("error.nothing_recorded")
     drive, dt = stretches[-1].drives[FOLLOWER], stretches[-1].dt
     log = kernel_of(robot, drive.kind).log.unpack(_rows(robot, stretches))
     q, v = log["q"], log["v"]

@@ -20,6 +20,8 @@ from onpath.lessons.progress import Answer, Notes, Progress, Truth
 from onpath.lessons.record import Record
 from onpath.lessons.schema import Action, Lesson, Prediction, Quiz, Sketch, Step, Task, Window
 from onpath.lessons.words import Words
+from onpath.models.errors import CodedError
+from onpath.models.systems.parameters import unknown_name
 
 if TYPE_CHECKING:
     from onpath.app.lab.session import Session
@@ -137,10 +139,10 @@ class LessonRun:
             ValueError: there is no such lesson or step.
         """
         if name not in self.course.lessons:
-            raise ValueError(f"no lesson {name!r}: there are {', '.join(self.course.lessons)}")
+            raise unknown_name(name, list(self.course.lessons), "lesson")
         lesson = self.course.lesson(name, self.progress.language)
         if index not in range(len(lesson.steps)):
-            raise ValueError(f"no step {index + 1} in this lesson: it has {len(lesson.steps)}")
+            raise CodedError("error.no_step", step=index + 1, steps=len(lesson.steps))
         before = capture(session) if self.lesson is None else self.before
         set_up(session, lesson, index)
         self.progress, self.before = replace(self.progress, lesson=name), before
@@ -202,12 +204,12 @@ class LessonRun:
         """
         found = self.prediction()
         if found is None:
-            raise ValueError(self.words("lesson.nothing_to_predict"))
+            raise CodedError("lesson.nothing_to_predict")
         _, prediction = found
         if isinstance(prediction, Sketch):
             answer = sketched(prediction, answer)
         elif answer.option is not None and answer.option >= len(prediction.options):
-            raise ValueError(self.words("lesson.no_such_option"))
+            raise CodedError("lesson.no_such_option")
         self._note_answer(answer)
         self._lock(session)
         self.version += 1
@@ -249,7 +251,7 @@ class LessonRun:
         step = self.step
         quiz = step.blocks[block] if step and block in range(len(step.blocks)) else None
         if not isinstance(quiz, Quiz) or option not in range(len(quiz.options)):
-            raise ValueError(self.words("lesson.no_such_option"))
+            raise CodedError("lesson.no_such_option")
         self._note(quiz={**self.notes.quiz, f"{self.index}.{block}": option})
 
     def set_language(self, language: str) -> None:

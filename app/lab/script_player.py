@@ -11,6 +11,7 @@ from onpath.app.lab.external_forces import displaced
 from onpath.lessons.record import ROLES
 from onpath.lessons.schema import Action, Script
 from onpath.models.control.laws import NAMES
+from onpath.models.errors import CodedError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -98,7 +99,7 @@ def _move(action: Action, session: Session) -> None:
     index, right, up = action.move
     points = session.editor.design.points
     if not 0 <= index < len(points):
-        raise ValueError(f"control point {index}: there are {len(points)}")
+        raise CodedError("error.no_point", index=index, count=len(points))
     c.MovePoint(index, points[index] + np.array([right, up]) / 1e3).apply(session)
 
 

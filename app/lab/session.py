@@ -149,7 +149,7 @@ class Session:
             try:
                 command.apply(self)
             except ValueError as error:
-                self.show_message(self.lessons.words.sentence(str(error)), "warning")
+                self.show_message(self.lessons.words.sentence(error), "warning")
         taken = perf_counter() - begun
         if not self.frozen:
             self._play()
@@ -171,7 +171,7 @@ class Session:
                 self.script = None
         except ValueError as error:
             self.script = None
-            self.show_message(self.lessons.words.sentence(str(error)), "warning")
+            self.show_message(self.lessons.words.sentence(error), "warning")
 
     def note(self, name: str, detail: str = "", controllers: tuple[str, ...] = NAMES) -> None:
         """Remember that something has happened."""

@@ -14,12 +14,21 @@ import msgspec
 import numpy as np
 
 from onpath.app.lab.path_editor import BLEND
+from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through
 from onpath.models.paths.curves import TERMS, from_terms, terms_of
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, presets
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, RobotEntry
-from onpath.models.systems.parameters import NOTHING, Parameters, Spec, changed, specs, unknown_name
+from onpath.models.systems.parameters import (
+    NOTHING,
+    Parameters,
+    Spec,
+    changed,
+    out_of_range,
+    specs,
+    unknown_name,
+)
 
 if TYPE_CHECKING:
     from onpath.app.lab.session import Session
@@ -128,8 +137,8 @@ def restore(session: Session, setup: Setup) -> None:
     for name, bench in wanted.items():
         faults = curve_faults(bench.entry.make(bench.parameters).margin, bench.design.curve)
         if faults:
-            reasons = "; ".join(fault.reason for fault in faults)
-            raise ValueError(f"{ROBOTS[name].label} cannot follow this path: {reasons}")
+            reasons = tuple(fault.reason for fault in faults)
+            raise CodedError("error.cannot_follow", robot=ROBOTS[name].label, reasons=reasons)
     session.rate, session.copy = setup.rate, setup.copy
     session.exaggeration = setup.exaggeration
     for name in sorted(wanted, key=lambda name: name == setup.robot):
@@ -169,7 +178,7 @@ def _wanted(name: str, bench: RobotSetup, paths: Mapping[str, PathDesign]) -> Wa
 
 def _within(what: str, value: float, bounds: tuple[float, ...]) -> None:
     if not bounds[0] <= value <= bounds[-1]:
-        raise ValueError(f"{what} {value:g}: between {bounds[0]:g} and {bounds[-1]:g}")
+        raise out_of_range(what, f"{value:g}", f"{bounds[0]:g}", f"{bounds[-1]:g}")
 
 
 def _differences(lab: Parameters, own: Parameters) -> dict[str, int | float | str]:

@@ -13,6 +13,7 @@ import zlib
 import msgspec
 
 from onpath.app.lab.setup import Setup, from_data, to_data
+from onpath.models.errors import CodedError, said_by
 
 VERSION = 1
 LONGEST_TEXT = 50_000  # [characters] that are looked at
@@ -47,18 +48,18 @@ def decode(text: str) -> Setup:
         ValueError: in words what is wrong with it.
     """
     if len(text) > LONGEST_TEXT:
-        raise ValueError("This text is much too long: a share code has a few hundred characters.")
+        raise CodedError("error.share_too_long")
     text = _SPACE.sub("", text)
     beginning, code = _BEGINNING.search(text), _CODE.search(text)
     if beginning is None:
-        raise ValueError(f"There is no share code in this text: it begins with ONPATH{VERSION}-.")
+        raise CodedError("error.share_missing", version=VERSION)
     if int(beginning[1]) > VERSION:
-        raise ValueError("This share code was made by a newer OnPath: ask for that version.")
+        raise CodedError("error.share_newer")
     if code is None:
-        raise ValueError("This share code is not complete: copy it again, to its last character.")
+        raise CodedError("error.share_incomplete")
     body, checksum = code[2].upper(), code[3].upper()
     if code[1] != str(VERSION) or checksum != _checksum(body):
-        raise ValueError("This share code is mistyped or cut: its checksum does not fit.")
+        raise CodedError("error.share_mistyped")
     return _setup(body)
 
 
@@ -72,13 +73,13 @@ def _setup(body: str) -> Setup:
             raise ValueError("too large")
         plain = msgspec.json.decode(data)
     except (ValueError, RecursionError, zlib.error) as error:
-        raise ValueError("This share code holds no set-up.") from error
+        raise CodedError("error.share_empty") from error
     try:
         return from_data(plain)
     except msgspec.ValidationError as error:  # quotes whatever it met
-        raise ValueError("This share code holds things that no lab has.") from error
+        raise CodedError("error.share_strange") from error
     except ValueError as error:
-        raise ValueError(f"This share code does not fit this OnPath: {error}.") from error
+        raise CodedError("error.share_does_not_fit", error=said_by(error)) from error
 
 
 def _base32(data: bytes) -> str:

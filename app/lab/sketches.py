@@ -8,6 +8,7 @@ from onpath.lessons.progress import Answer
 from onpath.lessons.schema import Sketch
 from onpath.lessons.thinning import peaks
 from onpath.models.arrays import Array
+from onpath.models.errors import CodedError
 
 MOST_POINTS = 160
 
@@ -23,14 +24,14 @@ def sketched(prediction: Sketch, answer: Answer) -> Answer:
     try:
         times, values = np.array(answer.times, dtype=float), np.array(answer.values, dtype=float)
     except (OverflowError, TypeError) as error:
-        raise ValueError("a sketch needs points") from error
+        raise CodedError("error.sketch_without_points") from error
     if times.shape != values.shape or not np.isfinite(times).all() or not np.isfinite(values).all():
-        raise ValueError("a sketch needs points")
+        raise CodedError("error.sketch_without_points")
     order = np.argsort(times, kind="stable")
     times = np.round(np.clip(times[order], 0.0, prediction.seconds), 3)
     times, first = np.unique(times, return_index=True)
     values: Array = np.round(np.clip(values[order][first], prediction.bottom, prediction.top), 3)
     if len(times) < 2:
-        raise ValueError("draw a curve from left to right")
+        raise CodedError("error.sketch_direction")
     kept = peaks([values], MOST_POINTS)
     return Answer(times=tuple(times[kept].tolist()), values=tuple(values[kept].tolist()))

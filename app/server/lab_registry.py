@@ -22,6 +22,7 @@ from onpath.app.storage.lab_state import LabState, StateObserver, put_back
 from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import NotKept
 from onpath.app.storage.write_behind import WriteBehind
+from onpath.models.errors import CodedError
 
 log = logging.getLogger(__name__)
 
@@ -101,10 +102,10 @@ class LabRegistry:
             entry = self._entries.get(code)
             taken = entry is not None and entry.client is not None
             if taken or (self.leases is not None and not self.leases.available([code])):
-                raise ValueError("this lab is open in another window: close that one first")
+                raise CodedError("error.lab_is_open")
             found = self._open(client, code)
             if found is None:
-                raise ValueError("there is no lab with this code")
+                raise CodedError("error.no_such_lab")
             return found
 
     def _in_turn(self, codes: list[str]) -> list[str]:

@@ -12,6 +12,7 @@ from threading import Thread
 
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
+from onpath.assets.messages import catalogue, languages
 
 LATER = (
     "onpath.app.exports.figures",
@@ -32,6 +33,8 @@ def warm_up(store: LoopCache, rest: float = REST) -> Thread:
                 store.prepare(run.robot, replace(run.kind, free=free))
         for name in LATER:
             import_module(name)
+        for language in languages():
+            catalogue(language)
 
     thread = Thread(target=work, name="warm-up", daemon=True)
     thread.start()

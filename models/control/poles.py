@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from onpath.models.errors import Message
 from onpath.models.systems.parameters import Parameters, time_step
 
 Complex = NDArray[np.complex128]
@@ -34,18 +35,21 @@ class Channel:
     poles: Complex
     stable: bool
 
-    def words(self) -> str:
-        """One sentence on stability, settling time (4 / |Re s|) and damping ratio."""
+    def behaviour(self) -> Message:
+        """Stability, settling time (4 / |Re s|) and damping ratio, for a user."""
         if not self.stable:
             growth = float(self.poles.real.max())
             if growth > 1e-6:
-                return f"unstable: an error grows by e every {1 / growth:.2g} s"
-            return "not stable: an error never dies out"
+                return Message("behaviour.unstable", {"seconds": f"{1 / growth:.2g}"})
+            return Message("behaviour.not_stable")
         slowest = self.poles[self.poles.real.argmax()]
         damping = _damping(slowest)
         settles = 4 / float(-slowest.real)
-        kind = "no overshoot" if damping > NO_OVERSHOOT else f"damping {damping:.2f}"
-        return f"settles in {settles:.2g} s, {kind}"
+        if damping > NO_OVERSHOOT:
+            kind = Message("behaviour.no_overshoot")
+        else:
+            kind = Message("behaviour.damping", {"damping": f"{damping:.2f}"})
+        return Message("behaviour.settles", {"seconds": f"{settles:.2g}", "kind": kind})
 
     def pole_words(self) -> str:
         """The poles with three digits; a conjugate pair is written once, as a ± bi."""

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.errors import Message
 from onpath.models.paths.curves import Curve
 
 TUBE = 0.008  # [m], radius of the tube in which the closest point must be unique
@@ -30,7 +31,7 @@ class Fault:
         points: where the fault is, shape (n, 2), [m]; empty if it has no place.
     """
 
-    reason: str
+    reason: Message
     points: Array
 
 
@@ -48,28 +49,21 @@ def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
     theta = curve.sample(SAMPLES)
     z, first = curve.at(theta), curve.at(theta, 1)
     if not np.all(np.isfinite(z)):
-        return [Fault("the curve has points that are not numbers", np.zeros((0, 2)))]
+        return [Fault(Message("fault.not_numbers"), np.zeros((0, 2)))]
     margin = reach(z)
     checks = [
-        (margin <= 0, "the path leaves the workspace: the arm cannot reach there"),
-        (
-            (margin > 0) & (margin < LEAST_MARGIN),
-            "the path comes too near a singular configuration: there the arm is stretched or"
-            " folded and cannot move in every direction",
-        ),
+        (margin <= 0, Message("fault.outside")),
+        ((margin > 0) & (margin < LEAST_MARGIN), Message("fault.singular")),
         (
             np.abs(curve.curvature(theta)) > 1 / TUBE,
-            f"the path bends too sharply: a bend needs a radius of at least {TUBE * 1e3:.0f} mm,"
-            " or its closest point is not unique nearby",
+            Message("fault.bends", {"radius": f"{TUBE * 1e3:.0f}"}),
         ),
-        (np.linalg.norm(first, axis=-1) < 1e-4, "the path has a cusp, where it has no direction"),
+        (np.linalg.norm(first, axis=-1) < 1e-4, Message("fault.cusp")),
     ]
     faults = [Fault(reason, z[bad]) for bad, reason in checks if bad.any()]
     crossings = self_crossings(z, curve.closed)
     if len(crossings):
-        faults.append(
-            Fault("the path crosses itself: at a crossing it has two directions", crossings)
-        )
+        faults.append(Fault(Message("fault.crosses"), crossings))
     return faults
 
 

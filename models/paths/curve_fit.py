@@ -12,6 +12,7 @@ from numpy.polynomial import chebyshev
 from scipy.interpolate import CubicSpline
 
 from onpath.models.arrays import Array
+from onpath.models.errors import CodedError
 from onpath.models.paths.curves import HARMONICS, Curve, chebyshev_curve, fourier
 
 SAMPLES = 256  # points at equal arc length that a series is fitted to
@@ -127,13 +128,14 @@ def _distinct(points: Array, least: int) -> Array:
     gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     points = points[np.concatenate([[True], gaps > 1e-4])]
     if len(points) < least:
-        raise ValueError(f"a path needs at least {least} points apart from each other")
+        raise CodedError("error.points_coincide", least=least)
     if gaps.sum() < SHORTEST:
-        raise ValueError(f"the path is too short: {gaps.sum() * 1e3:.0f} mm, at least 20 mm")
+        length, shortest = (f"{1e3 * each:.0f}" for each in (gaps.sum(), SHORTEST))
+        raise CodedError("error.path_too_short", length=length, least=shortest)
     if np.linalg.norm(points[0] - points[-1]) < 1e-4:
         points = points[:-1]
     if len(points) < least:
-        raise ValueError(f"a path needs at least {least} points apart from each other")
+        raise CodedError("error.points_coincide", least=least)
     return points
 
 

@@ -13,6 +13,7 @@ from types import MappingProxyType
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.errors import CodedError
 from onpath.models.paths.curve_fit import closed_through, control_points, from_stroke, open_through
 from onpath.models.paths.curves import Curve, aligned, circle, ellipse, fourier, segment
 
@@ -47,7 +48,7 @@ class PathDesign:
         """
         self._check(index)
         if not np.all(np.isfinite(z)):
-            raise ValueError("a control point needs finite coordinates")
+            raise CodedError("error.point_not_finite")
         points = self.points.copy()
         points[index] = z
         return self._through(points)
@@ -66,7 +67,7 @@ class PathDesign:
         self._check(index)
         count = len(self.points)
         if count >= MOST_POINTS:
-            raise ValueError(f"a path has at most {MOST_POINTS} control points")
+            raise CodedError("error.too_many_points", most=MOST_POINTS)
         last = not self.curve.closed and index == count - 1
         other = index - 1 if last else (index + 1) % count
         theta = self.curve.nearest((self.points[[index]] + self.points[[other]]) / 2)[0]
@@ -85,7 +86,7 @@ class PathDesign:
         self._check(index)
         least = 3 if self.curve.closed else 2
         if len(self.points) <= least:
-            raise ValueError(f"this path needs at least {least} control points")
+            raise CodedError("error.too_few_points", least=least)
         return self._through(np.delete(self.points, index, axis=0))
 
     def _through(self, points: Array) -> PathDesign:
@@ -97,7 +98,7 @@ class PathDesign:
     def _check(self, index: int) -> None:
         """Raise ValueError unless `index` is that of a control point."""
         if index not in range(len(self.points)):
-            raise ValueError(f"control point {index}: there are {len(self.points)}")
+            raise CodedError("error.no_point", index=index, count=len(self.points))
 
 
 def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
@@ -117,7 +118,7 @@ def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
     """
     stroke = np.asarray(stroke, dtype=float)
     if stroke.ndim != 2 or not len(stroke) or not np.all(np.isfinite(stroke)):
-        raise ValueError("a stroke needs finite points")
+        raise CodedError("error.stroke_not_finite")
     stroke = np.clip(stroke, -REACH, REACH)
     length = float(np.linalg.norm(np.diff(stroke, axis=0), axis=1).sum())
     closed = float(np.linalg.norm(stroke[0] - stroke[-1])) < 0.25 * length

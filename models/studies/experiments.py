@@ -279,7 +279,7 @@ def _finished(
     if fault is None:
         return whole.thinned()
     end = len(whole.t) * dt
-    return dataclasses.replace(whole.thinned(), diverged_at=end, reason=fault[1])
+    return dataclasses.replace(whole.thinned(), diverged_at=end, reason=str(fault[1]))
 
 
 def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:

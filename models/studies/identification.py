@@ -25,6 +25,7 @@ from numpy.polynomial import Polynomial
 from scipy.linalg import lstsq
 
 from onpath.models.arrays import Array
+from onpath.models.errors import CodedError
 from onpath.models.systems.forces import DRY_VELOCITY
 
 INERTIA = ("M11", "M22", "b1", "b2")  # the parameters of eq. (12), [kg m²] and [N m s]
@@ -118,7 +119,7 @@ def smooth_velocities(q: Array, dt: float) -> Array:
     from scipy.signal import savgol_filter  # slow to import; see app/server/lazy_imports.py
 
     if len(q) < SMOOTHING:
-        raise ValueError("there is hardly any data yet: let it run for a few seconds first")
+        raise CodedError("error.hardly_any_data")
     return np.asarray(savgol_filter(q, SMOOTHING, 2, deriv=1, delta=dt, axis=0), dtype=float)
 
 
@@ -169,10 +170,7 @@ def _estimated(names: tuple[str, ...], columns: Array, torque: Array) -> Identif
     scaled = regressor / np.where(scale > 0, scale, 1.0)
     values, condition = _solved(scaled, torque)
     if condition > WORST_CONDITION:
-        raise ValueError(
-            "the motion was too regular to tell the parameters apart: change the speed while it"
-            " runs, then try again"
-        )
+        raise CodedError("error.motion_too_regular")
     residual = torque - scaled @ values
     errors = _standard_errors(scaled, residual)
     result = Identified(
@@ -194,9 +192,8 @@ def _trusted(result: Identified) -> Identified:
     for name in ("M11", "M22"):
         value, error = result.values[name], result.errors[name]
         if value <= 0 or error > WORST_ERROR * value:
-            raise ValueError(
-                f"{name} cannot be told from this motion ({value:.3g} ± {error:.2g} kg m²): let it"
-                " follow a path with changing speed first"
+            raise CodedError(
+                "error.not_identifiable", name=name, value=f"{value:.3g}", error=f"{error:.2g}"
             )
     return result
 
@@ -273,9 +270,9 @@ def _check(record: JointRecord) -> None:
         raise ValueError(f"samples every {record.dt:g} s: at most {BUMP / FEWEST:g} s apart")
     duration = len(record.q) * record.dt
     if duration < SHORTEST:
-        raise ValueError(f"only {duration:.1f} s of data: let it run for a few seconds first")
+        raise CodedError("error.record_too_short", duration=f"{duration:.1f}")
     if np.ptp(record.q, axis=0).min() < LEAST_MOTION:
-        raise ValueError("the arm hardly moved: let it follow a path with changing speed first")
+        raise CodedError("error.hardly_moved")
 
 
 def _bump(dt: float) -> tuple[Array, Array, Array, Array]:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
+from onpath.models.errors import Message
 from onpath.models.systems import five_bar
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.parameters import FiveBarParameters, Parameters
@@ -84,7 +85,7 @@ class RigidFiveBar(PlanarRobot):
         cosine = (l1**2 + l4**2 - squared) / (2 * l1 * l4)
         return np.sqrt(np.maximum(1 - cosine**2, 0.0))
 
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """See `Robot.fault`."""
         return None if is_calm(q, v) else first_fault(q, v, collapse(q))
 
@@ -120,7 +121,7 @@ def rigid_five_bar() -> RigidFiveBar:
     return RigidFiveBar()
 
 
-def collapse(q: Array) -> tuple[NDArray[np.bool_], str]:
+def collapse(q: Array) -> tuple[NDArray[np.bool_], Message]:
     """A check for `first_fault`: |sin(q1 - q2)| < COLLAPSED, and the reason.
 
     Args:
@@ -130,11 +131,7 @@ def collapse(q: Array) -> tuple[NDArray[np.bool_], str]:
     """
     with np.errstate(invalid="ignore"):  # `first_fault` finds numbers that are not finite
         collapsed = five_bar.singularity_margin(q) < COLLAPSED
-    return (
-        collapsed,
-        "the linkage has collapsed (all links in one line): the controller cannot see"
-        " its way out of a singular configuration",
-    )
+    return collapsed, Message("stop.collapsed")
 
 
 def is_calm(q: Array, v: Array) -> bool:

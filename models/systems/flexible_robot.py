@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, SlantedPlane
 from onpath.models.systems import five_bar, flexible_five_bar
 from onpath.models.systems.beam import MOST_MODES, BeamModes, beam_modes
@@ -25,11 +26,8 @@ from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
 
 MOST_BENT = 0.3  # largest deflection over beam length; far outside the small-deflection model
 FASTEST_TIP = 20.0  # [m/s], largest rate of the deflection
-BENT = (
-    "the link bends too far although its zero dynamics are stable: the pull is too strong, the"
-    " control too slow or the controller's model too wrong"
-)
-UNSTABLE = "the output is on the path, the inside is not: unstable zero dynamics"
+BENT = Message("stop.bent")
+UNSTABLE = Message("stop.unstable")
 # The tip is light and soft (15 N/m): stiff springs, with forces held over a tick, would chatter.
 SOFT_GRIP = Grip(SpringLimits(100.0, 2.0, 1.0), SpringLimits(500.0, 4.0, 5.0))
 PIECES = 10  # straight bars by which the bent link is drawn
@@ -153,7 +151,7 @@ class FlexibleFiveBar:
         columns = _decoupling(self)(q.T, self.plant(FlexibleParameters())).full()
         return columns.reshape(RIGID, len(q), RIGID).transpose(1, 0, 2)
 
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """See `Robot.fault`."""
         with np.errstate(invalid="ignore"):  # `first_fault` finds numbers that are not finite
             bent = np.abs(self.deflection(q)) > MOST_BENT * self.links.beam

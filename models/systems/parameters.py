@@ -14,6 +14,8 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any
 
+from onpath.models.errors import CodedError, Message
+
 TICK = 1e-3  # [s], length of a tick at control rates up to 1 kHz
 NOTHING = 1e-9  # smaller values of any parameter are set to 0, so that inverses are finite
 
@@ -266,13 +268,19 @@ def _specs(kind: type[Parameters]) -> Mapping[str, Spec]:
     return MappingProxyType({f.name: f.metadata["spec"] for f in dataclasses.fields(kind)})
 
 
-def unknown_name(name: str, known: list[str], what: str = "parameter") -> ValueError:
+def unknown_name(name: str, known: list[str], what: str = "parameter") -> CodedError:
     """The error for an unknown name, which suggests the nearest known ones."""
     near = get_close_matches(name, known, n=3, cutoff=0.4) or get_close_matches(
         name.lower(), known, n=3, cutoff=0.3
     )
-    hint = f"did you mean {', '.join(near)}?" if near else f"there are {', '.join(known)}"
-    return ValueError(f"unknown {what} {name!r}: {hint}")
+    names = ", ".join(near or known)
+    hint = Message("error.did_you_mean" if near else "error.there_are", {"names": names})
+    return CodedError("error.unknown_name", kind=what, name=repr(name), hint=hint)
+
+
+def out_of_range(name: str, value: str, low: str, high: str) -> CodedError:
+    """The error for a number that is too small or too large; all as they are to be shown."""
+    return CodedError("error.value_out_of_range", name=name, value=value, low=low, high=high)
 
 
 def checked(spec: Spec, name: str, value: Any) -> Any:
@@ -287,14 +295,14 @@ def checked(spec: Spec, name: str, value: Any) -> Any:
             if str(option) == present:
                 return option
         options = ", ".join(str(option) for option in spec.options)
-        raise ValueError(f"{name}: {value!r} is not one of {options}")
+        raise CodedError("error.value_not_an_option", name=name, value=repr(value), options=options)
     try:
         result = float(value)
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name}: {value!r} is not a number") from None
+        raise CodedError("error.value_not_a_number", name=name, value=repr(value)) from None
     if not math.isfinite(result) or not spec.low <= result <= spec.high:
         unit = f" {spec.unit}" if spec.unit else ""
-        raise ValueError(f"{name}: {value} is not between {spec.low:g} and {spec.high:g}{unit}")
+        raise out_of_range(name, str(value), f"{spec.low:g}", f"{spec.high:g}{unit}")
     return result if abs(result) > NOTHING else 0.0
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Protocol
 
 import casadi as ca
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
+from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, Plane
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
@@ -107,7 +109,7 @@ class Robot(Protocol):
         """
         ...
 
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """The first row in which the simulation has diverged, and why; None if in none.
 
         Args:
@@ -253,9 +255,11 @@ class RobotEntry:
 
 
 def first_fault(
-    q: Array, v: Array, *checks: tuple[NDArray[np.bool_], str]
-) -> tuple[int, str] | None:
-    """The first row with a fault, and the reason: not finite, too fast, or one of the checks.
+    q: Array, v: Array, *checks: tuple[NDArray[np.bool_], Message]
+) -> tuple[int, Message] | None:
+    """The first row with a fault, and the reason: too fast, one of the checks, or not finite.
+
+    Of several in one row, the first in this order.
 
     Args:
         q, v: shape (rows, n).
@@ -267,9 +271,9 @@ def first_fault(
     finite = np.isfinite(q).all(-1) & np.isfinite(v).all(-1)
     fast = np.abs(np.where(np.isfinite(v), v, 0)).max(-1) > FASTEST_JOINT
     every = [
-        (~finite, "the numbers have left the range of a computer"),
-        (fast, f"a joint turns faster than {FASTEST_JOINT:.0f} rad/s: the motion has diverged"),
+        (fast, Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})),
         *checks,
+        (~finite, Message("stop.range")),
     ]
     found = [(int(bad.argmax()), why) for bad, why in every if bad.any()]
-    return min(found, default=None)
+    return min(found, default=None, key=itemgetter(0))

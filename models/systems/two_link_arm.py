@@ -30,6 +30,7 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.errors import Message
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.parameters import Parameters, number
 from onpath.models.systems.robots import PlanarRobot, RobotEntry, first_fault
@@ -38,10 +39,7 @@ from onpath.models.systems.system import MechanicalSystem, mechanical_system
 GRAVITY = 9.81  # [m/s^2]
 NAMES = ("a1", "a2", "a3", "g1", "g2", "b1", "b2", "l1", "l2")
 STRETCHED = 0.02  # -sin q2 below which the arm counts as stretched or folded
-SINGULAR = (
-    "the arm is stretched or folded (both links in one line): in such a singular configuration the"
-    " motors cannot move the end-point in every direction"
-)
+SINGULAR = Message("stop.singular")
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,7 +208,7 @@ class TwoLinkArm(PlanarRobot):
         cosine = (squared - l1**2 - l2**2) / (2 * l1 * l2)
         return np.sqrt(np.maximum(1 - cosine**2, 0.0))
 
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, str] | None:
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """See `Robot.fault`: too near a singular configuration, or beyond it, the elbow down."""
         with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
             singular = np.sin(q[:, 1]) > -STRETCHED

@@ -120,12 +120,12 @@ def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None
     assert first.page.get_by_role("heading", name="Draw what the tracker does").is_visible()
     first.press("Next")
     wait_for(lambda: first.session.lessons.index == 2)
-    wait_for(lambda: teacher.page.get_by_text("Students in the class: 2").count() == 2)
+    wait_for(lambda: teacher.page.get_by_text("Sent to 2 students").count() == 2)
     teacher.page.get_by_role("tab", name="Class").click()
-    teacher.page.get_by_text("Whoever joins gets the set-up").wait_for()
-    teacher.press("Stop sending this to those who join")
+    teacher.page.get_by_text("Students who join receive the set-up").wait_for()
+    teacher.press("Stop sending this to students who join")
     wait_for(lambda: tabs.room.orders.push is None)
-    teacher.page.get_by_text("Whoever joins gets").wait_for(state="hidden")
+    teacher.page.get_by_text("Students who join receive").wait_for(state="hidden")
 
 
 def test_the_teacher_looks_on_and_touches_nothing(tabs: Class) -> None:

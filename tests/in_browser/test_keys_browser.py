@@ -242,7 +242,7 @@ def test_going_on_is_said_and_undone_by_key_and_button(tab: Tab) -> None:
     end = session.time
     tab.open("Look back")
     tab.press("Go on from here")
-    wait_for(lambda: "are forgotten" in tab.said())
+    wait_for(lambda: "are discarded" in tab.said())
     tab.press("Undo going on")
     wait_for(lambda: session.time == end and not session.running)
     tab.page.keyboard.press("u")

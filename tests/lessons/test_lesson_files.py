@@ -5,17 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fluent.syntax import ast
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.cli.main import run_command
+from onpath.assets.messages import identifier, languages
 from onpath.lessons.course import read_course
 from onpath.lessons.formulas import to_html
 from onpath.lessons.links import read_link
 from onpath.lessons.parse import LARGEST, read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.schema import Action, Sketch, Text
-from onpath.lessons.words import ELSEWHERE, Words, catalogue, languages
+from onpath.lessons.words import ELSEWHERE, Words
+from tests.support.catalogues import arguments, entries, messages
 from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 
 
@@ -200,11 +203,14 @@ def test_the_command_line_lists_and_checks(
 def test_every_language_says_everything() -> None:
     assert {"en", "de"} <= set(languages())
     for language in languages():
-        own = catalogue(language)
-        assert {key for key in own if not key.startswith(ELSEWHERE)} == catalogue("en").keys()
-        for key, words in catalogue("en").items():
-            fields = {part.split("}")[0] for part in words.split("{")[1:]}
-            assert fields == {part.split("}")[0] for part in own[key].split("{")[1:]}, key
+        own, english = messages(language), messages("en")
+        written = [entry for entry in entries(language) if isinstance(entry, ast.Message)]
+        assert not [entry for entry in entries(language) if isinstance(entry, ast.Junk)]
+        assert len(written) == len(own), "an identifier twice"
+        elsewhere = tuple(identifier(beginning) for beginning in ELSEWHERE)
+        assert {key for key in own if not key.startswith(elsewhere)} == english.keys()
+        for key, message in english.items():
+            assert arguments(own[key]) == arguments(message), key
 
 
 def test_a_language_that_there_is_not_is_answered_in_english() -> None:

@@ -9,6 +9,8 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.control.laws import NAMES
+from onpath.models.errors import CodedError
+from onpath.models.systems.parameters import out_of_range, unknown_name
 
 
 def finite(value: float) -> float:
@@ -22,7 +24,7 @@ def finite(value: float) -> float:
     except (TypeError, ValueError, OverflowError):
         result = math.nan
     if not math.isfinite(result):
-        raise ValueError("that is not a number")
+        raise CodedError("error.not_a_number")
     return result
 
 
@@ -34,7 +36,7 @@ def within(what: str, value: float, bounds: Sequence[float]) -> float:
     """
     number = finite(value)
     if not bounds[0] <= number <= bounds[-1]:
-        raise ValueError(f"{what} {number:g}: between {bounds[0]:g} and {bounds[-1]:g}")
+        raise out_of_range(what, f"{number:g}", f"{bounds[0]:g}", f"{bounds[-1]:g}")
     return number
 
 
@@ -46,7 +48,7 @@ def point(value: Array, size: int) -> Array:
     """
     checked = np.asarray(value, dtype=float)
     if checked.shape != (size,) or not np.isfinite(checked).all():
-        raise ValueError("that is not a point")
+        raise CodedError("error.not_a_point")
     return checked
 
 
@@ -57,5 +59,5 @@ def controller(name: str) -> str:
         ValueError: there is no such one.
     """
     if name not in NAMES:
-        raise ValueError(f"no robot {name!r}: there are {', '.join(NAMES)}")
+        raise unknown_name(name, list(NAMES), "robot")
     return name

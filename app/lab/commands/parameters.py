@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from onpath.app.lab.command import Command
 from onpath.app.lab.identify import identify_model
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import changed
+from onpath.models.systems.parameters import changed, unknown_name
 
 if TYPE_CHECKING:
     from onpath.app.lab.session import Session
@@ -62,5 +62,5 @@ class ChooseRobot(Command):
     def apply(self, session: Session) -> None:
         """See `Command.apply`."""
         if self.name not in ROBOTS:
-            raise ValueError(f"no robot {self.name!r}: there are {', '.join(ROBOTS)}")
+            raise unknown_name(self.name, list(ROBOTS), "robot")
         session.choose_robot(ROBOTS[self.name])

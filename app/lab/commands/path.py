@@ -11,7 +11,9 @@ from onpath.app.lab.command import Command
 from onpath.app.lab.commands.checks import finite, point
 from onpath.app.lab.looking_back import return_to_present
 from onpath.models.arrays import Array
+from onpath.models.errors import CodedError
 from onpath.models.paths.path_design import PathDesign, drawn
+from onpath.models.systems.parameters import unknown_name
 
 if TYPE_CHECKING:
     from onpath.app.lab.session import Session
@@ -28,7 +30,7 @@ class ChoosePath(Command):
     def apply(self, session: Session) -> None:
         """See `Command.apply`."""
         if self.name not in session.presets:
-            raise ValueError(f"no path {self.name!r}: there are {', '.join(session.presets)}")
+            raise unknown_name(self.name, list(session.presets), "path")
         commit(session, session.presets[self.name])
 
 
@@ -160,7 +162,7 @@ class DrawPath(Command):
         """See `Command.apply`."""
         stroke = np.asarray(self.stroke, dtype=float)
         if stroke.ndim != 2 or stroke.shape[1] != 2 or len(stroke) > MOST_STROKE_POINTS:
-            raise ValueError("a stroke needs points")
+            raise CodedError("error.stroke_without_points")
         commit(session, drawn(stroke, session.editor.design.curve))
 
 
@@ -208,5 +210,5 @@ def finish(session: Session) -> None:
 
 def _selected(session: Session) -> int:
     if session.editor.selected is None:
-        raise ValueError(session.lessons.words("say.select_first"))
+        raise CodedError("say.select_first")
     return session.editor.selected

@@ -54,6 +54,6 @@ class ClassPanel:
             try:
                 act()  # may build the page anew, without this panel
             except (ValueError, OSError) as error:
-                self._said.content = note(self._words.sentence(str(error)), small=True)
+                self._said.content = note(self._words.sentence(error), small=True)
 
         on_slow_press(button, tried)

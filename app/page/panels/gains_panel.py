@@ -63,4 +63,4 @@ def add_identify(gui: viser.GuiApi, session: Session, post: Post) -> None:
 def _line(channel: Channel, words: Words) -> str:
     name, poles = words(f"gains.{channel.name}"), words("gains.poles", poles=channel.pole_words())
     mark = "" if channel.stable else "⚠️ "
-    return f"**{name}:** {mark}{words.sentence(channel.words())} <br/>{poles}"
+    return f"**{name}:** {mark}{words.sentence(channel.behaviour())} <br/>{poles}"

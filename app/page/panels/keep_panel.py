@@ -49,7 +49,7 @@ class KeepPanel:
         try:
             self._desk.enter(self._typed.value)  # builds the page anew, without this panel
         except (ValueError, OSError) as error:
-            self._say(self._words.sentence(str(error)))
+            self._say(self._words.sentence(error))
 
     def _say(self, said: str) -> None:
         self._said.content = render("lesson/text.html", content=said)

@@ -86,4 +86,4 @@ def add_keys(gui: viser.GuiApi, words: Words, post: Post, reset_view: Callable[[
 def help_text(words: Words) -> str:
     """The help window's text."""
     rows = [f"| **{key.shown(words)}** | {key.does(words)} |" for key in KEYS]
-    return words("help.text") + "\n".join(rows)
+    return "\n".join([words("help.text"), *rows])

@@ -46,7 +46,7 @@ class TeacherControls:
         try:
             self._class.push(TakeSetup(decode(text)))
         except ValueError as error:
-            self._said.content = note(self._words.sentence(str(error)))
+            self._said.content = note(self._words.sentence(error))
             return
         self._tell_sent()
 

@@ -123,9 +123,15 @@ def test_all_that_was_done_is_counted(course: Course) -> None:
     page = page_of(course, {NAME: full()})
     cells = re.findall(rb"<td>(.*?)</td>", page.content)
     assert cells == [b"1. A lesson", b"8 of 8", b"1 of 1", b"2 of 2", b"0 of 1"]
-    for said in ("k7mf-2xqa-9tzr", "2025-03-02", "You chose: this", "Right is: that", "✓ Passed"):
+    for said in (
+        "k7mf-2xqa-9tzr",
+        "2025-03-02",
+        "You chose: this",
+        "Correct answer: that",
+        "✓ Passed",
+    ):
         assert said in page.text
-    assert "You chose: b" in page.text and "Right is: a" in page.text
+    assert "You chose: b" in page.text and "Correct answer: a" in page.text
     right = replace(full(), answers={"3": Answer(option=1)})
     assert b"<td>1 of 1</td></tr>" in page_of(course, {NAME: right}).content
 

@@ -20,7 +20,7 @@ from tests.support.waiting import wait_for
 
 CROWD = 6
 LONG = 0.2  # [s] that a page takes at least
-MOMENT = "Many are coming"
+MOMENT = "Many people are"
 
 
 class Builds:

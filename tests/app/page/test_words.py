@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import dataclasses
+import pickle
 import re
 from collections.abc import Iterator
 from functools import lru_cache
@@ -17,9 +18,11 @@ from onpath.app.lab.session import Session
 from onpath.app.page.panels.keys import KEYS, help_text
 from onpath.app.page.panels.widgets import label_of, option_of
 from onpath.app.page.plots import MORE
+from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.record import PLOTS
-from onpath.lessons.words import ELSEWHERE, ENGLISH, SENTENCE, Words, catalogue, languages
+from onpath.lessons.words import ELSEWHERE, ENGLISH, Words
 from onpath.models.control.poles import channels
+from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
@@ -28,10 +31,12 @@ from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.flexible_robot import BENT, UNSTABLE
 from onpath.models.systems.parameters import FiveBarParameters, specs
 from onpath.models.systems.robots import first_fault
+from tests.support.catalogues import arguments, counts, messages
 from tests.support.checkout import ROOT
 from tests.support.lab import do, run, store
 
 SOURCES = sorted(file for folder in ("app", "lessons") for file in (ROOT / folder).rglob("*.py"))
+CODED = [*SOURCES, *sorted((ROOT / "models").rglob("*.py"))]
 PAGE = sorted(
     [
         *(ROOT / "app" / "page" / "panels").glob("*.py"),
@@ -39,7 +44,7 @@ PAGE = sorted(
         ROOT / "app" / "exports" / "exporter.py",
     ]
 )
-PREFIXES = (
+KEYS_MADE = (
     *("quantity.", "stat.", "during.", "event.", "robot.", "kind.", "language.", "report."),
     *("controller.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
@@ -48,6 +53,7 @@ PREFIXES = (
     *ELSEWHERE,
 )
 """Keys, or their beginnings, that are put together from what the program knows by other names."""
+PREFIXES = tuple(identifier(key) for key in KEYS_MADE)
 OTHERS = [language for language in languages() if language != "en"]
 
 
@@ -155,17 +161,19 @@ def asked_for() -> Iterator[str]:
 def test_every_key_that_is_asked_for_exists() -> None:
     asked = set(asked_for())
     assert len(asked) > 100
-    known = catalogue("en")
-    assert {key for key in asked if "{}" not in key and key not in known} == set()
+    known = messages("en")
+    assert {key for key in asked if "{}" not in key and identifier(key) not in known} == set()
     for key in asked:
         if "{}" in key:
-            found = [own for own in known if re.fullmatch(key.replace("{}", ".+"), own)]
+            pattern = ".+".join(re.escape(identifier(part)) for part in key.split("{}"))
+            found = [own for own in known if re.fullmatch(pattern, own)]
             assert key.startswith(ELSEWHERE) or any(own.startswith(PREFIXES) for own in found), key
 
 
 def test_every_key_is_used() -> None:
-    written = {text_of(node) for file in SOURCES for node in ast.walk(parsed(file))}
-    unused = {key for key in catalogue("en") if key not in written}
+    texts = {text_of(node) for file in CODED for node in ast.walk(parsed(file))}
+    written = {identifier(text) for text in texts if text and len(text) < 80}
+    unused = {key for key in messages("en") if key not in written}
     assert {key for key in unused if not key.startswith(PREFIXES)} == set()
 
 
@@ -198,29 +206,78 @@ def test_what_stands_in_models_is_translated(words: Words) -> None:
                 assert all(f"parameter.{name}.option.{option}" in known for option in spec.options)
 
 
-@pytest.mark.parametrize("words", [Words(language) for language in OTHERS])
-def test_nothing_is_translated_that_there_is_not(words: Words) -> None:
-    names = {name for entry in ROBOTS.values() for name in specs(entry.parameters)}
-    sentences = [text_of(n) for f in said_in_english() for n in ast.walk(parsed(f))]
-    spoken = {re.sub(r"\{\}", "§", text) for text in sentences if text}
-    for key in catalogue(words.language):
-        if key.startswith("parameter."):
-            assert key.split(".")[1] in names
-        elif key.startswith("path."):
-            assert key.removeprefix("path.") in presets()
-        elif key.startswith("machine."):
-            assert key.split(".")[1] in ROBOTS
-        elif key.startswith(SENTENCE):
-            pattern = re.sub(r"\\\{\w+\\\}|\d+", ".+?", re.escape(key.removeprefix(SENTENCE)))
-            pattern = re.sub(r"\d+", ".+?", pattern)
-            assert any(re.fullmatch(pattern, text) for text in spoken), key
+@pytest.mark.parametrize("language", OTHERS)
+def test_nothing_is_translated_that_there_is_not(language: str) -> None:
+    there_are = {f"path.{name}" for name in presets()}
+    for entry in ROBOTS.values():
+        there_are |= {f"machine.{entry.name}.{part}" for part in ("label", "text")}
+        for name, spec in specs(entry.parameters).items():
+            parts = ("label", "help", "unit", *(f"option.{option}" for option in spec.options))
+            there_are |= {f"parameter.{name}.{part}" for part in parts}
+    only_here = messages(language).keys() - messages("en").keys()
+    assert only_here <= {identifier(key) for key in there_are}
 
 
-def said_in_english() -> list[Path]:
-    return [*(ROOT / "models").rglob("*.py"), *(ROOT / "app").rglob("*.py")]
+# Errors and reasons have a code in every language.
+
+HANDED_ON = {"models/errors.py", "app/classroom/moment.py"}
+"""Modules that make messages of codes that others have chosen."""
 
 
-def reasons() -> Iterator[str]:
+def said_in_code() -> Iterator[tuple[str, set[str], str]]:
+    """The code, the arguments and the file of every error and reason in the source."""
+    for file in CODED:
+        where = str(file.relative_to(ROOT))
+        for name, call in calls(parsed(file)):
+            if name in ("CodedError", "Message") and where not in HANDED_ON:
+                first = call.args[0]
+                branches = [first.body, first.orelse] if isinstance(first, ast.IfExp) else [first]
+                given = {keyword.arg or "**" for keyword in call.keywords}
+                if len(call.args) > 1:
+                    assert isinstance(call.args[1], ast.Dict), where
+                    given |= {str(key and text_of(key)) for key in call.args[1].keys}
+                yield from ((str(text_of(branch)), given, where) for branch in branches)
+
+
+def test_every_code_has_words_and_exactly_its_arguments() -> None:
+    said = list(said_in_code())
+    assert len(said) > 50
+    for code, given, where in said:
+        known = messages("en").get(identifier(code))
+        assert known is not None, (code, where)
+        assert given == arguments(known), (code, where)
+
+
+@pytest.mark.parametrize("language", OTHERS)
+def test_an_error_is_told_by_its_code_whatever_its_english_is(language: str) -> None:
+    for code, given, _ in said_in_code():
+        error = CodedError(code, **dict.fromkeys(given, "7"))
+        own = Words(language).sentence(error)
+        assert own == error.message.told(language) and "{" not in own
+        assert own != str(error) == ENGLISH.sentence(error) == error.message.told(), code
+
+
+def test_a_changed_english_text_keeps_its_translation(monkeypatch: pytest.MonkeyPatch) -> None:
+    error = CodedError("error.class_full")
+    before = Words("de").sentence(error)
+    monkeypatch.setitem(catalogue("en")._messages, "error-class_full", "no seat is left")
+    assert str(error) == "no seat is left" and Words("de").sentence(error) == before
+
+
+def test_an_unknown_code_and_a_missing_argument_are_noticed() -> None:
+    for message in (Message("error.nobody_wrote_this"), Message("error.no_point", {"index": 3})):
+        with pytest.raises(KeyError):
+            str(message)
+
+
+def test_an_error_survives_a_process_and_one_without_a_code_stays_as_it_is() -> None:
+    error = CodedError("error.no_point", index=7, count=4)
+    copied = pickle.loads(pickle.dumps(error))
+    assert str(copied) == str(error) and copied.message == error.message
+    assert Words("de").sentence(ValueError("never heard {of} it")) == "never heard {of} it"
+
+
+def reasons() -> Iterator[Message]:
     """Why runs stop and paths are refused."""
     robot = rigid_five_bar()
     for curve in (presets()["figure of eight"].curve, circle(0.19), circle(0.004), circle(0.3)):
@@ -235,34 +292,74 @@ def reasons() -> Iterator[str]:
     yield from (collapsed[1], UNSTABLE, BENT)
 
 
-def behaviours() -> Iterator[str]:
+def behaviours() -> Iterator[Message]:
     for changes in ({"K1": 0.0, "K2": 0.0}, {"K2": 5.0}, {"K3": 8000.0, "K2": 10.0}, {}):
         for channel in channels(dataclasses.replace(FiveBarParameters(), **changes)):
-            yield channel.words()
+            yield channel.behaviour()
 
 
 @pytest.mark.parametrize("words", [Words(language) for language in OTHERS])
 def test_reasons_and_behaviours_are_translated(words: Words) -> None:
-    said = {*reasons(), *behaviours()}
-    assert len(said) > 10
-    for english in said:
-        own = words.sentence(english)
+    said = [*reasons(), *behaviours()]
+    assert len({str(message) for message in said}) > 10
+    for message in said:
+        own, english = words.sentence(message), str(message)
         assert own != english and "{" not in own
         assert re.findall(r"\d[\d.]*\d", own) == re.findall(r"\d[\d.]*\d", english)
-        assert ENGLISH.sentence(english) == english
+        assert ENGLISH.sentence(message) == english
 
 
-def test_a_sentence_inside_a_sentence_is_translated_too() -> None:
-    english = "settles in 0.2 s, no overshoot"
-    assert Words("de").sentence(english) == "klingt in 0.2 s ab, ohne Überschwingen"
-    assert Words("de").sentence("never heard {of} it") == "never heard {of} it"
+def test_messages_inside_a_message_are_translated_too() -> None:
+    kind = Message("behaviour.no_overshoot")
+    settles = Message("behaviour.settles", {"seconds": "0.2", "kind": kind})
+    assert str(settles) == "settles in 0.2 s, no overshoot"
+    assert Words("de").sentence(settles) == "klingt in 0.2 s ab, ohne Überschwingen"
+    two = (Message("fault.cusp"), Message("fault.crosses"))
+    refused = CodedError("error.cannot_follow", robot="R", reasons=two)
+    assert Words("de").sentence(refused).count("; die Bahn") == 1
 
 
-def test_fields_of_translated_sentences_are_the_same() -> None:
-    for language in OTHERS:
-        for key, own in catalogue(language).items():
-            if key.startswith(SENTENCE):
-                assert set(re.findall(r"\{\w+\}", key)) == set(re.findall(r"\{\w+\}", own)), key
+# Plurals and numbers.
+
+
+def test_counts_have_plurals_in_every_language() -> None:
+    said = {"en": ("Sent to 1 student.", "2 students."), "de": ("An 1 Person ", "2 Personen ")}
+    for language, (one, two) in said.items():
+        words = Words(language)
+        assert one in words("class.sent", count=1) and two in words("class.sent", count=2)
+    for language in languages():
+        words = Words(language)
+        for key, message in messages(language).items():
+            others = dict.fromkeys(arguments(message), "x")
+            for count in counts(message):
+                assert words(key, **others | {count: 1}) != words(key, **others | {count: 2}), key
+
+
+def test_a_count_is_given_as_a_number() -> None:
+    """A plural of a text would always be the general one."""
+    counted = {
+        key for language in languages() for key, m in messages(language).items() if counts(m)
+    }
+    seen = set[str]()
+    for file in CODED:
+        for _, call in calls(parsed(file)):
+            key = identifier(str(text_of(call.args[0]))) if call.args else ""
+            if key in counted:
+                seen.add(key)
+                names = {
+                    name for language in languages() for name in counts(messages(language)[key])
+                }
+                for keyword in call.keywords:
+                    number = not isinstance(keyword.value, ast.JoinedStr | ast.Constant)
+                    assert keyword.arg not in names or number, (key, file)
+    assert seen == counted
+
+
+def test_numbers_are_written_plainly_in_every_language() -> None:
+    """Without grouping, and without marks for the direction of the text."""
+    for language in languages():
+        shown = Words(language)("class.forgotten", count=12345)
+        assert "12345" in shown and shown.isprintable()
 
 
 # A lab that speaks German.
@@ -280,7 +377,7 @@ def test_a_german_lab_speaks_german() -> None:
     run(session, 3.0)
     assert "regelung: stehen geblieben" in session.message and "Nulldynamik" in session.message
     do(session, c.SetLanguage("en"))
-    assert "stopped at" in session.message and UNSTABLE in session.message
+    assert "stopped at" in session.message and str(UNSTABLE) in session.message
 
 
 def test_a_parameter_without_words_has_those_of_its_declaration() -> None:

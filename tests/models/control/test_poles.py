@@ -123,15 +123,17 @@ def test_predicted_instability_is_what_happens(
     )
     late = np.abs(error)[len(error) // 2 :].max()
     assert np.isnan(late) or late > 2 * offset if not stable else late < offset / 2
-    assert ("unstable" in across.words()) is not stable
+    assert ("unstable" in str(across.behaviour())) is not stable
 
 
 def test_words_name_damping_and_time() -> None:
     damped, swinging = (
         channels(dataclasses.replace(FiveBarParameters(), K1=400.0, K2=k2))[0] for k2 in (40.0, 8.0)
     )
-    assert "no overshoot" in damped.words()
-    assert "damping 0.2" in swinging.words() and "settles in 1 s" in swinging.words()
+    assert "no overshoot" in str(damped.behaviour())
+    assert "damping 0.2" in str(swinging.behaviour()) and "settles in 1 s" in str(
+        swinging.behaviour()
+    )
 
 
 @pytest.mark.parametrize(
@@ -146,13 +148,13 @@ def test_words_name_damping_and_time() -> None:
 def test_poles_are_told_as_the_words_have_it(values: dict[str, float], told: str) -> None:
     across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]
     assert across.pole_words() == told
-    assert ("±" in told) is ("no overshoot" not in across.words())
+    assert ("±" in told) is ("no overshoot" not in str(across.behaviour()))
 
 
 @pytest.mark.parametrize("values", [{"K1": 0.0}, {"K2": 0.0}, {"K1": 0.0, "K2": 0.0}])
 def test_an_error_that_stays_is_not_called_stable(values: dict[str, float]) -> None:
     across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]
-    assert not across.stable and "stable" in across.words()
+    assert not across.stable and "stable" in str(across.behaviour())
 
 
 def test_free_position_is_not_stable_but_free_speed_loop_is() -> None:

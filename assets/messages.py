@@ -1,0 +1,121 @@
+"""What is said to users, in every language: Project Fluent's files words/<language>.ftl."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from onpath.assets import asset_path
+
+if TYPE_CHECKING:
+    from fluent.runtime import FluentBundle
+    from fluent.syntax.ast import Pattern, Resource
+
+DEFAULT = "en"
+
+
+def languages() -> list[str]:
+    """Those that there is a catalogue for."""
+    return sorted(path.stem for path in asset_path("words").glob("*.ftl"))
+
+
+@lru_cache
+def catalogue(language: str) -> Catalogue:
+    """Parsed once in a process, which takes about a tenth of a second."""
+    return Catalogue(language)
+
+
+@lru_cache(maxsize=4096)
+def identifier(key: str) -> str:
+    """A key as Fluent's files have it: "lesson.next" -> "lesson-next"."""
+    return re.sub(r"[^A-Za-z0-9_-]", "-", key)
+
+
+class Catalogue:
+    """The messages of one language; those that it lacks are in English.
+
+    A message that only has places for arguments is filled in by `str.format`, which takes a fifth
+    of the time of Fluent's resolver. One that chooses between forms, as for a plural, is formatted
+    by Fluent. Numbers are written without grouping, text without marks for its direction.
+    """
+
+    def __init__(self, language: str) -> None:
+        from fluent.syntax.ast import Message
+
+        self._messages: dict[str, str | _Choice] = {}
+        if language != DEFAULT:
+            self._messages |= catalogue(DEFAULT)._messages
+        for entry in _resource(language).body:
+            if isinstance(entry, Message) and entry.value is not None:
+                name, template = entry.id.name, _template(entry.value)
+                self._messages[name] = _Choice(language, name) if template is None else template
+
+    def __contains__(self, key: str) -> bool:
+        return identifier(key) in self._messages
+
+    def text(self, key: str, arguments: Mapping[str, object]) -> str:
+        """A message with its arguments.
+
+        Raises:
+            KeyError: no such message, or an argument is missing.
+        """
+        return self._messages[identifier(key)].format_map(arguments)
+
+
+@lru_cache
+def _resource(language: str) -> Resource:
+    from fluent.syntax import FluentParser
+
+    text = (asset_path("words") / f"{language}.ftl").read_text("utf-8")
+    return FluentParser(with_spans=False).parse(text)
+
+
+@lru_cache
+def _bundle(language: str) -> FluentBundle:
+    from fluent.runtime import FluentBundle  # brings Babel, which takes long
+
+    bundle = FluentBundle([language], use_isolating=False)
+    bundle.add_resource(_resource(language))
+    return bundle
+
+
+@dataclass(frozen=True)
+class _Choice:
+    """A message of Fluent's that chooses between forms; formatted as a string is."""
+
+    language: str
+    name: str
+
+    def format_map(self, arguments: Mapping[str, object]) -> str:
+        from fluent.runtime.types import fluent_number
+
+        values = {
+            key: fluent_number(value, useGrouping=False) if isinstance(value, int) else str(value)
+            for key, value in arguments.items()
+        }
+        bundle = _bundle(self.language)
+        pattern = bundle.get_message(self.name).value
+        assert pattern is not None
+        text, errors = bundle.format_pattern(pattern, values)
+        if errors:
+            raise KeyError(f"{self.name}: {errors[0]}")
+        return str(text)
+
+
+def _template(pattern: Pattern) -> str | None:
+    """What `str.format` takes; None if the message chooses between forms."""
+    from fluent.syntax.ast import Placeable, StringLiteral, TextElement, VariableReference
+
+    parts = list[str]()
+    for element in pattern.elements:
+        inner = element.expression if isinstance(element, Placeable) else element
+        if isinstance(inner, TextElement | StringLiteral):
+            parts.append(inner.value.replace("{", "{{").replace("}", "}}"))
+        elif isinstance(inner, VariableReference):
+            parts.append(f"{{{inner.id.name}}}")
+        else:
+            return None
+    return "".join(parts)

@@ -1,0 +1,713 @@
+### Was die Oberfläche auf Deutsch sagt, für Project Fluent (https://projectfluent.org/).
+###
+### Dieselben Nachrichten mit denselben Argumenten wie in en.ftl; dazu die Namen von Parametern,
+### Bahnen und Robotern, deren Englisch in models/ steht.
+
+## Lektionen
+
+robot-follower = Bahnfolger
+robot-tracker = Nachläufer
+
+quantity-distance = Abstand zur Bahn
+quantity-lag = Abstand zum laufenden Punkt
+quantity-speed = Geschwindigkeit längs der Bahn
+quantity-rate = Rate des Bahnparameters
+quantity-place = Ort auf der Bahn
+quantity-across = Abweichung quer zur Bahn
+quantity-across_rate = Geschwindigkeit quer zur Bahn
+quantity-torque = Drehmoment
+quantity-force = Kraft
+quantity-deflection = Durchbiegung
+quantity-energy = Energie im Balken
+
+stat-max = größter Wert, { $quantity }
+stat-min = kleinster Wert, { $quantity }
+stat-mean = Mittelwert, { $quantity }
+stat-rms = Effektivwert, { $quantity }
+stat-final = { $quantity } jetzt
+
+during-always = { "" }
+during-held = , solange festgehalten
+during-pulled = , solange gezogen
+during-free = , solange frei
+
+check-below = unter { $limit } { $unit }
+check-above = über { $limit } { $unit }
+check-and = { $first } und { $second }
+check-bound = { $robot }: { $stat }{ $during }: { $value } { $unit }; verlangt: { $wanted }
+check-compare = { $larger }: { $stat }{ $during } ist das { $ratio }-fache des anderen; verlangt: das { $wanted }-fache oder mehr
+check-seconds = { " " }({ $have } von { $need } s)
+check-nothing = { $robot }: { $stat }{ $during }: noch nichts{ $seconds }; verlangt: { $wanted }
+check-event = { $event }: { $have } von { $need }
+check-order = in dieser Reihenfolge: { $events }
+check-setting = { $name } ist { $value }; verlangt: { $wanted }
+check-equals = { $value }
+check-stopped = { $robot } steht still: zurücksetzen und noch einmal versuchen
+
+event-hold = festhalten
+event-let_go = loslassen
+event-pull = ziehen
+event-release = ziehen beenden
+event-set = { $detail } ändern
+event-set_any = einen Parameter ändern
+event-path = die Bahn { $detail } wählen
+event-path_any = die Bahn ändern
+event-reset = zurücksetzen
+event-identify = identifizieren
+event-diverged = ein Roboter bleibt stehen
+event-robot = den Roboter { $detail } wählen
+event-robot_any = einen anderen Roboter wählen
+
+lesson-lessons = Lektionen
+lesson-choose = Lektionen: vorhersagen, probieren, sehen, erklären
+lesson-minutes = { $minutes } min
+lesson-tasks =
+    { $all ->
+        [one] { $done } von 1 Aufgabe
+       *[other] { $done } von { $all } Aufgaben
+    }
+lesson-open = Öffnen
+lesson-continue = Weitermachen
+lesson-close = Freies Labor
+lesson-back = Zurück
+lesson-next = Weiter
+lesson-skip = Vorhersage überspringen
+lesson-finish = Fertig
+lesson-locked = Lege dich erst links auf eine Vorhersage fest, oder überspringe sie.
+lesson-nothing_to_predict = hier gibt es nichts vorherzusagen
+lesson-no_such_option = diese Antwort gibt es nicht
+lesson-again = Neu aufbauen
+lesson-play = Geschehen lassen
+lesson-read = Ohne das weiterlesen
+lesson-lab = Das Labor
+lesson-replay = Noch einmal geschehen lassen
+lesson-playing = Es geschieht: sieh hin.
+lesson-step = Schritt { $step } von { $steps }
+lesson-commit = Auf diese Vorhersage festlegen
+lesson-draw_first = Zeichne mit der Maus auf die Tafel in der Mitte, von links nach rechts.
+lesson-drawn = Zeichne noch einmal, oder lege dich fest.
+lesson-numbers = Lieber mit Zahlen zeichnen
+lesson-at = bei { $time } s [{ $unit }]
+lesson-yours = du
+lesson-right = Richtig.
+lesson-not_quite = Nicht ganz.
+lesson-the_answer = Die Antwort: { $answer }
+lesson-skipped = Du hast die Vorhersage übersprungen.
+lesson-predict_before = Gehe erst zurück und mache die Vorhersage, oder überspringe sie.
+lesson-next_unseen = Weiter, ohne es zu sehen
+lesson-passed = Geschafft
+lesson-passed_best = Geschafft; dein bester Wert: { $best } { $unit }
+lesson-hint = Hinweis (noch { $left })
+lesson-this_step = Dieser Schritt
+lesson-controls = Regler
+lesson-all_controls = Alle Regler
+lesson-language = Sprache
+lesson-presenting = Vortrag: große Schrift
+lesson-english = nur auf Englisch
+
+kind-play = Frei probieren
+kind-predict = Vorhersagen
+kind-run = Sehen
+kind-explain = Verstehen
+kind-task = Aufgabe
+kind-quiz = Frage
+
+language-en = English
+language-de = Deutsch
+
+## Behalten und teilen
+
+keep-title = Behalten und teilen
+keep-yours = Der Code deines Labors. Notiere ihn: damit machst du anderswo weiter.
+keep-other = Anderer Code
+keep-other_hint = Der Code eines Labors, das du anderswo begonnen hast
+keep-go = In jenem Labor weitermachen
+keep-moment = Einen Moment…
+keep-share = Diesen Aufbau teilen
+keep-shared = Schicke diesen Code: er enthält Roboter, Bahn, Verstärkungen und Realismus.
+keep-paste = Geteilter Code
+keep-paste_hint = Füge einen Code ein, den dir jemand geschickt hat
+keep-use = Das Labor so aufbauen
+keep-report = Meine Lektionen als Bericht (HTML)
+
+## Die Klasse
+
+full-title = Das Labor ist voll
+full-text =
+    { $places ->
+        [one] Der einzige Platz ist besetzt.
+       *[other] Alle { $places } Plätze sind besetzt.
+    } Lass diese Seite offen: Sie geht von selbst weiter, sobald einer frei ist.
+
+coming-title = Einen Augenblick
+coming-text = Viele kommen gerade auf einmal. Dein Labor öffnet sich in ein paar Sekunden.
+
+class-title = Klasse
+class-code = Klassencode
+class-code_hint = Er steht auf der Leinwand
+class-nickname = Spitzname
+class-nickname_hint = Höchstens 24 Zeichen; mehr wird von dir nicht behalten
+class-join = Der Klasse beitreten
+class-leave = Die Klasse verlassen
+class-member = Du bist als { $name } in der Klasse. Die Lehrkraft sieht, wo du in den Lektionen bist, und dein Labor.
+class-teacher = Lehrkraft…
+class-key = Schlüssel der Lehrkraft
+class-key_hint = Er wurde beim Start des Servers angezeigt
+class-teach = Seite der Lehrkraft öffnen
+class-stop_teaching = Seite der Lehrkraft schließen
+class-frozen = Die Lehrkraft hat alle Labore angehalten: Schau nach vorn. Deines geht danach von hier aus weiter.
+class-setup = Die Lehrkraft hat dein Labor aufgebaut.
+class-setup_in_step = Die Lehrkraft hat dein Labor aufgebaut. „Neu aufbauen“ bringt den Aufbau dieses Schritts zurück.
+class-step = Die Lehrkraft hat diesen Schritt für dich geöffnet.
+class-step_elsewhere = Die Lehrkraft hat diesen Schritt für dich geöffnet. Die Lektion, in der du warst, wartet unter „Lektionen“, wo du sie verlassen hast.
+class-code_for_all = Gib diesen Code unter „Klasse“ ein:
+class-count = { $count } in der Klasse
+class-name = Spitzname
+class-lesson = Lektion
+class-step_head = Schritt
+class-tasks = Aufgaben
+class-state = Zustand
+class-here = da
+class-away = weg
+class-idle = seit { $minutes } min untätig
+class-free = Freies Labor
+class-nobody = Noch ist niemand beigetreten.
+class-follow = Zusehen bei
+class-own_lab = Mein eigenes Labor
+class-following = Das ist das Labor von { $name }. Du kannst nur zusehen.
+class-hidden = Diese Person hat ihr Labor nicht vor sich: Der Tab ist verdeckt, das Labor wartet.
+class-absent = Diese Person ist nicht verbunden: Das Labor wartet.
+class-fetching = Das Labor dieser Person wird geholt.
+class-freeze = Alle Labore anhalten
+class-unfreeze = Alle Labore weiterlaufen lassen
+class-push_setup = Meinen Aufbau an alle senden
+class-push_code = Diesen Code an alle senden
+class-push_step = Diesen Schritt bei allen öffnen
+class-sent =
+    { $count ->
+        [0] Noch ist niemand in der Klasse.
+        [one] An 1 Person gesendet.
+       *[other] An { $count } Personen gesendet.
+    } Wer später beitritt, bekommt es.
+class-standing_setup = Wer beitritt, bekommt den Aufbau, den du zuletzt gesendet hast.
+class-standing_step = Wer beitritt, kommt zu dem Schritt, den du zuletzt geöffnet hast: { $lesson }, Schritt { $step }.
+class-push_end = Nicht mehr für alle, die beitreten
+class-predictions = Vorhersagen
+class-truth = Zeigen, was wirklich geschieht
+class-no_prediction = In diesem Schritt gibt es nichts vorherzusagen.
+class-no_truth = Was wirklich geschieht, ist noch nicht bekannt: Es muss erst in einem Labor geschehen sein.
+class-predicted = Vorhersagen
+class-given = { $given } vorhergesagt, { $skipped } übersprungen, { $waiting } noch nicht
+class-record = Ergebnisse
+class-record_text = Eine Zeile für jede Person und jede Vorhersage, Aufgabe und Frage der begonnenen Lektionen. Sie enthält Spitznamen: Behandle sie als persönliche Daten.
+class-export = Ergebnisse der Klasse (CSV)
+class-end = Die Klasse beenden
+class-end_sure = Die Klasse beenden? Spitznamen und Ergebnisse der Klasse werden vergessen; die Labore gehen ohne Klasse weiter. Sichere die Ergebnisse zuerst.
+class-ended = Die Klasse ist zu Ende. { $count ->
+        [0] Niemand war dabei.
+        [one] 1 Person war dabei.
+       *[other] { $count } Personen waren dabei.
+    } Die nächste Klasse hat einen neuen Code.
+class-forget = Alles Behaltene löschen
+class-forget_sure = Alle Labore löschen, die dieser Server behält, und die Klasse beenden? Offene Labore bleiben offen und werden wieder behalten, sobald sich etwas in ihnen ändert.
+class-forgotten =
+    { $count ->
+        [0] Kein Labor wurde gelöscht.
+        [one] 1 Labor wurde gelöscht.
+       *[other] { $count } Labore wurden gelöscht.
+    }
+class-yes = Ja
+class-no = Nein
+
+## Die beiden Regler
+
+controller-trajectory_tracking-title = Folgeregelung
+controller-trajectory_tracking-does = jagt einem laufenden Punkt nach
+controller-trajectory_tracking-short = Nachläufer
+
+controller-path_following-title = Bahnfolgeregelung
+controller-path_following-does = bleibt auf der Kurve
+controller-path_following-short = Bahnfolger
+
+## Die Seite: was immer da ist
+
+readout-distance = Abstand zur Bahn
+readout-now = jetzt
+readout-most = höchstens
+readout-paused = t = { $time } s, angehalten
+readout-running = t = { $time } s, läuft mit { $speed }×
+
+scene-force = Kraft { $force } N
+scene-true_scale = maßstäblich
+scene-larger = Durchbiegung { $factor }× gezeichnet
+
+robots-button = Roboter…
+robots-hint = Jetzt: { $robot }. Wähle einen anderen; jeder behält seine Bahn und seine Einstellungen.
+robots-choose = Wähle einen Roboter
+robots-this = { $robot } (dieser)
+
+run-hold_both = Beide festhalten
+run-hold = Festhalten
+run-let_both_go = Beide loslassen
+run-let_go = Loslassen
+run-hold_hint = Hält die Spitzen längs der Bahn fest, bis du noch einmal drückst. Taste: H
+run-press = Festhalten, solange gedrückt
+run-press_hint = Hält die Spitzen fest, solange die Maustaste unten ist.
+run-run = Laufen lassen
+run-pause = Pause
+run-run_hint = Die simulierte Zeit steht still. Taste: Leertaste
+run-step = Schritt
+run-reset = Zurücksetzen
+run-view = Ansicht
+run-rate = Zeit läuft mit
+run-rate_hint = Simulierte Sekunden je Sekunde
+
+controls-copy = Für beide
+controls-copy_hint = Hand und Bremse wirken auf beide Roboter gleich
+controls-editor = Bahn bearbeiten
+controls-help = Hilfe und Tasten
+
+## Die Bahn
+
+design-path = Bahn
+design-path_hint = Beide Roboter folgen ihr. Ziehe an ihren Punkten im Bild, um sie zu verbiegen.
+design-own = (eigene)
+design-draw = Freihändig zeichnen
+design-draw_hint = Zeichne dann mit der Maus einen Strich um einen der Roboter.
+design-edit = Ändern
+design-undo = Rückgängig
+design-redo = Wiederholen
+design-point = Punkt
+design-add = Einfügen
+design-remove = Entfernen
+design-selected = Ausgewählt
+design-selected_hint = Nummer des Kontrollpunkts; 0: keiner
+design-coordinate = { $name } [mm]
+design-arrows = Pfeiltasten schieben den ausgewählten Punkt um 1 mm; N wählt den nächsten. Wo die Spitze ihn verdeckt, fasst die Maus den ausgewählten Punkt.
+design-rank = Rangtest (11) längs der Bahn: mindestens **{ $number }** von 1.
+design-zone = Singuläre Zone zeigen
+design-zone_hint = Wo der Arm gestreckt oder gefaltet ist, Gl. (14)
+
+## Verstärkungen und Realismus
+
+gains-advanced = Weitere
+gains-defaults = Auf Anfangswerte
+gains-realism = Realismus
+gains-ideal = Alles aus: ein idealer Roboter und ein genaues Modell. *Werte nur als Beispiel.*
+gains-across = Quer
+gains-along = Längs
+gains-poles = Pole { $poles } 1/s
+gains-identify = M und b identifizieren
+gains-identify_hint = Schätzt M und b aus den letzten 3 s des Bahnfolgers und lässt beide Regler daran glauben.
+
+## Der biegsame Balken
+
+flexible-title = Biegsamer Balken
+flexible-pull = Ziehen in
+flexible-pull_hint = Die Ebene durch die Spitze, in der die Maus an ihr zieht
+flexible-larger = Vergrößert [×]
+flexible-larger_hint = Die Durchbiegung, nur in der Zeichnung; 1 ist maßstäblich
+flexible-beam = Balken und Regelstrecke
+flexible-anew = Mit einer anderen Regelstrecke oder Modenzahl beginnen die Roboter neu. *Werte nur als Beispiel.*
+flexible-composite = Zusammengesetzte Regelung
+flexible-alpha = α = { $alpha }; { $limit }
+flexible-computing = kritisches α: wird berechnet
+flexible-none = kritisches α: keines bis 1
+flexible-critical = kritisches α = { $critical }, hier und in Ruhe
+flexible-unused = die zusammengesetzte Regelung bringt die Spitze selbst auf die Bahn und braucht kein α
+flexible-unstable = innen instabil
+flexible-deflections = Durchbiegung: Nachläufer **{ $tracking } mm**, Bahnfolger **{ $following } mm**; { $scale }
+flexible-drawn = { $factor }× gezeichnet
+
+pull-path-s-plane = Bahnebene
+pull-horizontal-plane = waagerechter Ebene
+
+## Bilder über der Zeit: Namen in der Liste, dann Überschriften mit Einheiten
+
+plots-more = Weitere Verläufe
+plots-show = Zeigen
+plots-show_hint = Über die letzten 10 s
+plots-none = keinen
+plots-time = t [s]
+
+plot-speed = Geschwindigkeit längs der Bahn
+plot-torques = Drehmomente
+plot-across = ξ₁ quer
+plot-across_rate = ξ₂ Rate quer
+plot-place = θ Ort längs
+plot-rate = θ' Rate längs
+plot-modes = Moden des Balkens
+plot-deflection = Durchbiegung der Spitze
+plot-energy = innere Energie
+plot-force = Kraft
+
+axis-distance = Abstand zur Bahn [mm]
+axis-speed = Geschwindigkeit [m/s]
+axis-torques = Drehmoment [N m]
+axis-across = ξ₁ [mm]
+axis-across_rate = ξ₂ [mm/s]
+axis-place = θ [rad]
+axis-rate = θ' [rad/s]
+axis-modes = jede Mode, an der Spitze [mm]
+axis-deflection = Durchbiegung [mm]
+axis-energy = Energie im Balken [mJ]
+axis-force = Kraft [N]
+
+## Die letzte Minute, und Dateien
+
+past-title = Zurückblicken
+past-ago = Sekunden zuvor
+past-ago_hint = Hält an und zeigt das Labor, wie es war
+past-go_on = Von hier aus weiter
+past-go_on_hint = Vergisst, was danach kam; das lässt sich rückgängig machen. Laufen lassen kehrt stattdessen in die Gegenwart zurück. Taste: G
+past-undo = Weitergehen zurücknehmen
+past-undo_hint = Holt das Vergessene zurück und legt beiseite, was stattdessen geschah. Taste: U
+
+export-title = Mitnehmen
+export-table = CSV, letzte 60 s
+export-picture = Bild der Verläufe
+export-film = Aufnahme (HTML), letzte 10 s
+export-making = { $name } entsteht …
+export-ready = { $name } ist fertig.
+export-failed = { $name } ist misslungen.
+export-nothing = Es gibt noch nichts mitzunehmen: Lass es erst laufen.
+
+## Das mitgenommene Bild
+
+figure-distance =
+    Abstand zur
+    Bahn  [mm]
+figure-torque =
+    Drehmoment $u$
+    { "[" }N m]
+
+## Tasten und Hilfe
+
+key-run = Laufen lassen oder Pause
+key-right = Ein Schritt; ist ein Punkt ausgewählt: ihn nach rechts schieben
+key-left = Den ausgewählten Punkt nach links schieben
+key-up = Den ausgewählten Punkt nach oben schieben
+key-down = Den ausgewählten Punkt nach unten schieben
+key-reset = Beide Roboter zurücksetzen
+key-hold = Festhalten oder loslassen
+key-next = Den nächsten Kontrollpunkt auswählen
+key-none = Keinen Punkt auswählen
+key-add = Einen Kontrollpunkt hinter dem ausgewählten einfügen
+key-remove = Den ausgewählten Kontrollpunkt entfernen
+key-undo = Eine Änderung der Bahn rückgängig machen
+key-redo = Sie wiederholen
+key-pull_left = Die Spitzen nach links ziehen
+key-pull_right = Die Spitzen nach rechts ziehen
+key-pull_up = Die Spitzen nach oben ziehen
+key-pull_down = Die Spitzen nach unten ziehen
+key-let_go = Die Spitzen loslassen
+key-back = Eine Sekunde weiter zurückblicken
+key-forward = Eine Sekunde nach vorn blicken
+key-go_on = Von dem Augenblick aus weiter, den du siehst; was danach kam, wird vergessen
+key-undo_go_on = Das Weitergehen zurücknehmen: das Vergessene zurückholen
+key-view = Die Ansicht zurücksetzen
+
+keyname-space = Leertaste
+keyname-Esc = Esc
+keyname-Ins = Einfg
+keyname-Del = Entf
+keyname-Home = Pos1
+keyname-Ctrl = Strg
+
+help-title = Wie das Labor zu bedienen ist
+help-close = Schließen
+help-escape = Das Hilfefenster schließen
+help-text =
+    Drücke **Beide festhalten** und sieh zu: Den Nachläufer (orange) reißt es von der Bahn, denn sein
+    Punkt läuft nach der Uhr weiter. Der Bahnfolger (blau) wartet auf der Bahn und geht weiter, wenn
+    du loslässt.
+
+    - **Fasse eine Spitze** und ziehe daran. Mit *Für beide* geht die andere denselben Weg.
+    - **Ziehe an einer kleinen grauen Kugel**, um die Bahn zu verbiegen, während es läuft.
+    - **Ring**: worauf der Regler zielt. Beim Nachläufer ist das ein Punkt, der nach der Uhr läuft,
+      beim Bahnfolger der nächste Punkt der Bahn.
+    - **Pfeil**: die Kraft von Hand oder Bremse auf die Spitze.
+    - **Drehe die Ansicht** mit der Maus oder einem Finger; *Ansicht* stellt sie wieder her.
+
+    Eine Taste, die das gerade gewählte Bedienelement selbst braucht, etwa die Pfeile auf einem
+    Schieberegler oder die Leertaste auf einem Knopf, wirkt nur dort.
+
+    | Taste | Was sie tut |
+    |---|---|
+
+## Was das Labor von selbst sagt
+
+say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen hilft.
+say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
+say-nothing_to_undo = es gibt nichts rückgängig zu machen
+say-nothing_to_redo = es gibt nichts zu wiederholen
+say-select_first = wähle erst einen Kontrollpunkt: klicke einen an, oder drücke N für den nächsten
+say-looking_back = Das ist die Vergangenheit. Laufen lassen kehrt in die Gegenwart zurück; Von hier aus weiter vergisst, was danach kam, und lässt sich rückgängig machen.
+say-let_go = Die Spitzen sind losgelassen.
+say-present = Zurück in der Gegenwart.
+say-went_on = Weiter ab { $time } s. Die { $seconds } s danach sind vergessen: Weitergehen zurücknehmen (Taste U) holt sie zurück.
+say-brought_back = Zurück bei { $time } s, wie vor dem Weitergehen. Was stattdessen geschah, liegt beiseite: Weitergehen zurücknehmen (Taste U) wechselt dorthin zurück.
+
+identified-found = Aus den letzten { $seconds } s des Bahnfolgers: { $values }.
+identified-value = { $value }, geglaubt war { $before }
+identified-and = { " " }und{ " " }
+identified-limited = { " " }{ $names }: so weit, wie sich das Modell verstellen lässt.
+identified-also = { " " }Außerdem am Werk, aber nicht im Modell der Regler: { $values }.
+identified-unexplained = { " " }{ $percent } % des Drehmoments sind nicht erklärt.
+identified-other_robot = Identifizieren lässt sich nur das Fünfgelenk: Wähle erst diesen Roboter.
+
+## Wovon das Englische in models/ steht
+
+path-circle = Kreis
+path-ellipse = Ellipse
+path-rounded-square = abgerundetes Quadrat
+path-clover = Kleeblatt
+path-segment = gerade Strecke
+path-figure-of-eight = liegende Acht
+
+machine-five_bar-label = Fünfgelenk
+machine-five_bar-text = Zwei Motoren, starre Glieder, ein Stift in einer senkrechten Ebene.
+
+machine-flexible-label = Fünfgelenk mit biegsamem Glied
+machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spitze ist nicht dort, wo die Motoren sie haben wollen.
+
+parameter-K1-label = K1 quer
+parameter-K1-help = Feder, die auf die Bahn zurückzieht
+
+parameter-K2-label = K2 quer
+parameter-K2-help = dämpft die Bewegung quer zur Bahn
+
+parameter-K3-label = K3 quer
+parameter-K3-help = beseitigt eine bleibende Abweichung (Integral)
+
+parameter-K4-label = K4 längs
+parameter-K4-help = Feder zum Ziel auf der Bahn
+
+parameter-K5-label = K5 längs
+parameter-K5-help = wie streng die Geschwindigkeit längs der Bahn eingehalten wird
+
+parameter-task-label = Auftrag
+parameter-task-help = mit einer Geschwindigkeit die Bahn entlang, oder an einen Ort auf ihr
+parameter-task-option-speed = Tempo
+parameter-task-option-position = Ort
+
+parameter-speed-label = Tempo
+parameter-speed-help = gewünschte Geschwindigkeit längs der Bahn; negativ: rückwärts
+
+parameter-target-label = Ziel
+parameter-target-help = wo er stehen bleiben soll, beim Auftrag Ort
+
+parameter-across-label = Quer heißt
+parameter-across-help = was quer zur Bahn gemessen wird: der Abstand, oder s(y) wie im Artikel (Kreis, Ellipse)
+parameter-across-option-distance = Abstand
+parameter-across-option-level_set = Niveaumenge
+
+parameter-torque_limit-label = Motorgrenze
+parameter-torque_limit-help = mehr geben die Motoren nicht her; 0: keine Grenze
+
+parameter-encoder_counts-label = Drehgeber
+parameter-encoder_counts-unit = je Umdrehung
+parameter-encoder_counts-help = Schritte der Drehgeber in den Gelenken; 0: genaue Messung
+
+parameter-encoder_filter-label = Filterzeit
+parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern
+
+parameter-coulomb-label = Trockene Reibung
+parameter-coulomb-help = trockene Reibung in den Gelenken; 0: keine
+
+parameter-control_rate-label = Reglertakt
+parameter-control_rate-help = wie oft der Regler eingreift, Hz
+
+parameter-error_M11-label = M11 falsch
+parameter-error_M11-help = um so viel liegt M11 im Modell des Reglers daneben
+
+parameter-error_M22-label = M22 falsch
+parameter-error_M22-help = um so viel liegt M22 im Modell des Reglers daneben
+
+parameter-error_b1-label = b1 falsch
+parameter-error_b1-help = um so viel liegt b1 im Modell des Reglers daneben
+
+parameter-error_b2-label = b2 falsch
+parameter-error_b2-help = um so viel liegt b2 im Modell des Reglers daneben
+
+parameter-counterweights_removed-label = Gegengewichte ab
+parameter-counterweights_removed-help = abgenommene Gegengewichte; der Regler weiß nichts davon
+
+parameter-payload-label = Last
+parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon
+
+parameter-alpha-label = α
+parameter-alpha-help = Anteil der Durchbiegung, den der Regler sieht: 1 die Spitze, 0 das gerade Glied
+
+parameter-law-label = Ausgang
+parameter-law-help = was der Regler auf die Bahn bringt: y mit einem Anteil der Durchbiegung, oder die Spitze selbst
+parameter-law-option-redefined = neu definiert
+parameter-law-option-composite = zusammengesetzt
+
+parameter-tip_damping-label = Spitze dämpfen
+parameter-tip_damping-help = Dämpfungsgrad, den die Hüfte dem Balken gibt
+
+parameter-tip_prediction-label = Vorausschau
+parameter-tip_prediction-help = wie schnell die Durchbiegung vorhergesehen wird
+
+parameter-tip_shaping-label = Sanftes Tempo
+parameter-tip_shaping-help = wie schnell sich das gewünschte Tempo ändern darf
+
+parameter-tip_yielding-label = Nachgeben
+parameter-tip_yielding-help = wie sehr der Fortgang einer festgehaltenen Spitze nachgibt
+
+parameter-plant-label = Regelstrecke
+parameter-plant-help = die Gleichungen von Lagrange, oder (20)-(21) mit ∫φ² = 1 gelesen, wo die Einheiten der Kopplung nicht passen
+parameter-plant-option-lagrangian = nach Lagrange
+parameter-plant-option-unit_modes = Moden mit ∫φ² = 1
+
+parameter-modes-label = Moden
+parameter-modes-help = wie viele Moden des Balkens simuliert werden
+
+parameter-rho-label = ρ
+parameter-rho-help = Masse des Balkens je Meter
+
+parameter-frequency-label = Erste Frequenz
+parameter-frequency-help = erste Frequenz des eingespannten Balkens
+
+parameter-zeta-label = Dämpfung ζ
+parameter-zeta-help = Dämpfungsgrad jeder Mode
+
+parameter-error_J0-label = J0 falsch
+parameter-error_J0-help = um so viel liegt das Trägheitsmoment J0 der Hüfte im Modell des Reglers daneben
+
+parameter-error_rho-label = ρ falsch
+parameter-error_rho-help = um so viel liegt ρ im Modell des Reglers daneben
+
+parameter-error_omega1-label = Frequenz falsch
+parameter-error_omega1-help = um so viel liegt die erste Frequenz im Modell des Reglers daneben
+
+report-title = Bericht über meine Lektionen
+report-made = Erstellt am { $date }
+report-date = %d.%m.%Y um %H:%M
+report-code = Code des Labors: { $code }
+report-point = ,
+report-none = Noch ist keine Lektion geöffnet worden.
+report-lesson = Lektion
+report-seen = Schritte gesehen
+report-tasks = Aufgaben geschafft
+report-made_of = Vorhersagen gemacht
+report-right_of = Richtig gewählt
+report-part = { $part } von { $all }
+report-gone = Eine begonnene Lektion gibt es in diesem Kurs nicht mehr: { $name }.
+report-strange =
+    { $count ->
+        [one] 1 Notiz, die nicht mehr zu dieser Lektion passt, fehlt hier.
+       *[other] { $count } Notizen, die nicht mehr zu dieser Lektion passen, fehlen hier.
+    }
+report-predictions = Vorhersagen
+report-to_do = Aufgaben
+report-questions = Fragen
+report-not_predicted = Du hast noch nichts vorhergesagt.
+report-not_happened = Was wirklich geschieht, ist noch nicht zu sehen gewesen.
+report-not_passed = Noch nicht geschafft.
+report-not_answered = Noch nicht beantwortet.
+report-chosen = Du hast gewählt:
+report-right = Richtig ist:
+report-curve = { $robot }: { $quantity }
+report-drawn = Deine Kurve hat ihre Spitze von { $value } { $unit } bei { $time } s.
+report-happened = Was wirklich geschah, hat diese Spitzen: { $first } und { $second }.
+report-peak = { $robot } { $value } { $unit } bei { $time } s
+
+## How an error of the controller's model dies out (models/control/poles.py)
+
+behaviour-settles = klingt in { $seconds } s ab, { $kind }
+behaviour-no_overshoot = ohne Überschwingen
+behaviour-damping = Dämpfungsgrad { $damping }
+behaviour-unstable = instabil: Ein Fehler wächst alle { $seconds } s auf das e-fache
+behaviour-not_stable = nicht stabil: Ein Fehler klingt nie ab
+
+## Why a curve cannot be a path (models/paths/curve_faults.py)
+
+fault-not_numbers = die Kurve hat Punkte, die keine Zahlen sind
+fault-outside = die Bahn verlässt den Arbeitsraum: Dorthin reicht der Arm nicht
+fault-singular = die Bahn kommt einer singulären Stellung zu nahe: Dort ist der Arm gestreckt oder gefaltet und kann sich nicht in jede Richtung bewegen
+fault-bends = die Bahn ist zu scharf gebogen: Eine Biegung braucht mindestens { $radius } mm Radius, sonst ist der nächste Punkt nicht überall eindeutig
+fault-cusp = die Bahn hat einen Umkehrpunkt, an dem sie keine Richtung hat
+fault-crosses = die Bahn kreuzt sich selbst: An der Kreuzung hat sie zwei Richtungen
+
+## Why a robot has stopped (the models' `fault`)
+
+stop-range = die Zahlen sind größer, als ein Rechner rechnen kann
+stop-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist davongelaufen
+stop-collapsed = das Getriebe ist zusammengeklappt (alle Glieder auf einer Geraden): Aus einer singulären Stellung weiß der Regler keinen Weg
+stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren den Endpunkt nicht in jede Richtung bewegen
+stop-bent = der Balken biegt sich zu weit, obwohl seine Nulldynamik stabil ist: Der Zug ist zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
+stop-unstable = der Ausgang ist auf der Bahn, das Innere nicht: instabile Nulldynamik
+
+## Refusals: a path's points
+
+error-point_not_finite = ein Kontrollpunkt braucht endliche Koordinaten
+error-too_many_points = eine Bahn hat höchstens { $most } Kontrollpunkte
+error-too_few_points = diese Bahn braucht mindestens { $least } Kontrollpunkte
+error-no_point = Kontrollpunkt { $index }: Es gibt { $count }
+error-stroke_not_finite = ein Strich braucht Punkte
+error-stroke_without_points = ein Strich braucht Punkte
+error-points_coincide = eine Bahn braucht mindestens { $least } Punkte, die auseinander liegen
+error-path_too_short = die Bahn ist zu kurz: { $length } mm, mindestens { $least } mm
+error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
+
+## Refusals: numbers and names
+
+error-not_a_number = das ist keine Zahl
+error-not_a_point = das ist kein Punkt
+error-value_out_of_range = { $name }: { $value } liegt nicht zwischen { $low } und { $high }
+error-value_not_a_number = { $name }: { $value } ist keine Zahl
+error-value_not_an_option = { $name }: { $value } ist nichts von { $options }
+error-unknown_name =
+    { $kind ->
+        [robot] unbekannter Roboter
+        [path] unbekannte Bahn
+        [experiment] unbekanntes Experiment
+        [lesson] unbekannte Lektion
+       [parameter] unbekannter Parameter
+       *[other] unbekannter Name ({ $kind })
+    } { $name }: { $hint }
+error-did_you_mean = meintest du { $names }?
+error-there_are = es gibt { $names }
+error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: sie hat { $steps ->
+        [one] 1 Schritt
+       *[other] { $steps } Schritte
+    }
+
+## Refusals: identification
+
+error-nothing_recorded = es gibt noch nichts, woraus zu lernen wäre: Lass es erst ein paar Sekunden laufen
+error-hardly_any_data = es gibt noch kaum Daten: Lass es erst ein paar Sekunden laufen
+error-record_too_short = nur { $duration } s Daten: Lass es erst ein paar Sekunden laufen
+error-hardly_moved = der Arm hat sich kaum bewegt: Lass ihn erst mit wechselndem Tempo einer Bahn folgen
+error-motion_too_regular = die Bewegung war zu gleichmäßig, um die Parameter zu trennen: Ändere das Tempo, während es läuft, und versuche es noch einmal
+error-not_identifiable = { $name } lässt sich aus dieser Bewegung nicht bestimmen ({ $value } ± { $error } kg m²): Lass ihn erst mit wechselndem Tempo einer Bahn folgen
+
+## Refusals: predictions
+
+error-sketch_direction = zeichne eine Kurve von links nach rechts
+error-sketch_without_points = eine Zeichnung braucht Punkte
+
+## Refusals: share codes and session codes
+
+error-share_too_long = Dieser Text ist viel zu lang: Ein Code zum Teilen hat einige Hundert Zeichen.
+error-share_missing = In diesem Text ist kein Code zum Teilen: Er beginnt mit ONPATH{ $version }-.
+error-share_newer = Dieser Code stammt von einem neueren OnPath: Frage nach dieser Version.
+error-share_incomplete = Dieser Code ist nicht vollständig: Kopiere ihn noch einmal, bis zum letzten Zeichen.
+error-share_mistyped = Dieser Code ist vertippt oder abgeschnitten: Seine Prüfsumme passt nicht.
+error-share_empty = Dieser Code enthält keinen Aufbau.
+error-share_strange = Dieser Code enthält Dinge, die kein Labor hat.
+error-share_does_not_fit = Dieser Code passt nicht zu diesem OnPath: { $error }.
+error-no_such_lab = zu diesem Code gibt es kein Labor
+error-lab_is_open = dieses Labor ist in einem anderen Fenster offen: Schließe erst jenes
+error-session_code_length = der Code eines Labors hat { $length } Buchstaben und Ziffern, wie { $example }
+error-session_code_letters = das ist kein Code eines Labors: 0, 1, i, l und o kommen in keinem vor, wie { $example }
+
+## Refusals: the class
+
+error-too_many_codes = zu viele falsche Codes: warte eine Minute
+error-not_the_key = das ist nicht der Schlüssel der Lehrkraft
+error-not_the_class_code = das ist nicht der Klassencode auf der Leinwand
+error-class_full = diese Klasse ist voll
+error-no_nickname = ein Spitzname hat mindestens ein Zeichen

@@ -1,0 +1,577 @@
+### What the interface says in English, for Project Fluent (https://projectfluent.org/).
+###
+### Every language has the same messages, with the same arguments. The code asks for "lesson.next"
+### where this file has lesson-next. Only the names of parameters, paths and robots stand in models/
+### in English; other languages have them here, under parameter-, path- and machine-.
+### A count is a number, so that a language can choose the plural: { $count -> [one] … *[other] … }.
+
+## Lessons
+
+robot-follower = Follower
+robot-tracker = Tracker
+
+quantity-distance = distance to the path
+quantity-lag = distance to the running point
+quantity-speed = speed along the path
+quantity-rate = rate of the path's parameter
+quantity-place = place along the path
+quantity-across = offset across the path
+quantity-across_rate = speed across the path
+quantity-torque = torque
+quantity-force = force
+quantity-deflection = deflection
+quantity-energy = energy in the link
+
+stat-max = largest { $quantity }
+stat-min = smallest { $quantity }
+stat-mean = mean { $quantity }
+stat-rms = rms { $quantity }
+stat-final = { $quantity } now
+
+during-always = { "" }
+during-held = { " " }while held
+during-pulled = { " " }while pulled
+during-free = { " " }while free
+
+check-below = below { $limit } { $unit }
+check-above = above { $limit } { $unit }
+check-and = { $first } and { $second }
+check-bound = { $robot }: { $stat }{ $during } { $value } { $unit }; wanted: { $wanted }
+check-compare = { $larger }'s { $stat }{ $during } is { $ratio } times the other's; wanted: { $wanted } times or more
+check-seconds = { " " }({ $have } of { $need } s)
+check-nothing = { $robot }: { $stat }{ $during }: nothing yet{ $seconds }; wanted: { $wanted }
+check-event = { $event }: { $have } of { $need }
+check-order = in this order: { $events }
+check-setting = { $name } is { $value }; wanted: { $wanted }
+check-equals = { $value }
+check-stopped = { $robot } has stopped: press Reset and try again
+
+event-hold = hold back
+event-let_go = let go
+event-pull = pull
+event-release = release
+event-set = change { $detail }
+event-set_any = change a parameter
+event-path = choose the path { $detail }
+event-path_any = change the path
+event-reset = reset
+event-identify = identify
+event-diverged = a robot stops
+event-robot = choose the robot { $detail }
+event-robot_any = choose another robot
+
+lesson-lessons = Lessons
+lesson-choose = Lessons: predict, try, see, explain
+lesson-minutes = { $minutes } min
+lesson-tasks =
+    { $all ->
+        [one] { $done } of 1 task
+       *[other] { $done } of { $all } tasks
+    }
+lesson-open = Open
+lesson-continue = Continue
+lesson-close = Free lab
+lesson-back = Back
+lesson-next = Next
+lesson-skip = Skip the prediction
+lesson-finish = Finish
+lesson-locked = First commit to a prediction on the left, or skip it.
+lesson-nothing_to_predict = there is nothing to predict here
+lesson-no_such_option = there is no such answer
+lesson-again = Set up again
+lesson-play = Let it happen
+lesson-read = Read on without it
+lesson-lab = The lab
+lesson-replay = Let it happen again
+lesson-playing = It is happening: watch.
+lesson-step = Step { $step } of { $steps }
+lesson-commit = Commit to this prediction
+lesson-draw_first = Draw with the mouse on the board in the middle, from left to right.
+lesson-drawn = Draw again, or commit.
+lesson-numbers = Draw with numbers instead
+lesson-at = at { $time } s [{ $unit }]
+lesson-yours = you
+lesson-right = Right.
+lesson-not_quite = Not quite.
+lesson-the_answer = The answer: { $answer }
+lesson-skipped = You skipped the prediction.
+lesson-predict_before = First go back and make the prediction, or skip it.
+lesson-next_unseen = Next, without seeing it
+lesson-passed = Passed
+lesson-passed_best = Passed; your best: { $best } { $unit }
+lesson-hint = Hint ({ $left } left)
+lesson-this_step = This step
+lesson-controls = Controls
+lesson-all_controls = All controls
+lesson-language = Language
+lesson-presenting = Presentation: large type
+lesson-english = only in English
+
+kind-play = Try freely
+kind-predict = Predict
+kind-run = See
+kind-explain = Explain
+kind-task = Do it
+kind-quiz = Question
+
+language-en = English
+language-de = Deutsch
+
+## Keep and share
+
+keep-title = Keep and share
+keep-yours = Your lab's code. Note it down: with it you can continue elsewhere.
+keep-other = Another code
+keep-other_hint = The code of a lab that you began elsewhere
+keep-go = Open that lab
+keep-moment = One moment…
+keep-share = Share this set-up
+keep-shared = Send this code: it contains the robot, the path, the gains and the realism settings.
+keep-paste = Share code
+keep-paste_hint = Paste a code that somebody sent you
+keep-use = Set up the lab from it
+keep-report = Record of my lessons (HTML)
+
+## The class
+
+full-title = The lab is full
+full-text =
+    { $places ->
+        [one] The only place is taken.
+       *[other] All { $places } places are taken.
+    } Leave this page open: it continues by itself as soon as one is free.
+
+coming-title = One moment
+coming-text = Many people are connecting at once. Your lab opens in a few seconds.
+
+class-title = Class
+class-code = Class code
+class-code_hint = Shown on the projector
+class-nickname = Nickname
+class-nickname_hint = At most 24 characters; nothing else about you is stored
+class-join = Join the class
+class-leave = Leave the class
+class-member = You are in the class as { $name }. The teacher sees where you are in the lessons, and your lab.
+class-teacher = Teacher…
+class-key = Teacher's key
+class-key_hint = Printed when the server was started
+class-teach = Open the teacher's page
+class-stop_teaching = Close the teacher's page
+class-frozen = The teacher has stopped all labs: look to the front. Yours continues from here afterwards.
+class-setup = The teacher has set up your lab.
+class-setup_in_step = The teacher has set up your lab. “Set up again” restores this step's own set-up.
+class-step = The teacher has opened this step for you.
+class-step_elsewhere = The teacher has opened this step for you. The lesson that you were in is under “Lessons”, as you left it.
+class-code_for_all = Type this code under “Class”:
+class-count = { $count } in the class
+class-name = Nickname
+class-lesson = Lesson
+class-step_head = Step
+class-tasks = Tasks
+class-state = State
+class-here = here
+class-away = away
+class-idle = idle for { $minutes } min
+class-free = Free lab
+class-nobody = Nobody has joined yet.
+class-follow = Follow
+class-own_lab = My own lab
+class-following = This is the lab of { $name }. You can only look.
+class-hidden = This student's tab is hidden: the lab waits.
+class-absent = This student is not connected: the lab waits.
+class-fetching = This student's lab is being fetched.
+class-freeze = Freeze all labs
+class-unfreeze = Let all labs go on
+class-push_setup = Send my set-up to all
+class-push_code = Send this share code to all
+class-push_step = Open this step for all
+class-sent =
+    { $count ->
+        [0] Nobody is in the class yet.
+        [one] Sent to 1 student.
+       *[other] Sent to { $count } students.
+    } Students who join later will receive it.
+class-standing_setup = Students who join receive the set-up that you sent last.
+class-standing_step = Students who join are taken to the step that you opened last: { $lesson }, step { $step }.
+class-push_end = Stop sending this to students who join
+class-predictions = Predictions
+class-truth = Show the truth
+class-no_prediction = There is nothing to predict in this step.
+class-no_truth = What really happens is not known yet: it must first happen in a lab.
+class-predicted = predictions
+class-given = { $given } predicted, { $skipped } skipped, { $waiting } not yet
+class-record = Record
+class-record_text = One row for each student and each prediction, task and question of the lessons begun. It contains nicknames: treat it as personal data.
+class-export = Class record (CSV)
+class-end = End the class
+class-end_sure = End the class? Nicknames and the class record are deleted; the labs continue without a class. Export the record first.
+class-ended = The class is over. { $count ->
+        [0] Nobody was in it.
+        [one] 1 student was in it.
+       *[other] { $count } students were in it.
+    } The next class has a new code.
+class-forget = Delete everything stored
+class-forget_sure = Delete every lab that this server stores, and end the class? Labs that are open stay open, and are stored again when something in them changes.
+class-forgotten =
+    { $count ->
+        [0] No labs were deleted.
+        [one] 1 lab was deleted.
+       *[other] { $count } labs were deleted.
+    }
+class-yes = Yes
+class-no = No
+
+## The two controllers
+
+controller-trajectory_tracking-title = Trajectory tracking
+controller-trajectory_tracking-does = chases a moving point
+controller-trajectory_tracking-short = tracking
+
+controller-path_following-title = Path following
+controller-path_following-does = stays on the curve
+controller-path_following-short = following
+
+## The page: what is always there
+
+readout-distance = distance to the path
+readout-now = now
+readout-most = most
+readout-paused = t = { $time } s, paused
+readout-running = t = { $time } s, running at { $speed }×
+
+scene-force = force { $force } N
+scene-true_scale = true scale
+scene-larger = deflection drawn { $factor }×
+
+robots-button = Robot…
+robots-hint = Now: { $robot }. Choose another; each keeps its path and settings.
+robots-choose = Choose a robot
+robots-this = { $robot } (this one)
+
+run-hold_both = Hold both back
+run-hold = Hold back
+run-let_both_go = Let both go
+run-let_go = Let go
+run-hold_hint = Holds the end-points back along the path until pressed again. Key: H
+run-press = Hold while pressed
+run-press_hint = Holds the end-points back as long as the mouse button is down.
+run-run = Run
+run-pause = Pause
+run-run_hint = Simulated time stops. Key: space
+run-step = Step
+run-reset = Reset
+run-view = Reset view
+run-rate = Time runs at
+run-rate_hint = Simulated seconds per second
+
+controls-copy = Copy to both
+controls-copy_hint = Pulling and holding act on both robots in the same way
+controls-editor = Path editor
+controls-help = Help and keys
+
+## The path
+
+design-path = Path
+design-path_hint = Both robots follow it. Drag its points in the scene to bend it.
+design-own = (own)
+design-draw = Draw freehand
+design-draw_hint = Then draw one stroke around a robot with the mouse.
+design-edit = Edit
+design-undo = Undo
+design-redo = Redo
+design-point = Point
+design-add = Add
+design-remove = Remove
+design-selected = Selected
+design-selected_hint = Number of the control point; 0: none
+design-coordinate = { $name } [mm]
+design-arrows = The arrow keys move the selected point by 1 mm; N selects the next one. To drag a point that the end-point covers, select it first.
+design-rank = Rank test (11) along the path: at least **{ $number }** of 1.
+design-zone = Show singular zone
+design-zone_hint = Where the arm is stretched or folded, eq. (14)
+
+## Gains and realism; the names of the parameters themselves stand in models/
+
+gains-advanced = Advanced
+gains-defaults = Reset to defaults
+gains-realism = Realism
+gains-ideal = All off: an ideal robot and an exact model. *Values illustrative.*
+gains-across = Across
+gains-along = Along
+gains-poles = poles { $poles } 1/s
+gains-identify = Identify M and b
+gains-identify_hint = Estimates M and b from the follower's last 3 s and uses them in the model of both controllers.
+
+## The flexible link
+
+flexible-title = Flexible link
+flexible-pull = Pull in
+flexible-pull_hint = The plane, through the tip, in which the mouse pulls it
+flexible-larger = Drawn larger [×]
+flexible-larger_hint = The deflection in the drawing alone; 1 is true scale
+flexible-beam = Beam and plant
+flexible-anew = Changing the plant or the modes restarts the robots. *Values illustrative.*
+flexible-composite = Composite control
+flexible-alpha = α = { $alpha }; { $limit }
+flexible-computing = critical α: being computed
+flexible-none = critical α: none up to 1
+flexible-critical = critical α = { $critical }, here and at rest
+flexible-unused = composite control puts the tip itself on the path and needs no α
+flexible-unstable = unstable inside
+flexible-deflections = Deflection: tracking **{ $tracking } mm**, following **{ $following } mm**; { $scale }
+flexible-drawn = drawn { $factor }×
+
+pull-path-s-plane = path's plane
+pull-horizontal-plane = horizontal plane
+
+## Plots: names in the list, then titles with units
+
+plots-more = More plots
+plots-show = Show
+plots-show_hint = Over the last 10 s
+plots-none = none
+plots-time = t [s]
+
+plot-speed = speed along the path
+plot-torques = torques
+plot-across = ξ₁ across
+plot-across_rate = ξ₂ rate across
+plot-place = θ place along
+plot-rate = θ' rate along
+plot-modes = modes of the link
+plot-deflection = deflection of the tip
+plot-energy = internal energy
+plot-force = force
+
+axis-distance = distance to the path [mm]
+axis-speed = speed [m/s]
+axis-torques = torque [N m]
+axis-across = ξ₁ [mm]
+axis-across_rate = ξ₂ [mm/s]
+axis-place = θ [rad]
+axis-rate = θ' [rad/s]
+axis-modes = each mode, at the tip [mm]
+axis-deflection = deflection [mm]
+axis-energy = energy in the link [mJ]
+axis-force = force [N]
+
+## The last minute, and files
+
+past-title = Look back
+past-ago = Seconds ago
+past-ago_hint = Pauses and shows the lab as it was
+past-go_on = Go on from here
+past-go_on_hint = Discards what came after; can be undone. Run returns to the present instead. Key: G
+past-undo = Undo going on
+past-undo_hint = Restores what was discarded, and sets aside what was done instead. Key: U
+
+export-title = Export
+export-table = CSV, last 60 s
+export-picture = Picture of the plots
+export-film = Recording (HTML), last 10 s
+export-making = Making { $name } …
+export-ready = { $name } is ready.
+export-failed = { $name } could not be made.
+export-nothing = There is nothing to export yet: let it run first.
+
+## The exported picture
+
+figure-distance =
+    distance to
+    the path  [mm]
+figure-torque = torque $u$  [N m]
+
+## Keys and help
+
+key-run = Run or pause
+key-right = One step; with a point selected, move it right
+key-left = Move the selected point left
+key-up = Move the selected point up
+key-down = Move the selected point down
+key-reset = Reset both robots
+key-hold = Hold back, or let go
+key-next = Select the next control point
+key-none = Select no point
+key-add = Add a control point after the selected one
+key-remove = Remove the selected control point
+key-undo = Undo a change of the path
+key-redo = Redo a change of the path
+key-pull_left = Pull the end-points left
+key-pull_right = Pull the end-points right
+key-pull_up = Pull the end-points up
+key-pull_down = Pull the end-points down
+key-let_go = Let the end-points go
+key-back = Look back one more second
+key-forward = Look forward one second
+key-go_on = Go on from the moment shown; discard what came after
+key-undo_go_on = Undo going on: restore what was discarded
+key-view = Reset the view
+
+keyname-space = space
+keyname-Esc = Esc
+keyname-Ins = Ins
+keyname-Del = Del
+keyname-Home = Home
+keyname-Ctrl = Ctrl
+
+help-title = How to use the lab
+help-close = Close
+help-escape = Close the help window
+help-text = **Hold both back** and watch: the tracker (orange) is torn off its path, because its point
+    runs on by the clock. The follower (blue) waits on its path and continues when you let go.
+
+    - **Drag an end-point** to pull it. *Copy to both* pulls the other one by the same amount.
+    - **Drag a small grey ball** to bend the path while the robots run.
+    - **Ring**: what the controller aims at. The tracker's is a point that runs by the clock; the
+      follower's is the closest point of the path.
+    - **Arrow**: the force that pulls or holds the end-point.
+    - **Turn the view** with the mouse or a finger; *Reset view* restores it.
+
+    A key that the focused control uses itself, such as the arrows on a slider or the space bar on a
+    button, acts on that control only.
+
+    | Key | What it does |
+    |---|---|
+
+## What the lab says by itself
+
+say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset brings it back.
+say-refused = This path is refused: { $reasons }. The previous one is kept.
+say-nothing_to_undo = nothing to undo
+say-nothing_to_redo = nothing to redo
+say-select_first = select a control point first: click one, or press N for the next
+say-looking_back = This is the past. Run returns to the present; Go on from here discards what came after, and can be undone.
+say-let_go = The end-points have been let go.
+say-present = Back in the present.
+say-went_on = Going on from { $time } s. The { $seconds } s that came after are discarded: Undo going on (key U) restores them.
+say-brought_back = Back at { $time } s, as it was before going on. What was done instead is set aside: Undo going on (key U) changes back to it.
+
+identified-found = From the follower's last { $seconds } s: { $values }.
+identified-value = { $value }, previously { $before }
+identified-and = { " " }and{ " " }
+identified-limited = { " " }{ $names }: limited by the range of the model's settings.
+identified-also = { " " }Also present, but not in the controllers' model: { $values }.
+identified-unexplained = { " " }{ $percent } % of the torque is not explained.
+identified-other_robot = Identification works with the five-bar linkage only: choose that robot first.
+
+report-title = Record of my lessons
+report-made = Made on { $date }
+report-date = %Y-%m-%d at %H:%M
+report-code = session code { $code }
+report-point = .
+report-none = No lesson has been opened yet.
+report-lesson = Lesson
+report-seen = Steps seen
+report-tasks = Tasks passed
+report-made_of = Predictions made
+report-right_of = Choices right
+report-part = { $part } of { $all }
+report-gone = A lesson that was begun is no longer in the course: { $name }.
+report-strange =
+    { $count ->
+        [one] 1 note that no longer fits this lesson is left out.
+       *[other] { $count } notes that no longer fit this lesson are left out.
+    }
+report-predictions = Predictions
+report-to_do = Tasks
+report-questions = Questions
+report-not_predicted = You have not predicted anything yet.
+report-not_happened = What really happens has not been seen yet.
+report-not_passed = Not passed yet.
+report-not_answered = Not answered yet.
+report-chosen = You chose:
+report-right = Correct answer:
+report-curve = { $robot }: { $quantity }
+report-drawn = Your curve has its peak of { $value } { $unit } at { $time } s.
+report-happened = What really happened has these peaks: { $first } and { $second }.
+report-peak = { $robot } { $value } { $unit } at { $time } s
+
+## How an error of the controller's model dies out (models/control/poles.py)
+
+behaviour-settles = settles in { $seconds } s, { $kind }
+behaviour-no_overshoot = no overshoot
+behaviour-damping = damping { $damping }
+behaviour-unstable = unstable: an error grows by a factor of e every { $seconds } s
+behaviour-not_stable = not stable: an error never dies out
+
+## Why a curve cannot be a path (models/paths/curve_faults.py)
+
+fault-not_numbers = the curve has points that are not numbers
+fault-outside = the path leaves the workspace: the arm cannot reach there
+fault-singular = the path comes too near a singular configuration: there the arm is stretched or folded and cannot move in every direction
+fault-bends = the path bends too sharply: a bend needs a radius of at least { $radius } mm, otherwise the closest point on it is not unique nearby
+fault-cusp = the path has a cusp, where it has no direction
+fault-crosses = the path crosses itself: at a crossing it has two directions
+
+## Why a robot has stopped (the models' `fault`)
+
+stop-range = the numbers have left the range of a computer
+stop-fast = a joint turns faster than { $limit } rad/s: the motion has diverged
+stop-collapsed = the linkage has collapsed (all links in one line): the controller cannot see its way out of a singular configuration
+stop-singular = the robot is close to a singular configuration (two links in one line): there its motors cannot move the end-point in every direction
+stop-bent = the link bends too far although its zero dynamics are stable: the pull is too strong, the control too slow or the controller's model too wrong
+stop-unstable = the output is on the path, the inside is not: unstable zero dynamics
+
+## Refusals: a path's points
+
+error-point_not_finite = a control point needs finite coordinates
+error-too_many_points = a path has at most { $most } control points
+error-too_few_points = this path needs at least { $least } control points
+error-no_point = control point { $index }: there are { $count }
+error-stroke_not_finite = a stroke needs finite points
+error-stroke_without_points = a stroke needs points
+error-points_coincide = a path needs at least { $least } points apart from each other
+error-path_too_short = the path is too short: { $length } mm, at least { $least } mm
+error-cannot_follow = { $robot } cannot follow this path: { $reasons }
+
+## Refusals: numbers and names
+
+error-not_a_number = that is not a number
+error-not_a_point = that is not a point
+error-value_out_of_range = { $name }: { $value } is not between { $low } and { $high }
+error-value_not_a_number = { $name }: { $value } is not a number
+error-value_not_an_option = { $name }: { $value } is not one of { $options }
+error-unknown_name = unknown { $kind } { $name }: { $hint }
+error-did_you_mean = did you mean { $names }?
+error-there_are = there are { $names }
+error-no_step = there is no step { $step } in this lesson: it has { $steps ->
+        [one] 1 step
+       *[other] { $steps } steps
+    }
+
+## Refusals: identification
+
+error-nothing_recorded = there is nothing to learn from yet: let it run for a few seconds first
+error-hardly_any_data = there is hardly any data yet: let it run for a few seconds first
+error-record_too_short = only { $duration } s of data: let it run for a few seconds first
+error-hardly_moved = the arm hardly moved: let it follow a path with changing speed first
+error-motion_too_regular = the motion was too regular to tell the parameters apart: change the speed while it runs, then try again
+error-not_identifiable = { $name } cannot be told from this motion ({ $value } ± { $error } kg m²): let it follow a path with changing speed first
+
+## Refusals: predictions
+
+error-sketch_direction = draw a curve from left to right
+error-sketch_without_points = a sketch needs points
+
+## Refusals: share codes and session codes
+
+error-share_too_long = This text is much too long: a share code has a few hundred characters.
+error-share_missing = There is no share code in this text: it begins with ONPATH{ $version }-.
+error-share_newer = This share code was made by a newer OnPath: ask for that version.
+error-share_incomplete = This share code is not complete: copy it again, to its last character.
+error-share_mistyped = This share code is mistyped or cut off: its checksum does not match.
+error-share_empty = This share code contains no set-up.
+error-share_strange = This share code contains things that no lab has.
+error-share_does_not_fit = This share code does not fit this version of OnPath: { $error }.
+error-no_such_lab = there is no lab with this code
+error-lab_is_open = this lab is open in another window: close that one first
+error-session_code_length = a session code has { $length } letters and digits, like { $example }
+error-session_code_letters = this is not a session code: 0, 1, i, l and o do not occur in one, like { $example }
+
+## Refusals: the class
+
+error-too_many_codes = too many wrong codes: wait a minute
+error-not_the_key = this is not the teacher's key
+error-not_the_class_code = this is not the class code on the projector
+error-class_full = this class is full
+error-no_nickname = a nickname has at least one character
