@@ -1,49 +1,57 @@
 # make run   creates the environment, installs, starts the lab and prints its address
-# make test  all tests, headless Chromium included
+# make test  all tests, headless Chromium included; adds what they need to the environment
 # make fuzz  the property tests with random inputs; make test has the same ones every time
 # make check lint, format, types      make bench  the speed table
 
 PYTHON ?= python3
 VENV   ?= .venv
 BIN     = $(VENV)/bin
-STAMP   = $(VENV)/.installed
+LAB     = $(VENV)/.installed
+TOOLS   = $(VENV)/.tools
 PYTEST  = $(BIN)/pytest -n 2 --dist loadfile
 
 .PHONY: run test fuzz check format bench wheel clean
 .DEFAULT_GOAL := run
 
-$(STAMP): pyproject.toml
+# What running needs; --clear takes the tools away, too, and their stamp with them.
+$(LAB): pyproject.toml
 	$(PYTHON) -m venv --clear $(VENV)
-	$(BIN)/pip install --quiet --editable ".[dev]"
-	touch $(STAMP)
+	$(BIN)/pip install --quiet --editable .
+	touch $(LAB)
 
-run: $(STAMP)
+# What tests, checks and the bench need besides.
+$(TOOLS): $(LAB)
+	$(BIN)/pip install --quiet --editable ".[dev]"
+	touch $(TOOLS)
+
+run: $(LAB)
 	$(BIN)/onpath $(ARGS)
 
 # Both parts run, whatever the first says.
-test: $(STAMP)
+test: $(TOOLS)
 	@failed=0; \
 	$(PYTEST) --ignore=tests/in_browser $(ARGS) || failed=$$?; \
 	$(PYTEST) tests/in_browser $(ARGS) || failed=$$?; \
 	exit $$failed
 
-fuzz: $(STAMP)
+fuzz: $(TOOLS)
 	$(PYTEST) -m hypothesis --hypothesis-profile fuzz $(ARGS)
 
-check: $(STAMP)
+check: $(TOOLS)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright --pythonpath $(BIN)/python
 
-format: $(STAMP)
+format: $(TOOLS)
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-bench: $(STAMP)
+bench: $(TOOLS)
 	$(BIN)/onpath bench $(ARGS)
 
-wheel: $(STAMP)
-	$(BIN)/python -m build --wheel
+# The sdist, and the wheel from it.
+wheel: $(TOOLS)
+	$(BIN)/python -m build
 
 clean:
 	rm -rf $(VENV) dist .pytest_cache .ruff_cache .hypothesis

@@ -1,1 +1,1 @@
-"""Lessons: texts and pure checks on what happened in a run."""
+"""Lessons: their file format, and pure functions that check what happened in a run."""

@@ -1,4 +1,4 @@
-"""Whether a check of a task holds, and words on how far it is from that. Pure."""
+"""Evaluates the checks of a task against the record of a run. Pure functions."""
 
 from __future__ import annotations
 
@@ -25,26 +25,30 @@ from onpath.lessons.schema import (
 from onpath.lessons.words import Words
 from onpath.models.systems.parameters import specs
 
-TINY = 1e-9
-INSTANT = 1e-6  # [s], shorter than any tick
+TINY = 1e-9  # smallest divisor of a ratio
+INSTANT = 1e-6  # [s], tolerance of durations, shorter than any tick
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether it holds, and a sentence on what was measured and what is wanted."""
+    """Whether a check is satisfied, and a sentence with the measured and the required value."""
 
     passed: bool
     words: str
 
 
 def judge(task: Task, record: Record, words: Words) -> list[Verdict]:
-    """A verdict on each check of a task; it is passed when all are."""
+    """The verdicts on all checks of a task; the task is passed when all of them are."""
     return [verdict(check, record, words) for check in task.check]
 
 
 @singledispatch
 def verdict(check: Check, record: Record, words: Words) -> Verdict:
-    """Whether a check holds for what has happened."""
+    """Whether a check is satisfied by what has happened.
+
+    Raises:
+        TypeError: the kind of check is unknown.
+    """
     raise TypeError(f"no such check: {check!r}")
 
 
@@ -143,7 +147,13 @@ def _(check: Setting, record: Record, words: Words) -> Verdict:
 def statistic(
     record: Record, robot: RobotName, quantity: str, stat: Stat, chosen: Mask
 ) -> float | None:
-    """Of a quantity over the chosen instants; None when there are none, or it is not known."""
+    """A statistic of a quantity over the chosen instants; None if it is undefined.
+
+    Args:
+        robot, quantity: which column of the record.
+        stat: "max", "min", "mean", "rms" or "final" (the last value).
+        chosen: shape (n,); from `Record.chosen`.
+    """
     values = record.values[robot].get(quantity)
     if values is None or not chosen.any():
         return None
@@ -156,7 +166,11 @@ def statistic(
 
 
 def _rounded(value: float, below: float | None, above: float | None) -> str:
-    """Three digits, and nothing finer than a hundredth, unless the bounds need more."""
+    """The number with as few digits as keep it on its side of the bounds.
+
+    Three digits, and at most two decimals, unless rounding would turn a missed bound into a met one
+    or the reverse.
+    """
     short = f"{round(value, 2) + 0.0:.2f}" if abs(value) < 1 else f"{value:.3g}"
     holds = _within(value, below, above)
     for shown in (short, *(f"{value:.{digits}g}" for digits in range(3, 17))):
@@ -166,27 +180,33 @@ def _rounded(value: float, below: float | None, above: float | None) -> str:
 
 
 def _within(value: float, below: float | None, above: float | None) -> bool:
+    """Whether above <= value <= below; None means no bound."""
     return (below is None or value <= below) and (above is None or value >= above)
 
 
 def _same(value: object, wanted: object) -> bool:
+    """Whether a setting has the wanted value; numbers are compared to 0.1 %."""
     if isinstance(value, float) and isinstance(wanted, int | float):
         return bool(np.isclose(value, wanted, rtol=1e-3, atol=1e-6))
     return str(value) == str(wanted)
 
 
 def _event(text: str) -> Event:
-    """`hold`, or `set:K1`."""
+    """The event named by `hold`, or by `set:K1`."""
     event, _, name = text.partition(":")
     return msgspec.convert({"kind": "event", "event": event, "name": name}, Event)
 
 
 def _is(name: str, detail: str, wanted: Event) -> bool:
+    """Whether an event with this name and detail counts as the wanted one."""
     return name == wanted.event and wanted.name in ("", detail)
 
 
 def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> tuple[bool, str]:
-    """Whether the chosen instants last long enough, and words; only then do those say so."""
+    """Whether the chosen instants last long enough, and the words for it.
+
+    The shown duration is rounded down, so that it never looks sufficient when it is not.
+    """
     have, need = record.seconds(chosen), f"{check.least:g}"
     enough = have >= check.least - INSTANT
     shown = f"{math.floor(10 * have) / 10:.1f}"

@@ -1,4 +1,4 @@
-"""Folders of lessons: what there is, in which languages, and whether it is all right."""
+"""Folders of lessons: reads them in all their languages, and reports everything that is wrong."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from pathlib import Path
 
 import msgspec
 
-from onpath.lessons.parse import LessonError, Problem, read_lesson
+from onpath.lessons.parse import read_lesson
+from onpath.lessons.problems import LessonError, Problem
 from onpath.lessons.schema import Lesson, Reference, Step
 from onpath.lessons.vocabulary import script_faults
 from onpath.lessons.words import DEFAULT
@@ -20,7 +21,7 @@ REFERENCE = "reference.toml"
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """Lessons in order, each in the languages it is written in.
+    """Lessons in order, each in the languages in which it is written.
 
     Attributes:
         lessons: name -> language -> lesson.
@@ -29,7 +30,7 @@ class Course:
     lessons: dict[str, dict[str, Lesson]]
 
     def lesson(self, name: str, language: str) -> Lesson:
-        """A lesson in a language, or else in English, or else in any.
+        """A lesson in a language; failing that in English, failing that in any language.
 
         Raises:
             KeyError: there is no such lesson.
@@ -38,7 +39,7 @@ class Course:
         return versions.get(language) or versions.get(DEFAULT) or next(iter(versions.values()))
 
     def languages(self) -> list[str]:
-        """Those that any lesson is written in."""
+        """The languages of all lessons, sorted."""
         return sorted({language for versions in self.lessons.values() for language in versions})
 
 
@@ -46,7 +47,7 @@ NO_LESSONS = Course({})
 
 
 def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
-    """All lessons in some folders, without those that are not all right, and what is wrong."""
+    """All valid lessons in some folders, and the problems of the others."""
     lessons: dict[str, dict[str, Lesson]] = {}
     problems: list[Problem] = []
     for folder in folders:
@@ -65,7 +66,11 @@ def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
 
 
 def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
-    """One lesson in all its languages, and what is wrong with it."""
+    """One lesson in all its languages, and its problems.
+
+    Args:
+        home: the folder of the lesson.
+    """
     versions: dict[str, Lesson] = {}
     problems: list[Problem] = []
     for file in sorted(home.glob("*.md"), key=lambda f: (f.stem != DEFAULT, f.stem)):
@@ -82,7 +87,12 @@ def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
 
 
 def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], list[Problem]]:
-    """Task id -> what solves it and what does not, and what is wrong with the file."""
+    """Task id -> reference solution and failure, and the problems of the file.
+
+    Args:
+        lesson: whose tasks need references.
+        file: TOML.
+    """
 
     def problem(text: str, line: int = 1) -> Problem:
         return Problem(str(file), line, text)
@@ -104,7 +114,7 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
 
 
 def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
-    """Where a translation does something else than the lesson."""
+    """Problems where a translation differs from the lesson in more than its words."""
     if len(first.steps) != len(other.steps):
         text = f"{len(other.steps)} steps, {len(first.steps)} in {first.language}.md"
         yield Problem(str(file), 1, text)
@@ -115,6 +125,6 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
 
 
 def _bones(step: Step) -> tuple[object, ...]:
-    """What of a step is the same in all languages."""
+    """The parts of a step that are the same in all languages."""
     tasks = [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()]
     return step.kind, step.scene, step.script, tasks, [type(block) for block in step.predictions()]

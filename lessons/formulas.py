@@ -1,4 +1,4 @@
-"""Markdown to safe HTML: HTML that was typed is shown as typed, LaTeX becomes MathML."""
+"""Converts Markdown to safe HTML: typed HTML is escaped, LaTeX becomes MathML."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any
 from latex2mathml.converter import convert
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
+from markupsafe import Markup
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 MIME = {
@@ -21,18 +22,22 @@ MIME = {
     ".webp": "image/webp",
 }
 LARGEST = 400_000
-"""Of a picture [B]."""
+"""Largest size of a picture, [B]."""
 
 
 class FormulaError(ValueError):
-    """LaTeX that cannot be read."""
+    """LaTeX that cannot be converted."""
 
 
 def mathml(latex: str, options: dict[str, Any]) -> str:
     """A formula as MathML.
 
+    Args:
+        latex: the formula.
+        options: `display_mode` for a formula on a line of its own.
+
     Raises:
-        FormulaError: it is not LaTeX that we can read.
+        FormulaError: the LaTeX cannot be converted.
     """
     display = "block" if options.get("display_mode") else "inline"
     try:
@@ -43,22 +48,22 @@ def mathml(latex: str, options: dict[str, Any]) -> str:
 
 @cache
 def reader() -> MarkdownIt:
-    """CommonMark with tables and formulas, without HTML."""
+    """A CommonMark parser with tables and formulas, and without HTML."""
     markdown = MarkdownIt("commonmark", {"html": False, "typographer": True}).enable(["table"])
     return markdown.use(dollarmath_plugin, renderer=mathml, double_inline=True)
 
 
-def render(markdown: MarkdownIt, tokens: Sequence[Token]) -> str:
-    """HTML of tokens.
+def render(markdown: MarkdownIt, tokens: Sequence[Token]) -> Markup:
+    """The HTML of parsed Markdown; it is markup, since `reader` lets no HTML through.
 
     Raises:
         FormulaError: see `mathml`.
     """
-    return str(markdown.renderer.render(tokens, markdown.options, {}))
+    return Markup(markdown.renderer.render(tokens, markdown.options, {}))
 
 
-def to_html(text: str) -> str:
-    """HTML of a short text, such as a question or a hint.
+def to_html(text: str) -> Markup:
+    """The HTML of a short text such as a question or a hint; a single paragraph loses its <p>.
 
     Raises:
         FormulaError: see `mathml`.
@@ -71,11 +76,11 @@ def to_html(text: str) -> str:
 
 
 def embedded(picture: Path) -> str:
-    """A picture as an address that holds all of it.
+    """A picture as a data: URL.
 
     Raises:
-        ValueError: no picture that a page can show, or one too large.
-        OSError: it cannot be read.
+        ValueError: the file type is not supported, or the file is too large.
+        OSError: the file cannot be read.
     """
     mime = MIME.get(picture.suffix.lower())
     if mime is None:

@@ -18,10 +18,10 @@ SIMPLE = {
 
 
 def read_link(address: str) -> tuple[Action, ...]:
-    """What a link does.
+    """The actions of a link, in order; all parameters are set by one action.
 
     Raises:
-        ValueError: it does nothing that the lab can do.
+        ValueError: the scheme or an action is unknown.
     """
     if not address.startswith(SCHEME):
         raise ValueError(f"link {address!r}: it must begin with https:// or {SCHEME}")
@@ -43,6 +43,7 @@ def read_link(address: str) -> tuple[Action, ...]:
 
 
 def _value(text: str) -> Value:
+    """The text as an int, a float, or itself."""
     for kind in (int, float):
         try:
             return kind(text)

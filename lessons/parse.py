@@ -1,4 +1,4 @@
-"""From a lesson's file to a Lesson, or to a list of what is wrong and where."""
+"""Reads a lesson file into a `Lesson`, or reports all problems with file and line."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ from typing import Any, TypeVar, get_args
 
 import msgspec
 from markdown_it.token import Token
+from markupsafe import Markup
 
 from onpath.lessons import vocabulary
 from onpath.lessons.formulas import FormulaError, embedded, reader, render, to_html
 from onpath.lessons.links import read_link
+from onpath.lessons.problems import LessonError, Problem, line_of
 from onpath.lessons.schema import (
     Block,
     Choice,
@@ -34,31 +36,11 @@ from onpath.lessons.schema import (
 )
 
 LARGEST = 1_000_000
-"""Of a lesson's file [B]."""
+"""Largest size of a lesson file, [B]."""
 KINDS: tuple[str, ...] = get_args(StepKind)
 FENCES = ("scene", "script", "predict", "task", "quiz")
 HEADING = re.compile(r"(\w+):\s*(.+)")
 T = TypeVar("T")
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Problem:
-    """What is wrong with a file, and where."""
-
-    path: str
-    line: int
-    text: str
-
-    def __str__(self) -> str:
-        return f"{self.path}:{self.line}: {self.text}"
-
-
-class LessonError(ValueError):
-    """A lesson that cannot be used, and everything that is wrong with it."""
-
-    def __init__(self, problems: Iterable[Problem]) -> None:
-        self.problems = sorted(set(problems))
-        super().__init__("\n".join(map(str, self.problems)))
 
 
 @dataclass(slots=True)
@@ -71,7 +53,7 @@ class _Draft:
     blocks: list[Block]
     scene: StepSetup | None = None
     script: Script | None = None
-    broken: bool = False  # a block of it could not be read
+    broken: bool = False  # whether one of its blocks could not be read
 
     def step(self) -> Step:
         kind: Any = self.kind
@@ -80,15 +62,15 @@ class _Draft:
 
 
 def read_lesson(path: Path) -> Lesson:
-    """The lesson in a file.
+    """Read the lesson in a file.
 
     Raises:
-        LessonError: with file, line and words for everything that is wrong.
+        LessonError: with file, line and text of every problem.
     """
     try:
         if path.stat().st_size > LARGEST:
             raise LessonError([Problem(str(path), 1, f"larger than {LARGEST // 1000} kB")])
-        text = path.read_text("utf-8-sig")  # Notepad begins with a byte-order mark
+        text = path.read_text("utf-8-sig")  # Windows Notepad writes a byte-order mark
     except OSError as error:
         raise LessonError([Problem(str(path), 1, error.strerror or "cannot be read")]) from None
     except UnicodeDecodeError as error:
@@ -97,6 +79,8 @@ def read_lesson(path: Path) -> Lesson:
 
 
 class _Reader:
+    """Reads one lesson file and collects its problems."""
+
     def __init__(self, path: Path, text: str) -> None:
         self._path = path
         self._text = text
@@ -106,10 +90,10 @@ class _Reader:
         self._scene = StepSetup()
 
     def lesson(self) -> Lesson:
-        """Read all of it.
+        """Read the whole file.
 
         Raises:
-            LessonError: anything is wrong.
+            LessonError: there is any problem.
         """
         front, first = self._front()
         body = self._text.split("\n", first)[first] if first else self._text
@@ -120,7 +104,7 @@ class _Reader:
         raise LessonError(self._problems)
 
     def _front(self) -> tuple[Front | None, int]:
-        """The facts at the top and how many lines they take."""
+        """The front matter and the number of lines it takes."""
         lines = self._text.split("\n")
         ends = [i for i, line in enumerate(lines) if line.rstrip() == "+++"]
         if len(ends) < 2 or ends[0] != 0:
@@ -160,7 +144,7 @@ class _Reader:
         return _Draft(match[1], match[2], line, [])
 
     def _fence(self, draft: _Draft, what: str, content: str, line: int) -> None:
-        """A block of TOML."""
+        """Read a fenced block of TOML."""
         before = len(self._problems)
         if what == "scene":
             draft.scene = self._checked(content, line, StepSetup, self._scene_faults)
@@ -195,7 +179,7 @@ class _Reader:
         return vocabulary.task_faults(task, self._robot)
 
     def _prose(self, draft: _Draft, tokens: list[Token], line: int) -> None:
-        """A paragraph, list, table or picture; links that act on the lab end a text block."""
+        """Read a paragraph, list, table or picture; lab links end the text block."""
         links: list[LabLink] = []
         for token in tokens:
             for child in token.children or ():
@@ -208,7 +192,7 @@ class _Reader:
             self._complain(line, str(error))
             return
         if links and not _has_prose(tokens):
-            html = ""  # the buttons say it all
+            html = Markup()  # the buttons show the same words
         last = draft.blocks[-1] if draft.blocks else None
         if isinstance(last, Text) and not last.links:
             draft.blocks[-1] = Text(last.html + html, tuple(links))
@@ -228,7 +212,7 @@ class _Reader:
             self._complain(line, str(error))
 
     def _links(self, children: list[Token], line: int) -> Iterator[LabLink]:
-        """Links that act on the lab; in the text their words stand out."""
+        """Lab links of a text; in the text their words become bold instead of links."""
         for i, token in enumerate(children):
             if token.type != "link_open":
                 continue
@@ -257,20 +241,24 @@ class _Reader:
         if read is not None:
             found = list(faults(read))
             for fault in found:
-                self._complain(_line_of(fault, content, line), fault)
+                self._complain(line_of(fault, content, line), fault)
             if found:
                 return None
         return read
 
     def _toml(self, content: str, line: int, kind: type[T]) -> T | None:
-        """TOML that begins at a line, as a value of some type; None after a complaint."""
+        """TOML as a value of some type; None after reporting a problem.
+
+        Args:
+            line: of the file at which the TOML begins.
+        """
         try:
             return msgspec.convert(tomllib.loads(content), kind)
         except tomllib.TOMLDecodeError as error:
             place = re.search(r"at line (\d+)", str(error))
             self._complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}")
         except msgspec.ValidationError as error:
-            self._complain(_line_of(str(error), content, line), str(error))
+            self._complain(line_of(str(error), content, line), str(error))
         except RecursionError:
             self._complain(line, "nested too deeply")
         return None
@@ -284,13 +272,13 @@ class _Reader:
 
 
 def _has_prose(tokens: list[Token]) -> bool:
-    """Whether there is anything but links."""
+    """Whether there is any text outside links."""
     inline = [child for token in tokens for child in token.children or ()]
     return any(child.level == 0 and child.content.strip(" \u00a0,.;:·|") for child in inline)
 
 
 def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
-    """The tokens of one block of the top level after another."""
+    """Splits tokens into top-level blocks."""
     section: list[Token] = []
     depth = 0
     for token in tokens:
@@ -301,41 +289,12 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
             section = []
 
 
-def _line_of(fault: str, content: str, first: int) -> int:
-    """Where in a block of TOML a fault is.
-
-    It names a place such as `$.check[1].below`, or a word: a field, a value, a parameter.
-    """
-    lines = content.split("\n")
-    _, _, place = fault.partition("`$")
-    here = 0
-    for name, index in re.findall(r"\.(\w+)(?:\[(\d+)\])?", place):
-        found = _lines_with(name, lines, here)
-        if found:
-            here = found[min(int(index or 0), len(found) - 1)]
-    for word in re.findall(r"field `(\w+)`|'([^']+)'|^(\w+)", fault):
-        found = _lines_with("".join(word), lines, here)
-        if found:
-            return first + found[0]
-    return first + here
-
-
-def _lines_with(word: str, lines: list[str], begin: int) -> list[int]:
-    """Which lines from `begin` on give a name a value; if none does, which have the word."""
-    name = rf"(?<!\w){re.escape(word)}(?!\w)"
-    for pattern in (name + r"\s*=", name):
-        found = [i for i in range(begin, len(lines)) if re.search(pattern, lines[i])]
-        if found:
-            return found
-    return []
-
-
 def _quiz_faults(quiz: Quiz) -> Iterator[str]:
     return vocabulary.option_faults([option.right for option in quiz.options])
 
 
 def _rendered(block: Choice | Sketch | Task | Quiz) -> Choice | Sketch | Task | Quiz:
-    """The same with its words as safe HTML."""
+    """The same block with its texts as safe HTML."""
     replace = msgspec.structs.replace
     if isinstance(block, Sketch):
         return replace(block, question=to_html(block.question))
@@ -349,7 +308,7 @@ def _rendered(block: Choice | Sketch | Task | Quiz) -> Choice | Sketch | Task | 
 
 
 def _missing(drafts: list[_Draft]) -> Iterator[str]:
-    """What every lesson has and this one lacks."""
+    """Problems of the lesson as a whole: missing kinds of steps, repeated ids, incomplete steps."""
     kinds = [draft.kind for draft in drafts]
     for kind in ("play", "predict", "run", "explain", "task"):
         if kind not in kinds:

@@ -1,4 +1,4 @@
-"""What a student has done in the lessons. Kept as JSON; whatever is read back is checked."""
+"""A student's progress in the lessons. It is stored as JSON, and validated when it is read."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ Points = Annotated[tuple[float, ...], msgspec.Meta(max_length=MOST_POINTS)]
 
 
 class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A prediction: an option, or a curve, or neither when it was skipped.
+    """The answer to a prediction: an option, a sketched curve, or neither if it was skipped.
 
     Attributes:
-        option: index, or None.
-        times, values: of a sketch, [s] and in the quantity's unit.
+        option: index of the option, or None.
+        times, values: points of a sketch, [s] and in the quantity's unit.
     """
 
     option: Index | None = None
@@ -27,12 +27,12 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def skipped(self) -> bool:
-        """Whether there is none."""
+        """Whether no answer was given."""
         return self.option is None and not self.times
 
 
 class Truth(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What really happened: a quantity of both robots over time."""
+    """What happened after a prediction: one quantity of both robots over time."""
 
     quantity: Key
     times: Points
@@ -41,15 +41,15 @@ class Truth(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Of one lesson.
+    """Progress in one lesson.
 
     Attributes:
-        step: the one that is open.
-        seen: how many steps have been opened.
+        step: index of the open step.
+        seen: number of steps that have been opened.
         answers, truths: of the predictions, by step.
-        played: steps that have been let happen.
-        tasks: passed ones, with the best value of each that is worth one, or 0.
-        hints: how many are shown, by task.
+        played: steps whose script has been run.
+        tasks: ids of passed tasks -> best value so far, or 0 for tasks without one.
+        hints: number of hints shown, by task.
         quiz: chosen options, by step.
     """
 
@@ -64,12 +64,12 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Of one student.
+    """Progress of one student.
 
     Attributes:
-        lesson: name of the open one; empty for none.
+        lesson: name of the open lesson; empty for none.
         language: of texts and interface.
-        presenting: large type for a projector.
+        presenting: whether large type is used, for a projector.
         notes: by lesson.
     """
 
@@ -80,10 +80,10 @@ class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_progress(data: object) -> Progress:
-    """From decoded JSON.
+    """The progress in decoded JSON.
 
     Raises:
-        ValueError: it is not a progress; the message says where.
+        ValueError: it is not valid; the message names the place.
     """
     progress = msgspec.convert(data, Progress)
     for notes in progress.notes.values():

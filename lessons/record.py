@@ -1,4 +1,4 @@
-"""What happened in a run, as the checks look at it."""
+"""The record of a run that the checks evaluate."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ROLES: dict[str, RobotName] = {
     "path_following": "follower",
     "trajectory_tracking": "tracker",
 }
-"""Controller -> robot, as the lessons call it."""
+"""Controller -> name of its robot in the lessons."""
 QUANTITIES: dict[str, str] = {
     "distance": "mm",
     "lag": "mm",
@@ -31,24 +31,24 @@ QUANTITIES: dict[str, str] = {
     "deflection": "mm",
     "energy": "mJ",
 }
-"""Name -> unit."""
+"""Quantity -> unit."""
 PLOTS = (
     *("speed", "torques", "across", "across_rate", "place", "rate", "force"),
     *("modes", "deflection", "energy"),
 )
-"""Names of the plots a scene can ask for."""
+"""Names of the plots that a scene can show."""
 
 
 @dataclass(frozen=True, slots=True)
 class Happening:
-    """Something that was done, or that came about.
+    """An event of a run.
 
     Attributes:
-        run: how often the lab had been reset before.
-        time: simulated, [s].
+        run: number of resets before it.
+        time: simulated time, [s].
         name: one of lessons.schema.EventName.
-        detail: the parameter, the path, the robot; or empty.
-        robots: whom it concerns.
+        detail: name of the parameter, the path or the robot; or empty.
+        robots: the robots that it concerns.
     """
 
     run: int
@@ -60,16 +60,17 @@ class Happening:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Record:
-    """A run since a step began or the last reset.
+    """The record since a step began or since the last reset, whichever is later.
 
     Attributes:
-        times: shape (n,), [s], rising; each instant lasts until the next one.
+        times: shape (n,), [s], increasing; each instant lasts until the next one.
         values: robot -> quantity -> shape (n,), in the units of QUANTITIES.
-        happenings: since the step began, in order; those before the last reset too.
-        run: the present one.
-        parameters: as they are now.
-        end: when the last instant ends, [s].
-        path, robot: names of what is followed and who follows.
+        happenings: all events since the step began, in order, including those before the last
+            reset.
+        run: number of the current run.
+        parameters: their current values.
+        end: end of the last instant, [s].
+        path, robot: names of the path and of the robot model.
     """
 
     times: Array
@@ -85,7 +86,11 @@ class Record:
     )
 
     def chosen(self, robot: RobotName, window: Window) -> Mask:
-        """Which instants count, booleans, shape (n,); the latest ones last as long as asked."""
+        """The instants that a window selects, shape (n,).
+
+        `window.during` selects by hold and pull; `window.last` keeps only the latest so many
+        seconds.
+        """
         held = self._during(robot, "hold", "let_go")
         pulled = self._during(robot, "pull", "release")
         chosen: Mask = {
@@ -101,21 +106,22 @@ class Record:
         return chosen
 
     def stopped(self, robot: RobotName) -> bool:
-        """Whether a robot stands still because the simulation had to stop."""
+        """Whether the simulation of a robot was stopped in this run because it diverged."""
         return any(
             event.name == "diverged" and event.run == self.run and robot in event.robots
             for event in self.happenings
         )
 
     def seconds(self, chosen: Mask) -> float:
-        """How long the chosen instants last, [s]."""
+        """Total duration of the chosen instants, [s]."""
         return float(self._steps()[chosen].sum())
 
     def _steps(self) -> Array:
+        """Duration of every instant, shape (n,), [s]."""
         return np.diff(self.times, append=self.end).clip(0.0)
 
     def _during(self, robot: RobotName, begin: str, end: str) -> Mask:
-        """Instants between two happenings of this run."""
+        """Instants between two kinds of events in this run, shape (n,)."""
         if (robot, begin) not in self._masks:
             mask = np.zeros(len(self.times), dtype=bool)
             since: float | None = None

@@ -1,10 +1,14 @@
-"""What a lesson is made of. A lesson file is read into these by lessons/parse.py."""
+"""The data that a lesson consists of. lessons/parse.py reads a lesson file into them.
+
+Questions, answers, tasks and hints are Markdown in the file and Markup here.
+"""
 
 from __future__ import annotations
 
 from typing import Literal
 
 import msgspec
+from markupsafe import Markup
 
 StepKind = Literal["play", "predict", "run", "explain", "task", "quiz"]
 RobotName = Literal["follower", "tracker"]
@@ -17,20 +21,21 @@ Value = float | int | str
 
 
 class Data(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Read from TOML; an unknown name is an error."""
+    """Base of everything that is read from TOML; unknown names are errors."""
 
 
 class StepSetup(Data, frozen=True):
-    """How the lab is set up when a step begins.
+    """The state of the lab at the beginning of a step.
 
     Attributes:
-        robot: name of the robot; empty: the lesson's.
+        robot: name of the robot; empty: that of the lesson.
         path: name of a preset; empty: the circle.
-        set: parameters that differ from the lab's defaults; all others go back to them.
-        controls: what is shown on the right: names of parameters, or of CONTROLS.
+        set: parameters that differ from the lab's defaults; all others are reset to them.
+        controls: controls that are shown: names of parameters, or of CONTROLS.
         plot: a plot to show besides the distance, one of PLOTS; empty for none.
         running: whether time runs.
-        keep: robot, path and parameters are those of the step before, but for what is named here.
+        keep: whether robot, path and parameters of the step before are kept, except those named
+            here.
     """
 
     robot: str = ""
@@ -42,7 +47,7 @@ class StepSetup(Data, frozen=True):
     keep: bool = False
 
     def after(self, before: StepSetup) -> StepSetup:
-        """Itself, with what it keeps of the scene before it."""
+        """The complete setup, given that of the step before."""
         if not self.keep:
             return self
         kept = {**before.set, **self.set}
@@ -51,20 +56,20 @@ class StepSetup(Data, frozen=True):
 
 
 class Action(Data, frozen=True):
-    """One thing that is done to the lab at a time; exactly one of the others is given.
+    """One action on the lab. Exactly one of the fields other than `at` and `only` is given.
 
     Attributes:
-        at: since the script began, [s].
-        hold: hold back, or let go.
+        at: time since the script began, [s].
+        hold: put the brake on, or off.
         pull: pull the end-points from where they are by (right, up), [mm], in the path's plane.
         release: end a pull.
         set: parameters.
         path: name of a preset.
-        move: a control point (index, right, up), by [mm].
-        robot: another robot.
-        reset: both robots to the start.
+        move: move a control point (index, right, up), by [mm].
+        robot: change the robot.
+        reset: put both robots back to the start.
         run: run or pause.
-        identify: fit the controller's model to what was measured.
+        identify: fit the controller's model to the measured motion.
         only: the robot that hold and pull act on; empty for both.
     """
 
@@ -83,10 +88,10 @@ class Action(Data, frozen=True):
 
     @property
     def what(self) -> str:
-        """The name of the one thing that is given.
+        """Name of the field that is given.
 
         Raises:
-            ValueError: none, or more than one.
+            ValueError: none is given, or more than one.
         """
         given = [n for n in ACTIONS if getattr(self, n) is not None]
         if len(given) != 1:
@@ -101,11 +106,11 @@ ACTIONS = (
 
 
 class Script(Data, frozen=True):
-    """What the lab does by itself.
+    """A sequence of actions that the lab performs by itself.
 
     Attributes:
         do: in any order.
-        until: when it is over, [s].
+        until: end of the script, [s].
     """
 
     do: tuple[Action, ...] = ()
@@ -113,12 +118,12 @@ class Script(Data, frozen=True):
 
 
 class Option(Data, frozen=True):
-    """An answer to choose.
+    """One option of a question.
 
     Attributes:
         text: as shown.
-        answer: what is said to who chose it.
-        right: whether it is right.
+        answer: the response to a student who chooses it.
+        right: whether it is correct.
     """
 
     text: str
@@ -127,7 +132,7 @@ class Option(Data, frozen=True):
 
 
 class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
-    """A prediction: one of some options."""
+    """A prediction: one of several options."""
 
     question: str
     options: tuple[Option, ...]
@@ -138,9 +143,9 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
 
     Attributes:
         quantity: one of lessons.record.QUANTITIES.
-        robot: whose; the truth of both is shown beside it.
-        seconds: length of the time axis.
-        top, bottom: ends of the other axis, in the quantity's unit.
+        seconds: length of the time axis, [s].
+        top, bottom: limits of the other axis, in the quantity's unit.
+        robot: the robot that is predicted; the true curves of both are shown afterwards.
     """
 
     question: str
@@ -155,12 +160,12 @@ Prediction = Choice | Sketch
 
 
 class Window(Data, frozen=True):
-    """Which instants of a run count.
+    """The instants of a run that a check evaluates.
 
     Attributes:
-        during: always; held, pulled or free (neither).
+        during: "always", "held", "pulled", or "free" (neither held nor pulled).
         last: only the latest of those, [s]; 0 for all.
-        least: for how long there must have been any, [s].
+        least: least total duration, [s].
     """
 
     during: During = "always"
@@ -169,7 +174,7 @@ class Window(Data, frozen=True):
 
 
 class Bound(Window, frozen=True, tag="bound", tag_field="kind"):
-    """A quantity stays below, or above, something."""
+    """A statistic of a quantity lies between bounds."""
 
     quantity: str = ""
     robot: RobotName = "follower"
@@ -179,7 +184,7 @@ class Bound(Window, frozen=True, tag="bound", tag_field="kind"):
 
 
 class Compare(Window, frozen=True, tag="compare", tag_field="kind"):
-    """A quantity of `larger` is at least `ratio` times that of the other robot."""
+    """A statistic of `larger` is at least `ratio` times that of the other robot."""
 
     quantity: str = ""
     larger: RobotName = "tracker"
@@ -188,11 +193,11 @@ class Compare(Window, frozen=True, tag="compare", tag_field="kind"):
 
 
 class Event(Data, frozen=True, tag="event", tag_field="kind"):
-    """Something has happened.
+    """An event has happened.
 
     Attributes:
         name: of a parameter for "set", a path for "path", a robot for "robot"; empty for any.
-        times: how often at least.
+        times: least number of times.
     """
 
     event: EventName
@@ -201,13 +206,13 @@ class Event(Data, frozen=True, tag="event", tag_field="kind"):
 
 
 class Order(Data, frozen=True, tag="order", tag_field="kind"):
-    """Events have happened one after another; others may lie between. `set:K1` names one."""
+    """Events have happened in this order, possibly with others in between. `set:K1` names one."""
 
     events: tuple[str, ...]
 
 
 class Setting(Data, frozen=True, tag="setting", tag_field="kind"):
-    """A parameter has a value, or lies in a range; `path` and `robot` can be asked for, too."""
+    """A parameter has a value or lies in a range. `path` and `robot` can be checked as well."""
 
     name: str
     equals: Value | None = None
@@ -219,14 +224,13 @@ Check = Bound | Compare | Event | Order | Setting
 
 
 class Task(Data, frozen=True):
-    """What the student does and the lab checks.
+    """What the student has to do, and how the lab checks it.
 
     Attributes:
         id: unique in the lesson, the same in all languages.
-        text: what to do.
+        check: all of them must be satisfied at the same time.
         hints: shown one at a time.
-        check: all must hold at once.
-        best: a quantity of the follower to get small, compared with one's own previous best.
+        best: a quantity of the follower to minimise; the student's best value is kept.
     """
 
     id: str
@@ -237,23 +241,23 @@ class Task(Data, frozen=True):
 
 
 class Quiz(Data, frozen=True):
-    """A question at the end."""
+    """A question at the end of a lesson."""
 
     question: str
     options: tuple[Option, ...]
 
 
 class LabLink(msgspec.Struct, frozen=True):
-    """Words in the text that act on the lab."""
+    """Words in the text that act on the lab when they are clicked."""
 
     label: str
     actions: tuple[Action, ...]
 
 
 class Text(msgspec.Struct, frozen=True):
-    """Part of a step's text, as safe HTML, and the links that follow it as buttons."""
+    """Part of a step's text, as safe HTML, and its lab links, which follow it as buttons."""
 
-    html: str
+    html: Markup
     links: tuple[LabLink, ...] = ()
 
 
@@ -264,10 +268,9 @@ class Step(msgspec.Struct, frozen=True):
     """One page of a lesson.
 
     Attributes:
-        line: where it begins in the file.
-        blocks: in reading order.
-        scene: what the lab is set to, or None for what the step before has.
-        script: what the lab does by itself, or None.
+        line: of the file at which it begins.
+        scene: state of the lab at the beginning, or None for that of the step before.
+        script: actions that the lab performs by itself, or None.
     """
 
     kind: StepKind
@@ -278,16 +281,16 @@ class Step(msgspec.Struct, frozen=True):
     script: Script | None = None
 
     def predictions(self) -> list[Prediction]:
-        """In this step."""
+        """The predictions of this step."""
         return [block for block in self.blocks if isinstance(block, Choice | Sketch)]
 
     def tasks(self) -> list[Task]:
-        """In this step."""
+        """The tasks of this step."""
         return [block for block in self.blocks if isinstance(block, Task)]
 
 
 class Front(Data, frozen=True):
-    """The lines between +++ at the top of a lesson."""
+    """The front matter of a lesson, between two lines +++."""
 
     title: str
     summary: str
@@ -309,19 +312,19 @@ class Lesson(msgspec.Struct, frozen=True):
     steps: tuple[Step, ...]
 
     def scene_at(self, index: int) -> StepSetup:
-        """What the lab is set to at a step, whichever way one comes to it."""
+        """The complete setup of a step, independent of how the student got there."""
         scene = StepSetup()
         for step in self.steps[: index + 1]:
             scene = step.scene.after(scene) if step.scene is not None else scene
         return scene
 
     def tasks(self) -> list[Task]:
-        """Of all steps."""
+        """The tasks of all steps."""
         return [task for step in self.steps for task in step.tasks()]
 
 
 class Reference(Data, frozen=True):
-    """For one task: what solves it, and what does not."""
+    """Scripts for one task: one that solves it, and one that does not."""
 
     solution: Script
     failure: Script

@@ -1,4 +1,4 @@
-"""Fewer points of a curve, with all its peaks."""
+"""Reduces the number of points of a curve without losing its peaks."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from onpath.models.arrays import Array
 
 
 def peaks(curves: Sequence[Array], most: int) -> NDArray[np.intp]:
-    """Which points of some curves of one length to keep, in order: all, if there are few enough.
+    """Indices of the points to keep of several curves of equal length, in increasing order.
 
-    Else the first, the last, and of each of equally long stretches the least and the greatest of
-    every curve.
+    If there are at most `most` points, all are kept. Otherwise the first and the last are kept, and
+    the minimum and maximum of every curve on each of a number of equally long intervals.
 
     Args:
-        curves: shape (n,) each, numbers without NaN.
-        most: points to keep at most.
+        curves: shape (n,) each, without NaN.
+        most: largest number of points to keep.
     """
     count = len(curves[0])
     if count <= most:
@@ -32,6 +32,6 @@ def peaks(curves: Sequence[Array], most: int) -> NDArray[np.intp]:
 
 
 def stretches(count: int, curves: int, most: int) -> list[slice]:
-    """Stretches of points of which `peaks` keeps the extremes."""
+    """The intervals of points of which `peaks` keeps the extremes."""
     ends = np.linspace(0, count, max(1, (most - 2) // (2 * curves)) + 1).astype(int)
     return [slice(a, b) for a, b in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)]

@@ -1,4 +1,4 @@
-"""Which names a lesson may use: controls, plots, paths, robots, parameters, quantities, events."""
+"""The names that a lesson may use, and the checks that it uses only those."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ CONTROLS = (
 )
 EVENTS: tuple[str, ...] = get_args(EventName)
 HIGHEST = 1e6
-"""Of a sketch's axis."""
+"""Largest limit of a sketch's axis."""
 LONGEST = 60.0
-"""Of a script or a sketch [s]: the lab remembers a minute."""
+"""Longest script or sketch, [s]: the lab keeps one minute of history."""
 
 
 def scene_faults(scene: StepSetup, robot: str) -> Iterator[str]:
-    """What is wrong with a scene, in words."""
+    """The faults of a scene."""
     if scene.robot:
         yield from _one_of(scene.robot, ROBOTS, "robot")
     if scene.path:
@@ -55,7 +55,7 @@ def scene_faults(scene: StepSetup, robot: str) -> Iterator[str]:
 
 
 def script_faults(script: Script, robot: str) -> Iterator[str]:
-    """What is wrong with a script, in words."""
+    """The faults of a script."""
     if not 0 < script.until <= LONGEST:
         yield f"until = {script.until:g}: a script ends between 0 and {LONGEST:g} s"
     for action in script.do:
@@ -66,7 +66,7 @@ def script_faults(script: Script, robot: str) -> Iterator[str]:
 
 
 def action_faults(action: Action, robot: str) -> Iterator[str]:
-    """What is wrong with an action, in words."""
+    """The faults of an action."""
     try:
         what = action.what
     except ValueError as error:
@@ -81,7 +81,7 @@ def action_faults(action: Action, robot: str) -> Iterator[str]:
 
 
 def prediction_faults(prediction: Prediction) -> Iterator[str]:
-    """What is wrong with a prediction, in words."""
+    """The faults of a prediction."""
     if isinstance(prediction, Sketch):
         yield from _one_of(prediction.quantity, QUANTITIES, "quantity")
         if not 0 < prediction.seconds <= LONGEST:
@@ -94,13 +94,17 @@ def prediction_faults(prediction: Prediction) -> Iterator[str]:
 
 
 def option_faults(right: list[bool]) -> Iterator[str]:
-    """What is wrong with the options of a question."""
+    """The faults of a question's options.
+
+    Args:
+        right: for every option, whether it is correct.
+    """
     if len(right) < 2 or sum(right) != 1:
         yield f"{len(right)} options, {sum(right)} right: two or more are needed, one of them right"
 
 
 def task_faults(task: Task, robot: str) -> Iterator[str]:
-    """What is wrong with a task, in words."""
+    """The faults of a task."""
     if not task.id.replace("-", "").isalnum():
         yield f"id {task.id!r}: letters, digits and hyphens"
     if not task.check:

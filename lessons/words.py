@@ -8,7 +8,7 @@ from typing import Any
 from onpath.assets.messages import DEFAULT, Catalogue, catalogue, languages
 from onpath.models.errors import CodedError, Message
 
-ELSEWHERE = ("parameter.", "machine.", "path.", "stop.")
+ELSEWHERE = ("parameter.", "machine.", "path.")
 """Beginnings of keys whose English stands in models/, so that other languages alone have them."""
 
 

@@ -1,1 +1,1 @@
-"""The mathematics of path following: systems, paths, virtual outputs, controllers, closed loops."""
+"""The mathematics of path following: paths, robots, control laws, closed loops, experiments."""

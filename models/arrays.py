@@ -1,4 +1,4 @@
-"""The type of numerical arrays."""
+"""The type of numerical arrays: NumPy, double precision."""
 
 from __future__ import annotations
 

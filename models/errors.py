@@ -20,13 +20,10 @@ class Message:
         arguments: by name. A count is a whole number, so that a language can choose the plural;
             other numbers are text, as they are to be shown. Messages in a message are translated
             too, several of them separated by semicolons.
-        english: what is said if no catalogue has the code, for a robot that is one file; places
-            for arguments as `str.format` has them.
     """
 
     code: str
     arguments: Mapping[str, Argument] = field(default_factory=dict[str, Argument])
-    english: str = ""
 
     def __str__(self) -> str:
         return self.told()
@@ -38,10 +35,7 @@ class Message:
             KeyError: no such code, or an argument is missing.
         """
         values = {name: _value(value, language) for name, value in self.arguments.items()}
-        known = catalogue(language)
-        if self.english and self.code not in known:
-            return self.english.format_map(values)
-        return known.text(self.code, values)
+        return catalogue(language).text(self.code, values)
 
 
 def _value(value: Argument, language: str) -> str | int:

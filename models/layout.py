@@ -1,4 +1,4 @@
-"""Named slices of flat vectors: what the compiled loop takes and gives, by name."""
+"""Flat vectors with named fields, as the compiled loop reads and writes them."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ from numpy.typing import ArrayLike
 from onpath.models.arrays import Array
 
 Fields = dict[str, ca.SX]
-"""A symbolic vector's fields by name, each (size, 1)."""
+"""Fields of a symbolic vector by name, each (size, 1)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Fields of a vector: names and sizes, in order.
+    """The fields of a flat vector: names and sizes, in order.
 
     Attributes:
-        slices: where each field lies.
+        fields: (name, size) of every field.
+        slices: name -> slice of the vector.
         size: length of the vector.
     """
 
@@ -38,16 +39,20 @@ class Layout:
         object.__setattr__(self, "size", starts[-1])
 
     def symbols(self, name: str) -> tuple[ca.SX, Fields]:
-        """A symbolic vector and its fields, each (size, 1)."""
+        """A symbolic vector (size, 1) and its fields, each (field size, 1).
+
+        Args:
+            name: of the CasADi symbol.
+        """
         vector = ca.SX.sym(name, self.size)
         return vector, {field: vector[where] for field, where in self.slices.items()}
 
     def join(self, values: Mapping[str, ca.SX]) -> ca.SX:
-        """A symbolic vector from its fields."""
+        """The symbolic vector with these fields, (size, 1)."""
         return ca.vertcat(*[ca.densify(values[name]) for name, _ in self.fields])
 
     def pack(self, values: Mapping[str, ArrayLike]) -> Array:
-        """A numeric vector from its fields.
+        """The numeric vector with these fields, shape (size,).
 
         Raises:
             ValueError: a field is missing, unknown, of the wrong size, or not finite.
@@ -64,9 +69,10 @@ class Layout:
         return np.array(numbers)
 
     def unpack(self, vectors: Array) -> dict[str, Array]:
-        """Views of the fields, shape (..., size) -> (..., field size)."""
+        """Views of the fields of one or many vectors, shape (..., size) -> (..., field size)."""
         return {name: vectors[..., where] for name, where in self.slices.items()}
 
 
 def _numbers(value: ArrayLike) -> list[float]:
+    """The value as a list of floats; a float takes a short cut, because most fields are floats."""
     return [value] if isinstance(value, float) else np.asarray(value, dtype=float).ravel().tolist()

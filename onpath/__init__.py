@@ -1,1 +1,54 @@
-"""OnPath: a browser lab in which path following and trajectory tracking can be compared."""
+"""OnPath: a browser lab in which path following and trajectory tracking can be compared.
+
+In Python, without a browser:
+
+>>> import onpath
+>>> run = onpath.simulate(robot="five_bar", law="path_following", hold=(1, 2), duration=3)
+>>> run.distance.shape  # [m], one row per millisecond
+(3000,)
+
+`run.plot()` draws it, `run.to_csv("a.csv")` writes it; `help(onpath.simulate)` says what can be
+set. Names are listed by `onpath.robots()`, `onpath.laws()`, `onpath.paths()` and
+`onpath.parameters("five_bar")`.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from onpath.app.notebook.run import Run as Run
+    from onpath.app.notebook.simulate import circle as circle
+    from onpath.app.notebook.simulate import ellipse as ellipse
+    from onpath.app.notebook.simulate import laws as laws
+    from onpath.app.notebook.simulate import parameters as parameters
+    from onpath.app.notebook.simulate import paths as paths
+    from onpath.app.notebook.simulate import robots as robots
+    from onpath.app.notebook.simulate import segment as segment
+    from onpath.app.notebook.simulate import simulate as simulate
+    from onpath.app.notebook.simulate import through as through
+
+__all__ = (
+    "Run",
+    "circle",
+    "ellipse",
+    "laws",
+    "parameters",
+    "paths",
+    "robots",
+    "segment",
+    "simulate",
+    "through",
+)
+
+
+def __getattr__(name: str) -> Any:
+    """Public names, imported when they are first used: `import onpath` alone is quick."""
+    if name not in __all__:
+        raise AttributeError(f"module 'onpath' has no attribute {name!r}")
+    module = import_module("onpath.app.notebook.simulate")
+    globals().update({each: getattr(module, each) for each in __all__})
+    return globals()[name]
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -15,6 +15,7 @@ TOPS = ("app", "models", "lessons", "assets")
 ORDER = [
     "app.cli",
     "app.bench",
+    "app.notebook",
     "app.server",
     "app.page",
     "app.exports",

@@ -105,7 +105,9 @@ def test_the_container_is_no_root_answers_for_its_health_and_has_what_it_needs(
     assert base == again and f">={base}" == project["requires-python"]
     (extra,) = re.findall(r"/src\[(\w+)\]", CONTAINERFILE)
     assert extra in project["optional-dependencies"]
-    for needed in ("pyproject.toml", "README.md", "LICENSE", "app", "models", "lessons", "assets"):
+    links = {link.readlink().name for link in (ROOT / "onpath").iterdir() if link.is_symlink()}
+    assert links == {"app", "models", "lessons", "assets"}  # copied as links, with what they are to
+    for needed in ("pyproject.toml", "README.md", "LICENSE", "onpath", *links):
         assert f"!{needed}" in (ROOT / ".containerignore").read_text().splitlines()
 
 

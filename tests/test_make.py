@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -20,10 +22,42 @@ def test_both_parts_run_whatever_the_other_says(tmp_path: Path, fails: str) -> N
         f'#!/bin/sh\necho ran\ncase "every $*" in *{fails}*) exit 1;; esac\n', "utf-8"
     )
     pytest_of_ours.chmod(0o755)
-    command = ["make", "-o", "venv/.installed", "VENV=venv", f"PYTEST={pytest_of_ours}", "test"]
+    command = ["make", "-o", "venv/.tools", "VENV=venv", f"PYTEST={pytest_of_ours}", "test"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.stdout.count("ran") == 2
     assert (done.returncode == 0) == (fails == "nothing")
+
+
+PIP = """#!/bin/sh
+case "$*" in
+    *"-m venv"*) for place; do :; done; rm -rf "$place"; mkdir -p "$place/bin"
+        cp "$0" "$place/bin/pip"; cp "$0" "$place/bin/onpath"; cp "$0" "$place/bin/pytest";;
+    *install*) echo "installed ${4}";;
+esac
+"""
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="needs make")
+def test_running_installs_the_lab_and_testing_adds_the_tools(tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").touch()
+    python = tmp_path / "python"
+    python.write_text(PIP, "utf-8")
+    python.chmod(0o755)
+
+    def made(target: str) -> list[str]:
+        command = ["make", "-f", str(ROOT / "Makefile"), f"PYTHON={python}", target]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
+        return re.findall(r"^installed (.*)$", done.stdout, re.MULTILINE)
+
+    assert made("run") == ["."]
+    assert made("run") == []
+    assert made("test") == [".[dev]"]
+    assert made("test") == made("run") == []
+    later = (tmp_path / ".venv" / ".tools").stat().st_mtime + 10
+    os.utime(tmp_path / "pyproject.toml", (later, later))
+    os.utime(tmp_path, (later, later))
+    assert made("run") == ["."]
+    assert not (tmp_path / ".venv" / ".tools").exists()
 
 
 def test_examples_are_at_random_only_when_asked(request: pytest.FixtureRequest) -> None:

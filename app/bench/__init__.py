@@ -1,1 +1,1 @@
-"""Measures a running lab: time per tick, clients, delay of the mouse."""
+"""Measures a running lab: time per tick, many clients, latency of the mouse."""

@@ -1,4 +1,4 @@
-"""viser's wire format from the browser's side, for simulated browsers. Pure functions."""
+"""viser's wire format on the browser's side, for simulated browsers. Pure functions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CAMERA = {
     "look_at": [0.0, 0.0, 0.0],
     "up_direction": [0.0, 0.0, 1.0],
 }
-"""Fields of a camera message; the first one announces a browser."""
+"""Fields of a camera message; the first such message announces a browser."""
 
 
 def packed(kind: str, **fields: Any) -> bytes:
@@ -32,10 +32,10 @@ def packed(kind: str, **fields: Any) -> bytes:
 
 
 def answer(message: dict[str, Any], stored: Mapping[str, str] | None = None) -> bytes | None:
-    """What a page that somebody sees answers at once, if anything.
+    """The immediate answer of a visible page to a message, or None.
 
     Args:
-        stored: what the browser keeps.
+        stored: the browser's local storage.
     """
     match message:
         case {"type": "LocalStorageGetItemRequestMessage", "request_uuid": number, "key": key}:
@@ -48,7 +48,7 @@ def answer(message: dict[str, Any], stored: Mapping[str, str] | None = None) -> 
 
 
 class MessageHeader(msgspec.Struct):
-    """What a message is and of which node, if of any."""
+    """Type of a message, and name of its node if it has one."""
 
     type: str
     name: Any = ""
@@ -62,15 +62,15 @@ _window = msgspec.msgpack.Decoder(_Window)
 
 
 def told(raw: bytes) -> list[MessageHeader]:
-    """Of the messages of one frame from the server only that, which takes less than `unpacked`."""
+    """The headers of the messages in a frame; faster than `unpacked`."""
     end = 16 + int.from_bytes(raw[8:16], "little")
     return _window.decode(decompress(raw[16:end])).messages
 
 
 def unpacked(raw: bytes) -> list[dict[str, Any]]:
-    """The messages of one frame from the server, with their arrays.
+    """The messages in a frame, with their arrays.
 
-    A frame is two lengths, compressed msgpack, then the arrays, each at a multiple of 8 bytes.
+    A frame is two lengths, compressed msgpack, then the arrays, each aligned to 8 bytes.
     """
     end = 16 + int.from_bytes(raw[8:16], "little")
     window = msgspec.msgpack.decode(decompress(raw[16:end]))

@@ -1,7 +1,7 @@
-"""How a server bears a crowd: simulated browsers in a process of their own, a row for each crowd.
+"""Load test: a server process, and simulated browsers in a process of their own.
 
-The server is a process too, with folders of its own. What is measured begins when every browser is
-shown moving robots.
+The server has data folders of its own. Measurement begins when every browser is shown moving
+robots.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from onpath.app.server.workers import MOST as MOST_WORKERS
 from onpath.app.simulation.metrics import LONGEST, Metrics
 from onpath.app.viser_adapter.message_filter import Limits
 
-MOST = Limits().max_connections_each  # clients: to the server they are of one address
+MOST = Limits().max_connections_each  # clients; the server sees them at one address
 SHORTEST = 1.0  # [s]
 HEAD = """\
 clients settled  sim slow  display [Hz]  frames late [ms] >50ms       CPU [%]        for each  labs
@@ -35,12 +35,12 @@ class ClientLoad:
     """What to measure.
 
     Attributes:
-        clients, workers: how many.
-        seconds: measured, for each row.
-        rows: one after the other, of the same crowd.
+        clients, workers: numbers of them.
+        seconds: duration of each row, [s].
+        rows: number of consecutive rows with the same clients.
 
     Raises:
-        ValueError: that makes no sense.
+        ValueError: a number is out of range.
     """
 
     clients: int
@@ -59,19 +59,19 @@ class ClientLoad:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What came of it.
+    """The result of one measurement.
 
     Attributes:
-        seen: by the browsers.
-        settled: after so long all were shown moving robots, [s].
-        labs: at each worker.
+        seen: what the browsers observed.
+        settled: time until all were shown moving robots, [s].
+        labs: number of labs of each worker.
         simulation_hz: frames per second of the simulation, of the slowest worker.
         slowest_lab: simulated seconds per second.
-        late_ms: frames; three quantiles, of the worst worker each.
+        late_ms: lateness of frames, three quantiles, each of the worst worker, [ms].
         overdue: share of the frames more than 50 ms late, of the worst worker.
-        cpu: of all workers, of a core.
+        cpu: of all workers, in cores.
         stolen: share of this machine's time that its host gave to others; nan if unknown.
-        memory_mb: more than without clients, of all workers, for each client; nan if unknown.
+        memory_mb: increase of all workers' memory, per client, [MB]; nan if unknown.
     """
 
     seen: Observations
@@ -97,13 +97,13 @@ class Row:
 
 
 def measured(crowd: ClientLoad, environment: Mapping[str, str]) -> Iterator[Row]:
-    """Rows, each as soon as it is known.
+    """Rows, each as soon as it is measured.
 
     Args:
-        environment: of the server, beside this process's: where its folders are.
+        environment: additional variables for the server, such as its data folders.
 
     Raises:
-        ValueError: the server does not serve all of them.
+        ValueError: the server does not serve all clients.
     """
     with serving(environment, crowd.workers, max(crowd.clients, 64)) as server:
         alone = server.at_rest()
@@ -119,13 +119,13 @@ def measured(crowd: ClientLoad, environment: Mapping[str, str]) -> Iterator[Row]
 
 
 def folders(folder: Path, name: str) -> dict[str, str]:
-    """An environment with data of its own."""
+    """Environment variables with a data folder of its own."""
     return {"XDG_DATA_HOME": str(folder / name)}
 
 
 @contextmanager
 def _load(server: Server, clients: int, seconds: float) -> Iterator[Iterator[Observations]]:
-    """What a crowd sees: first when it has settled, then every so many seconds."""
+    """What the browsers observe: first when all have settled, then every `seconds`."""
     command = [
         sys.executable,
         "-m",
@@ -176,7 +176,7 @@ def _row(
 
 
 def _processor() -> tuple[float, float]:
-    """Of all cores since the start: time that the host gave to others, and all of it, [ticks]."""
+    """Time that the host gave to others, and total time, of all cores since boot, [ticks]."""
     try:
         spent = [float(word) for word in PROCESSOR.read_text().split()[1:9]]
     except OSError:
@@ -185,7 +185,7 @@ def _processor() -> tuple[float, float]:
 
 
 def _speeds(before: Metrics, after: Metrics) -> list[float]:
-    """Simulated seconds per second of each lab; unknown when one has come or gone."""
+    """Simulated seconds per second of each lab; nan if a lab was added or removed."""
     if before.labs != after.labs:
         return [nan]
     times = zip(before.simulated_s, after.simulated_s, strict=True)

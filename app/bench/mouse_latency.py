@@ -1,10 +1,11 @@
-"""From a real mouse in Chromium to the changed pose that comes back. Needs Playwright."""
+"""Latency from a real mouse in Chromium to the changed pose that comes back. Needs Playwright."""
 
 from __future__ import annotations
 
 import shutil
 import time
 from collections.abc import Callable
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,8 @@ import viser
 
 from onpath.app.bench.client_protocol import unpacked
 from onpath.app.lab import commands as c
-from onpath.app.scene.stage_catalogue import RIGID
+from onpath.app.lab.snapshot import FollowerName, TrackerName
+from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import Lab
 
@@ -28,21 +30,39 @@ NO_TRIANGLES = """
 """
 WINDOW = {"width": 1000, "height": 700}
 ROBOT = "path_following"
+SHOWN = (TrackerName, FollowerName)  # from left to right
 STEP = 30.0  # [px]
 MOVED = 1e-4  # [m]
 
 
+def check_installed() -> None:
+    """Complain before all the other tables are measured.
+
+    Raises:
+        ValueError: Playwright is not installed.
+    """
+    if find_spec("playwright") is None:
+        raise ValueError(
+            'bench needs Playwright to move a mouse: pip install "onpath[bench]"'
+            " (--quick and --clients do without)"
+        )
+
+
 def find_browser() -> str | None:
-    """Path of a Chromium, or None; None too when Playwright is not installed."""
-    try:
-        import playwright.sync_api  # noqa: F401
-    except ImportError:
+    """Path of a Chromium; None if there is none, or Playwright is not installed."""
+    if find_spec("playwright") is None:
         return None
     return next(filter(None, map(shutil.which, BROWSERS)), None)
 
 
 def seen_at(camera: viser.CameraHandle, box: dict[str, float], point: np.ndarray) -> np.ndarray:
-    """Where a point of the world, shape (3,), [m], is seen on a canvas at `box`; (2,), [px]."""
+    """Pixel at which a point of the world is seen, shape (2,), [px].
+
+    Args:
+        camera: of the browser.
+        box: position and size of the canvas, [px].
+        point: shape (3,), [m].
+    """
     forward = camera.look_at - camera.position
     forward = forward / np.linalg.norm(forward)
     right = np.cross(forward, [0.0, 0.0, 1.0])
@@ -54,14 +74,17 @@ def seen_at(camera: viser.CameraHandle, box: dict[str, float], point: np.ndarray
 
 
 def mouse_latency(server: LabServer, browser: str, times: int, draws: bool = True) -> np.ndarray:
-    """Delays of `times` moves of an end-point that the mouse holds, [s].
+    """Latencies of `times` mouse moves that drag an end-point, shape (times,), [s].
 
-    The robots stand still, with a position for a task, so that the first changed pose is the
-    answer to the move. Measured from the order to move the mouse to the arrival of the frame.
+    The robots rest at a position task, so that the first changed pose is the response to the move.
+    Measured from the command to move the mouse to the arrival of the frame.
 
     Args:
-        draws: whether triangles are drawn; without a GPU that is most of the browser's work, and
-            a mouse event waits for it.
+        server: of a lab.
+        browser: path of a Chromium.
+        times: number of moves.
+        draws: whether triangles are drawn. Without a GPU that is most of the browser's work, and
+            mouse events wait for it.
     """
     from playwright.sync_api import sync_playwright
 
@@ -100,7 +123,7 @@ def mouse_latency(server: LabServer, browser: str, times: int, draws: bool = Tru
 def _moves(
     page: Any, watch: _Watch, start: np.ndarray, times: int, until: Callable[..., None]
 ) -> list[float]:
-    """Take hold of what is at `start`, (2,), [px], and move it to and fro; delays, [s]."""
+    """Grab what is at `start`, (2,), [px], and move it to and fro; latencies, [s]."""
     page.mouse.move(*start)
     page.mouse.down()
     page.mouse.move(start[0] + STEP / 3, start[1], steps=3)  # now it is a drag, not a click
@@ -118,7 +141,7 @@ def _moves(
 
 
 class _Watch:
-    """Sees where the end-point is in the frames that come in."""
+    """Reads the end-point's position from the frames that arrive."""
 
     def __init__(self) -> None:
         self.tip: np.ndarray | None = None
@@ -130,7 +153,7 @@ class _Watch:
         for message in unpacked(raw) if isinstance(raw, bytes) else ():
             tips = message.get("updates", {}).get("batched_positions")
             if message.get("name") == "/grips" and tips is not None:
-                self.tip = np.reshape(tips, (-1, 3))[list(RIGID.bases).index(ROBOT)]
+                self.tip = np.reshape(tips, (-1, 3))[SHOWN.index(ROBOT)]
                 if self.rest is None or np.abs(self.tip - self.rest).max() > MOVED:
                     self.moved_at = self.moved_at or now
 
@@ -138,4 +161,5 @@ class _Watch:
 def _tip(lab: Lab) -> np.ndarray:
     """The end-point in the world, shape (3,), [m]."""
     session = lab.session
-    return RIGID.bases[ROBOT] + session.robot.place(session.runs[ROBOT].shown()["y"])
+    base = stage_of(session.robot).bases[ROBOT]
+    return base + session.robot.place(session.runs[ROBOT].shown()["y"])

@@ -1,4 +1,4 @@
-"""A real server for the bench: started as a user would, asked how it fares, stopped."""
+"""A real server for the bench: started like a user's, queried for its metrics, and stopped."""
 
 from __future__ import annotations
 
@@ -20,18 +20,21 @@ from onpath.app.server.lazy_imports import REST
 from onpath.app.simulation.metrics import WINDOW, Metrics
 from onpath.app.viser_adapter.request_filter import HEALTH
 
-PATIENCE = 60.0  # [s] for all workers to answer
-LAST_WORDS = 20.0  # [s] to stop
+PATIENCE = 60.0  # [s] until all workers must have answered
+LAST_WORDS = 20.0  # [s] that the server has to stop
 STILL = 0.5  # [MB] by which a server at rest may grow
 
 
 @dataclass(frozen=True, slots=True)
 class Server:
-    """A server that runs.
+    """A running server.
 
     Attributes:
-        begun: when it was started, by `time.monotonic`, [s].
-        said: what it has written, viser's banners too.
+        port: at which it listens.
+        workers: number of its processes.
+        begun: time at which it was started, by `time.monotonic`, [s].
+        process: the server, or the parent of the workers.
+        said: its output.
     """
 
     port: int
@@ -41,11 +44,13 @@ class Server:
     said: IO[bytes]
 
     def vitals(self, seconds: float = WINDOW) -> dict[int, Metrics]:
-        """How each worker fares, by process. Whoever has fewest connections answers, so some are
-        held until all have.
+        """Metrics of each worker, by process id.
+
+        New connections go to the least-loaded worker; so connections to those that have answered
+        are held open until all have.
 
         Raises:
-            ValueError: they do not.
+            ValueError: some do not answer.
         """
         with ExitStack() as held:
             return self._vitals(seconds, held)
@@ -79,7 +84,7 @@ class Server:
             connection.close()
 
     def at_rest(self) -> dict[int, Metrics]:
-        """How it fares before anybody comes, with all ready that `warm_up` makes ready."""
+        """Metrics before any client has come, after `warm_up` has finished."""
         sizes: list[tuple[float, float]] = []
         while True:
             vitals, now = self.vitals(), time.monotonic()
@@ -92,7 +97,7 @@ class Server:
 
 @contextmanager
 def serving(environment: Mapping[str, str], workers: int = 1, most: int = 64) -> Iterator[Server]:
-    """A server, `most` clients of which each worker takes."""
+    """A running server; each worker takes `most` clients."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = int(probe.getsockname()[1])

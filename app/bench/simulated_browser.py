@@ -1,8 +1,8 @@
-"""Simulated browsers: they read everything that a lab sends, pull at it and move its sliders.
+"""Simulated browsers, which read everything that a lab sends, drag its robots and move its sliders.
 
-`python -m onpath.app.bench.simulated_browser PORT CLIENTS SECONDS` writes what they see, a line of
-JSON at a time; see `crowd`. They lower their own priority, since elsewhere they would take no time
-from the server.
+`python -m onpath.app.bench.simulated_browser PORT CLIENTS SECONDS` writes what they observe, one
+line of JSON at a time; see `crowd`. They lower their own priority, because real browsers would not
+take processor time from the server.
 """
 
 from __future__ import annotations
@@ -27,30 +27,30 @@ from websockets.typing import Subprotocol
 
 from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, told, unpacked
 
-LAST = 19  # of all priorities
-TOGETHER = Path("/proc/self/autogroup")  # the priority of a whole session, on Linux
+LAST = 19  # the lowest priority
+TOGETHER = Path("/proc/self/autogroup")  # priority of a whole session, on Linux
 HAND_INTERVAL = 0.05  # [s] between a hand's messages; no browser sends more often
 CYCLE = 4.0  # [s]: pull, rest, move a slider, rest
 MOVING = "/links"
-STEADY = 10  # poses shown to a browser that has settled
+STEADY = 10  # poses after which a browser counts as settled
 ANSWERED = {"LocalStorageGetItemRequestMessage", "SetCameraUpDirectionMessage"}
 ANSWERED |= {"GuiSliderMessage", "BatchedMeshesMessage"}
 
 
 class NotServed(Exception):
-    """A server does not serve all of a crowd; the message says what happened."""
+    """The server does not serve all simulated browsers; the message says what happened."""
 
 
 @dataclass(frozen=True, slots=True)
 class Observations:
-    """What a crowd has seen during a while.
+    """What the simulated browsers observed in an interval.
 
     Attributes:
-        seconds: how long that was.
-        clients: that are still connected.
-        slowest_hz, median_hz: new poses per second of the slowest browser, of the median one.
-        bytes_per_s: that each received.
-        cpu: that the crowd itself needed, of a core.
+        seconds: length of the interval, [s].
+        clients: number that are still connected.
+        slowest_hz, median_hz: new poses per second, of the slowest and of the median browser.
+        bytes_per_s: received by each.
+        cpu: used by the simulated browsers themselves, in cores.
     """
 
     seconds: float
@@ -66,8 +66,9 @@ class Browser:
     """One simulated tab.
 
     Attributes:
-        number: sets it apart in time from the others.
-        shown: when it was told new poses, [s].
+        port: of the server.
+        number: shifts its actions in time against those of the others.
+        shown: times at which it received new poses, [s].
         received: [B].
     """
 
@@ -79,14 +80,14 @@ class Browser:
     _owner: str = ""
 
     async def browse(self, seconds: float) -> None:
-        """Use the lab for a while, or until it closes the connection.
+        """Use the lab for some time, or until it closes the connection.
 
         Raises:
-            OSError, WebSocketException: no connection, or one that broke.
+            OSError, WebSocketException: the connection failed.
         """
         address = f"ws://127.0.0.1:{self.port}"
         options: dict[str, Any] = {"max_size": None, "compression": None}
-        options |= {"open_timeout": None, "ping_interval": None}  # a browser waits
+        options |= {"open_timeout": None, "ping_interval": None}  # as a browser, it just waits
         async with connect(address, subprotocols=[Subprotocol(SUBPROTOCOL)], **options) as socket:
             await socket.send(packed("ViewerCameraMessage", **CAMERA))
             until = time.monotonic() + seconds
@@ -158,10 +159,10 @@ class Browser:
 
 
 async def first_poses(port: int) -> None:
-    """Return when a browser that comes now is shown a moving robot.
+    """Return when a browser that connects now is shown a moving robot.
 
     Raises:
-        WebSocketException: refused for another reason than that the server is not ready yet.
+        WebSocketException: refused for another reason than that the server is starting.
     """
     browser = Browser(port, 0)
     while not browser.shown:
@@ -176,7 +177,7 @@ async def first_poses(port: int) -> None:
 
 
 def _is_early(error: Exception) -> bool:
-    """Whether a server that is starting answers in this way."""
+    """Whether this error is expected while the server is starting."""
     if isinstance(error, InvalidStatus):
         return error.response.status_code == HTTPStatus.SERVICE_UNAVAILABLE
     return isinstance(error, OSError | EOFError | InvalidMessage | ConnectionClosed)
@@ -185,14 +186,13 @@ def _is_early(error: Exception) -> bool:
 async def crowd(
     port: int, clients: int, seconds: float, patience: float | None = None
 ) -> AsyncGenerator[Observations]:
-    """What some browsers see, at once: first until each is shown moving robots, then again and
-    again for some seconds.
+    """What several browsers observe: first when each is shown moving robots, then every `seconds`.
 
     Args:
-        patience: with the first of these, [s].
+        patience: time until then, [s].
 
     Raises:
-        Unserved: some are not shown any.
+        NotServed: some are not shown any.
     """
     browsers = [Browser(port, number) for number in range(clients)]
     tasks = [asyncio.create_task(browser.browse(math.inf)) for browser in browsers]
@@ -228,7 +228,7 @@ async def _settle(
 
 
 def _seen(browsers: list[Browser], there: int, seconds: float, cpu: float) -> Observations:
-    """What they have seen since they were asked last."""
+    """Observations since the last call."""
     rates = [len(browser.shown) / seconds for browser in browsers]
     received = sum(browser.received for browser in browsers) / len(browsers)
     for browser in browsers:
@@ -247,9 +247,10 @@ async def _report(port: int, clients: int, seconds: float) -> None:
 
 
 def _stand_back() -> None:
-    """Leave the processor to the server.
+    """Lower the priority of this process, to leave the processor to the server.
 
-    Linux may share it among sessions first: the priority of a process counts within its own only.
+    Linux may first share the processor among sessions; the priority of a process counts within its
+    session only.
     """
     if hasattr(os, "nice"):
         os.nice(LAST)

@@ -1,4 +1,4 @@
-"""How fast the lab is: closed loops, frames under load, start-up, mouse to picture."""
+"""Tables of the lab's speed: closed loops, frames under load, start-up, mouse to picture."""
 
 from __future__ import annotations
 
@@ -34,9 +34,10 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws import NAMES
 from onpath.models.paths.curves import circle
-from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, RobotEntry
-from onpath.models.systems.flexible_robot import FlexibleParameters
+from onpath.models.systems.catalogue import FLEXIBLE, ROBOTS
+from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import RobotEntry
 
 TICKS = 160  # per timed call
 
@@ -56,8 +57,8 @@ def bench(quick: bool = False) -> None:
 
 def _loops(folder: Path, repeats: int) -> None:
     """Microseconds per simulated millisecond, medians, tiers interleaved."""
-    print(f"{'robot':10s} {'controller':20s} {'pushed':7s} {'tier':12s} {'µs/ms':>8s}")
-    for entry in (FIVE_BAR, FLEXIBLE):
+    print(f"{'robot':12s} {'controller':20s} {'pushed':7s} {'tier':12s} {'µs/ms':>8s}")
+    for entry in ROBOTS.values():
         for controller in NAMES:
             for lean in (True, False):
                 _row(entry, controller, lean, folder, repeats)
@@ -68,7 +69,7 @@ def _row(entry: RobotEntry, controller: str, lean: bool, folder: Path, repeats: 
     times = _per_tick(_prepared(entry, entry.parameters(), controller, lean, folder), repeats)
     for tier, value in times.items():
         pushed = "no" if lean else "may be"
-        print(f"{entry.name:10s} {controller:20s} {pushed:7s} {tier:12s} {value:8.2f}")
+        print(f"{entry.name:12s} {controller:20s} {pushed:7s} {tier:12s} {value:8.2f}")
 
 
 def _prepared(
@@ -117,7 +118,7 @@ def _modes(folder: Path, repeats: int) -> None:
 
 def _making(repeats: int) -> None:
     """How long it takes to make machine code of a follower."""
-    for entry in (FIVE_BAR, FLEXIBLE):
+    for entry in ROBOTS.values():
         parameters = entry.parameters()
         kind = kind_of("path_following", parameters, circle(0.05))
         kernel = kernel_of(entry.make(parameters), kind)

@@ -1,4 +1,4 @@
-"""Who may come into a class: wrong codes are counted, nicknames made fit to be shown."""
+"""Admission to a class: limits wrong codes, and cleans nicknames."""
 
 from __future__ import annotations
 
@@ -14,38 +14,38 @@ from onpath.models.errors import CodedError
 
 LONGEST_NAME = 24  # [characters]
 CODE_LENGTH = (
-    6  # of a class code: short enough for a projector, too long to be guessed; see `Admission`
+    6  # of a class code: short enough for a projector, long enough not to be guessed; `Admission`
 )
 
 
 class Admission:
-    """Compares what was typed with what is right, for who has not failed too often; any thread.
+    """Checks codes and keys, with a limit on failures per tab. Thread-safe.
 
-    A tab that has failed too often is told to wait, with the right code as well. Other tabs are
-    not, however many have failed: behind one address there may be a whole school, and before one
-    there may be a proxy, so that a limit of all or of an address would let one student lock the
-    class out. The class code and the teacher's key are counted apart.
+    A tab that has failed too often must wait, even with the right code. Other tabs are not
+    affected: a whole school may share one address, and so may all users of a proxy, so that a limit
+    in total or per address would let one student lock out the class. Failures with the class code
+    and with the teacher's key are counted separately.
 
-    So the guesses of a minute are `TRIES` times the tabs that somebody opens in it, each of them
-    a connection and a page to be built: about 340 tabs, 1700 guesses, a minute and process where
-    pages are built as fast as they can be. That is why a class code is as long as it is: of its
-    31^6 = 8.9e8 possibilities, 1700 guesses a minute find one with a chance of 0.02 % in a lesson
-    of 90 minutes (17 % of the 31^4 that four characters have), and it opens a seat that the
-    teacher sees. The key has 31^12 = 7.9e17 possibilities.
+    The guesses per minute are thus `TRIES` times the number of tabs that somebody opens in it. Each
+    is a connection and a page that is built: about 340 tabs, hence 1700 guesses, per minute and
+    process. Of the 31^6 = 8.9e8 class codes, 1700 guesses a minute find the right one with a
+    probability of 0.02 % in a lesson of 90 minutes (17 % of 31^4, with four characters), and it
+    opens a seat that the teacher sees. There are 31^12 = 7.9e17 keys.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._codes, self._keys = Throttle(clock), Throttle(clock)
 
     def check_key(self, typed: str, key: str, who: str) -> None:
-        """Pass, with the teacher's key.
+        """Check the teacher's key.
 
         Args:
-            key: as `app.common.access_codes` keeps it.
-            who: who types: a session code.
+            typed: what was entered.
+            key: in its stored form, see `app.common.access_codes`.
+            who: session code of the tab.
 
         Raises:
-            ValueError: this is not the key, or there have been too many that were not.
+            ValueError: the key is wrong, or this tab has failed too often.
         """
         try:
             given = normalised(typed)
@@ -55,28 +55,28 @@ class Admission:
             _compare(given, key, CodedError("error.not_the_key"))
 
     def check_code(self, typed: str, code: str, who: str) -> None:
-        """Pass, with the class code; see `check_key`."""
+        """Check the class code; see `check_key`."""
         given = "".join(typed[:40].split()).lower()
         with self._codes.attempt(who):
             _compare(given, code, CodedError("error.not_the_class_code"))
 
 
 def _compare(typed: str, right: str, refusal: CodedError) -> None:
-    """In a time that does not tell how much is right."""
+    """Compare in constant time, so that timing does not reveal partial matches."""
     if not hmac.compare_digest(typed.encode(errors="replace"), right.encode()):
         raise refusal
 
 
 def new_pass() -> str:
-    """What a teacher's browser keeps and shows."""
+    """A random pass, which a teacher's browser stores and presents."""
     return secrets.token_urlsafe(18)
 
 
 def cleaned(name: str) -> str:
-    """A nickname as it is kept.
+    """A nickname in the form in which it is stored.
 
     Raises:
-        ValueError: nothing is left of it.
+        ValueError: no visible character remains.
     """
     text = unicodedata.normalize("NFC", name[:200])
     seen = "".join(c if unicodedata.category(c)[0] not in "CZ" else " " for c in text)
@@ -87,7 +87,7 @@ def cleaned(name: str) -> str:
 
 
 def not_among(others: set[str], name: str) -> str:
-    """A name with a number, where somebody else has it already."""
+    """The name, with a number appended if it is taken."""
     count, unique = 1, name
     while unique.casefold() in others:
         count += 1
@@ -97,5 +97,5 @@ def not_among(others: set[str], name: str) -> str:
 
 
 def new_class_code() -> str:
-    """What students type."""
+    """A random class code."""
     return "".join(secrets.choice(ALPHABET) for _ in range(CODE_LENGTH))

@@ -1,16 +1,18 @@
-"""Pieces of the teacher's page as HTML. What students have typed is escaped here."""
+"""Pieces of the teacher's page as HTML, from the templates in assets/templates/class."""
 
 from __future__ import annotations
 
-import html
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from markupsafe import Markup
 
 from onpath.app.classroom.classroom import Member
 from onpath.app.classroom.results import LETTERS, Distribution, tasks_passed
-from onpath.app.common.palette import AMBER, FOLLOWER, GREEN, GREY, TRACKER
+from onpath.app.common.palette import AMBER, FOLLOWER, GREEN, GREY, SLATE, TRACKER
+from onpath.app.common.templates import render
 from onpath.lessons.course import Course
 from onpath.lessons.progress import MOST_POINTS as MOST_OF_TRUTH
 from onpath.lessons.progress import Progress, Truth
@@ -20,55 +22,46 @@ from onpath.lessons.thinning import peaks
 from onpath.lessons.words import Words
 
 IDLE = 60.0  # [s] without a command
-INK = "#3f4a5a"
 WIDTH, HEIGHT, LEFT, BELOW = 640, 380, 50, 36  # of a plot, [px]
+FLOOR = HEIGHT - BELOW - 10  # where its lowest value is drawn, [px]
 MOST_POINTS = 40  # of a sketch on it
 
 
-def class_code(code: str, count: int, words: Words) -> str:
+def class_code(code: str, count: int, words: Words) -> Markup:
     """Large, for the projector."""
-    said = words("class.code_for_all")
-    return (
-        f'<div class="op-class-code" style="padding:0.6em 1em;color:{GREY}">{said}'
-        f'<div style="font-size:2.6em;font-weight:700;letter-spacing:0.18em;color:#111">'
-        f"{html.escape(code.upper())}</div>{words('class.count', count=count)}</div>"
-    )
+    return render("class/code.html", code=code, count=count, words=words)
 
 
-def table(members: Iterable[Member], course: Course, now: float, words: Words) -> str:
+@dataclass(frozen=True, slots=True)
+class MemberRow:
+    """A student's line in the table."""
+
+    name: str
+    lesson: str
+    step: str
+    tasks: str
+    colour: str
+    state: str
+
+
+def table(members: Iterable[Member], course: Course, now: float, words: Words) -> Markup:
     """Who is where.
 
     Args:
         now: by the class's clock, [s].
     """
-    rows = "".join(_row(member, course, now, words) for member in members)
-    heads = (
-        *(words("class.name"), words("class.lesson"), words("class.step_head")),
-        *(words("class.tasks"), words("class.state")),
-    )
-    head = "".join(f'<th align="left" style="padding:0.25em 0.5em">{h}</th>' for h in heads)
-    if not rows:
-        rows = f'<tr><td colspan="5" style="padding:0.5em">{words("class.nobody")}</td></tr>'
-    return (
-        '<div style="padding:0 0.6em;font-size:0.9em"><table style="width:100%;'
-        f'border-collapse:collapse"><tr style="color:{GREY}">{head}</tr>{rows}</table></div>'
-    )
+    rows = [_row(member, course, now, words) for member in members]
+    return render("class/table.html", rows=rows, words=words)
 
 
-def _row(member: Member, course: Course, now: float, words: Words) -> str:
-    way = member.progress
-    cells = (f"<bdi>{html.escape(member.name)}</bdi>", *_place(way, course, words))
-    colour, state = GREEN, words("class.here")
+def _row(member: Member, course: Course, now: float, words: Words) -> MemberRow:
+    colour, state = GREEN.hex, words("class.here")
     if not member.connected:
-        colour, state = GREY, words("class.away")
+        colour, state = GREY.hex, words("class.away")
     elif now - member.active > IDLE:
         minutes = int((now - member.active) / 60)
-        colour, state = AMBER, words("class.idle", minutes=minutes)
-    inner = "".join(f'<td style="padding:0.25em 0.5em">{cell}</td>' for cell in cells)
-    return (
-        f'<tr style="border-top:1px solid #d5dae1">{inner}'
-        f'<td style="padding:0.25em 0.5em;white-space:nowrap;color:{colour}">● {state}</td></tr>'
-    )
+        colour, state = AMBER.hex, words("class.idle", minutes=minutes)
+    return MemberRow(member.name, *_place(member.progress, course, words), colour, state)
 
 
 def _place(way: Progress, course: Course, words: Words) -> tuple[str, str, str]:
@@ -80,8 +73,8 @@ def _place(way: Progress, course: Course, words: Words) -> tuple[str, str, str]:
     done, wanted = tasks_passed(way, lesson)
     number = list(course.lessons).index(way.lesson) + 1
     return (
-        f"{number}. {html.escape(lesson.front.title)}",
-        f"{index + 1}/{len(lesson.steps)} {html.escape(lesson.steps[index].title)}",
+        f"{number}. {lesson.front.title}",
+        f"{index + 1}/{len(lesson.steps)} {lesson.steps[index].title}",
         f"{done}/{wanted}",
     )
 
@@ -93,7 +86,7 @@ def prediction_view(
     revealed: bool,
     words: Words,
     large: bool = False,
-) -> str:
+) -> Markup:
     """How the class has answered, without names; the truth too, when it is revealed.
 
     Args:
@@ -101,89 +94,89 @@ def prediction_view(
     """
     given = sum(found.counts) + len(found.sketches)
     facts = words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
-    body = (
-        _bars(block, found, revealed)
-        if isinstance(block, Choice)
-        else _sketches(block, found, truth if revealed else None, words)
-    )
-    return (
-        f'<div class="op-class" style="padding:0.4em 1em;'
-        f'font-size:{1.7 if large else 1.15}em;line-height:1.4">'
-        f"<p><b>{block.question}</b></p>{body}"
-        f'<p style="color:{GREY};font-size:0.85em">{facts}</p></div>'
-    )
-
-
-def _bars(block: Choice, found: Distribution, revealed: bool) -> str:
-    most = max(1, *found.counts)
-    bars = ""
-    for letter, option, count in zip(LETTERS, block.options, found.counts, strict=False):
-        right = revealed and option.right
-        colour = GREEN if right else FOLLOWER.hex if not revealed else "#aab4c0"
-        bars += (
-            f'<div style="margin:0.6em 0"><div><b>{letter}</b> {option.text}'
-            f"{' ✓' if right else ''}</div>"
-            '<div style="display:flex;align-items:center;gap:0.5em">'
-            f'<div style="background:{colour};height:1.3em;width:{85 * count / most:.1f}%;'
-            f'min-width:2px"></div><b>{count}</b></div></div>'
+    if isinstance(block, Choice):
+        return render(
+            "class/choices.html",
+            block=block,
+            options=list(zip(LETTERS, block.options, found.counts, strict=False)),
+            most=max(1, *found.counts),
+            revealed=revealed,
+            facts=facts,
+            large=large,
         )
-    return bars
+    lines, names = _sketches(block, found, truth if revealed else None, words)
+    return render(
+        "class/sketches.html",
+        block=block,
+        title=f"{words(f'quantity.{block.quantity}')} [{QUANTITIES[block.quantity]}]",
+        width=WIDTH,
+        height=HEIGHT,
+        left=LEFT,
+        floor=FLOOR,
+        marks=_marks(block),
+        lines=lines,
+        names=names,
+        facts=facts,
+        large=large,
+    )
 
 
-def _sketches(block: Sketch, found: Distribution, truth: Truth | None, words: Words) -> str:
-    """All curves on one plot."""
-    lines = "".join(
-        _line(block, sketch.times, sketch.values, INK, 2, 0.5, MOST_POINTS)
+@dataclass(frozen=True, slots=True)
+class PlottedLine:
+    """A curve on the plot.
+
+    Attributes:
+        points: as SVG wants them, [px].
+        width: [px].
+    """
+
+    points: str
+    colour: str
+    width: int
+    opacity: float
+
+
+@dataclass(frozen=True, slots=True)
+class AxisMark:
+    """A time at x and a value at y, [px], as they are written beside both axes."""
+
+    x: int
+    y: int
+    time: str
+    value: str
+
+
+def _sketches(
+    block: Sketch, found: Distribution, truth: Truth | None, words: Words
+) -> tuple[list[PlottedLine], list[tuple[str, str]]]:
+    """All curves, and what their colours mean."""
+    lines = [
+        PlottedLine(_points(block, sketch.times, sketch.values, MOST_POINTS), SLATE.hex, 2, 0.5)
         for sketch in found.sketches
-    )
-    names = [(INK, words("class.predicted"))]
+    ]
+    names = [(SLATE.hex, words("class.predicted"))]
     if truth is not None:
-        lines += _line(block, truth.times, truth.tracker, TRACKER.hex, 4, 1.0)
-        lines += _line(block, truth.times, truth.follower, FOLLOWER.hex, 4, 1.0)
-        names += [(TRACKER.hex, words("robot.tracker")), (FOLLOWER.hex, words("robot.follower"))]
-    legend = " ".join(f'<span style="color:{colour}">■ {name}</span>' for colour, name in names)
-    title = f"{words(f'quantity.{block.quantity}')} [{QUANTITIES[block.quantity]}]"
-    return (
-        f'<div style="font-size:0.85em">{title}</div>'
-        f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" width="100%" role="img">{_axes(block)}{lines}</svg>'
-        f'<div style="font-size:0.85em">{legend}</div>'
-    )
+        for robot, colour in (("tracker", TRACKER), ("follower", FOLLOWER)):
+            points = _points(block, truth.times, getattr(truth, robot), MOST_OF_TRUTH)
+            lines.append(PlottedLine(points, colour.hex, 4, 1.0))
+            names.append((colour.hex, words(f"robot.{robot}")))
+    return lines, names
 
 
-def _axes(block: Sketch) -> str:
-    marks = ""
+def _marks(block: Sketch) -> list[AxisMark]:
+    marks: list[AxisMark] = []
     for part in (0.0, 0.25, 0.5, 0.75, 1.0):
         time, value = part * block.seconds, block.bottom + part * (block.top - block.bottom)
         x, y = _at(block, time, value)
-        _, floor = _at(block, 0.0, block.bottom)
-        left, _ = _at(block, 0.0, block.bottom)
-        marks += (
-            f'<line x1="{left}" y1="{y:.0f}" x2="{WIDTH - 8}" y2="{y:.0f}" stroke="#dde2e8"/>'
-            f'<text x="{left - 6}" y="{y + 5:.0f}" text-anchor="end" font-size="15">'
-            f"{value:g}</text>"
-            f'<text x="{x:.0f}" y="{floor + 22:.0f}" text-anchor="middle" font-size="15">'
-            f"{time:g} s</text>"
-        )
+        marks.append(AxisMark(round(x), round(y), f"{time:g}", f"{value:g}"))
     return marks
 
 
 @lru_cache(maxsize=1024)  # a class looks at the same curves again every second
-def _line(
-    block: Sketch,
-    times: tuple[float, ...],
-    values: tuple[float, ...],
-    colour: str,
-    width: int,
-    opacity: float,
-    most: int = MOST_OF_TRUTH,
-) -> str:
+def _points(block: Sketch, times: tuple[float, ...], values: tuple[float, ...], most: int) -> str:
     kept = peaks([np.array(values)], most)
     places = [_at(block, times[i], values[i]) for i in kept]
-    points = " ".join(f"{x:.0f},{y:.0f}" for x, y in places)
-    return (
-        f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}" '
-        f'stroke-opacity="{opacity}"/>'
-    )
+    return " ".join(f"{x:.0f},{y:.0f}" for x, y in places)
 
 
 def _at(block: Sketch, time: float, value: float) -> tuple[float, float]:

@@ -1,11 +1,11 @@
-"""What is done to a class in the database, inside a transaction of the caller's.
+"""Operations on a class in the database. Each runs inside a transaction of the caller.
 
-Every change of the class counts one up, and what it changes bears that number: who looks asks for
-the number, and for what is newer than what it knows. Counting holds the class's row, so that of
-several processes one at a time changes the class.
+Every change increments the class's change counter, and the changed rows carry its new value; a
+reader asks for the counter, and then for rows newer than those it knows. Incrementing locks the
+class's row, so that only one process at a time changes the class.
 
-Who is connected stands in the leases of the labs (app/storage/leases.py), also when a
-process was killed.
+Which students are connected follows from the leases of their labs (app/storage/leases.py), even
+when a process was killed.
 """
 
 from __future__ import annotations
@@ -27,16 +27,19 @@ from onpath.app.classroom.classroom import Member, Orders, seated
 from onpath.app.storage.leases import NONSENSE
 from onpath.app.storage.schema import OF_A_CLASS, classes, leases, members, passes, watches
 
-FORGOTTEN = 7 * 24 * 3600.0  # [s] without any change, after which a class is over
+FORGOTTEN = 7 * 24 * 3600.0  # [s] without any change, after which a class is deleted
 
 
 @dataclass(frozen=True, slots=True)
 class ClassState:
-    """A class when it was looked at last.
+    """A class as it was last read.
 
     Attributes:
-        changes: of the class until then.
-        elsewhere: session codes of labs that another process had last.
+        code: the class code.
+        changes: value of the change counter.
+        orders: what the teacher has sent.
+        members: students by session code.
+        elsewhere: session codes of the labs that another process had last.
     """
 
     code: str = ""
@@ -48,10 +51,10 @@ class ClassState:
 
 @dataclass(frozen=True, slots=True)
 class Now:
-    """An instant on two clocks.
+    """The present on two clocks.
 
     Attributes:
-        here: by the class's clock, which is this process's alone, [s].
+        here: the monotonic clock of this process, [s].
         wall: seconds since 1970.
     """
 
@@ -60,11 +63,11 @@ class Now:
 
 
 class ClassLedger:
-    """One class.
+    """The rows of one class.
 
     Args:
         class_id: of the class.
-        owner: of the labs in this process; see `app.storage.leases`.
+        owner: of the leases of this process; see `app.storage.leases`.
     """
 
     def __init__(self, class_id: str, owner: str) -> None:
@@ -72,10 +75,10 @@ class ClassLedger:
         self._own, self._all = classes.c.id == class_id, members.c.class_id == class_id
 
     def look(self, connection: sa.Connection, seen: ClassState, now: Now) -> ClassState:
-        """How the class is, given how it was."""
+        """The current state, given the one last read."""
         row = self._row(connection, now)
         if row.code != seen.code or row.changes < seen.changes:
-            seen = ClassState(row.code)  # another class, or one whose number was lost
+            seen = ClassState(row.code)  # a new class, or one whose counter was lost
         orders, there = seen.orders, seen.members
         if row.changes != seen.changes:
             orders = Orders(bool(row.frozen), row.pushes, read_push(row.push))
@@ -85,9 +88,9 @@ class ClassLedger:
         return ClassState(row.code, row.changes, orders, there, elsewhere)
 
     def change(self, connection: sa.Connection, now: Now, **values: object) -> ClassRow:
-        """Count a change of the class; nobody else changes it before this transaction ends.
+        """Increment the change counter, and set columns of the class. Returns the class's row.
 
-        Returns the class as it is then.
+        No other process can change the class until the transaction ends.
         """
         new = {"changes": classes.c.changes + 1, "touched": now.wall, **values}
         if not connection.execute(sa.update(classes).where(self._own).values(new)).rowcount:
@@ -98,7 +101,7 @@ class ClassLedger:
     def enter(
         self, connection: sa.Connection, session: str, name: str, seen: ClassState, now: Now
     ) -> Member:
-        """A student joins, or takes another name.
+        """Add a student, or change a student's name.
 
         Raises:
             ValueError: see `seated`.
@@ -115,24 +118,24 @@ class ClassLedger:
         connection.execute(sa.update(classes).where(self._own).values(joined=number))
         values |= {"class_id": self._id, "session": session, "number": number, "active": now.wall}
         values |= {"taken": member.taken, "progress": self._ways.text(session, member.progress)}
-        connection.execute(sa.delete(members).where(self._one(session)))  # one that was unreadable
+        connection.execute(sa.delete(members).where(self._one(session)))  # an unreadable row
         connection.execute(sa.insert(members).values(values))
         return member
 
     def write(self, connection: sa.Connection, session: str, changed: int, **values: Any) -> None:
-        """What is known anew of a student."""
+        """Update columns of a student."""
         if "progress" in values:
             values["progress"] = self._ways.text(session, values["progress"])
         new = {"changed": changed, **values}
         connection.execute(sa.update(members).where(self._one(session)).values(new))
 
     def leave(self, connection: sa.Connection, session: str, now: Now) -> None:
-        """A student goes."""
+        """Remove a student."""
         self.change(connection, now)
         connection.execute(sa.delete(members).where(self._one(session)))
 
     def end(self, connection: sa.Connection, now: Now) -> int:
-        """All go, and another code is for the next ones; returns how many they were."""
+        """Remove all students and create a new class code. Returns the number of students."""
         self.change(connection, now, code=new_class_code(), frozen=0, push="")
         connection.execute(sa.delete(watches).where(watches.c.class_id == self._id))
         return connection.execute(sa.delete(members).where(self._all)).rowcount
@@ -148,7 +151,7 @@ class ClassLedger:
     # Passes
 
     def add_pass(self, connection: sa.Connection, hashed: str) -> None:
-        """A browser more may teach."""
+        """Allow a browser to teach."""
         connection.execute(sa.insert(passes).values(class_id=self._id, hash=hashed))
 
     def has_pass(self, connection: sa.Connection, hashed: str) -> bool:
@@ -156,7 +159,7 @@ class ClassLedger:
         return connection.execute(sa.select(passes).where(self._pass(hashed))).first() is not None
 
     def remove_pass(self, connection: sa.Connection, hashed: str) -> None:
-        """A browser teaches no more."""
+        """Stop a browser from teaching."""
         connection.execute(sa.delete(passes).where(self._pass(hashed)))
 
     # Rows
@@ -178,7 +181,7 @@ class ClassLedger:
         connection.execute(sa.insert(classes).values(new))
 
     def _newer(self, connection: sa.Connection, seen: ClassState, now: Now) -> dict[str, Member]:
-        """All students, in their order; read anew are those that have changed."""
+        """All students in order of joining; only changed rows are read."""
         there = set(connection.execute(sa.select(members.c.session).where(self._all)).scalars())
         found = {code: member for code, member in seen.members.items() if code in there}
         newer = sa.select(members).where(self._all & (members.c.changed > seen.changes))
@@ -192,7 +195,7 @@ class ClassLedger:
         return dict(sorted(found.items(), key=lambda item: item[1].number))
 
     def _leased(self, connection: sa.Connection, wall: float) -> tuple[set[str], frozenset[str]]:
-        """The students' labs that somebody looks at, and those that another process had last."""
+        """Session codes of the labs that are in use, and of those that another process had last."""
         wanted = sa.select(leases).join(members, leases.c.code == members.c.session)
         rows = connection.execute(wanted.where(self._all)).all()
         present = {row.code for row in rows if wall < row.expires < wall + NONSENSE}

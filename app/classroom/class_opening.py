@@ -1,6 +1,6 @@
-"""Which class a server has: its own, or the one that it shares with others by the teacher's key.
+"""Opens the class of a server: its own, or one that several servers share by the teacher's key.
 
-The key comes by the environment, as the command line is for everybody to read.
+The key is passed in the environment, because command lines are visible to all users.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ KEY = "ONPATH_TEACHER_KEY"
 
 
 def given_key() -> str | None:
-    """The teacher's key that this process has been given; processes that it starts have it not.
+    """The teacher's key of this process, or None. Child processes do not inherit the key.
 
     Raises:
-        ValueError: it is none.
+        ValueError: it is malformed.
     """
     typed = os.environ.pop(KEY, None)
     try:
@@ -37,12 +37,12 @@ def open_class(records: Records, key: str | None) -> LocalClassroom | SharedClas
     """The class of a server.
 
     Args:
-        records: the database that others share.
-        key: the teacher's; with none the class is this process's alone.
+        records: the shared database.
+        key: the teacher's; None for a class of this process only.
 
     Raises:
-        ValueError: nobody can share this database.
-        NotKept: it does not work.
+        ValueError: the database cannot be shared.
+        NotKept: the database cannot be used.
     """
     if key is None:
         return LocalClassroom()
@@ -54,11 +54,13 @@ def open_class(records: Records, key: str | None) -> LocalClassroom | SharedClas
 
 @contextmanager
 def class_of_workers(database: str | None) -> Iterator[tuple[SharedClassroom, bool]]:
-    """A class while there are workers, and whether its key was made here: then it ends with them.
+    """The class for as long as workers run, and whether its key was created here.
+
+    If so, the class is deleted afterwards.
 
     Raises:
-        ValueError: nobody can share this database, or the key that was given is none.
-        NotKept: it does not work.
+        ValueError: the database cannot be shared, or the given key is malformed.
+        NotKept: the database cannot be used.
     """
     given, records = given_key(), Records(database)
     try:

@@ -1,4 +1,4 @@
-"""A class as rows of the database. Whatever is read back is checked, and never stops a class."""
+"""Converts a class to rows of the database and back. Invalid rows are skipped with a warning."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import sqlalchemy as sa
 from onpath.app.classroom.admission import cleaned
 from onpath.app.classroom.classroom import NOTHING_DONE, Member, Push
 from onpath.app.common.error_log import log_warning
-from onpath.app.lab.class_commands import TakeSetup, TakeStep
+from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.setup import from_data, to_data
 from onpath.lessons.progress import Progress, read_progress
 
@@ -21,8 +21,8 @@ class ClassRow(msgspec.Struct, frozen=True):
     """A class.
 
     Attributes:
-        changes: how many there have been, of itself and of its members.
-        joined: how many have ever joined.
+        changes: number of changes of the class and its members.
+        joined: number of students that have ever joined.
     """
 
     code: Annotated[str, msgspec.Meta(min_length=1, max_length=8)]
@@ -37,7 +37,7 @@ class MemberRow(msgspec.Struct, frozen=True):
     """A student.
 
     Attributes:
-        changed: the class's `changes` when this was written.
+        changed: the class's `changes` when this row was written.
         active: seconds since 1970.
     """
 
@@ -51,7 +51,7 @@ class MemberRow(msgspec.Struct, frozen=True):
 
 
 def class_row(row: sa.Row[Any]) -> ClassRow | None:
-    """A class as it is kept; None if it cannot be read."""
+    """The class in a row; None if it is invalid."""
     try:
         return msgspec.convert(row, ClassRow, from_attributes=True)
     except msgspec.ValidationError as error:
@@ -60,19 +60,19 @@ def class_row(row: sa.Row[Any]) -> ClassRow | None:
 
 
 class ProgressCache:
-    """Students' progress as text and back, each text read once."""
+    """Converts students' progress to text and back; each text is parsed once."""
 
     def __init__(self) -> None:
         self._known: dict[str, tuple[str, Progress]] = {}
 
     def text(self, session: str, progress: Progress) -> str:
-        """As it is kept."""
+        """The progress as text."""
         text = msgspec.json.encode(progress).decode()
         self._known[session] = text, progress
         return text
 
     def read(self, session: str, text: str) -> Progress:
-        """What was kept; the same object until it is another."""
+        """The progress in a text; the same object as long as the text is the same."""
         known = self._known.get(session)
         if known is not None and known[0] == text:
             return known[1]
@@ -85,15 +85,15 @@ class ProgressCache:
         return progress
 
     def keep(self, sessions: set[str]) -> None:
-        """Forget all others."""
+        """Drop all other sessions."""
         self._known = {code: known for code, known in self._known.items() if code in sessions}
 
 
 def read_member(row: sa.Row[Any], ways: ProgressCache, since: float) -> tuple[str, Member] | None:
-    """A session code and the student of it; None if it cannot be read.
+    """Session code and student in a row; None if it is invalid.
 
     Args:
-        since: seconds since 1970 when the class's clock began.
+        since: seconds since 1970 at which the class's monotonic clock was 0.
     """
     try:
         kept = msgspec.convert(row, MemberRow, from_attributes=True)
@@ -106,7 +106,7 @@ def read_member(row: sa.Row[Any], ways: ProgressCache, since: float) -> tuple[st
 
 
 def push_text(push: Push | None) -> str:
-    """What a teacher sends, as it is kept; empty for nothing."""
+    """What the teacher sends, as text; empty for nothing."""
     if push is None:
         return ""
     if isinstance(push, TakeStep):
@@ -115,7 +115,7 @@ def push_text(push: Push | None) -> str:
 
 
 def read_push(text: str) -> Push | None:
-    """The inverse of `push_text`; None if there is nothing or it cannot be read."""
+    """The inverse of `push_text`; None if there is nothing, or it is invalid."""
     if not text:
         return None
     try:

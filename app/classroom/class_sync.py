@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.periodic import Periodic
-from onpath.app.lab.class_commands import Freeze
+from onpath.app.lab.commands import Freeze
 from onpath.app.lab.session import Session
 
 SYNC_INTERVAL = 0.25  # [s]

@@ -1,7 +1,7 @@
-"""A student's lab that lives in another process, as it is shown in this one.
+"""A copy of a student's lab that lives in another process.
 
-It is told how the lab is several times a second, and runs a little behind: from one moment that
-it knows exactly to the next, by the same loop under the same pushes, and never beyond the last.
+It receives the lab's state several times a second, and runs slightly behind: it simulates from one
+received state to the next, with the same loop and the same pushes, and never beyond the last one.
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ from onpath.models.closed_loop.simulation import Push
 from onpath.models.control.laws import NAMES
 from onpath.models.systems.parameters import time_step
 
-BEHIND = 0.4  # [s] that it runs behind the latest moment
-FURTHEST = 2.0  # [s]; further behind, what lies between is left out
-GAIN = 0.5  # how much faster it runs when it is twice as far behind
-MOST = 50  # moments waiting
+BEHIND = 0.4  # [s], intended delay behind the latest state
+FURTHEST = 2.0  # [s]; with a larger delay, states are skipped
+GAIN = 0.5  # relative increase of the rate for each multiple of BEHIND in excess
+MOST = 50  # pending states
 
 
 class Mirror(Lab):
-    """One lab. It is nobody's hands: no command of a page reaches the student's.
+    """A read-only replica of one lab: commands of a page do not reach the student's lab.
 
     Args:
-        session: a new one, which nobody else has.
-        text: the first moment, see `app.classroom.moment`.
+        session: a new one, used by nothing else.
+        text: the first state, see `app.classroom.moment`.
 
     Raises:
-        ValueError: that is none.
+        ValueError: the state is invalid.
     """
 
     def __init__(self, session: Session, text: str) -> None:
@@ -43,7 +43,7 @@ class Mirror(Lab):
         self._owed = 0.0  # [s]
 
     def tell(self, text: str) -> None:
-        """How the lab is now; from any thread. What cannot be read is left out."""
+        """Receive the lab's current state. Thread-safe; invalid states are ignored."""
         if text == self._text:
             return
         self._text = text
@@ -56,7 +56,7 @@ class Mirror(Lab):
 
     @property
     def is_seen(self) -> bool:
-        """Whether the student's browser draws it."""
+        """Whether the student's browser is drawing."""
         return self._now.is_seen
 
     @property
@@ -65,7 +65,7 @@ class Mirror(Lab):
         return self._now.achieved
 
     def keep_up(self) -> None:
-        """One frame; on the simulation thread, by the page that shows it."""
+        """Advance by one frame. The page that shows it calls this on the simulation thread."""
         self._take_over_due()
         self._owed += self._step()
         while self._coming and self._runs():
@@ -84,7 +84,7 @@ class Mirror(Lab):
             self._taken = new
 
     def _step(self) -> float:
-        """How far to go in this frame: faster the further behind, [s]."""
+        """Simulated time of this frame, [s]; the further behind, the longer."""
         if not self._coming:
             return 0.0
         rate = self.session.rate
@@ -103,7 +103,7 @@ class Mirror(Lab):
         )
 
     def _run_towards(self, new: Moment) -> bool:
-        """As far as this frame goes; returns whether that is all the way to a moment."""
+        """Simulate towards a state as far as this frame allows; returns whether it was reached."""
         session, dt = self.session, time_step(self.session.parameters)
         there = max(1, round((new.time - session.time) / dt))
         ticks = min(int(self._owed / dt + 1e-9), there, MOST_TICKS)
@@ -117,7 +117,7 @@ class Mirror(Lab):
         return ticks == there
 
     def _move_hands(self, new: Moment, time: float) -> None:
-        """A hand moves more often than it is told."""
+        """Interpolate the hands between states, because they move more often than states arrive."""
         old = self._taken
         assert old is not None
         pushes = self.session.grips.pushes

@@ -1,7 +1,7 @@
-"""A lab at one instant, as another process shows it: told, checked when it is read, taken over.
+"""The state of a lab at one instant, serialised to be shown in another process.
 
-Unlike a set-up it holds where the robots are and who pulls at them, exactly, so that a lab that
-has taken it over moves on as the first one does.
+Unlike a setup it includes the exact states of the robots and the pushes on them, so that a lab that
+adopts it continues exactly as the original does.
 """
 
 from __future__ import annotations
@@ -12,11 +12,10 @@ import msgspec
 import numpy as np
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun, Diverged
-from onpath.app.lab.commands import EXAGGERATIONS, RATES
 from onpath.app.lab.path_editor import Blend, PathEditor
 from onpath.app.lab.plot_samples import places
 from onpath.app.lab.session import Session
-from onpath.app.lab.setup import Word
+from onpath.app.lab.setup import EXAGGERATIONS, RATES, Word
 from onpath.app.simulation.simulation_thread import Lab
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import log_layout, state_layout
@@ -29,7 +28,7 @@ from onpath.models.paths.path_design import MOST_POINTS, PathDesign
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameters import Parameters, changed, specs
 
-MOST_MARKS = 2000  # numbers
+MOST_MARKS = 2000  # numbers, two for each marked point
 INSTANT = 1e-6  # [s], shorter than any tick
 Text = Annotated[str, msgspec.Meta(max_length=2000)]
 Vector = Annotated[tuple[float, ...], msgspec.Meta(max_length=200)]
@@ -39,14 +38,14 @@ Marks = Annotated[tuple[float, ...], msgspec.Meta(max_length=MOST_MARKS)]
 
 
 class Line(msgspec.Struct, frozen=True):
-    """A curve: its terms, x and y in turn, [m]."""
+    """A curve by its coefficients, x and y alternating, [m]."""
 
     closed: bool
     terms: Series
 
 
 class PathMoment(msgspec.Struct, frozen=True):
-    """A path as it is edited and followed; see `app.lab.path_editor`."""
+    """The edited and the followed path; see `app.lab.path_editor`."""
 
     name: Word
     target: Line
@@ -63,19 +62,20 @@ class Stopped(msgspec.Struct, frozen=True):
     time: float
     code: Text
     arguments: Annotated[dict[Word, Text], msgspec.Meta(max_length=10)]
-    english: Text
 
     def reason(self) -> Message:
-        return Message(self.code, self.arguments, self.english)
+        return Message(self.code, self.arguments)
 
 
 class RobotMoment(msgspec.Struct, frozen=True):
     """One robot.
 
     Attributes:
+        state: see `models.closed_loop.loop_vectors.state_layout`.
         sample: see `app.lab.plot_samples`.
-        diverged: why it stands still, and since when.
-        hand, anchor, tangent: who pulls at it, in output coordinates; none if nobody does.
+        max_distance: largest distance to the path so far, [m].
+        diverged: why and when its simulation was stopped [s], or None.
+        hand, anchor, tangent: the push on it, in output coordinates; empty if there is none.
     """
 
     state: Vector
@@ -88,12 +88,12 @@ class RobotMoment(msgspec.Struct, frozen=True):
 
 
 class Moment(msgspec.Struct, frozen=True):
-    """A lab as it is seen, now or at the past instant that is being looked at.
+    """A lab as it is shown: now, or at the past instant that the student looks at.
 
     Attributes:
-        run: how often the robots have been set back to the start.
+        run: number of resets so far.
         moves: whether simulated time runs.
-        is_seen: whether the student's tab draws.
+        is_seen: whether the student's tab is drawing.
         achieved: simulated seconds per second.
     """
 
@@ -117,7 +117,7 @@ class Moment(msgspec.Struct, frozen=True):
 
 
 def tell(lab: Lab) -> Moment:
-    """How a lab is; on the simulation thread, and quickly."""
+    """The state of a lab. Fast; call it on the simulation thread."""
     session = lab.session
     past = None if session.viewing is None else session.history.at(session.viewing)
     instant = session.instant() if past is None else past.instant()
@@ -170,7 +170,7 @@ def _robot(run: ClosedLoopRun, push: Push, state: Array, sample: Array, most: fl
 def _stopped(diverged: Diverged) -> Stopped:
     reason = diverged.reason
     arguments = {name: str(value) for name, value in reason.arguments.items()}
-    return Stopped(diverged.time, reason.code, arguments, reason.english)
+    return Stopped(diverged.time, reason.code, arguments)
 
 
 def _path(editor: PathEditor, past: Curve | None) -> PathMoment:
@@ -193,10 +193,10 @@ def _line(curve: Curve) -> Line:
 
 
 def read_moment(text: str) -> Moment:
-    """What `tell` told, from JSON.
+    """The state in JSON, validated.
 
     Raises:
-        ValueError: it is no moment of a lab that exists.
+        ValueError: it is not a valid state of a known robot.
     """
     moment = msgspec.json.decode(text, type=Moment)
     if moment.robot not in ROBOTS:
@@ -226,7 +226,7 @@ def read_moment(text: str) -> Moment:
 
 
 def parameters_of(moment: Moment) -> Parameters:
-    """The parameters of a lab.
+    """The parameters of the lab.
 
     Raises:
         ValueError: an unknown name or a bad value.
@@ -245,15 +245,17 @@ def _numbers(numbers: tuple[float, ...], size: int) -> None:
 def _sayable(message: Message) -> None:
     try:
         str(message)
-    except (KeyError, IndexError, AttributeError):
+    except KeyError:
         raise ValueError(f"no message {message.code!r} with these arguments") from None
 
 
 def take_over(session: Session, new: Moment, old: Moment | None) -> None:
-    """Make a session what a lab was; on the simulation thread.
+    """Put a session into a received state. Call it on the simulation thread.
 
     Args:
-        new, old: checked ones; this one and the one that was taken over before.
+        session: whose state is replaced.
+        new: the received state, from `read_moment`.
+        old: the one adopted before; only differences are applied.
     """
     entry: RobotEntry = ROBOTS[new.robot]
     session.choose_robot(entry)

@@ -1,4 +1,7 @@
-"""Between a teacher's page in one process and a student's lab in another; a thread of its own."""
+"""Exchanges the states of labs between processes.
+
+A student's lab may live in one process, while the teacher's page that shows it lives in another.
+"""
 
 from __future__ import annotations
 
@@ -12,25 +15,26 @@ from onpath.app.classroom.moment import Moment, tell
 from onpath.app.classroom.watches import Watches
 from onpath.app.common.error_log import log_warning
 from onpath.app.common.periodic import Periodic
-from onpath.app.lab.class_commands import ShowMessage
+from onpath.app.lab.commands import ReportState
 from onpath.app.lab.session import Session
 from onpath.app.simulation.simulation_thread import Lab
 from onpath.app.storage.records import NotKept
 
 SEND_INTERVAL = 0.125  # [s]
-SELDOM = 4  # looks until labs are asked for again, or it is looked whether any are
+SELDOM = 4  # rounds between requests for labs, and between reads of such requests
 
 
 class Relay:
-    """Tells of the labs here that others ask for, and mirrors those elsewhere that are asked for.
+    """Publishes the labs here that other processes request, and mirrors requested labs of others.
 
     Args:
-        find: the lab of a session code, if it lives in this process.
-        wanted: which labs that live elsewhere the teachers look at: session codes by client.
-        make: a new session, for a mirror.
+        watches: the requests and states in the database.
+        find: session code -> the lab, if it lives in this process.
+        wanted: returns which labs of other processes teachers look at: client -> session code.
+        make: creates a session for a mirror.
 
     Attributes:
-        rounds: looks, from their start to their stop.
+        rounds: runs the exchange periodically.
     """
 
     def __init__(
@@ -49,12 +53,12 @@ class Relay:
         self.rounds = Periodic("relay", SEND_INTERVAL, self._try)
 
     def mirror(self, client: int, session: str) -> Mirror | None:
-        """What a teacher's page shows of a lab that lives elsewhere, once there is anything."""
+        """The mirror of a lab in another process, for a teacher's page; None until there is one."""
         code, mirror = self._mirrors.get(client, ("", None))
         return mirror if code == session else None
 
     def look(self) -> None:
-        """Once: tell, and be told."""
+        """One round: publish and receive."""
         if self._looks % SELDOM == 0:
             self._asked = self._watches.asked()
         self._tell()
@@ -68,7 +72,7 @@ class Relay:
             log_warning("labs cannot be followed: %s", error)
 
     def _tell(self) -> None:
-        """What the labs said after the last look; they are asked again."""
+        """Publish the states that the labs reported since the last round, and ask them again."""
         heard, self._heard = self._heard, {}
         new = {code: now for code, now in heard.items() if now != self._told.get(code)}
         if new:
@@ -77,7 +81,7 @@ class Relay:
         self._told = {c: now for c, now in {**self._told, **new}.items() if c in self._asked}
         for code in self._asked:
             if (lab := self._find(code)) is not None:
-                lab.session.post(ShowMessage(partial(self._hear, code, lab)))
+                lab.session.post(ReportState(partial(self._hear, code, lab)))
 
     def _hear(self, code: str, lab: Lab, _: Session) -> None:
         self._heard[code] = tell(lab)

@@ -1,7 +1,8 @@
-"""The class of several processes that share a database. No viser in it; any thread.
+"""A class of several processes that share a database. Thread-safe; knows nothing of viser.
 
-What pages and labs read is at hand. What they want of all is written when the class is looked at
-next, several times a second, so that neither the simulation nor the network waits for a database.
+Reads are cached. Writes that concern the whole class are queued until the next `look`, several
+times a second, so that neither the simulation nor the network waits for the database. Joining,
+leaving and ending block until they are written.
 """
 
 from __future__ import annotations
@@ -24,24 +25,26 @@ from onpath.app.common.error_log import log_warning
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.schema import classes
 
-LIVELY = 5.0  # [s] that others may not know of a student's latest deed
+LIVELY = 5.0  # [s], largest delay until other processes learn of a student's activity
 Result = TypeVar("Result")
 
 
 class SharedClassroom:
-    """See `app.classroom.classroom.Classroom`.
+    """A class in the database; see `app.classroom.classroom.Classroom`.
 
-    Whoever has the teacher's key and the database has the same class.
+    All processes with the same database and teacher's key have the same class.
 
     Args:
-        key: as `app.common.access_codes` keeps it.
+        records: the database.
+        key: the teacher's, in its stored form; see `app.common.access_codes`.
+        clock: monotonic, [s].
         wall: seconds since 1970, roughly the same for all processes.
 
     Attributes:
-        id: of the class in the database; it does not tell the key.
+        id: of the class in the database; a hash, which does not reveal the key.
 
     Raises:
-        NotKept: the database does not work.
+        NotKept: the database cannot be used.
     """
 
     def __init__(
@@ -55,7 +58,7 @@ class SharedClassroom:
         self.id = hashlib.scrypt(key.encode(), salt=b"onpath", n=2**14, r=8, p=1, dklen=20).hex()
         self._records, self._door = records, Admission(clock)
         self._ledger = ClassLedger(self.id, records.owner)
-        self._database = threading.RLock()  # held while the database is waited for
+        self._database = threading.RLock()  # held during transactions
         self._lock = threading.Lock()
         self._seen = ClassState()
         self._notes: dict[str, dict[str, Any]] = {}
@@ -63,7 +66,7 @@ class SharedClassroom:
         self._told: dict[str, float] = {}
         self._transact(lambda connection: self._ledger.forget_old(connection, self._now()))
 
-    # What is at hand
+    # Reads, from the cache
 
     @property
     def code(self) -> str:
@@ -87,10 +90,10 @@ class SharedClassroom:
         """See `Classroom.is_elsewhere`."""
         return session in self._seen.elsewhere
 
-    # What is written at the next look
+    # Queued writes
 
     def note(self, session: str, **changes: object) -> None:
-        """See `Classroom.note`. Who is connected is not noted, it stands in the leases."""
+        """See `Classroom.note`. "connected" is ignored; it follows from the leases."""
         changes.pop("connected", None)
         with self._lock:
             old = self._seen.members.get(session)
@@ -116,13 +119,13 @@ class SharedClassroom:
             self._wanted.append({**sent, "push": push_text(push)})
 
     def look(self) -> None:
-        """See `Classroom.look`. When the database does not work, all stays as it is."""
+        """See `Classroom.look`. If the database cannot be used, nothing changes."""
         try:
             self._transact(lambda _: None)
         except NotKept as error:
             log_warning("the class cannot be looked at: %s", error)
 
-    # What is done at once
+    # Blocking calls
 
     def admit(self, typed: str, who: str) -> str:
         """See `Classroom.admit`."""
@@ -159,7 +162,7 @@ class SharedClassroom:
         return self._transact(lambda connection: self._ledger.end(connection, self._now()))
 
     def dissolve(self) -> None:
-        """Nothing is kept of the class; who goes on with it begins another."""
+        """Delete the class. A process that continues to use it creates a new one."""
         with self._records.transaction() as connection:
             self._ledger.forget(connection)
 
@@ -169,7 +172,7 @@ class SharedClassroom:
         return Now(self.clock(), self._wall())
 
     def _transact(self, act: Callable[[sa.Connection], Result]) -> Result:
-        """Write what is waiting, act, and look."""
+        """Write what is queued, act, and read the class, in one transaction."""
         with self._database:
             with self._lock:
                 notes, self._notes = self._notes, {}
@@ -198,7 +201,7 @@ class SharedClassroom:
                     self._write(connection, notes, wanted)
                     result = act(connection)
                     return result, self._ledger.look(connection, self._seen, self._now())
-            except exc.IntegrityError:  # another process began the class at the same time
+            except exc.IntegrityError:  # another process created the class at the same time
                 if last:
                     raise NotKept("the class cannot be begun") from None
         raise AssertionError
@@ -222,7 +225,7 @@ class SharedClassroom:
             self._ledger.write(connection, session, changed, **values)
 
     def _with_waiting(self, seen: ClassState) -> ClassState:
-        """A class as it will be when what has come meanwhile is written."""
+        """The class with all queued writes applied."""
         orders, there = seen.orders, dict(seen.members)
         for values in self._wanted:
             if "frozen" in values:

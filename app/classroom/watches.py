@@ -1,4 +1,4 @@
-"""Which labs a teacher in another process looks at, and how those are: rows that expire."""
+"""Rows in the database that request the states of labs in other processes, and carry them."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ from sqlalchemy import exc
 from onpath.app.storage.records import Records
 from onpath.app.storage.schema import watches
 
-LASTS = 4.0  # [s] that a lab is told of after it has been asked for; clocks differ by less
-NONSENSE = 3 * LASTS  # [s]; a clock was wrong when a row says that it lasts longer
-GONE = 60.0  # [s] after which what was told is deleted
+LASTS = 4.0  # [s], duration of a request; clocks of the processes must differ by less
+NONSENSE = 3 * LASTS  # [s]; a request that lasts longer was written with a wrong clock
+GONE = 60.0  # [s] after which expired rows are deleted
 
 
 class Watches:
-    """Of one class. From any thread; all methods wait for the database, and raise NotKept.
+    """The requests of one class. Thread-safe; all methods wait for the database, and raise NotKept.
 
     Args:
+        records: the database.
+        class_id: the class.
         clock: seconds since 1970, roughly the same for all processes.
     """
 
@@ -30,7 +32,7 @@ class Watches:
         self._own = watches.c.class_id == class_id
 
     def ask(self, sessions: Iterable[str]) -> None:
-        """Want to be told of labs, for a while."""
+        """Request the states of labs for `LASTS` seconds."""
         now = self._clock()
         for session in sessions:
             try:
@@ -45,21 +47,21 @@ class Watches:
                 continue  # another process has asked at the same time
 
     def asked(self) -> set[str]:
-        """Session codes of the labs that somebody wants to be told of."""
+        """Session codes of the labs whose states are requested."""
         now = self._clock()
         there = self._own & watches.c.until.between(now, now + NONSENSE)
         with self._records.transaction() as connection:
             return set(connection.execute(sa.select(watches.c.session).where(there)).scalars())
 
     def tell(self, moments: Mapping[str, str]) -> None:
-        """How labs are, by session code."""
+        """Publish states of labs, by session code."""
         with self._records.transaction() as connection:
             for session, moment in moments.items():
                 new = sa.update(watches).where(self._one(session)).values(moment=moment)
                 connection.execute(new)
 
     def told(self, sessions: Iterable[str]) -> dict[str, str]:
-        """How labs are, by session code; those of which nothing has been told are left out."""
+        """Published states of labs, by session code; labs without one are omitted."""
         wanted = sa.select(watches.c.session, watches.c.moment).where(self._own)
         wanted = wanted.where(watches.c.session.in_(list(sessions)) & (watches.c.moment != ""))
         with self._records.transaction() as connection:

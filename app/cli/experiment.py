@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
@@ -11,6 +10,7 @@ from typing import Annotated, Literal
 import tyro
 
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
+from onpath.app.exports.summary_text import summary_lines
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,9 @@ class ExperimentCommand:
     """Run one of the paper's experiments and report."""
 
     name: Annotated[str, tyro.conf.Positional]
-    """position, obstruction or flexible."""
+    """position, obstruction or flexible (that one with the flexible link alone)."""
+    robot: str = ""
+    """Which robot does it, by name; the paper's unless told otherwise."""
     controller: Literal["path_following", "trajectory_tracking", "both"] = "both"
     """Which controller to run."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -38,7 +40,7 @@ class ExperimentCommand:
         from onpath.models.studies.experiments import experiments, run, summary
         from onpath.models.systems.parameters import unknown_name
 
-        known = experiments()
+        known = experiments(self.robot)
         if self.name not in known:
             raise unknown_name(self.name, list(known), what="experiment")
         check_plot(self.plot)
@@ -96,20 +98,10 @@ def _assignments(pairs: tuple[str, ...]) -> dict[str, str]:
 
 def _table(result: dict, reasons: dict[str, str]) -> str:
     """The summary for a reader."""
-    rows: list[tuple[str, str, Callable[[float], str]]] = [
-        ("max_distance_m", "max distance", lambda v: f"{v * 1e3:.2f} mm"),
-        ("max_distance_while_held_m", "max distance while held", lambda v: f"{v * 1e3:.2f} mm"),
-        ("rms_distance_m", "rms distance", lambda v: f"{v * 1e3:.3f} mm"),
-        ("final_speed_rad_s", "final speed", lambda v: f"{v + 0.0:.3f} rad/s"),
-        ("max_torque_Nm", "max torque", lambda v: f"{v:.3f} N m"),
-        ("diverged_at_s", "diverged at", lambda v: f"{v:.3f} s"),
-    ]
     lines = [result["experiment"]]
     for controller, values in result["controllers"].items():
         lines.append(f"  {controller.replace('_', ' ')}")
-        for key, title, show in rows:
-            if values[key] is not None:
-                lines.append(f"    {title:26s} {show(values[key])}")
+        lines += [f"    {line}" for line in summary_lines(values)]
         if reasons[controller]:
             lines.append(f"    {reasons[controller]}")
     return "\n".join(lines)

@@ -17,7 +17,7 @@ from onpath.app.cli.serve import Serve
 
 if TYPE_CHECKING:
     from onpath.lessons.course import Course
-    from onpath.lessons.parse import Problem
+    from onpath.lessons.problems import Problem
 
 COMMANDS = ("serve", "experiment", "zero-dynamics", "lessons", "bench", "forget")
 INTERRUPTED = 130
@@ -79,6 +79,7 @@ class BenchCommand:
     def run(self) -> None:
         """Print the table."""
         from onpath.app.bench.crowd import ClientLoad
+        from onpath.app.bench.mouse_latency import check_installed
         from onpath.app.bench.tables import bench, bench_crowds
 
         if self.minutes < 0:
@@ -92,6 +93,8 @@ class BenchCommand:
         if crowds:
             bench_crowds(crowds)
         else:
+            if not self.quick:
+                check_installed()
             bench(quick=self.quick)
 
 

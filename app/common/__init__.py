@@ -1,1 +1,1 @@
-"""Small helpers."""
+"""Small helpers that every folder of the lab may use."""

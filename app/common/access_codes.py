@@ -1,4 +1,4 @@
-"""Session codes that a student can note down and enter elsewhere."""
+"""Session codes, which a student can note down and enter on another machine."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ import secrets
 
 from onpath.models.errors import CodedError
 
-ALPHABET = "23456789abcdefghjkmnpqrstuvwxyz"  # nothing that looks like something else
-LENGTH, GROUP = 12, 4  # 59 bits: not to be guessed
+ALPHABET = "23456789abcdefghjkmnpqrstuvwxyz"  # no characters that are easily confused
+LENGTH, GROUP = 12, 4  # 59 bits, which cannot be guessed
 _BETWEEN = re.compile(r"[\s.,_\-\u2010-\u2015]+")
 
 
 def new_code() -> str:
-    """A code as it is kept: lower case, in one piece."""
+    """A random code in its stored form: lower case, without separators."""
     return "".join(secrets.choice(ALPHABET) for _ in range(LENGTH))
 
 
 def shown(code: str) -> str:
-    """A code as it is shown, "abcd-efgh-jkmn"."""
+    """A code in its displayed form, "abcd-efgh-jkmn"."""
     return "-".join(code[i : i + GROUP] for i in range(0, LENGTH, GROUP))
 
 
 def normalised(text: str) -> str:
-    """A code as it is kept, from what somebody typed.
+    """The stored form of a code that a user typed.
 
     Raises:
-        ValueError: it is no code.
+        ValueError: it is not a code.
     """
     code = _BETWEEN.sub("", text[:100]).lower()
     if len(code) != LENGTH:

@@ -1,4 +1,4 @@
-"""Files that somebody has asked for: whole, or not at all, and refused before the work is done."""
+"""Output files that are written completely or not at all, and checked before the work begins."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 
-def check_plot(path: Path | None) -> None:
+def check_plot(path: Path | None, asked_by: str = "--plot") -> None:
     """Complain of a picture that cannot be made.
+
+    Args:
+        asked_by: the option or function that the picture is for.
 
     Raises:
         ValueError: an unknown kind of file, or nothing can be written there.
@@ -18,15 +21,15 @@ def check_plot(path: Path | None) -> None:
     if path is None:
         return
     if path.suffix not in (".png", ".svg", ".pdf"):
-        raise ValueError(f"--plot {path}: expected a name ending in .png, .svg or .pdf")
+        raise ValueError(f"{asked_by} {path}: expected a name ending in .png, .svg or .pdf")
     check_writable(path)
 
 
 def check_writable(path: Path) -> None:
-    """Complain before the work is done, not after it.
+    """Check that a file can be written, before the work is done.
 
     Raises:
-        ValueError: nothing can be written there.
+        ValueError: it cannot.
     """
     if path.is_dir():
         raise ValueError(f"{path}: that is a folder")

@@ -1,4 +1,4 @@
-"""Logs what may come a thousand times: errors in full once, later their number; few warnings."""
+"""Logging of events that may repeat many times: errors once in full, warnings at a limited rate."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _seen: Counter[tuple[type, CodeType | None, int]] = Counter()
 
 
 def log_error(error: BaseException) -> None:
-    """The traceback the first time a line raises this; then that it did so 10, 100, … times."""
+    """Log an error with its traceback when a line first raises it, then the 10th, 100th, … time."""
     place = error.__traceback__
     while place is not None and place.tb_next is not None:
         place = place.tb_next
@@ -28,7 +28,7 @@ def log_error(error: BaseException) -> None:
 
 
 def log_warning(message: str, *arguments: object) -> None:
-    """A warning, unless many have been given in the last minute."""
+    """Log a warning, unless ten have been logged in the last minute."""
     now = time.monotonic()
     if len(_warned) == _MOST_WARNINGS and now - _warned[0] < _MINUTE:
         return

@@ -1,7 +1,7 @@
-"""The colours of the lab: one meaning, one colour, in the scene, the plots and the figures.
+"""The colours of the lab: one colour for one meaning, in the scene, the plots and the figures.
 
-The controllers' colours are Okabe and Ito's vermillion and blue, which stay apart for every common
-form of colour blindness and on a pale projector.
+The controllers' colours are Okabe and Ito's vermillion and blue, which remain distinguishable for
+every common form of colour blindness and on a pale projector.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Colour:
     def linear(self) -> np.ndarray:
         """As linear light, shape (3,), uint8.
 
-        viser takes the colours of instances and of vertices as linear, all others as sRGB.
+        viser interprets the colours of instances and of vertices as linear, all others as sRGB.
         """
         s = np.array(self.rgb) / 255.0
         light = np.where(s <= 0.04045, s / 12.92, ((s + 0.055) / 1.055) ** 2.4)
@@ -42,15 +42,26 @@ class Colour:
         return f"#{self.red:02x}{self.green:02x}{self.blue:02x}"
 
     def toward(self, other: Colour, share: float) -> Colour:
-        """This colour with `share` (0 to 1) of another mixed in."""
+        """This colour mixed with another: (1 - share) self + share other, share from 0 to 1."""
         mixed = (round(a + (b - a) * share) for a, b in zip(self.rgb, other.rgb, strict=True))
         return Colour(*mixed)
 
 
-GREEN, GREY, AMBER = "#1d7a4f", "#667085", "#8a5a00"
-"""Of words on a page."""
 WHITE = Colour(255, 255, 255)
 INK = Colour(31, 41, 55)
+
+# Text on a page, from the strongest to the weakest, and what is right, wrong or told
+SLATE = Colour(63, 74, 90)
+GREY = Colour(102, 112, 133)
+GREEN = Colour(29, 122, 79)
+AMBER = Colour(138, 90, 0)
+BLUE = Colour(51, 80, 107)
+
+# Lines and grounds on a page
+MUTED = Colour(170, 180, 192)
+BORDER = Colour(213, 218, 225)
+SHADE = Colour(238, 241, 245)
+PANEL = Colour(247, 249, 251)
 
 TRACKER = Colour(213, 94, 0)
 FOLLOWER = Colour(0, 114, 178)
@@ -65,5 +76,8 @@ MOTOR = Colour(66, 74, 88)
 STEEL = Colour(118, 128, 142)
 FLOOR = Colour(244, 246, 248)
 GRID = Colour(222, 226, 232)
+
+SEEN = FOLLOWER.toward(WHITE, 0.6)
+"""Of the steps of a lesson that have been opened."""
 
 CONTROLLERS: dict[str, Colour] = dict(zip(NAMES, (TRACKER, FOLLOWER), strict=True))

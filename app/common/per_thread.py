@@ -1,4 +1,4 @@
-"""Each thread's own objects."""
+"""Caches with one set of objects per thread."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Made = TypeVar("Made")
 
 
 def per_thread(make: Callable[Asked, Made]) -> Callable[Asked, Made]:
-    """As `functools.cache`, but no thread gets what another one has."""
+    """Like `functools.cache`, but every thread has its own results."""
     own = threading.local()
 
     @wraps(make)

@@ -1,4 +1,4 @@
-"""Something done again and again, in a thread of its own."""
+"""Runs a function periodically in its own thread."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from onpath.app.common.error_log import log_error
 
 
 class Periodic:
-    """A round every so many seconds, from `start` to `stop`; one that fails does not end them.
+    """Calls a function periodically, from `start` to `stop`; exceptions are logged.
 
     Args:
         name: of the thread.
-        every: [s] of rest before each round.
-        act: one round.
+        every: pause before each call, [s].
+        act: the function.
     """
 
     def __init__(self, name: str, every: float, act: Callable[[], object]) -> None:
@@ -23,11 +23,11 @@ class Periodic:
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self._thread.start()
 
     def stop(self, patience: float = 2.0) -> None:
-        """End, after waiting so long for a round that is under way, [s]."""
+        """Stop the thread, and wait up to `patience` [s] for a call in progress."""
         self._stop.set()
         if self._thread.is_alive():
             self._thread.join(patience)

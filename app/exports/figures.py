@@ -13,18 +13,31 @@ from matplotlib.figure import Figure
 from onpath.app.common.palette import CONTROLLERS
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
-from onpath.models.paths.curves import circle
 from onpath.models.studies.experiments import Experiment
 from onpath.models.systems.flexible_robot import FlexibleFiveBar
 
 
+class ShownFigure(Figure):
+    """A figure that a notebook shows, whether or not pyplot is in use there."""
+
+    def _repr_png_(self) -> bytes:
+        file = io.BytesIO()
+        self.savefig(file, format="png", dpi=80)
+        return file.getvalue()
+
+
 def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) -> None:
+    """`experiment_figure` as a file."""
+    save(experiment_figure(experiment, runs), path)
+
+
+def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     """End-point in output space, and distance, xi, eta, speed and torque over time."""
     panels = _panels()
     robot = experiment.robot()
     if isinstance(robot, FlexibleFiveBar):
         panels.insert(1, _deflection(robot))
-    figure = Figure(figsize=(13, 2.1 * len(panels)), layout="constrained")
+    figure = ShownFigure(figsize=(13, 2.1 * len(panels)), layout="constrained")
     axes = figure.subplot_mosaic([["space", name] for name, _, _ in panels], width_ratios=(1, 1.25))
     figure.suptitle(experiment.title, fontsize=15)
     _draw_space(axes["space"], experiment, runs)
@@ -38,7 +51,7 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
         axes[name].tick_params(labelbottom=False)
         axes[name].sharex(axes[panels[-1][0]])
     axes[panels[-1][0]].set_xlabel("t  [s]")
-    save(figure, path)
+    return figure
 
 
 def save(figure: Figure, path: Path) -> None:
@@ -107,8 +120,7 @@ def _shade_held(axes: Axes, runs: list[Trajectory]) -> None:
 
 def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> None:
     frame = experiment.robot().frame
-    curve = circle(experiment.schedule.r)
-    path = 1e3 * curve.at(np.linspace(-np.pi, np.pi, 400))
+    path = 1e3 * experiment.curve().at(np.linspace(-np.pi, np.pi, 400))
     axes.plot(*path.T, color="0.75", linewidth=6, solid_capstyle="round", label="path")
     for run in runs:
         z = 1e3 * frame.planar(run.fields["y"])

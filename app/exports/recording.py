@@ -63,7 +63,7 @@ def record_scene(
     frames = _frames(history)
     studio, stage = FilmServer(), stage_of(robot)
     set_initial_camera(studio, stage)
-    scene = Scene(studio, stage=stage, words=words)  # type: ignore[arg-type]  # has scene, atomic()
+    scene = Scene(studio, stage, words=words)  # type: ignore[arg-type]  # has scene, atomic()
     scene.build(_snapshot(robot, frames[0], 0, []))
     serializer = studio.get_scene_serializer()
     for number, stretch in enumerate(frames):

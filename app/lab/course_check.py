@@ -12,7 +12,7 @@ from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
 from onpath.lessons.checks import Verdict, judge
 from onpath.lessons.course import REFERENCE, Course, read_references
-from onpath.lessons.parse import Problem
+from onpath.lessons.problems import Problem
 from onpath.lessons.schema import Lesson, Script, Step, Task
 from onpath.lessons.words import DEFAULT, Words
 

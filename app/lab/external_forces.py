@@ -13,15 +13,20 @@ from onpath.models.closed_loop.simulation import FREE, Push, brake_at
 from onpath.models.control.laws import NAMES
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.frames import Frame
 from onpath.models.systems.robots import Robot
-
-REACH = 0.4  # [m], a hand's target stays within this of the middle
 
 
 class Note(Protocol):
     """Told what has begun or ended, and who it concerns."""
 
     def __call__(self, name: str, /, *, controllers: tuple[str, ...]) -> None: ...
+
+
+def displaced(frame: Frame, y: Array, by: Array) -> Array:
+    """A point of the output space, (p,), moved along the path's plane by `by`, (2,), [m]."""
+    z = frame.planar(y)
+    return y + frame.lift(z + by) - frame.lift(z)
 
 
 class ExternalForces:
@@ -78,9 +83,9 @@ class ExternalForces:
             self.grabbed = controller
             self._offsets = {name: self._runs[name].shown()["y"] - own for name in together}
             self._note("pull", controllers=tuple(self._offsets))
-        home = self._robot.frame.lift(np.zeros(2))
+        home, reach = self._robot.frame.lift(np.zeros(2)), self._robot.reach[1]
         for name, offset in self._offsets.items():
-            self.hands[name] = (target + offset).clip(home - REACH, home + REACH)
+            self.hands[name] = (target + offset).clip(home - reach, home + reach)
             self.pushes[name] = Push(self.hands[name], self.pushes[name].hold)
 
     def release(self) -> None:

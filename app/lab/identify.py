@@ -28,7 +28,7 @@ from onpath.models.studies.identification import (
     smooth_velocities,
 )
 from onpath.models.systems.parameters import Parameters, specs
-from onpath.models.systems.robots import RigidFiveBar, Robot
+from onpath.models.systems.robots import BalancedLinkage, Robot
 
 if TYPE_CHECKING:
     from onpath.app.lab.session import Session
@@ -47,35 +47,35 @@ def identify_model(session: Session) -> None:
         ValueError: another robot, nothing to learn from, or too poor a motion.
     """
     robot, parameters = session.robot, session.parameters
-    if not isinstance(robot, RigidFiveBar):
+    linkage = robot.linkage
+    if linkage is None:
         raise CodedError("identified.other_robot")
     found, duration = _learned(robot, tuple(_same_robot(robot, session.history.all())))
-    session.set_parameters(believing(robot, parameters, found))
+    session.set_parameters(believing(linkage, parameters, found))
     words = session.lessons.words
     session.show_message(_sentence(robot, parameters, session.parameters, found, duration, words))
 
 
 @lru_cache(maxsize=4)  # whoever keeps the button down learns nothing new
-def _learned(robot: RigidFiveBar, stretches: tuple[Segment, ...]) -> tuple[Identified, float]:
+def _learned(robot: Robot, stretches: tuple[Segment, ...]) -> tuple[Identified, float]:
     """What the stretches say, and how long they are, [s]."""
     record = last_record(robot, list(stretches))
     return simplest(record), len(record.q) * record.dt
 
 
-def last_record(robot: RigidFiveBar, history: list[Segment]) -> JointRecord:
+def last_record(robot: Robot, history: list[Segment]) -> JointRecord:
     """What the follower's sensors saw in the last seconds, while the robot was as it is now.
 
     Raises:
-        ValueError: there is nothing.
+        ValueError: there is nothing, or the robot is no balanced linkage.
     """
-    stretches = _same_robot(robot, history)
-    if not stretches:
+    linkage, stretches = robot.linkage, _same_robot(robot, history)
+    if linkage is None or not stretches:
         raise CodedError("error.nothing_recorded")
     drive, dt = stretches[-1].drives[FOLLOWER], stretches[-1].dt
     log = kernel_of(robot, drive.kind).log.unpack(_rows(robot, stretches))
     q, v = log["q"], log["v"]
-    lengths = robot.links.link1.length, robot.links.link4.length
-    torque = log["u"] + joint_torques(q, log["force"], *lengths)
+    torque = log["u"] + joint_torques(q, log["force"], linkage.l1, linkage.l4)
     if drive.kind.encoder:
         step = float(_setting(robot, drive, "encoder_step")[0])
         q = step * np.floor(q / step + 0.5)
@@ -83,9 +83,9 @@ def last_record(robot: RigidFiveBar, history: list[Segment]) -> JointRecord:
     return JointRecord(dt, q, v, torque)
 
 
-def believing(robot: RigidFiveBar, parameters: Parameters, found: Identified) -> Parameters:
+def believing(linkage: BalancedLinkage, parameters: Parameters, found: Identified) -> Parameters:
     """The same with the controllers' model as found, as far as its sliders go."""
-    built, known = robot.links.lumped(), specs(parameters)
+    built, known = linkage.built, specs(parameters)
     changes = dict[str, float]()
     for name in INERTIA:
         spec = known[f"error_{name}"]
@@ -141,7 +141,7 @@ def _loop(robot: Robot, kind: Kind) -> InterpretedLoop:
 
 
 def _sentence(
-    robot: RigidFiveBar,
+    robot: Robot,
     before: Parameters,
     after: Parameters,
     found: Identified,

@@ -1,7 +1,8 @@
-"""Both robots as they are drawn at one instant.
+"""Both robots as they are drawn at one instant: from the state to the pose of every part.
 
-The geometry is a function of CasADi, made once for a robot: numpy would take ten times as long for
-as few numbers as these. Points are columns in it, and rows of the arrays around it.
+The geometry is one function of CasADi, made once for a robot: numpy would take ten times as long
+for as few numbers as these. Points are columns in it, and rows of the arrays around it. All is in
+the robot's own frame (x right, y away, z up); where the robots stand is the scene's.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from onpath.app.common.per_thread import per_thread
 from onpath.app.lab.history import Instant
+from onpath.app.lab.part_poses import MARKER_DEPTHS, bar_quaternions, waist_angle
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.snapshot import END, Counts, FollowerName, RobotView, TrackerName
 from onpath.models.arrays import Array
@@ -21,6 +23,7 @@ from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.control.laws import NAMES
 from onpath.models.paths.curves import TABLE_SHAPE, Curve
 from onpath.models.paths.projection import LocalCurve, basis
+from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import Robot
 
 AIMS = {TrackerName: "theta_ref", FollowerName: "theta"}
@@ -41,8 +44,8 @@ def robot_views(
         traces: their end-points lately, shape (n, robots, p), [m].
         exaggeration: of a deflection, in the bars and the drawn end-point.
     """
-    figure = _figure(robot, curve.closed)
-    points = figure.points(instant, curve, exaggeration)
+    geometry = _geometry_of(robot, curve.closed)
+    points, poses = geometry(instant, curve, exaggeration)
     trails = UNTRACED
     if traces is not None:
         trails = np.concatenate([robot.place(traces), points[None, :, END]])
@@ -52,7 +55,8 @@ def robot_views(
     return {
         name: RobotView(
             points=points[i],
-            counts=figure.counts,
+            poses=poses[i],
+            counts=geometry.counts,
             trace=trails[:, i],
             distance=distances[i],
             max_distance=instant.max_distances[i],
@@ -64,26 +68,28 @@ def robot_views(
     }
 
 
-class _Figure:
+class RobotGeometry:
     """The drawing of one kind of robot on open or on closed paths. One thread at a time."""
 
     def __init__(self, robot: Robot, closed: bool) -> None:
-        function, self.counts = _geometry(robot, closed)
+        function, self.counts = geometry_function(robot, closed)
         self._draw = Buffered(function)
         self._joints = robot.system.n
         self._seen = np.array(_seen(robot))
 
-    def points(self, instant: Instant, curve: Curve, exaggeration: float) -> Array:
-        """As `RobotView.points`, shape (robots, n, 3)."""
+    def __call__(self, instant: Instant, curve: Curve, exaggeration: float) -> tuple[Array, Array]:
+        """As `RobotView.points`, shape (robots, n, 3), and `RobotView.poses`, (robots, k)."""
         q = [state[: self._joints] for state in instant.states]
         seen = instant.sample.take(self._seen)
-        (flat,) = self._draw(np.concatenate(q), seen, curve.table(), exaggeration)
-        return flat.reshape(len(NAMES), -1, 3).copy()
+        flat = self._draw(np.concatenate(q), seen, curve.table(), exaggeration)[0]
+        both = flat.reshape(len(NAMES), -1).copy()
+        size = 3 * self.counts.points
+        return both[:, :size].reshape(len(NAMES), -1, 3), both[:, size:]
 
 
 @per_thread
-def _figure(robot: Robot, closed: bool) -> _Figure:
-    return _Figure(robot, closed)
+def _geometry_of(robot: Robot, closed: bool) -> RobotGeometry:
+    return RobotGeometry(robot, closed)
 
 
 def _seen(robot: Robot) -> list[int]:
@@ -98,9 +104,13 @@ def _seen(robot: Robot) -> list[int]:
 
 
 @lru_cache(maxsize=16)
-def _geometry(robot: Robot, closed: bool) -> tuple[ca.Function, Counts]:
-    """(q of both robots; end-point, force and aim of both; table of the curve; exaggeration) ->
-    points of both robots as columns."""
+def geometry_function(robot: Robot, closed: bool) -> tuple[ca.Function, Counts]:
+    """From the state to points and poses of both robots.
+
+    Returns:
+        (q, (n, 2); y, force and aim, (2 p + 1, 2); table of the curve; exaggeration) -> for each
+        robot a column: `RobotView.points`, then `RobotView.poses`.
+    """
     p, both = robot.system.p, len(NAMES)
     q, seen = ca.SX.sym("q", robot.system.n, both), ca.SX.sym("seen", 2 * p + 1, both)
     table, exaggeration = ca.SX.sym("table", *TABLE_SHAPE), ca.SX.sym("exaggeration")
@@ -116,9 +126,50 @@ def _geometry(robot: Robot, closed: bool) -> tuple[ca.Function, Counts]:
 
     each = [drawn(*columns) for columns in zip(ca.horzsplit(q), ca.horzsplit(seen), strict=True)]
     bars, joints, marks = (part.shape[1] for part in each[0][:3])
-    points = ca.densify(ca.horzcat(*[part for parts in each for part in parts]))
-    function = ca.Function("figure", [q, seen, table, exaggeration], ca.cse([points]))
-    return function, Counts(bars // 2, joints, marks)
+    counts = Counts(bars // 2, joints, marks, robot.drawing.strip)
+    columns = [
+        ca.vertcat(*[ca.vec(part) for part in (*parts, *_poses(robot.drawing, counts, *parts))])
+        for parts in each
+    ]
+    flat = ca.densify(ca.horzcat(*columns))
+    return ca.Function("geometry", [q, seen, table, exaggeration], ca.cse([flat])), counts
+
+
+def _poses(
+    drawing: Drawing,
+    counts: Counts,
+    ends: ca.SX,
+    joints: ca.SX,
+    marks: ca.SX,
+    marker: ca.SX,
+    tip: ca.SX,
+    _: ca.SX,
+    force: ca.SX,
+) -> tuple[ca.SX, ...]:
+    """One robot's `RobotView.poses`, as columns.
+
+    Links lie in the back layer and the front layer in turn, pieces of a strip in the front one, so
+    that none runs through another; bearings span both.
+    """
+    depths = drawing.depths
+    waist = waist_angle(ends, drawing.away)
+    normal = ca.vertcat(-ca.sin(waist), ca.cos(waist), 0)
+    begins, along = ends[:, ::2], ends[:, 1::2] - ends[:, ::2]
+    layers = ca.DM([depths.back if back else depths.front for back in counts.behind]).T
+    turned = ca.vertcat(ca.cos(waist / 2), 0, 0, ca.sin(waist / 2))
+    still = ca.DM([1, 0, 0, 0])  # these face the viewer, however the linkage is turned
+    discs = [marker + ca.DM([0, depth, 0]) for depth in MARKER_DEPTHS]
+    further = marks + ca.DM([0, MARKER_DEPTHS[0], 0]) @ ca.DM.ones(1, counts.marks)
+    machined = ca.horzcat(joints + depths.boss * normal, tip + depths.pen * normal)
+    return (
+        begins + normal @ layers,
+        bar_quaternions(along, waist),
+        ca.sqrt(ca.sum1(along**2)),
+        ca.horzcat(machined, *discs, further),
+        ca.horzcat(*[turned] * (counts.joints + 1), *[still] * (2 + counts.marks)),
+        tip,
+        force,
+    )
 
 
 def _affine(place: Callable[[Array], Array], size: int) -> Callable[[ca.SX], ca.SX]:

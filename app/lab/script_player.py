@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.apply import apply
+from onpath.app.lab.external_forces import displaced
 from onpath.lessons.record import ROLES
 from onpath.lessons.schema import Action, Script
 from onpath.models.control.laws import NAMES
@@ -81,10 +81,8 @@ def _hold(action: Action, session: Session) -> None:
 
 def _pull(action: Action, session: Session) -> None:
     name = CONTROLLERS[action.only or "follower"]
-    plane, at = session.robot.frame, session.runs[name].shown()["y"]
-    z = plane.planar(at)
-    away = np.array(action.pull) / 1e3
-    session.grips.grab(name, at + plane.lift(z + away) - plane.lift(z), _whom(action))
+    away, y = np.array(action.pull) / 1e3, session.runs[name].shown()["y"]
+    session.grips.grab(name, displaced(session.robot.frame, y, away), _whom(action))
 
 
 def _whom(action: Action) -> list[str]:
@@ -93,7 +91,7 @@ def _whom(action: Action) -> list[str]:
 
 def _set(action: Action, session: Session) -> None:
     for name, value in (action.set or {}).items():
-        apply(c.SetParameter(name, value), session)
+        c.SetParameter(name, value).apply(session)
 
 
 def _move(action: Action, session: Session) -> None:
@@ -102,13 +100,11 @@ def _move(action: Action, session: Session) -> None:
     points = session.editor.design.points
     if not 0 <= index < len(points):
         raise CodedError("error.no_point", index=index, count=len(points))
-    z = points[index] + np.array([right, up]) / 1e3
-    target = session.robot.place(session.robot.frame.lift(z))
-    apply(c.MovePoint(index, target, finished=True), session)
+    c.MovePoint(index, points[index] + np.array([right, up]) / 1e3).apply(session)
 
 
 def _asked(make: Callable[[Action], c.Command]) -> Callable[[Action, Session], None]:
-    return lambda action, session: apply(make(action), session)
+    return lambda action, session: make(action).apply(session)
 
 
 _DEEDS: dict[str, Callable[[Action, Session], None]] = {

@@ -16,10 +16,8 @@ from time import perf_counter
 
 import numpy as np
 
-from onpath.app.lab import commands
-from onpath.app.lab.apply_class import apply
-from onpath.app.lab.class_commands import ClassCommand
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
+from onpath.app.lab.command import Command
 from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.history import History, HistoryFrame, Inputs, Instant
 from onpath.app.lab.lesson_run import LessonRun
@@ -74,7 +72,7 @@ class Session:
         self, store: LoopCache, entry: RobotEntry = FIVE_BAR, course: Course = NO_LESSONS
     ) -> None:
         self._store = store
-        self._inbox: deque[commands.Command | ClassCommand] = deque(maxlen=MOST_COMMANDS)
+        self._inbox: deque[Command] = deque(maxlen=MOST_COMMANDS)
         self._benches: dict[str, tuple[Parameters, PathEditor]] = {}
         self.history = History(self._samples)
         self._inputs: Inputs | None = None
@@ -127,7 +125,7 @@ class Session:
 
     # Commands
 
-    def post(self, command: commands.Command | ClassCommand) -> None:
+    def post(self, command: Command) -> None:
         """Ask for something; from any thread."""
         self._inbox.append(command)
 
@@ -143,13 +141,13 @@ class Session:
         begun = perf_counter()
         while self._inbox and perf_counter() - begun < most:
             command = self._inbox.popleft()
-            if not isinstance(command, ClassCommand):
+            if not command.from_teacher:
                 self.asked += 1
                 if refusal := self._refusal(command):
                     self.show_message(refusal, "warning")
                     continue
             try:
-                apply(command, self)
+                command.apply(self)
             except ValueError as error:
                 self.show_message(self.lessons.words.sentence(error), "warning")
         taken = perf_counter() - begun
@@ -160,11 +158,11 @@ class Session:
             self.watch(self)
         return taken
 
-    def _refusal(self, command: commands.Command) -> str:
+    def _refusal(self, command: Command) -> str:
         """Why a command of the user's is not applied now; empty when it is."""
         if self.frozen:
             return self.lessons.words("class.frozen")
-        return self.locked if isinstance(command, commands.LETS_TIME_RUN) else ""
+        return self.locked if command.lets_time_run else ""
 
     def _play(self) -> None:
         """What a script says."""

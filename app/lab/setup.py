@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import msgspec
 import numpy as np
 
-from onpath.app.lab.commands import EXAGGERATIONS, RATES
 from onpath.app.lab.path_editor import BLEND
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import curve_faults
@@ -34,6 +33,8 @@ from onpath.models.systems.parameters import (
 if TYPE_CHECKING:
     from onpath.app.lab.session import Session
 
+EXAGGERATIONS = (1.0, 20.0)  # the least and the most
+RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)  # simulated seconds per second
 UNIT = 1e-6  # [m]
 DIGITS = 6
 EDITED, DRAWN = "edited", "drawn"  # the names of paths that are no presets

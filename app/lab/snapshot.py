@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,18 +12,57 @@ TrackerName = "trajectory_tracking"
 MARKER, TIP, END, FORCE = -4, -3, -2, -1  # where a robot's points have these
 
 
+class PoseShapes(NamedTuple):
+    """Shapes of the fields of `RobotView.poses`, in their order.
+
+    Attributes:
+        bars: where the link meshes begin, in their layers, [m].
+        quaternions: how they are turned, scalar first.
+        lengths: of the bars, [m].
+        parts: bearings, pen, two marker discs, further points, [m].
+        turns: how these are turned about the vertical, scalar first.
+        tips: end-point as drawn, [m].
+        forces: on the end-point, [N].
+    """
+
+    bars: tuple[int, ...]
+    quaternions: tuple[int, ...]
+    lengths: tuple[int, ...]
+    parts: tuple[int, ...]
+    turns: tuple[int, ...]
+    tips: tuple[int, ...]
+    forces: tuple[int, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """How many parts a robot's drawing has."""
+    """How many parts a robot's drawing has; the last `strip` bars are pieces of one strip."""
 
     bars: int
     joints: int
     marks: int
+    strip: int = 0
+
+    @property
+    def links(self) -> int:
+        """Bars that are links."""
+        return self.bars - self.strip
+
+    @property
+    def behind(self) -> list[bool]:
+        """Which bars lie in the back layer: every other link, no piece of a strip."""
+        return [i < self.links and i % 2 == 0 for i in range(self.bars)]
 
     @property
     def points(self) -> int:
         """Bars' begins and ends, joints, marks, marker, drawn tip, end-point and force."""
         return 2 * self.bars + self.joints + self.marks + 4
+
+    @property
+    def pose_shapes(self) -> PoseShapes:
+        """What `RobotView.poses` holds: bearings, pen, two discs of a marker, marks are parts."""
+        bars, parts = self.bars, self.joints + 3 + self.marks
+        return PoseShapes((bars, 3), (bars, 4), (bars,), (parts, 3), (parts, 4), (1, 3), (1, 3))
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +71,8 @@ class RobotView:
 
     Attributes:
         points: all that the properties below give, in their order, shape (counts.points, 3).
-        counts: of them.
+        poses: of the meshes, flat, as `Counts.pose_shapes` says.
+        counts: of the parts.
         trace: the end-point's recent positions, never exaggerated, oldest first, shape (n, 3); of
             no length when nobody wants to know.
         distance: of the end-point to the path, [m].
@@ -42,6 +83,7 @@ class RobotView:
     """
 
     points: np.ndarray
+    poses: np.ndarray
     counts: Counts
     trace: np.ndarray
     distance: float

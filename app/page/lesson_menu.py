@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import viser
 
-from onpath.app.lab import lesson_commands as c
+from onpath.app.lab import commands as c
 from onpath.app.lab.session import Session
 from onpath.app.page import lesson_html as page
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
@@ -49,9 +49,9 @@ class LessonMenu:
         large = gui.add_checkbox(run.words("lesson.presenting"), run.progress.presenting)
         on_user_update(large, lambda on: self._chosen(close, c.SetPresenting(on)))
 
-    def _chosen(self, close: Callable[[], None], command: c.LessonCommand) -> None:
+    def _chosen(self, close: Callable[[], None], command: c.Command) -> None:
         close()
         self._post(command)
 
-    def _then(self, close: Callable[[], None], command: c.LessonCommand) -> Callable[[], None]:
+    def _then(self, close: Callable[[], None], command: c.Command) -> Callable[[], None]:
         return lambda: self._chosen(close, command)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import viser
 
-from onpath.app.lab import lesson_commands as c
+from onpath.app.lab import commands as c
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.session import Session
 from onpath.app.page import lesson_html as page
@@ -156,7 +156,7 @@ class LessonPanel:
     def _add_prediction(self, block: Prediction, session: Session) -> None:
         run, answer = session.lessons, session.lessons.answer()
         if isinstance(block, Sketch):
-            self._html(page.box(f"<p><b>{block.question}</b></p>"))
+            self._html(page.asked(block))
             if answer is None:
                 self._add_sketching(block, session)
             else:
@@ -192,7 +192,7 @@ class LessonPanel:
     def _add_sketching(self, block: Sketch, session: Session) -> None:
         """The board, its keyboard twin, and the button that commits."""
         words = session.lessons.words
-        said = self._html(page.text(f"<p>{words('lesson.draw_first')}</p>"))
+        said = self._html(page.remark(words("lesson.draw_first")))
         from onpath.app.scene.sketch_board import SketchBoard  # see app/server/lazy_imports.py
 
         commit = self._commit_button(session.lessons)
@@ -200,7 +200,7 @@ class LessonPanel:
         def drawn(times: np.ndarray, values: np.ndarray) -> None:
             self._draft = c.Predict(None, tuple(times.tolist()), tuple(values.tolist()))
             commit.disabled = False
-            said.content = page.text(f"<p>{words('lesson.drawn')}</p>")
+            said.content = page.remark(words("lesson.drawn"))
 
         title = f"{words(f'robot.{block.robot}')}: {words(f'quantity.{block.quantity}')}"
         stage = stage_of(session.robot)
@@ -240,7 +240,7 @@ class LessonPanel:
         assert step is not None
         truth = run.truth(session)
         if run.playing:
-            self._html(page.text(f"<p><i>{run.words('lesson.playing')}</i></p>"))
+            self._html(page.remark(run.words("lesson.playing"), italic=True))
         else:
             label = run.words("lesson.replay" if truth else "lesson.play")
             button = self._button(label, c.PlayStep(), "green", viser.Icon.PLAYER_PLAY)
@@ -248,10 +248,10 @@ class LessonPanel:
         if found is None:
             return
         if run.waits:
-            self._html(page.text(f"<p><i>{run.words('lesson.predict_before')}</i></p>"))
+            self._html(page.remark(run.words("lesson.predict_before"), italic=True))
         block, answer = found[1], run.answer()
         if answer is not None and answer.skipped:
-            self._html(page.text(f"<p><i>{run.words('lesson.skipped')}</i></p>"))
+            self._html(page.remark(run.words("lesson.skipped"), italic=True))
         if isinstance(block, Sketch):
             self._add_chart(block, session)
         elif truth is not None and not run.playing:
@@ -291,7 +291,7 @@ class LessonPanel:
         return handle
 
     def _button(
-        self, label: str, command: c.LessonCommand, colour: Any, icon: viser.IconName | None
+        self, label: str, command: c.Command, colour: Any, icon: viser.IconName | None
     ) -> viser.GuiButtonHandle:
         button = self._gui.add_button(label, color=colour, icon=icon)
         on_press(button, lambda: self._post(command))

@@ -6,6 +6,8 @@ from collections.abc import Callable
 
 import viser
 
+from onpath.app.common.palette import FOLLOWER
+from onpath.app.common.templates import render
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.session import Session
@@ -20,16 +22,15 @@ from onpath.app.page.panels.keys import add_keys
 from onpath.app.page.panels.readout import Readout
 from onpath.app.page.plots import DISTANCE, LivePlot
 from onpath.app.page.step_controls import StepControls
+from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene, SceneCallbacks
 from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.simulation.display_rate import STRIDES, is_turn
 from onpath.app.viser_adapter.frame_channel import FrameChannel
+from onpath.models.arrays import Array
+from onpath.models.systems.robots import Robot
 
-WIDE_SHEET = """<style>@media (max-width:36em){
-.mantine-Paper-root[style*="bottom: 0"],
-.mantine-Paper-root[style*="bottom: 0"] [style*="width: 20em"]{width:100%!important}}</style>"""
-"""On a telephone viser's sheet is no wider than on a desk, and leaves a gap beside it."""
 AT_EASE = STRIDES[0]  # the stride of a thread that has time
 SLOW, SLOWER = 6, 12  # frames or so per update of traces, plots, readouts: 10 Hz, 5 of many labs
 SETTLING = 30  # slow updates after the page is built
@@ -48,7 +49,7 @@ class Page:
         self._framed, self._settling = 0.0, SETTLING
         self._shown: tuple[object, ...] = ()
         client.gui.configure_theme(
-            show_logo=False, show_share_button=False, brand_color=(0, 114, 178)
+            show_logo=False, show_share_button=False, brand_color=FOLLOWER.rgb
         )
         client.gui.set_panel_label("OnPath")
         if not self._is_narrow():
@@ -125,7 +126,7 @@ class Page:
         robot, post = session.robot, self._poster(session)
         self._built = self._page(session)
         words = session.lessons.words
-        self._scene = Scene(self._client, _hooks(post), stage_of(robot), words)
+        self._scene = Scene(self._client, stage_of(robot), _hooks(post, robot), words)
         self._scene.build(take_snapshot(session, 1.0))
         self._build_panels(session, post)
         add_keys(self._client.gui, words, post, self.reset_view)
@@ -133,7 +134,7 @@ class Page:
 
     def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
         gui, run = self._client.gui, session.lessons
-        self._client.gui.add_html(WIDE_SHEET)
+        self._client.gui.add_html(render("panel/wide_sheet.html"))
         self._parts: list[Part] = []
         controls = self._controls(session, post)
         if run.lesson is None:
@@ -202,11 +203,14 @@ class Page:
             self._scene.frame_camera(Insets(bottom=below))
 
 
-def _hooks(post: Callable[[c.Command], None]) -> SceneCallbacks:
+def _hooks(post: Callable[[c.Command], None], robot: Robot) -> SceneCallbacks:
+    def move(index: int, at: Array) -> None:
+        post(c.MovePoint(index, plane_coordinates(robot, at), finished=False))
+
     return SceneCallbacks(
-        on_grab=lambda name, target: post(c.Grab(name, target)),
+        on_grab=lambda name, at: post(c.Grab(name, robot.unplace(at))),
         on_release=lambda name: post(c.Release(name)),
-        on_point_dragged=lambda index, at: post(c.MovePoint(index, at, finished=False)),
+        on_point_dragged=move,
         on_point_drag_end=lambda _: post(c.EndMove()),
         on_point_selected=lambda index: post(c.SelectPoint(index)),
     )

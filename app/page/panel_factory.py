@@ -21,10 +21,11 @@ from onpath.app.page.panels.robot_panel import RobotPanel
 from onpath.app.page.panels.run_panel import RunPanel
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press, on_user_update
 from onpath.app.page.plots import MORE, LivePlot, MorePlots
+from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.lessons.schema import StepSetup
-from onpath.models.systems.flexible_robot import FlexibleParameters
+from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.parameters import specs
 
 ALL = (
@@ -107,11 +108,15 @@ class PanelFactory:
         return [] if part is None else [part]
 
     def _editor(self) -> Part:
+        robot = self._session.robot
+
         def draw() -> None:
-            self._scene.begin_freehand(lambda stroke: self._post(c.DrawPath(stroke)))
+            self._scene.begin_freehand(
+                lambda stroke: self._post(c.DrawPath(plane_coordinates(robot, stroke)))
+            )
 
         def shade(visible: bool) -> None:
-            self._scene.show_singular_zone(0.0, 0.4, 0.02, visible)
+            self._scene.show_singular_zone(visible)
 
         with self._gui.add_folder(self._words("controls.editor"), expand_by_default=False):
             return PathPanel(self._gui, self._session, self._post, draw, shade)

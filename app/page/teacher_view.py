@@ -8,7 +8,7 @@ import viser
 
 from onpath.app.classroom.mirror import Mirror
 from onpath.app.lab import commands as c
-from onpath.app.lab.lesson_commands import CloseLesson
+from onpath.app.lab.commands import CloseLesson
 from onpath.app.lab.session import Session
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext

@@ -1,7 +1,7 @@
-"""The parts of the machine as meshes, in a robot's frame: x right, y away from the camera, z up.
+"""Meshes of the robot's parts, in its frame: x right, y away from the camera, z up.
 
-Every shape is a loft: closed rings of equally many points, joined in order and capped. Edges
-sharper than 30 degrees are split, so that a viewer's smooth shading keeps them crisp.
+Every shape is a loft: closed rings with equal numbers of points, connected in order and capped.
+Edges sharper than 30 degrees are split, so that the viewer's smooth shading does not round them.
 """
 
 from __future__ import annotations
@@ -14,12 +14,8 @@ import trimesh
 SHARP = np.radians(30.0)
 ROUND = 40  # points of a full circle
 
-FRONT_LAYER = 0.022  # centre of the layer of links 2 and 4 behind the robot's plane [m]
-BACK_LAYER = 0.038  # the same for links 1 and 3 [m]
-BOSS = (FRONT_LAYER + BACK_LAYER) / 2  # centre of the bearings, which span both layers [m]
-PEN_DEPTH = 0.0103  # of the pen's centre, such that it touches the robot's plane [m]
 LINK_THICKNESS = 0.012
-GRIP = (0.02, 0.009, 0.02)  # half-axes of what the mouse takes hold of at an end-point [m]
+GRIP = (0.02, 0.009, 0.02)  # half-axes of the area at an end-point that can be grabbed [m]
 FLOOR_DEPTH = 0.17  # of the floor below the base pivot [m]
 
 
@@ -27,10 +23,10 @@ def loft(rings: np.ndarray) -> trimesh.Trimesh:
     """A closed solid through rings.
 
     Args:
-        rings: shape (m, n, 3), neighbouring rings corresponding point by point, each ring convex.
+        rings: shape (m, n, 3), [m]; convex, and neighbouring rings correspond point by point.
 
     Returns:
-        A mesh whose faces look outward.
+        A mesh whose faces point outward.
     """
     m, n, _ = rings.shape
     start = np.arange(m - 1)[:, None] * n
@@ -50,7 +46,7 @@ def loft(rings: np.ndarray) -> trimesh.Trimesh:
 
 
 def crisp(*solids: trimesh.Trimesh) -> trimesh.Trimesh:
-    """The solids as one mesh, its sharp edges split."""
+    """The solids as one mesh with split edges."""
     whole = trimesh.util.concatenate(
         [trimesh.graph.smooth_shade(solid, angle=SHARP, facet_minarea=None) for solid in solids]
     )
@@ -59,7 +55,7 @@ def crisp(*solids: trimesh.Trimesh) -> trimesh.Trimesh:
 
 
 def turned(profile: list[tuple[float, float]], points: int = ROUND) -> trimesh.Trimesh:
-    """A solid of revolution about y, from (radius, y) pairs [m]."""
+    """A solid of revolution about y, from (radius, y) pairs, [m]."""
     angle = np.linspace(0.0, 2.0 * np.pi, points, endpoint=False)
     circle = np.column_stack([np.cos(angle), np.zeros(points), np.sin(angle)])
     return loft(np.stack([radius * circle + [0.0, y, 0.0] for radius, y in profile]))
@@ -70,9 +66,8 @@ def extruded(outline: np.ndarray, front: float, back: float, chamfer: float) -> 
 
     Args:
         outline: convex outline in (x, z), counter-clockwise, shape (n, 2), [m].
-        front: y of the front face [m].
-        back: y of the back face [m].
-        chamfer: width of the chamfer [m].
+        front, back: y of the faces, [m].
+        chamfer: width of the chamfer, [m].
     """
     low, high = outline.min(0), outline.max(0)
     centre, half = (low + high) / 2, (high - low) / 2
@@ -93,8 +88,8 @@ def _stadium(inset: float, half_width: float, cap: float) -> np.ndarray:
 def link() -> trimesh.Trimesh:
     """A machined bar from x = 0 to 1, to be scaled along x: chamfered, a pocket in either face.
 
-    Its round ends become half ellipses when scaled; they are right for 0.2 m, and the bearings
-    cover them anyway.
+    Scaling turns its round ends into half ellipses. They are circular for 0.2 m, and the bearings
+    cover them.
     """
     half, chamfer, pocket = LINK_THICKNESS / 2, 0.0016, 0.0024
     rim, edge = _stadium(0.008, 0.0104, 0.055), _stadium(0.0, 0.012, 0.055)
@@ -106,7 +101,7 @@ def link() -> trimesh.Trimesh:
 
 @lru_cache
 def blade() -> trimesh.Trimesh:
-    """A piece of a thin strip from x = 0 to 1, upright, a little longer so that pieces overlap."""
+    """A piece of a thin upright strip from x = 0 to 1, slightly longer, so that pieces overlap."""
     outline = np.array([(1.03, 0.011), (-0.03, 0.011), (-0.03, -0.011), (1.03, -0.011)])
     return crisp(extruded(outline, -0.0022, 0.0022, 0.0008))
 
@@ -115,7 +110,7 @@ def blade() -> trimesh.Trimesh:
 def bearing() -> trimesh.Trimesh:
     """A bearing through both layers with a bolt head towards the camera, axis y, about its centre.
 
-    Also, scaled per instance: the pen, and the flat discs that mark points.
+    Scaled per instance, it also serves as the pen and as the flat discs that mark points.
     """
     shell = [(0.0108, 0.0165), (0.012, 0.015), (0.012, -0.015), (0.0108, -0.0165)]
     bolt = [(0.0075, -0.0165), (0.0075, -0.0152), (0.0052, -0.0152), (0.0052, -0.0195)]
@@ -124,16 +119,16 @@ def bearing() -> trimesh.Trimesh:
 
 @lru_cache
 def grip() -> trimesh.Trimesh:
-    """A lens about an end-point, thick enough that it takes a press on a control point within.
+    """A lens about an end-point, deep enough to be hit before a control point inside it.
 
-    The scene decides then which of the two is meant.
+    The scene then decides which of the two is meant.
     """
     return ball(1.0).apply_scale(GRIP)
 
 
 @lru_cache
 def motors() -> trimesh.Trimesh:
-    """Two coaxial motors on the base pivot: one before, one behind the links."""
+    """Two coaxial motors on the base pivot, in front of and behind the links."""
     front = [(0.024, -0.004), (0.026, -0.006), (0.026, -0.034), (0.0235, -0.037)]
     cap = [(0.018, -0.037), (0.018, -0.041), (0.0165, -0.0425)]
     back = [(0.026, 0.064), (0.026, 0.108), (0.023, 0.111)]
@@ -141,9 +136,9 @@ def motors() -> trimesh.Trimesh:
 
 
 @lru_cache
-def base() -> trimesh.Trimesh:
-    """Base plate on the floor and the two uprights that carry the motors."""
-    floor = -FLOOR_DEPTH
+def base(height: float = FLOOR_DEPTH) -> trimesh.Trimesh:
+    """The base plate on the floor, and two uprights that carry the motors at a height, [m]."""
+    floor = -height
     angle = np.linspace(0.0, np.pi, ROUND)
     head = 0.03 * np.column_stack([np.cos(angle), np.sin(angle)])
     upright = np.concatenate([head, [(-0.042, floor + 0.008), (0.042, floor + 0.008)]])
@@ -156,14 +151,14 @@ def base() -> trimesh.Trimesh:
 
 
 def _upright(solid: trimesh.Trimesh) -> trimesh.Trimesh:
-    """A solid of revolution about y, turned so that its axis is z."""
+    """A solid of revolution about y, rotated so that its axis is z."""
     solid.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, [1.0, 0.0, 0.0]))
     return solid
 
 
 @lru_cache
 def pedestal() -> trimesh.Trimesh:
-    """A round foot and column that carry a turning waist."""
+    """A round foot and column that carry a rotating waist."""
     floor = -FLOOR_DEPTH
     foot = [(0.1, floor), (0.1, floor + 0.012), (0.096, floor + 0.016)]
     column = [(0.045, floor + 0.016), (0.04, floor + 0.03), (0.04, -0.055), (0.05, -0.045)]
@@ -172,7 +167,7 @@ def pedestal() -> trimesh.Trimesh:
 
 @lru_cache
 def turntable() -> trimesh.Trimesh:
-    """The turning plate on the pedestal, looking the same however it is turned, and its hub."""
+    """The rotating plate on the pedestal and its hub, both rotationally symmetric."""
     plate = [(0.062, -0.044), (0.064, -0.042), (0.064, -0.03), (0.061, -0.027)]
     hub = [(0.024, -0.027), (0.022, -0.014), (0.012, -0.01)]
     return crisp(_upright(turned(plate)), _upright(turned(hub)))
@@ -180,13 +175,13 @@ def turntable() -> trimesh.Trimesh:
 
 @lru_cache
 def ball(radius: float) -> trimesh.Trimesh:
-    """A ball of a radius [m]."""
+    """A sphere of the given radius, [m]."""
     return trimesh.creation.icosphere(subdivisions=2, radius=radius)
 
 
 @lru_cache
 def cross() -> trimesh.Trimesh:
-    """An x of size 1 m in the plane y = 0: a refused place, to be scaled down."""
+    """An x of size 1 m in the plane y = 0, which marks a refused place; to be scaled down."""
     arm = np.array([(0.5, 0.09), (-0.5, 0.09), (-0.5, -0.09), (0.5, -0.09)])
     turn = np.sqrt(0.5) * np.array([[1.0, 1.0], [-1.0, 1.0]])
     return crisp(*(extruded(arm @ r, -0.06, 0.06, 0.02) for r in (turn, turn.T)))

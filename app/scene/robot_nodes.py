@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import hypot
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshot import RobotView, TrackerName
+from onpath.app.lab.snapshot import Counts, RobotView, TrackerName
 from onpath.app.scene import meshes
 from onpath.app.scene.poses import Poses, difference, trace_segments
 from onpath.app.scene.stage import IDENTITY, Stage, add_copies, add_text, set_text
@@ -21,14 +22,13 @@ if TYPE_CHECKING:
 
 FORCE_SHOWN = 0.05
 """Smallest force that is drawn [N]."""
-LINKS = 4
-"""Bars of a robot that are machined links; further ones are pieces of a strip that bends."""
 TRACE_SEGMENTS = 120
 TRACE_DEPTHS = (0.012, 0.002)
 """Behind the path, and older laps behind newer ones [m]."""
 
 # Scales of the bearing's mesh, which also serves as pen and as the discs of a marker.
 BEARING = (1.0, 1.0, 1.0)
+MOTOR = (1.8, 1.5, 1.8)
 PEN = (0.42, 0.5, 0.42)
 EXTRA = (0.4, 0.1, 0.4)
 RING = ((0.85, 0.06, 0.85), (0.55, 0.06, 0.55))
@@ -47,26 +47,35 @@ def link_scales(lengths: np.ndarray) -> np.ndarray:
     return np.column_stack([lengths, np.ones_like(lengths), np.ones_like(lengths)])
 
 
-def link_colours(name: str) -> list[np.ndarray]:
-    """Linear colours of a robot's links: links 1 and 3, which lie behind, are darker."""
+def bar_colours(name: str, counts: Counts) -> np.ndarray:
+    """Linear colours of a robot's bars, shape (n, 3): every other link lies behind, and is darker.
+
+    Pieces of a strip are in front.
+    """
     front = palette.CONTROLLERS[name]
     back = front.toward(palette.INK, 0.25)
-    return [c.linear for c in (back, front, back, front)]
+    return np.stack([(back if each else front).linear for each in counts.behind])
 
 
-def part_looks(name: str, robot: RobotView) -> tuple[list[tuple[float, ...]], list[np.ndarray]]:
+def part_looks(
+    name: str, counts: Counts, motors: Sequence[int] = ()
+) -> tuple[list[tuple[float, ...]], list[np.ndarray]]:
     """Scales and linear colours of a robot's bearings, pen, marker and extra points.
 
+    Joints in `motors` are drawn as motors.
     The tracker's moving reference is a ring, the follower's closest point a dot with a white rim:
     either is two discs, one before the other.
     """
-    joints, extras = robot.counts.joints, robot.counts.marks
+    extras = counts.marks
     dark = palette.CONTROLLERS[name].toward(palette.INK, 0.45)
     discs, inks = (RING, (dark, palette.WHITE)) if name == TrackerName else (
         DOT, (palette.WHITE, dark)
     )  # fmt: skip
-    colours = [*[palette.STEEL] * joints, palette.INK, *inks, *[palette.STEEL] * extras]
-    return [*[BEARING] * joints, PEN, *discs, *[EXTRA] * extras], [c.linear for c in colours]
+    driven = [i in motors for i in range(counts.joints)]
+    joints = [palette.MOTOR if motor else palette.STEEL for motor in driven]
+    colours = [*joints, palette.INK, *inks, *[palette.STEEL] * extras]
+    sizes = [MOTOR if motor else BEARING for motor in driven]
+    return [*sizes, PEN, *discs, *[EXTRA] * extras], [c.linear for c in colours]
 
 
 def _add_traces(scene: viser.SceneApi, names: list[str]) -> viser.LineSegmentsHandle:
@@ -141,7 +150,7 @@ class RobotNodes:
         self._force_scale = stage.force_scale
         self._drawn = poses
         self._bars = self._add_bars(scene, robots, poses)
-        self._parts = self._add_parts(scene, robots, poses)
+        self._parts = self._add_parts(scene, stage, robots, poses)
         self._turns = np.tile(IDENTITY, (len(poses.turns), 1))
         self.grips = add_copies(
             scene,
@@ -158,21 +167,22 @@ class RobotNodes:
         self._draw(poses)
 
     def _add_bars(self, scene: viser.SceneApi, robots: list[RobotView], poses: Poses) -> list[Bars]:
-        is_link = np.concatenate([np.arange(robot.counts.bars) < LINKS for robot in robots])
-        links = np.stack([colour for name in self._bases for colour in link_colours(name)])
+        counts = [robot.counts for robot in robots]
+        is_link = np.concatenate([np.arange(each.bars) < each.links for each in counts])
+        named = zip(self._bases, counts, strict=True)
+        colours = np.concatenate([bar_colours(name, each) for name, each in named])
         if is_link.all():
-            return [Bars(scene, "/links", meshes.link(), slice(None), links, poses)]
-        bars = [Bars(scene, "/links", meshes.link(), is_link, links, poses)]
-        pieces = [robot.counts.bars - LINKS for robot in robots]
-        front = np.repeat(links[LINKS - 1 :: LINKS], pieces, axis=0)
-        bars.append(Bars(scene, "/beams", meshes.blade(), ~is_link, front, poses))
-        return bars
+            return [Bars(scene, "/links", meshes.link(), slice(None), colours, poses)]
+        return [
+            Bars(scene, "/links", meshes.link(), is_link, colours[is_link], poses),
+            Bars(scene, "/beams", meshes.blade(), ~is_link, colours[~is_link], poses),
+        ]
 
     def _add_parts(
-        self, scene: viser.SceneApi, robots: list[RobotView], poses: Poses
+        self, scene: viser.SceneApi, stage: Stage, robots: list[RobotView], poses: Poses
     ) -> viser.BatchedMeshHandle:
         named = zip(self._bases, robots, strict=True)
-        looks = [part_looks(name, robot) for name, robot in named]
+        looks = [part_looks(name, robot.counts, stage.motors) for name, robot in named]
         return add_copies(
             scene,
             "/parts",

@@ -30,7 +30,6 @@ from onpath.app.scene.stage import (
     set_text,
     view_of,
 )
-from onpath.app.scene.stage_catalogue import RIGID
 from onpath.lessons.words import ENGLISH, Words
 
 if TYPE_CHECKING:
@@ -41,6 +40,8 @@ if TYPE_CHECKING:
 
 ZONE_DEPTH = 0.052
 """y of the shading of singular places [m]: behind the links."""
+ZONE_WIDTH = 0.02
+"""How wide the shading at a singular circle is [m]."""
 WITHIN = 0.01
 """How near a control point [m] one must press to take it, where the end-point covers it."""
 
@@ -74,8 +75,8 @@ class Scene:
 
     Args:
         client: whose scene it is; nothing here touches another client or the server's scene.
-        hooks: what the scene tells.
         stage: where the robots stand.
+        hooks: what the scene tells.
         words: for what is written in it.
 
     Attributes:
@@ -87,8 +88,8 @@ class Scene:
     def __init__(
         self,
         client: viser.ClientHandle,
+        stage: Stage,
         hooks: SceneCallbacks | None = None,
-        stage: Stage = RIGID,
         words: Words = ENGLISH,
     ) -> None:
         self._client = client
@@ -144,21 +145,20 @@ class Scene:
             self._path = path
             self._path_nodes.draw(path)
 
-    def show_singular_zone(
-        self, inner_radius: float, outer_radius: float, margin: float, visible: bool = True
-    ) -> None:
-        """Shades what lies within `margin` of the singular circles about the base pivot, [m]."""
+    def show_singular_zone(self, visible: bool = True) -> None:
+        """Shades what lies at the singular circles about the base pivot."""
         if self._zone is not None:
             self._zone.remove()
             self._zone = None
         if not visible:
             return
         half = float(np.ptp(self._origins[:, 0])) / 2 or 0.6
+        inner, outer = self._stage.reach
         middle = float(self._stage.low[0] + self._stage.high[0]) / 2
-        box = ((middle - half, -meshes.FLOOR_DEPTH), (middle + half, 0.6))
-        inside = max(0.0, inner_radius - margin)
-        core = meshes.ring(inside, inner_radius + margin, *box, ZONE_DEPTH)
-        rim = meshes.ring(outer_radius - margin, outer_radius, *box, ZONE_DEPTH)
+        box = ((middle - half, self._stage.floor), (middle + half, outer + 0.2))
+        inside = max(0.0, inner - ZONE_WIDTH)
+        core = meshes.ring(inside, inner + ZONE_WIDTH, *box, ZONE_DEPTH)
+        rim = meshes.ring(outer - ZONE_WIDTH, outer, *box, ZONE_DEPTH)
         zone = meshes.joined(core, rim)
         self._zone = add_copies(
             self._client.scene, "/zone", zone, self._origins, palette.WARNING, opacity=0.16

@@ -11,7 +11,6 @@ import numpy as np
 import trimesh
 
 from onpath.app.common import palette
-from onpath.app.scene import meshes
 from onpath.app.scene.pointer_projection import DragPlane
 from onpath.lessons.words import ENGLISH, Words
 
@@ -32,34 +31,36 @@ class Stage:
     Attributes:
         bases: origins of the robots' frames in the world, [m], by controller name.
         low, high: opposite corners of what the camera shows of a robot, shape (3,).
+        floor: height of the floor, negative.
         elevation, azimuth: the camera looks down, and comes from the right, by these, [rad].
         path_plane: where the path lies and control points are dragged.
         pulls: planes through the end-point in which it is pulled, by name, the usual one first;
             their own points do not matter.
-        away: horizontal direction across the links, away from the camera, shape (3,).
-        depths: along it of links 1 and 3, of links 2 and 4, of the bearings' middle and of the pen.
+        reach: radii of the circles about the base pivot at which the robot is singular.
         title: where the title is, and the second line below it by a third of its height.
         note: where the drawing says that it is not to scale.
         force: where the force's size is written.
         force_scale: length of the force's arrow [m/N].
         sheet: low and high corner (x, z), and y, of the sheet that takes a freehand stroke.
+        motors: joints that are drawn as motors.
         parts: what never moves, with colours.
     """
 
     bases: dict[str, np.ndarray]
     low: np.ndarray
     high: np.ndarray
+    floor: float
     elevation: float
     azimuth: float
     path_plane: DragPlane
     pulls: dict[str, DragPlane]
-    away: np.ndarray
-    depths: tuple[float, float, float, float]
+    reach: tuple[float, float]
     title: np.ndarray
     note: np.ndarray
     force: np.ndarray
     force_scale: float
     sheet: tuple[tuple[float, float], tuple[float, float], float]
+    motors: tuple[int, ...]
     parts: Callable[[], list[tuple[str, trimesh.Trimesh, palette.Colour]]]
 
     @property
@@ -148,7 +149,7 @@ def build_stage(
         plane_color=palette.FLOOR.rgb,
         plane_opacity=1.0,
         shadow_opacity=0.18,
-        position=stage.origins.mean(0) + [middle, 0.05, -meshes.FLOOR_DEPTH],
+        position=stage.origins.mean(0) + [middle, 0.05, stage.floor],
     )
     for part, mesh, colour in stage.parts():
         add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)

@@ -1,83 +1,101 @@
-"""The stage of each robot in the catalogue."""
+"""The stage of a robot: from its own bars, reach and plane, and from what its drawing overrides."""
 
 from __future__ import annotations
 
+from functools import lru_cache
+
+import casadi as ca
 import numpy as np
 import trimesh
 
 from onpath.app.common import palette
 from onpath.app.lab.snapshot import FollowerName, TrackerName
 from onpath.app.scene import meshes
-from onpath.app.scene.pointer_projection import VERTICAL_PLANE, DragPlane
+from onpath.app.scene.pointer_projection import DragPlane
 from onpath.app.scene.stage import Stage
-from onpath.models.paths.frames import SlantedPlane
+from onpath.models.arrays import Array
+from onpath.models.paths.curve_faults import LEAST_MARGIN
+from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import Robot
 
 IN_PATH_PLANE, HORIZONTAL = "path's plane", "horizontal plane"
+LARGEST_PATH = 0.1
+"""Paths usually stay within this of the middle [m]; the drawing makes room for so much."""
+ASIDE, ABOVE, BELOW = 0.045, 0.11, 0.05
+"""Room beside the bars, above them for the title, and between them and the floor [m]."""
+THIN = 0.03
+"""Half of the depth of robots in the vertical plane [m]."""
+
+Parts = list[tuple[str, trimesh.Trimesh, palette.Colour]]
 
 
-def _side_by_side(apart: float, azimuth: float = 0.0) -> dict[str, np.ndarray]:
+@lru_cache(maxsize=64)
+def stage_of(robot: Robot) -> Stage:
+    """Where a robot stands."""
+    drawing = robot.drawing
+    low, high = (np.array(corner) for corner in drawing.box or _box(robot))
+    floor = min(-meshes.FLOOR_DEPTH, float(low[2]) + 0.02)
+    middle = float(low[0] + high[0]) / 2
+    apart = float(high[0] - low[0]) + 0.05 if drawing.apart is None else drawing.apart
+    plane = _path_plane(robot)
+    pulls = {IN_PATH_PLANE: plane}
+    if robot.system.p > 2:
+        pulls[HORIZONTAL] = DragPlane(np.zeros(3), np.array([0.0, 0.0, 1.0]))
+    return Stage(
+        bases=_side_by_side(apart, drawing.azimuth),
+        low=low,
+        high=high,
+        floor=floor,
+        elevation=drawing.elevation,
+        azimuth=drawing.azimuth,
+        path_plane=plane,
+        pulls=pulls,
+        reach=robot.reach,
+        title=np.array(drawing.title or (middle, 0.0, high[2] - 0.033)),
+        note=np.array(drawing.note or (middle, 0.0, floor + 0.06)),
+        force=np.array(drawing.force or (high[0] - 0.105, 0.0, floor + 0.06)),
+        force_scale=drawing.force_scale,
+        sheet=drawing.sheet
+        or ((low[0] + 0.01, floor - 0.01), (high[0] - 0.01, high[2] - 0.1), -0.06),
+        motors=drawing.motors,
+        parts=lambda: _parts(drawing, floor),
+    )
+
+
+def _side_by_side(apart: float, azimuth: float) -> dict[str, np.ndarray]:
     """As seen by a camera from the right by an angle, [rad]."""
     half = apart / 2 * np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
     return {TrackerName: -half, FollowerName: half}
 
 
-def _rigid_parts() -> list[tuple[str, trimesh.Trimesh, palette.Colour]]:
-    return [("base", meshes.base(), palette.FRAME), ("motors", meshes.motors(), palette.MOTOR)]
+def _path_plane(robot: Robot) -> DragPlane:
+    """The plane of the paths in the robot's frame, its normal away from the viewer."""
+    origin, right, up = robot.place(robot.frame.lift(np.array([(0.0, 0.0), (1, 0), (0, 1)])))
+    normal = np.cross(right - origin, up - origin)
+    return DragPlane(origin, -normal if normal[1] < 0 else normal)
 
 
-def _flexible_parts() -> list[tuple[str, trimesh.Trimesh, palette.Colour]]:
+def _box(robot: Robot) -> tuple[Array, Array]:
+    """Corners around the base pivot and the bars, with the end-point at places of paths."""
+    side = np.linspace(-LARGEST_PATH, LARGEST_PATH, 5)
+    z = np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
+    q = robot.rest(robot.frame.lift(z[robot.margin(z) >= LEAST_MARGIN]))
+    symbols = ca.SX.sym("q", robot.system.n)
+    bars = ca.Function("bars", [symbols], [ca.densify(robot.skeleton(symbols, ca.SX(1))[0])])
+    points = np.vstack([bars(each).full().T for each in q] + [np.zeros((1, 3))])
+    low, high = points.min(axis=0), points.max(axis=0)
+    low[2] = min(low[2] - BELOW, -meshes.FLOOR_DEPTH) - 0.02
+    return low - [ASIDE, THIN, 0.0], high + [ASIDE, THIN, ABOVE]
+
+
+def _parts(drawing: Drawing, floor: float) -> Parts:
+    """What carries the robot and never moves."""
+    if drawing.base == "pedestal":
+        return [
+            ("pedestal", meshes.pedestal(), palette.FRAME),
+            ("turntable", meshes.turntable(), palette.MOTOR),
+        ]
     return [
-        ("pedestal", meshes.pedestal(), palette.FRAME),
-        ("turntable", meshes.turntable(), palette.MOTOR),
+        ("base", meshes.base(-floor), palette.FRAME),
+        ("motors", meshes.motors(), palette.MOTOR),
     ]
-
-
-RIGID = Stage(
-    bases=_side_by_side(0.52),
-    low=np.array([-0.16, -0.03, -meshes.FLOOR_DEPTH - 0.02]),
-    high=np.array([0.31, 0.03, 0.425]),
-    elevation=float(np.radians(9.0)),
-    azimuth=0.0,
-    path_plane=VERTICAL_PLANE,
-    pulls={IN_PATH_PLANE: VERTICAL_PLANE},
-    away=np.array([0.0, 1.0, 0.0]),
-    depths=(meshes.BACK_LAYER, meshes.FRONT_LAYER, meshes.BOSS, meshes.PEN_DEPTH),
-    title=np.array([0.075, 0.0, 0.392]),
-    note=np.array([0.075, 0.0, -0.11]),
-    force=np.array([0.205, 0.0, -0.11]),
-    force_scale=0.005,
-    sheet=((-0.15, -meshes.FLOOR_DEPTH - 0.01), (0.3, 0.325), -0.06),
-    parts=_rigid_parts,
-)
-
-# Drawn with (y1, y2, y3) at (y2, -y1, l1 + y3): the plane y1 = b y2 + d is b x + y = -d.
-_SLANTED = SlantedPlane()
-_ASIDE = float(np.radians(24.0))
-_PATH_PLANE = DragPlane(np.array([0.0, -_SLANTED.d, 0.0]), np.array([_SLANTED.b, 1.0, 0.0]))
-FLEXIBLE = Stage(
-    bases=_side_by_side(0.56, _ASIDE),
-    low=np.array([-0.12, -0.54, -meshes.FLOOR_DEPTH]),
-    high=np.array([0.12, 0.12, 0.47]),
-    elevation=float(np.radians(30.0)),
-    azimuth=_ASIDE,
-    path_plane=_PATH_PLANE,
-    pulls={
-        IN_PATH_PLANE: _PATH_PLANE,
-        HORIZONTAL: DragPlane(np.zeros(3), np.array([0.0, 0.0, 1.0])),
-    },
-    away=np.array([-1.0, 0.0, 0.0]),
-    depths=(meshes.BACK_LAYER - meshes.FRONT_LAYER, 0.0, meshes.BOSS - meshes.FRONT_LAYER, 0.0),
-    title=np.array([0.0, 0.0, 0.475]),
-    note=np.array([0.0, -0.5, 0.08]),
-    force=np.array([0.0, -0.5, 0.13]),
-    force_scale=0.04,
-    sheet=((-0.24, 0.1), (0.24, 0.5), -0.56),
-    parts=_flexible_parts,
-)
-STAGES = {"five_bar": RIGID, "flexible": FLEXIBLE}
-
-
-def stage_of(robot: Robot) -> Stage:
-    """Where a robot stands."""
-    return STAGES[robot.name]

@@ -1,4 +1,4 @@
-"""Before a lab that is full: a page that says so costs nothing, and opens when a place is free."""
+"""The queue of a full lab: waiting clients see a notice, and are admitted when a place is free."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from onpath.lessons.words import Words
 
 
 class AdmissionQueue:
-    """Who is inside and who waits; the first to come is the first to get in.
+    """The admitted and the waiting clients; first come, first served.
 
     Args:
-        places: so many clients are inside at once.
+        places: number of clients that may be admitted at the same time.
     """
 
     def __init__(self, places: int) -> None:
@@ -25,11 +25,11 @@ class AdmissionQueue:
         self._lock = threading.Lock()
 
     def admit(self, client: viser.ClientHandle, enter: Callable[[], None], always: bool) -> None:
-        """Let a client in, now or as soon as there is a place.
+        """Admit a client, now or as soon as there is a place.
 
         Args:
             enter: builds its page; called at most once, in any thread.
-            always: even when there is no place.
+            always: whether to admit it even if there is no place.
         """
         number = client.client_id
         with self._lock:
@@ -41,7 +41,7 @@ class AdmissionQueue:
         enter()
 
     def leave(self, number: int) -> None:
-        """A client is gone; whoever has waited longest gets its place."""
+        """Remove a client; the one that has waited longest takes its place."""
         with self._lock:
             self._waiting.pop(number, None)
             self._inside.discard(number)
@@ -53,7 +53,7 @@ class AdmissionQueue:
         enter()
 
     def _tell(self, client: viser.ClientHandle, enter: Callable[[], None]) -> Callable[[], None]:
-        """Show that the lab is full; returns what takes that away again and enters."""
+        """Show that the lab is full. Returns a function that removes the notice and enters."""
         words = Words()
         text = words("full.text", places=self._places)
         close = show_notice(client, words("full.title"), text)

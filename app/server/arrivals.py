@@ -1,7 +1,7 @@
-"""Asks a new browser what it keeps in its local storage, without holding a thread meanwhile.
+"""Asks new browsers for their local storage without blocking a thread.
 
 viser's page answers at once; a client that does not answer gets no lab. viser's own call to read
-local storage blocks one of its 32 threads until the answer is here.
+local storage would block one of its 32 threads until the answer arrives.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from onpath.app.viser_adapter.connection_limits import PerAddress
 from onpath.app.viser_adapter.message_filter import warn_once
 
 Kept = dict[str, str | None]
-MOST, MOST_EACH = 300, 100  # newcomers that have not answered, in all and of one address
+MOST, MOST_EACH = 300, 100  # clients that have not answered, in total and per address
 
 
 class Arrivals:
-    """Clients that have not answered yet. Used on viser's event loop, except `enter`.
+    """Clients that have not answered yet. Runs on viser's event loop, except `enter`.
 
     Args:
-        keys: what is asked for.
-        enter: called in one of viser's threads, with what a browser keeps under those keys.
-        most, most_each: how many may be unanswered, in all and of one address; beyond that the
-            oldest is turned away.
+        keys: of local storage.
+        enter: called in one of viser's threads, with the values of these keys.
+        most, most_each: clients that may be unanswered, in total and per address; beyond that the
+            oldest is disconnected.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class Arrivals:
 
     async def _greet(self, client: viser.ClientHandle) -> None:
         socket = self._sockets.get(client.client_id)
-        if socket is None:  # gone already
+        if socket is None:  # disconnected already
             return
         surplus = self._silent.add(client.client_id, getattr(socket, "address", ""))
         if surplus is not None:
@@ -81,7 +81,7 @@ class Arrivals:
             log_error(error)
 
     def _turn_away(self, number: int) -> None:
-        """The page may come back; then it is the newest."""
+        """Disconnect a client. Its page may reconnect; then it is the newest."""
         self._silent.discard(number)
         socket = self._sockets.get(number)
         if socket is not None:

@@ -12,7 +12,7 @@ from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.relay import Relay
 from onpath.app.classroom.shared_classroom import SharedClassroom
 from onpath.app.classroom.watches import Watches
-from onpath.app.lab.class_commands import ShowMessage
+from onpath.app.lab.commands import ReportState
 from onpath.app.lab.session import Session
 from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
@@ -96,7 +96,7 @@ class ClassService:
             entry, keeper = self._sessions.find(code), self._keeper
             if entry is not None and keeper is not None:  # to be found again by another process
                 submit = partial(keeper.submit, code)
-                entry.lab.session.post(ShowMessage(lambda session: keep(session, submit)))
+                entry.lab.session.post(ReportState(lambda session: keep(session, submit)))
 
         return ClassSeat(
             name=name,

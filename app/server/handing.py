@@ -1,7 +1,7 @@
-"""One address for several processes: one accepts, and hands each connection to who has fewest.
+"""One address for several processes: one accepts, and dispatches to the least-loaded worker.
 
-Left to itself, the kernel spreads connections by chance over processes that share a port: sixty
-students may be 23 on one core and 37 on the other.
+If the processes shared the port, the kernel would distribute connections at random: of sixty
+students, 23 might be on one core and 37 on the other.
 """
 
 from __future__ import annotations
@@ -12,53 +12,53 @@ import socket
 from contextlib import suppress
 from typing import Any
 
-CHANNEL = "ONPATH_CHANNEL"  # in a worker's environment: the descriptor of its end
+CHANNEL = "ONPATH_CHANNEL"  # environment variable of a worker: file descriptor of its channel
 CAN_HAND = hasattr(socket, "send_fds")
-SAID = b"."  # by a worker: it is ready, and then for each connection that it has closed
+SAID = b"."  # sent by a worker when it is ready, and for every connection that it has closed
 
 
 class Reception:
-    """Accepts connections for the workers that have joined; their ends are channels to us.
+    """Accepts connections, and passes them to the workers through their channels.
 
     Args:
-        listener: where they come; accepted from as soon as a worker is ready.
+        listener: the listening socket; connections are accepted once a worker is ready.
     """
 
     def __init__(self, listener: socket.socket) -> None:
         listener.setblocking(False)
         self._listener = listener
-        self._open: dict[socket.socket, int] = {}  # connections of those that are ready
+        self._open: dict[socket.socket, int] = {}  # open connections of the workers that are ready
         self._selector = selectors.DefaultSelector()
 
     def join(self) -> socket.socket:
-        """The other end of a new channel, for a worker; see `CHANNEL`."""
+        """A new channel; returns the worker's end, see `CHANNEL`."""
         ours, theirs = socket.socketpair()
         ours.setblocking(False)
         self._selector.register(ours, selectors.EVENT_READ)
         return theirs
 
     def attend(self, seconds: float) -> None:
-        """Do what there is to do, or wait so long for it."""
+        """Process events, waiting up to `seconds` for the first."""
         for key, _ in self._selector.select(seconds):
             found: Any = key.fileobj
             if found is not self._listener:
                 self._listen_to(found)
-            elif self._open:  # the last of them may have ended just now
+            elif self._open:  # the last worker may have just ended
                 self._accept()
 
     def close(self) -> None:
-        """Accept no more."""
+        """Stop accepting."""
         self._selector.close()
         self._listener.close()
 
     def _accept(self) -> None:
         try:
             connection, _ = self._listener.accept()
-        except OSError:  # who came is gone
+        except OSError:  # the client has disconnected
             return
         with connection:
             for channel in sorted(self._open, key=lambda channel: self._open[channel]):
-                with suppress(OSError):  # it has ended, or is stuck
+                with suppress(OSError):  # the worker has ended, or does not read
                     socket.send_fds(channel, [SAID], [connection.fileno()])
                     self._open[channel] += 1
                     return
@@ -80,13 +80,13 @@ class Reception:
 
 
 def handed(host: str, port: int) -> Handed | None:
-    """Where this process gets the connections to an address, if another one hands them to it."""
+    """The socket from which this process gets connections, if another one accepts them."""
     number = os.environ.get(CHANNEL)
     return None if number is None else Handed(int(number), (host, port))
 
 
 class Handed(socket.socket):
-    """A worker's end of its channel: to asyncio it is a socket that listens at an address."""
+    """A worker's end of its channel. asyncio uses it like a listening socket."""
 
     def __init__(self, descriptor: int, address: tuple[str, int]) -> None:
         super().__init__(fileno=descriptor)
@@ -97,15 +97,15 @@ class Handed(socket.socket):
         return self._address
 
     def listen(self, backlog: int = 0, /) -> None:
-        """Be ready."""
+        """Report that this worker is ready."""
         self.send(SAID)
 
     def accept(self) -> tuple[socket.socket, Any]:
-        """A connection that has been handed over, and whose it is.
+        """A connection that was handed over, and the client's address.
 
         Raises:
             BlockingIOError: there is none.
-            ConnectionAbortedError: who came is gone.
+            ConnectionAbortedError: the client has disconnected.
         """
         _, descriptors, _, _ = socket.recv_fds(self, 1, 1)
         if not descriptors:
@@ -120,18 +120,18 @@ class Handed(socket.socket):
 
 
 class _WorkerConnection(socket.socket):
-    """Says when it is closed.
+    """A connection that reports when it is closed.
 
     Attributes:
-        channel: to whom.
+        channel: to which it reports.
     """
 
     channel: socket.socket
 
     def close(self) -> None:
-        """Once."""
+        """Close, and report it the first time."""
         is_open = self.fileno() >= 0
         super().close()
         if is_open:
-            with suppress(OSError):  # nobody listens any more
+            with suppress(OSError):  # the accepting process has ended
                 self.channel.send(SAID)

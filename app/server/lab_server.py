@@ -23,7 +23,7 @@ from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.scene.stage import set_initial_camera
-from onpath.app.scene.stage_catalogue import RIGID
+from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.admission_queue import AdmissionQueue
 from onpath.app.server.arrivals import Arrivals, Kept
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
@@ -37,7 +37,7 @@ from onpath.app.storage.records import Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import BUILT_IN, Course, read_course
-from onpath.lessons.parse import LessonError
+from onpath.lessons.problems import LessonError
 from onpath.models.systems.catalogue import FIVE_BAR
 
 log = logging.getLogger(__name__)
@@ -90,7 +90,7 @@ class LabServer:
             self._class = ClassService(classroom, self.sessions, records, self._keeper)
         self._views: dict[int, Page] = {}
         self._newcomers, self._onlookers = BuildQueue(self.server), TabVisibilities(self.server)
-        set_initial_camera(self.server, RIGID)
+        set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.lab)))
         self._arrivals = Arrivals(self.server, [STORAGE_KEY, TEACHER_KEY], self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self.simulation.start()

@@ -1,6 +1,6 @@
-"""What takes long and is not needed for the first picture, made ready when that is shown.
+"""Loads slow modules in the background, after the first picture has been shown.
 
-Who asks for it sooner gets it by the imports inside the functions that need it.
+Functions that need them earlier import them themselves.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ LATER = (
     "onpath.app.scene.sketch_board",
     "scipy.signal",
 )
-REST = 3.0  # [s] for the first browser to open its lab
+REST = 3.0  # [s] in which the first browser can open its lab
 
 
 def warm_up(store: LoopCache, rest: float = REST) -> Thread:
-    """Import the rest and have a new lab's loops compiled, in a thread, after a while."""
+    """Import these modules and compile the loops of a new lab, in a thread, after `rest` [s]."""
 
     def work() -> None:
         time.sleep(rest)

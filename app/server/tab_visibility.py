@@ -1,9 +1,9 @@
-"""Whether a browser draws what it is told: a tab in the background does not, nor a closed laptop.
+"""Detects whether a browser is drawing: tabs in the background and closed laptops are not.
 
-viser's page takes its messages in even while it is hidden, and answers them; but where its camera
-is, it says only when it draws. So now and then it is told which way is up, just as it has said
-itself, and says in turn where its camera is. While that is overdue, nobody looks at its lab:
-nothing is computed and nothing sent, simulated time waits, and goes on with the answer.
+A hidden page of viser still receives and acknowledges messages, but it reports its camera only when
+it draws. So from time to time it is sent its own "up" direction, and it replies with its camera.
+While the reply is overdue, its lab is not shown: nothing is computed or sent, simulated time stands
+still, and both resume with the reply.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from viser import _messages
 
 from onpath.app.simulation.simulation_thread import Display, Lab
 
-QUESTION_INTERVAL = 2.0  # [s] between questions, while the browser is told anything
-PATIENCE = 4.0  # [s] with the answer; a browser that draws in software may stall for two
-TICK = 0.5  # [s]
+QUESTION_INTERVAL = 2.0  # [s] between questions, while anything is sent to the browser
+PATIENCE = 4.0  # [s] to wait for the reply; a browser that draws in software may stall for two
+TICK = 0.5  # [s] between checks
 
 
 class CountingDisplay(Display, Protocol):
-    """A view that counts."""
+    """A view that counts its updates."""
 
     @property
     def told(self) -> int:
-        """How often the browser has been told something."""
+        """Number of updates sent to the browser."""
         ...
 
 
 class TabVisibility:
-    """One browser; the view is its lab's as long as it draws. From any thread."""
+    """One browser. It is its lab's view as long as it draws. Thread-safe."""
 
     def __init__(
         self, client: viser.ClientHandle, clock: Callable[[], float] = time.monotonic
@@ -43,26 +43,26 @@ class TabVisibility:
         self._lab: Lab | None = None
         self._view: CountingDisplay | None = None
         self._heard = self._questioned = clock()
-        self._told = 0  # when it was heard
-        self._unanswered: float | None = None  # since when, [s]
+        self._told = 0  # number of updates when the last reply came
+        self._unanswered: float | None = None  # time of the unanswered question, [s]
         client.camera.on_update(self._hear)
 
     def watch(self, lab: Lab, view: CountingDisplay) -> None:
-        """Look at a lab from now on."""
+        """Show a lab from now on."""
         with self._lock:
             self._lab, self._view = lab, view
             self._heard, self._told, self._unanswered = self._clock(), view.told, None
             lab.view = view
 
     def leave(self) -> None:
-        """Look at nothing."""
+        """Show no lab."""
         with self._lock:
             if self._lab is not None and self._lab.view is self._view:
                 self._lab.view = None
             self._lab = self._view = None
 
     def look(self) -> None:
-        """Ask the browser if it is time, and take the view away if it has not answered."""
+        """Ask the browser if it is time; detach the view if the reply is overdue."""
         now = self._clock()
         with self._lock:
             lab, view = self._lab, self._view
@@ -92,7 +92,7 @@ class TabVisibility:
 
 
 class TabVisibilities:
-    """All browsers of a server, looked at by its event loop."""
+    """All browsers of a server, checked on its event loop."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._all: dict[int, TabVisibility] = {}
@@ -100,19 +100,19 @@ class TabVisibilities:
         self._loop.call_soon_threadsafe(self._look)
 
     def watch(self, client: viser.ClientHandle, lab: Lab, view: CountingDisplay) -> None:
-        """A browser looks at a lab, and at no other."""
+        """Show a lab in a browser, instead of any other."""
         number = client.client_id
         if number not in self._all:
             self._all[number] = TabVisibility(client)
         self._all[number].watch(lab, view)
 
     def leave(self, client: int) -> None:
-        """A browser looks at nothing, for now."""
+        """Show no lab in a browser for now."""
         if (onlooker := self._all.get(client)) is not None:
             onlooker.leave()
 
     def forget(self, client: int) -> None:
-        """A browser is gone."""
+        """Remove a browser that has disconnected."""
         if (onlooker := self._all.pop(client, None)) is not None:
             onlooker.leave()
 

@@ -1,7 +1,7 @@
-"""Several lab processes behind one address: starts them, restarts them, stops them.
+"""Several lab processes behind one address: starts, restarts and stops them.
 
-Each connection goes to one of them: the page is the same from all, and a lab comes from the
-database that they share.
+Any process can serve any connection: they all serve the same page, and load labs from a shared
+database.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ from onpath.assets import asset_path
 log = logging.getLogger(__name__)
 
 MOST = 64
-AGAIN = 1.0  # [s] before a worker that died is started again
-LAST_WORDS = 10.0  # [s] to stop before being killed
-MARK = "ONPATH_WORKER"  # in a worker's environment
-ONE_HEAP = {"MALLOC_ARENA_MAX": "1"}  # instead of one for each thread: a twentieth less memory
-USAGE = 2  # exit code: what was asked for makes no sense, nor will it later
+AGAIN = 1.0  # [s] before a worker that died is restarted
+LAST_WORDS = 10.0  # [s] that a worker has to stop before it is killed
+MARK = "ONPATH_WORKER"  # environment variable of a worker
+ONE_HEAP = {"MALLOC_ARENA_MAX": "1"}  # one heap instead of one per thread: 5 % less memory
+USAGE = 2  # exit code for invalid options; restarting would not help
 
 
 class Options(Protocol):
-    """What was asked for on the command line; see `app.cli.serve.Serve`."""
+    """The options of the command line; see `app.cli.serve.Serve`."""
 
     @property
     def host(self) -> str: ...
@@ -66,12 +66,12 @@ def supervise(options: Options, secrets: Mapping[str, str] | None = None) -> Non
     """Run workers until Ctrl-C or SIGTERM.
 
     Args:
-        options: as `check` wants them.
-        secrets: for the workers' environment.
+        options: valid according to `check`.
+        secrets: environment variables for the workers.
 
     Raises:
-        ValueError: a worker says that it cannot be as asked for.
-        OSError: a port cannot be had.
+        ValueError: a worker rejects its options.
+        OSError: a port is not available.
     """
     logging.basicConfig(level=options.log_level.upper(), format="%(levelname)s %(message)s")
     apart = options.successive_ports or not CAN_HAND
@@ -108,12 +108,16 @@ def supervise(options: Options, secrets: Mapping[str, str] | None = None) -> Non
 
 @dataclass(slots=True)
 class Worker:
-    """One process. Its lines come out of ours, with its number before them.
+    """One process. Its output is repeated on ours, with its number in front.
 
     Attributes:
-        secrets: for its environment.
-        cores: where it runs; anywhere, if it is empty.
+        number: from 1.
+        command: that starts it.
+        secrets: additional environment variables.
+        cores: on which it may run; empty: on all.
         reception: hands connections to it, unless it has a port of its own.
+        process: None before `start`.
+        died: time at which it was found to have ended, [s], or None.
     """
 
     number: int
@@ -126,7 +130,7 @@ class Worker:
     _reader: threading.Thread | None = field(default=None, repr=False)
 
     def start(self) -> None:
-        """Start, or start again; in a session of its own, so that Ctrl-C is ours."""
+        """Start or restart it, in a session of its own, so that it does not receive our Ctrl-C."""
         pipe = subprocess.PIPE
         environment = {**ONE_HEAP, **os.environ, MARK: "1", **self.secrets}
         channel = None if self.reception is None else self.reception.join()
@@ -145,16 +149,16 @@ class Worker:
             channel.close()
         self.died = None
         if self.cores:
-            with suppress(OSError):  # it has ended already, or those are no longer ours
+            with suppress(OSError):  # it has ended already, or the cores are not ours any more
                 os.sched_setaffinity(self.process.pid, self.cores)
         self._reader = threading.Thread(target=self._repeat, args=(self.process,), daemon=True)
         self._reader.start()
 
     def look(self) -> None:
-        """Start it again if it died a while ago.
+        """Restart it if it died `AGAIN` seconds ago.
 
         Raises:
-            ValueError: it said itself that this makes no sense.
+            ValueError: it rejected its options.
         """
         code = self.process.poll() if self.process else None
         if code is None:
@@ -175,21 +179,21 @@ class Worker:
 
 
 def shares(cores: Sequence[int], workers: int) -> list[frozenset[int]]:
-    """The cores of each worker: its own where there are enough, empty where none are known.
+    """The cores of each worker: disjoint where there are enough; empty where none are known.
 
-    Python lets one thread of a process run at a time, and the others wait for it less long on the
-    same core: sixty labs on two cores are simulated a tenth faster so.
+    Only one thread of a Python process runs at a time, and handing over is faster on the same core:
+    sixty labs on two cores are simulated 10 % faster this way.
     """
     return [frozenset(cores[i % max(len(cores), 1) :: workers]) for i in range(workers)]
 
 
 def _cores() -> list[int]:
-    """Those that this process may use; none where nobody says."""
+    """The cores that this process may use; none where the system does not tell."""
     return sorted(os.sched_getaffinity(0)) if sys.platform == "linux" else []
 
 
 def is_worker() -> bool:
-    """Whether this process is one; then it ends when the one that started it is gone."""
+    """Whether this process is a worker. If so, it will end when its parent does."""
 
     def wait() -> None:
         while os.read(0, 1024):
@@ -203,10 +207,10 @@ def is_worker() -> bool:
 
 
 def check(options: Options) -> None:
-    """Refuse what makes no sense.
+    """Check the options.
 
     Raises:
-        ValueError: several workers cannot be as asked for.
+        ValueError: they are invalid for several workers.
     """
     if not 1 < options.workers <= MOST:
         raise ValueError(f"--workers {options.workers}: expected 1 to {MOST}")
@@ -215,7 +219,7 @@ def check(options: Options) -> None:
 
 
 def _command(options: Options, port: int) -> list[str]:
-    """What starts a worker."""
+    """The command that starts a worker."""
     command = [sys.executable, "-P", "-m", "onpath", "serve"]
     command += ["--host", options.host, "--port", str(port), "--log-level", options.log_level]
     command += ["--most-clients", str(options.most_clients)]
@@ -244,7 +248,7 @@ def _watch(workers: list[Worker], wait: Callable[[float], None]) -> None:
 
 
 def _stop(workers: list[Worker]) -> None:
-    """All at once, and by force those that do not listen."""
+    """Stop all workers at the same time; kill those that do not stop within `LAST_WORDS`."""
     running = [w.process for w in workers if w.process is not None]
     for process in running:
         process.terminate()

@@ -1,6 +1,6 @@
 """Opens the database: an SQLite file, or a server by its URL.
 
-A broken file is moved aside, not deleted, and a fresh one is begun.
+A corrupt file is renamed, not deleted, and a new one is created.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ from onpath.app.storage.schema import meta
 log = logging.getLogger(__name__)
 
 VERSION = 1  # of the tables and of what `state` holds
-PATIENCE = 10.0  # [s] to wait for another process that writes
+PATIENCE = 10.0  # [s] to wait for a lock that another process holds
 _BROKEN = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 
 
 class NotKept(OSError):
-    """The database does not work now; the message says why, in words."""
+    """The database cannot be used at present; the message says why."""
 
 
 class _Broken(Exception):
-    """A file that is no database, or no longer."""
+    """The file is not a database, or is corrupt."""
 
 
 def parsed(url: str | sa.URL) -> sa.URL:
-    """A database's URL.
+    """A database URL.
 
     Raises:
-        ValueError: it makes no sense.
+        ValueError: it is malformed.
     """
     try:
         return sa.make_url(url)
@@ -48,7 +48,7 @@ def parsed(url: str | sa.URL) -> sa.URL:
 
 
 def opened_server(url: sa.URL) -> sa.Engine:
-    """A database by its URL, with the tables in it.
+    """The engine of a database server, with the tables created or migrated.
 
     Raises:
         ValueError: its driver is not installed.
@@ -57,22 +57,22 @@ def opened_server(url: sa.URL) -> sa.Engine:
     for last in (False, True):
         try:
             return _prepared(url)
-        except exc.SQLAlchemyError as error:  # perhaps another process made the tables
+        except exc.SQLAlchemyError as error:  # another process may have created the tables
             if last:
                 raise NotKept(f"cannot use {url!r}: {words(error)}") from error
     raise AssertionError
 
 
 def opened_memory() -> sa.Engine:
-    """A database that lives as long as the process."""
+    """The engine of a database in memory."""
     return _prepared(parsed("sqlite://"))
 
 
 def opened_file(url: sa.URL, clock: Callable[[], float]) -> sa.Engine:
-    """An SQLite file, with the tables in it.
+    """The engine of an SQLite file, with the tables created or migrated.
 
     Args:
-        clock: seconds since 1970; a broken file gets it in its name.
+        clock: seconds since 1970; names a corrupt file that is moved aside.
 
     Raises:
         OSError: it cannot be used.
@@ -93,7 +93,7 @@ def opened_file(url: sa.URL, clock: Callable[[], float]) -> sa.Engine:
 
 
 def words(error: Exception) -> str:
-    """What the driver said, without the statement and what was in it."""
+    """The driver's message, without the statement and its values."""
     return str(getattr(error, "orig", None) or type(error).__name__).strip().splitlines()[0]
 
 
@@ -101,13 +101,16 @@ def _move_aside(
     file: Path, broken: tuple[int, int] | None, why: str, clock: Callable[[], float]
 ) -> None:
     with _locked(file.with_name(f"{file.name}.lock")):
-        if _identity(file) == broken:  # nobody was quicker
+        if _identity(file) == broken:  # no other process has replaced it
             _rename(file, why, clock)
 
 
 @contextmanager
 def _locked(beside: Path) -> Iterator[None]:
-    """Alone among processes, until it ends or is killed: SQLite's own lock, of an empty file."""
+    """Mutual exclusion between processes, by SQLite's lock on an empty file.
+
+    The lock is released when the process ends, however it ends.
+    """
     try:
         with closing(sqlite3.connect(beside, timeout=PATIENCE, isolation_level=None)) as lock:
             lock.execute("BEGIN EXCLUSIVE")
@@ -123,7 +126,7 @@ def _rename(file: Path, why: str, clock: Callable[[], float]) -> None:
     while aside.exists():
         count += 1
         aside = file.with_name(f"{file.name}.broken-{stamp}-{count}")
-    for tail in ("-wal", "-shm", ""):  # SQLite finds them again by these names
+    for tail in ("-wal", "-shm", ""):  # SQLite finds the journals by these names
         part = file.with_name(file.name + tail)
         if part.exists():
             part.rename(aside.with_name(aside.name + tail))
@@ -155,7 +158,7 @@ def _engine(url: sa.URL) -> sa.Engine:
 
 
 def _connected(connection: Any, _: Any) -> None:
-    connection.isolation_level = None  # transactions are begun below, tables made inside them
+    connection.isolation_level = None  # `_begun` begins all transactions, those of DDL too
     for pragma in (
         "journal_mode = WAL",
         "synchronous = NORMAL",
@@ -170,11 +173,11 @@ def _begun(connection: sa.Connection) -> None:
 
 
 def _prepared(url: sa.URL) -> sa.Engine:
-    """With the tables in it.
+    """The engine of a database, with the tables created or migrated.
 
     Raises:
-        _Broken: it is no database.
-        NotKept: it is somebody else's, or a newer version's.
+        _Broken: it is not a database, or is corrupt.
+        NotKept: it belongs to another program or a newer version.
     """
     engine = _engine(url)
     try:
@@ -189,17 +192,17 @@ def _prepared(url: sa.URL) -> sa.Engine:
         code = getattr(getattr(error, "orig", None), "sqlite_errorcode", 0)
         if code & 0xFF in _BROKEN:
             raise _Broken(words(error)) from error
-        if isinstance(error, UnicodeDecodeError):  # SQLite's complaint quotes what it found
+        if isinstance(error, UnicodeDecodeError):  # SQLite's message quotes the corrupt data
             raise _Broken("it is full of strange letters") from error
         raise
     return engine
 
 
 def _migrate(connection: sa.Connection) -> None:
-    """Bring the tables up to date.
+    """Create the tables, or migrate them to the current revision.
 
     Raises:
-        NotKept: they are somebody else's, or a newer version's.
+        NotKept: they belong to another program or a newer version.
     """
     revision = revision_of(connection)
     if revision is None and (strange := strange_table(connection)):

@@ -1,4 +1,4 @@
-"""Deletes everything that the lab keeps."""
+"""Deletes all stored labs."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from onpath.app.storage.records import NotKept, Records, default_file
 
 @dataclass(frozen=True, slots=True)
 class ForgetCounts:
-    """What there was.
+    """What was deleted.
 
     Attributes:
-        labs: records deleted.
-        files: broken databases that had been moved aside; deleted too.
+        labs: number of labs.
+        files: corrupt databases that had been moved aside.
     """
 
     labs: int
@@ -24,10 +24,10 @@ class ForgetCounts:
 
 
 def forget(url: str | None = None) -> ForgetCounts:
-    """Delete all labs of a database, of the user's file if there is no URL.
+    """Delete all labs of a database: the user's own file if there is no URL.
 
     Raises:
-        ValueError: the URL makes no sense.
+        ValueError: the URL is malformed.
         OSError: something could not be deleted.
     """
     records = Records(url)
@@ -44,7 +44,7 @@ def forget(url: str | None = None) -> ForgetCounts:
 
 
 def _broken(url: str | None) -> list[Path]:
-    """See `Records`: what was in a broken file is kept as well."""
+    """The corrupt files that were moved aside; they contain labs as well."""
     parsed = sa.make_url(url) if url else None
     if parsed is not None and (parsed.get_backend_name() != "sqlite" or not parsed.database):
         return []

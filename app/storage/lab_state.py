@@ -1,4 +1,4 @@
-"""What is kept of a lab: its set-up and the way through the lessons."""
+"""The stored state of a lab: its setup and the progress through the lessons."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from onpath.app.lab.session import Session
 from onpath.app.lab.setup import Setup, capture, from_data, restore, to_data
 from onpath.lessons.progress import Progress, read_progress
 
-SAVE_INTERVAL = 60  # frames between two looks at what has changed
+SAVE_INTERVAL = 60  # frames between checks for changes
 LabState = dict[str, Any]
 NEW = (Setup(), Progress(), None)
 
 
 class StateObserver:
-    """Called by a session at every frame; submits what has changed, once a second.
+    """Watches a session, and submits its state when it has changed, at most once a second.
 
     Args:
-        submit: takes a function that makes the state, to be called in another thread.
-        seen: what is kept already.
+        submit: takes a function that builds the state; that function is called in another thread.
+        session: whose state is stored already; None: a new one.
     """
 
     def __init__(
@@ -32,7 +32,7 @@ class StateObserver:
         self._frames = 0
 
     def __call__(self, session: Session) -> None:
-        """See `Session.watch`."""
+        """Called in every frame; see `Session.watch`."""
         self._frames += 1
         if self._frames % SAVE_INTERVAL:
             return
@@ -43,16 +43,16 @@ class StateObserver:
 
 
 def keep(session: Session, submit: Callable[[Callable[[], LabState]], None]) -> None:
-    """Keep a lab even if nothing in it has changed; on the simulation thread."""
+    """Submit the state even if it has not changed. Call it on the simulation thread."""
     now = _now(session)
     submit(lambda: _state(*now))
 
 
 def put_back(session: Session, state: LabState) -> None:
-    """Make a new session what was kept.
+    """Restore a stored state into a new session.
 
     Raises:
-        ValueError: it cannot be read; then the session is as new as it was.
+        ValueError: the state is invalid; the session is then unchanged.
     """
     setup = from_data(state.get("setup"))
     progress = read_progress(state.get("lessons"))

@@ -1,7 +1,8 @@
-"""Who has a lab: of the processes that share a database, one at a time, by session code.
+"""Leases: which of the processes that share a database has a lab, by session code.
 
-A lease that is not renewed expires: its owner is gone. A lease that was let go keeps its owner's
-name, so that the owner knows whether somebody else has had the lab meanwhile.
+A lease expires unless it is renewed, so that the labs of a process that died can be taken over. A
+released lease keeps the name of its owner, so that the owner can tell later whether another process
+has had the lab in between.
 """
 
 from __future__ import annotations
@@ -20,18 +21,21 @@ from onpath.app.storage.schema import leases
 
 log = logging.getLogger(__name__)
 
-TERM = 4.0  # [s] without renewal until others may take a lab; clocks may differ by less than this
+TERM = 4.0  # [s], duration of a lease; clocks of the processes must differ by less
 RENEWAL = 1.0  # [s] between renewals
-NONSENSE = 3 * TERM  # [s]; a clock was wrong when a lease says that it lasts longer
-LOOK = 0.1  # [s] between looks at somebody else's lease
-FORGOTTEN = 3600.0  # [s] after which it does not matter who had a lab
+NONSENSE = 3 * TERM  # [s]; a lease that lasts longer was written with a wrong clock
+LOOK = 0.1  # [s] between polls of another owner's lease
+FORGOTTEN = 3600.0  # [s] after which expired leases are deleted
 
 
 class Leases:
-    """The labs of one process, the owner. From any thread.
+    """The leases of one process, the owner. Thread-safe.
 
     Args:
+        records: the database.
+        owner: a unique name; by default that of `records`.
         clock: seconds since 1970, roughly the same for all owners.
+        sleep: waits for some seconds.
     """
 
     def __init__(
@@ -46,14 +50,14 @@ class Leases:
         self._rounds: Periodic | None = None
 
     def save(self, code: str, state: dict[str, Any]) -> None:
-        """See `Records.save`; raises HeldElsewhere for a lab that another owner has."""
+        """See `Records.save`. Raises HeldElsewhere if another owner has the lab."""
         self._records.save(code, state, self._owner)
 
     def available(self, codes: list[str]) -> list[str]:
-        """Those of some codes that no other living owner has.
+        """Those codes that no other living owner holds.
 
-        Waits, for about TERM, while it is not clear whether an owner is alive. All of them if the
-        database cannot say.
+        Blocks for up to about TERM until it is clear whether an owner renews its lease. Returns all
+        codes if the database cannot be used.
         """
         try:
             first = self._others(codes)
@@ -67,22 +71,23 @@ class Leases:
             return codes
 
     def claim(self, code: str) -> bool | None:
-        """Have a lab.
+        """Take a lab.
 
         Returns:
-            None if another owner has it; otherwise whether nobody else has had it meanwhile.
+            None if another owner has it. Otherwise True if no other owner has had it since this one
+            released it, and False if one has.
 
         Raises:
-            NotKept: the database cannot say.
+            NotKept: the database cannot be used.
         """
         try:
             with self._records.transaction() as connection:
                 return self._claim(connection, code)
-        except exc.IntegrityError:  # another process was quicker
+        except exc.IntegrityError:  # another process took it first
             return None
 
     def release(self, *codes: str) -> None:
-        """Let labs go, for others or until they are claimed again; all if none is named."""
+        """Release some labs, or all if none is named; they can be claimed again by any process."""
         ours = leases.c.owner == self._owner
         if codes:
             ours &= leases.c.code.in_(codes)
@@ -94,10 +99,10 @@ class Leases:
             log.info("a lease expires by itself: %s", error)
 
     def renew(self, codes: Iterable[str]) -> list[str]:
-        """Go on having labs. Returns those that another owner has taken.
+        """Renew the leases of some labs. Returns those that another owner has taken.
 
         Raises:
-            NotKept: the database is away; others cannot take anything either.
+            NotKept: the database cannot be used; then other owners cannot take anything either.
         """
         codes, mine = list(codes), self._mine()
         ours = leases.c.code.in_(codes) & (leases.c.owner == self._owner)
@@ -112,11 +117,11 @@ class Leases:
         return [code for code in codes if owners.get(code, self._owner) != self._owner]
 
     def keep(self, held: Callable[[], list[str]], lost: Callable[[str], None]) -> None:
-        """Renew in a thread of its own until `close`.
+        """Renew periodically, in a thread of its own, until `close`.
 
         Args:
-            held: the labs that are in use.
-            lost: called for each that another owner has taken.
+            held: returns the labs that are in use.
+            lost: called for each lab that another owner has taken.
         """
 
         def renew() -> None:
@@ -130,7 +135,7 @@ class Leases:
         self._rounds.start()
 
     def close(self) -> None:
-        """Let everything go."""
+        """Stop renewing, and release all leases."""
         if self._rounds is not None:
             self._rounds.stop(patience=0.0)
         self.release()
@@ -148,11 +153,11 @@ class Leases:
         return row.owner == self._owner
 
     def _mine(self) -> dict[str, Any]:
-        """What a lease of ours says from now on."""
+        """The columns of a lease of this owner, renewed now."""
         return {"owner": self._owner, "expires": self._clock() + TERM}
 
     def _others(self, codes: list[str]) -> dict[str, tuple[str, float]]:
-        """Leases of other owners that have not expired, by code."""
+        """Leases of other owners that have not expired, by code: (owner, expiry)."""
         theirs = leases.c.code.in_(codes) & (leases.c.owner != self._owner)
         now = self._clock()
         wanted = sa.select(leases).where(theirs & leases.c.expires.between(now, now + NONSENSE))

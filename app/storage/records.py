@@ -1,7 +1,7 @@
-"""What is kept of every lab, by session code: SQLite in the user's folder, or a database by URL.
+"""The stored states of labs, by session code: in an SQLite file of the user, or a database by URL.
 
-A file that cannot be used never stops the lab: `Records.warning` says in words what is wrong, and
-records live as long as the process. `database_engine.py` opens it.
+An SQLite file that cannot be used never stops the lab: `Records.warning` then says why, and the
+records are in memory. engine.py opens the database.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ log = logging.getLogger(__name__)
 
 LARGEST = 1_000_000  # [B], of one state
 
-_of = sa.bindparam("of")  # a code; statements made once take half the time
-# who had a lab last; nobody else can take it before the transaction ends
+_of = sa.bindparam("of")  # a code. Prebuilt statements take half the time
+# The last owner of a lab. The row is locked until the transaction ends
 _OWNER = sa.select(leases.c.owner).where(leases.c.code == _of).with_for_update()
 _CHANGE = (
     sa.update(labs)
@@ -46,11 +46,11 @@ _CHANGE = (
 
 
 class HeldElsewhere(Exception):
-    """Another process has the lab now: what is known of it here is old."""
+    """Another process has the lab now; the state in this process is stale."""
 
 
 def default_file() -> Path:
-    """Where records are kept unless a URL says otherwise."""
+    """The SQLite file that is used without a URL."""
     return Path(platformdirs.user_data_dir("onpath")) / "onpath.db"
 
 
@@ -60,7 +60,7 @@ def file_url(file: Path) -> sa.URL:
 
 
 class Records:
-    """States by session code; from any thread.
+    """States by session code. Thread-safe.
 
     Args:
         url: of the database as SQLAlchemy takes it, "postgresql+psycopg://user@host/onpath"; None
@@ -68,13 +68,13 @@ class Records:
         clock: seconds since 1970.
 
     Attributes:
-        owner: a name for these records' process among those that share the database.
-        warning: why nothing outlives this process, in words; empty when all is well.
+        owner: unique name of this process among those that share the database.
+        warning: why states are lost when the process ends, in words; empty if they are not.
 
     Raises:
-        ValueError: the URL makes no sense, or its driver is not installed.
-        NotKept: a database that is no SQLite file cannot be used: better not to start at all
-            than to keep what others never see.
+        ValueError: the URL is malformed, or its driver is not installed.
+        NotKept: a database server cannot be used. There is no fallback to memory, because other
+            processes would not see those records.
     """
 
     def __init__(
@@ -87,10 +87,11 @@ class Records:
         self._engine = self._opened()
 
     def load(self, code: str) -> dict[str, Any] | None:
-        """The state of a lab; None if there is none that this version can read.
+        """The state of a lab; None if there is none.
 
         Raises:
-            NotKept: the database cannot say; whoever gets this must not save under this code.
+            NotKept: the database cannot be used, or the state cannot be read; the caller must then
+                not save under this code.
         """
         wanted = sa.select(labs.c.state, labs.c.version).where(labs.c.code == code)
         with self.transaction() as connection:
@@ -105,15 +106,16 @@ class Records:
             raise NotKept("what was kept of this lab cannot be read") from None
 
     def save(self, code: str, state: dict[str, Any], owner: str | None = None) -> None:
-        """Keep a state instead of the one before.
+        """Replace the state of a lab.
 
         Args:
-            owner: who saves; nothing is saved under a code that somebody else has leased.
+            owner: who saves. Nothing is saved if another owner has leased the lab.
 
         Raises:
-            ValueError: too large, not what JSON can say, or no code.
-            NotKept: it is not kept: the disk is full, the database away; the old one still is.
-            HeldElsewhere: another owner has it.
+            ValueError: the state is too large or not JSON, or the code is invalid.
+            NotKept: the database cannot be used (disk full, server away); the previous state
+                remains.
+            HeldElsewhere: another owner has the lab.
         """
         text = _text(code, state)
         values = {"version": VERSION, "updated": self._clock(), "state": text}
@@ -128,12 +130,12 @@ class Records:
                     if not changed.rowcount:
                         connection.execute(sa.insert(labs).values(code=code, **values))
                 return
-            except exc.IntegrityError:  # another process was quicker, or is newer
+            except exc.IntegrityError:  # another process inserted it first, or is a newer version
                 if last:
                     raise NotKept("this lab was kept by a newer OnPath") from None
 
     def delete_all(self) -> int:
-        """Forget every lab and every class. Returns how many labs there were.
+        """Delete all labs and classes. Returns the number of labs.
 
         Raises:
             NotKept: they could not be deleted.
@@ -146,20 +148,21 @@ class Records:
 
     @property
     def is_shared(self) -> bool:
-        """Whether other processes with the same URL have the same."""
+        """Whether other processes with the same URL see the same records."""
         return not self.warning and self._url.database not in (None, "", ":memory:")
 
     def close(self) -> None:
-        """Let the database go."""
+        """Close the database."""
         self._engine.dispose()
 
     @contextmanager
     def transaction(self) -> Iterator[sa.Connection]:
-        """All or nothing, alone in SQLite.
+        """A transaction; serialised with all others in SQLite.
 
         Raises:
-            NotKept: nothing.
-            sqlalchemy.exc.IntegrityError: nothing; another process was quicker.
+            NotKept: the database cannot be used; nothing was changed.
+            sqlalchemy.exc.IntegrityError: another process inserted the row first; nothing was
+                changed.
         """
         try:
             with self._lock, self._engine.begin() as connection:

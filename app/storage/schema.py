@@ -1,9 +1,7 @@
-"""The tables of the database, and nothing else. What is in them is made by the modules named here.
+"""The tables of the database. A change here needs a revision in `migrations/versions`.
 
-A change here needs a revision in `migrations/versions`.
-
-`database_engine.py`: meta. `database.py`: labs. `leases.py`: leases. `watches.py`: watches.
-`shared_classroom.py`: classes, members, passes.
+meta: engine.py. labs: records.py. leases: leases.py. watches: classroom/watches.py. classes,
+members, passes: classroom/shared_classroom.py.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Writes what happens in the labs into the database, in a thread of its own."""
+"""Writes the states of labs to the database in a background thread (write-behind)."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from onpath.app.storage.records import HeldElsewhere, NotKept
 
 log = logging.getLogger(__name__)
 
-INTERVAL = 2.0  # [s] between writes: what a killed process may lose
-BREATH = 0.01  # [s] between labs, for the simulation: it waits while this thread computes
-FLUSH = 10.0  # [s] at most for the last write
+INTERVAL = 2.0  # [s] between writes: the most that is lost if the process is killed
+BREATH = 0.01  # [s] between labs, in which the simulation thread can run
+FLUSH = 10.0  # [s] to wait for the last write
 
 
 class Store(Protocol):
-    """Where states go."""
+    """Where states are saved."""
 
     def save(self, code: str, state: dict[str, Any]) -> None:
         """See `Records.save`."""
@@ -26,11 +26,11 @@ class Store(Protocol):
 
 
 class WriteBehind:
-    """Keeps the latest state of each lab, at most every few seconds.
+    """Saves the latest state of each lab, at most once per interval.
 
     Attributes:
-        warning: why the latest states are not kept yet, in words; empty when they are. They are
-            tried again until they are.
+        warning: why the latest states are not saved yet, in words; empty when they are. Failed
+            writes are repeated.
     """
 
     def __init__(self, records: Store, interval: float = INTERVAL) -> None:
@@ -44,31 +44,31 @@ class WriteBehind:
         self._thread.start()
 
     def submit(self, code: str, make_state: Callable[[], dict[str, Any]]) -> None:
-        """Keep what `make_state` will return; from any thread, without waiting.
+        """Save the state that `make_state` returns. Thread-safe, and does not block.
 
         Args:
-            make_state: called in the keeper's thread, or never if a later one comes first; it
-                must not look at what other threads change.
+            make_state: called in the background thread, or never if a later one replaces it; it
+                must not read what other threads modify.
         """
         with self._lock:
             self._pending[code] = make_state
         self._wanted.set()
 
     def forget(self, delete: Callable[[], int]) -> int:
-        """Delete what is kept, and what was about to be; returns what `delete` returns."""
+        """Discard pending states, call `delete`, and return its result."""
         with self._writing:
             with self._lock:
                 self._pending.clear()
             return delete()
 
     def flush(self, code: str) -> None:
-        """Write what is waiting of one lab, in the caller's thread; when it returns, it is kept."""
-        with self._writing:  # this lab's turn may be under way
+        """Write the pending state of one lab in the caller's thread; it is saved on return."""
+        with self._writing:  # waits if this lab is being written
             if self._write_waiting(code):
                 self._wanted.set()
 
     def close(self) -> None:
-        """Write what is waiting, and end."""
+        """Write all pending states, and end the thread."""
         self._closing.set()
         self._wanted.set()
         self._thread.join(FLUSH)
@@ -96,21 +96,21 @@ class WriteBehind:
             self.warning = failed
 
     def _write_waiting(self, code: str) -> str:
-        """What is waiting of one lab, if anything; see `_write`."""
+        """Write the pending state of one lab, if any; see `_write`."""
         with self._lock:
             make_state = self._pending.pop(code, None)
         return "" if make_state is None else self._write(code, make_state)
 
     def _write(self, code: str, make_state: Callable[[], dict[str, Any]]) -> str:
-        """Why it is not kept but will be tried again; empty when it is."""
+        """Write a state. Returns why it failed and will be repeated, or ""."""
         try:
             self._records.save(code, make_state())
         except NotKept as error:
-            with self._lock:  # unless a later one has come
+            with self._lock:  # keeps a later state if there is one
                 self._pending.setdefault(code, make_state)
             return str(error)
         except HeldElsewhere:
             log.info("a lab has gone to another process")
-        except Exception as error:  # this lab's alone
+        except Exception as error:  # must not affect other labs
             log_error(error)
         return ""

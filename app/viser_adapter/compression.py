@@ -1,4 +1,4 @@
-"""zstd as viser's browsers have it, one compressor for each thread: it takes 0.3 MB."""
+"""zstd as viser's browsers decode it. Compressors (0.3 MB each) are shared within a thread."""
 
 from __future__ import annotations
 
@@ -10,22 +10,25 @@ from viser.infra import _infra
 
 from onpath.app.common.per_thread import per_thread
 
-LEVEL = 1  # viser's
-QUICK = -5  # of what is told in every frame: a third of the time, 15 % longer
+LEVEL = 1  # the level that viser uses
+QUICK = -5  # for frames: a third of the time of LEVEL, and 15 % more bytes
 
 
 def compress(data: bytes) -> bytes:
-    """So that viser's browsers can read it."""
+    """Compress data so that viser's browsers can read it."""
     return _own_compressor(QUICK).compress(data)
 
 
 def decompress(data: bytes) -> bytes:
-    """What `compress` or viser has made."""
+    """Decompress what `compress` or viser has compressed."""
     return _own_decompressor().decompress(data)
 
 
 def share_compressors() -> None:
-    """Let viser's connections, which all live in one thread, do with one; each makes its own."""
+    """Let all connections of viser share one compressor; viser creates one for each.
+
+    They all run in one thread, so that sharing is safe.
+    """
     library: Any = _infra
     library.zstandard = SimpleNamespace(**{**vars(zstandard), "ZstdCompressor": _compressor})
 

@@ -1,7 +1,7 @@
-"""Limits on open connections, in all and of one address, so that no address can hold them all.
+"""Limits on open connections, in total and per address, so that no address can take all of them.
 
 A connection that has not sent a complete request yet is pending. When too many are pending, the
-oldest is cut off, so that a client that sends its request at once is always served.
+oldest one is closed, so that a client that sends its request at once is always served.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ T = TypeVar("T")
 
 
 class PerAddress(Generic[T]):
-    """Things counted by the address that holds them, the oldest first.
+    """Items counted by address, oldest first.
 
     Args:
-        most, most_each: in all, and of one address.
+        most, most_each: limits in total, and per address.
     """
 
     def __init__(self, most: int, most_each: int) -> None:
@@ -38,11 +38,14 @@ class PerAddress(Generic[T]):
         return len(self._held)
 
     def has_room(self, address: str) -> bool:
-        """For one more."""
+        """Whether one more item of this address stays within both limits."""
         return len(self._held) < self._most and self._each[address] < self._most_each
 
     def add(self, thing: T, address: str) -> T | None:
-        """Returns which is too many now, if any: the oldest of this address, or of all."""
+        """Add an item. Returns the item that exceeds a limit, if any.
+
+        That is the oldest one of this address, or else the oldest of all.
+        """
         self._held[thing] = address
         self._each[address] += 1
         if self._each[address] > self._most_each:
@@ -50,7 +53,7 @@ class PerAddress(Generic[T]):
         return next(iter(self._held)) if len(self._held) > self._most else None
 
     def discard(self, thing: T) -> bool:
-        """Whether it was there."""
+        """Remove an item. Returns whether it was there."""
         address = self._held.pop(thing, None)
         if address is None:
             return False
@@ -61,13 +64,13 @@ class PerAddress(Generic[T]):
 
 
 class Proxies:
-    """Proxies whose X-Forwarded-For is believed: those on this machine, and those given.
+    """The proxies whose X-Forwarded-For header is trusted: those on this machine, and those given.
 
     Args:
         networks: of the proxies on other machines, "10.0.0.0/8" or a single address.
 
     Raises:
-        ValueError: one of them is neither.
+        ValueError: a network is malformed.
     """
 
     def __init__(self, networks: tuple[str, ...] = ()) -> None:
@@ -77,8 +80,8 @@ class Proxies:
         """The client's address, as the limits count it.
 
         Args:
-            peer: at the other end of the connection; empty for a Unix socket.
-            forwarded: what X-Forwarded-For says, the nearest last.
+            peer: address at the other end of the connection; empty for a Unix socket.
+            forwarded: values of X-Forwarded-For, the nearest hop last.
         """
         client = peer
         for hop in reversed([each.strip() for each in ",".join(forwarded).split(",")]):
@@ -103,7 +106,7 @@ def _is_address(text: str) -> bool:
 
 
 def _limited_part(address: str) -> str:
-    """What the limits of an address apply to: for IPv6 the /64 network, which one user owns."""
+    """The part of an address to which limits apply: for IPv6 the /64 network of one user."""
     if not address:
         return address
     there = _parsed(address)
@@ -111,14 +114,14 @@ def _limited_part(address: str) -> str:
 
 
 def _parsed(address: str) -> IPv4Address | IPv6Address:
-    """An address; ::ffff:192.0.2.1 is 192.0.2.1."""
+    """The parsed address; an IPv4-mapped one (::ffff:192.0.2.1) becomes IPv4."""
     there = ip_address(address)
     mapped = there.ipv4_mapped if isinstance(there, IPv6Address) else None
     return mapped or there
 
 
 class ConnectionLimits:
-    """Limits on open connections, in all and of one address. Used on one event loop."""
+    """Limits on open connections, in total and per address. Use it on one event loop."""
 
     def __init__(self, limits: Limits, proxies: Proxies) -> None:
         self._proxies = proxies
@@ -144,7 +147,7 @@ class ConnectionLimits:
         return connection in self._inside
 
     def closed(self, connection: CountedConnection) -> None:
-        """Count it no longer."""
+        """Stop counting a connection."""
         self._waiting.discard(connection)
         self._inside.discard(connection)
 

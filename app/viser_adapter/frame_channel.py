@@ -1,9 +1,9 @@
-"""What moves, told to a browser thirty times a second at a bearable price.
+"""Batched scene updates: one network write per browser and frame.
 
-viser takes 60 µs for an assignment to a property, wakes its event loop for every message and then
-waits for more of them; for twenty browsers that is more than a core. Here several properties of a
-node are one message (`update_node`), and all messages of a frame one write to the network, done
-for all browsers together (`FrameChannel`). This uses viser's private parts; tests pin them.
+viser takes 60 µs for every assignment to a property, wakes its event loop for every message, and
+then waits for more of them; for twenty browsers that is more than one core. Here several properties
+of a node are one message (`update_node`), and all messages of a frame are one write, issued for all
+browsers together (`FrameChannel`). This uses private parts of viser, which tests pin.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ UPDATES = {
     kind: wire_field_names(kind)
     for kind in (_messages.SceneNodeUpdateMessage, _messages.GuiUpdateMessage)
 }
-MOST_UNSENT = 1 << 16  # [B] that a slow network may owe a browser, before viser merges what is late
-_DTYPES = {np.dtype(kind): np.dtype(kind).str for kind in (np.float32, np.float64)}  # it is slow
+MOST_UNSENT = 1 << 16  # [B] unsent; beyond it, viser's queue merges outdated messages
+_DTYPES = {np.dtype(kind): np.dtype(kind).str for kind in (np.float32, np.float64)}  # .str is slow
 _ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[FrameChannel]] = WeakKeyDictionary()
-"""Channels with something to send, by the event loop that does it."""
+"""Channels with pending messages, by the event loop that sends them."""
 
 
 def update_node(handle: Any, **arrays: np.ndarray) -> None:
-    """Set float32 properties of a node, without a look at whether they have changed."""
+    """Set float32 properties of a scene node, without viser's check whether they have changed."""
     values = {name: np.array(array, np.float32, order="C") for name, array in arrays.items()}
     for name, value in values.items():
         setattr(handle._impl.props, name, value)
@@ -47,21 +47,22 @@ def update_node(handle: Any, **arrays: np.ndarray) -> None:
 
 
 def update_gui(handle: Any, name: str, value: str | tuple[np.ndarray, ...]) -> None:
-    """Set a property of the panel, without a look at its type and whether it has changed.
+    """Set a property of a GUI element, without viser's check of its type and of changes.
 
-    Arrays must stay as they are from now on.
+    Arrays must not be modified afterwards.
     """
     setattr(handle._impl.props, name, value)
     handle._queue_update(name, value)
 
 
 class FrameChannel:
-    """All that the simulation thread tells one browser during a frame, as one message.
+    """Collects the simulation thread's messages to one browser, and sends those of a frame as one.
 
-    It goes past viser's queue when that is empty, and else through it, so that the order is kept.
+    The message bypasses viser's queue if that is empty, and goes through it otherwise, which keeps
+    the order.
 
     Attributes:
-        frames: how many were not empty.
+        frames: number of frames that were not empty.
     """
 
     def __init__(self, client: viser.ClientHandle) -> None:
@@ -79,15 +80,15 @@ class FrameChannel:
 
     @property
     def closed(self) -> bool:
-        """Whether the browser is gone."""
+        """Whether the browser has disconnected."""
         return self._buffer.done
 
     def __enter__(self) -> None:
-        """What this thread tells the browser from now on waits for `send`."""
+        """From now on, messages of this thread are collected until `send`."""
         self._collector = get_ident()
 
     def __exit__(self, *_: object) -> None:
-        """What it tells from now on goes at once."""
+        """From now on, messages of this thread are sent at once."""
         self._collector = None
         if self._messages:
             self.frames += 1
@@ -102,10 +103,10 @@ class FrameChannel:
 
     def _take(self, message: Message) -> None:
         if message.excluded_self_client == self._client_id:
-            return  # an echo of its own widgets for the other browsers of a page; there are none
+            return  # meant for other browsers that show the same page; there are none
         if self._collector == get_ident():
             self._messages.append(message)
-        elif not self.closed:  # while a page is being built, say
+        elif not self.closed:  # for example while a page is being built
             self._queue(message)
 
     def _packed(self) -> tuple[list[Message], bytes]:
@@ -113,7 +114,7 @@ class FrameChannel:
         return messages, packed(messages)
 
     def write(self, messages: list[Message], data: bytes) -> None:
-        """On the event loop."""
+        """Send a frame. Runs on the event loop."""
         socket = self._sockets.get(self._client_id)
         if self.closed or socket is None or socket.protocol.state is not State.OPEN:
             return
@@ -135,7 +136,7 @@ def _write(frames: list[tuple[FrameChannel, list[Message], bytes]]) -> None:
 
 
 def _wire(message: Message, arrays: list[memoryview]) -> dict[str, Any]:
-    """As viser does it, but quicker for what `update_node` and `update_gui` make."""
+    """A message as viser serialises it, but faster for those of `update_node` and `update_gui`."""
     kind, known = type(message), len(arrays)
     if kind not in UPDATES:
         return message.as_serializable_dict(arrays)
@@ -150,10 +151,10 @@ def _wire(message: Message, arrays: list[memoryview]) -> dict[str, Any]:
 
 
 def _told(value: Any, arrays: list[memoryview]) -> Any:
-    """A value as it goes over the wire; arrays go apart.
+    """A value as it is serialised; arrays are appended to `arrays`.
 
     Raises:
-        TypeError: that is viser's business.
+        TypeError: the value needs viser's own serialisation.
     """
     kind = type(value)
     if kind in (str, bool, int, float):
@@ -168,7 +169,7 @@ def _told(value: Any, arrays: list[memoryview]) -> Any:
 
 
 def packed(messages: list[Message]) -> bytes:
-    """Messages as viser sends them: lengths, compressed msgpack, then the arrays as they are."""
+    """Messages as viser sends them: lengths, compressed msgpack, then the raw arrays."""
     arrays: list[memoryview] = []
     window = {
         "messages": [_wire(message, arrays) for message in messages],

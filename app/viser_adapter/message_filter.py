@@ -1,4 +1,4 @@
-"""Decides which of a browser's messages, once decoded, reach viser's handlers. See `hardening`."""
+"""Decides which decoded messages of a browser reach viser's handlers; see secure_server.py."""
 
 from __future__ import annotations
 
@@ -22,19 +22,18 @@ class Limits:
     """What one browser may send.
 
     Attributes:
-        max_message_bytes: of one websocket message, [B]; a larger one closes that connection.
-        messages_per_second: sustained; more closes that connection.
-        message_burst: messages at once; each 4 kB of a long one counts as one more.
-        max_text_length: of a text widget, [characters]; the rest is cut off.
+        max_message_bytes: of one websocket message, [B]; a larger one closes the connection.
+        messages_per_second: sustained rate; more closes the connection.
+        message_burst: messages at once; every 4 kB of a long message counts as one more.
+        max_text_length: of a text widget, [characters]; longer texts are cut.
         max_magnitude: of any number in a drag, pointer, gizmo or camera message.
         max_upload_bytes: of a file, one file at a time, [B]; 0 refuses all.
-        max_connections: of all browsers together, also those that ask for a file.
-        max_connections_each: of one address; sixty students behind one have five each.
-        max_waiting: connections that have sent no whole request yet, besides those.
-        max_waiting_each: of one address.
-        silence: after which a browser is asked whether it is there, and how long it may take to
-            answer that, [s].
-        farewell: how long it may take to answer that it is being closed, [s].
+        max_connections: in total, including those that request a file.
+        max_connections_each: per address; sixty students behind one address have five each.
+        max_waiting: further connections that have not sent a complete request yet.
+        max_waiting_each: of those, per address.
+        silence: time after which a browser is pinged, and time that it has to answer, [s].
+        farewell: time that a browser has to acknowledge that its connection is closed, [s].
     """
 
     max_message_bytes: int = 1_000_000
@@ -43,7 +42,7 @@ class Limits:
     max_text_length: int = 2000
     max_magnitude: float = 1e9
     max_upload_bytes: int = 0
-    max_connections: int = 700  # with those that wait below 1024 files, a usual limit
+    max_connections: int = 700  # with the waiting ones below 1024, a common limit on open files
     max_connections_each: int = 300
     max_waiting: int = 250
     max_waiting_each: int = 200
@@ -52,7 +51,7 @@ class Limits:
 
 
 class MessageFilter:
-    """Stands before viser's handlers of one scope: the whole server's, or one client's own."""
+    """Filters messages before viser's handlers of one scope: the server's, or one client's."""
 
     def __init__(
         self,
@@ -68,7 +67,7 @@ class MessageFilter:
         scope._handle_incoming_message = self._receive
 
     async def _receive(self, client_id: ClientId, message: Any) -> None:
-        # Every message comes to both scopes; the one that does not know its widget says nothing.
+        # Every message reaches both scopes; the one that does not know its widget ignores it.
         widget = self._gui._gui_input_handle_from_uuid.get(getattr(message, "uuid", ""))
         match message:
             case wire.GuiUpdateMessage():
@@ -128,7 +127,7 @@ _warned: weakref.WeakSet[Any] = weakref.WeakSet()
 
 
 def warn_once(connection: ServerConnection | None, what: str) -> None:
-    """Log what has been dropped of a browser, the first time."""
+    """Log that a message of a browser was dropped, once per connection."""
     if connection is not None and connection not in _warned:
         _warned.add(connection)
         client = connection.remote_address

@@ -1,4 +1,4 @@
-"""Whether a message from a browser has the form that its dataclass declares, before it is built."""
+"""Validates messages of a browser against viser's dataclasses before they are decoded."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 import msgspec
 
 UNREADABLE = (ValueError, RecursionError, MemoryError)
-"""What msgspec raises of bytes that nobody sends in earnest, deeply nested ones for instance."""
+"""What msgspec raises for malformed or malicious bytes, for instance deeply nested ones."""
 
 
 class MessageSchemas:
-    """The messages that may come.
+    """The messages that a browser may send.
 
     Args:
-        forms: their dataclasses; a good message is a msgpack map with its form's name as "type".
+        forms: their dataclasses. A valid message is a msgpack map with the class name as "type".
         max_magnitude: of any number.
     """
 
@@ -29,7 +29,7 @@ class MessageSchemas:
         self._names = frozenset(struct.__name__ for struct in structs)
 
     def fault(self, raw: bytes | str) -> str | None:
-        """What is wrong with a websocket message, in our own words only; None when nothing is."""
+        """What is wrong with a websocket message, or None; never quotes the message."""
         if isinstance(raw, str):
             return "a text frame"
         try:
@@ -53,7 +53,7 @@ class MessageSchemas:
         )
 
     def _bounded(self, hint: Any) -> Any:
-        """A type whose numbers are finite and not too large."""
+        """The type with finite and bounded numbers."""
         if hint is float:
             return Annotated[float, self._limit]
         if hint is int:
@@ -70,7 +70,7 @@ class _Named(msgspec.Struct):
 
 
 def _name(raw: bytes) -> str:
-    """What a message says that it is."""
+    """The type that a message claims to have."""
     try:
         return msgspec.msgpack.decode(raw, type=_Named).type
     except UNREADABLE:
@@ -78,7 +78,7 @@ def _name(raw: bytes) -> str:
 
 
 def _is_coherent(message: Any) -> bool:
-    """What no annotation says: a quaternion has length 1, a click a ray, no index is negative."""
+    """Whether constraints beyond types hold: unit quaternions, clicks with a ray, indices >= 0."""
     if event := getattr(message, "event_type", None):
         is_click = event == "click"
         has_ray = None not in (message.ray_origin, message.ray_direction)

@@ -1,4 +1,4 @@
-"""The page that browsers are given: viser's, with the scripts of assets/page before its own."""
+"""Inserts the scripts of assets/page before viser's own into the page that browsers get."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from onpath.assets import asset_path
 
 
 def add_scripts(response: Response | None) -> Response | None:
-    """Put our scripts into a response, if it is viser's page; every other stays as it is."""
+    """Insert our scripts into a response if it is viser's page; leave all others unchanged."""
     if response and response.headers.get("Content-Type", "").startswith("text/html"):
         packed = response.headers.get("Content-Encoding") == "gzip"
         response.body = _page(bytes(response.body), packed)
@@ -21,7 +21,7 @@ def add_scripts(response: Response | None) -> Response | None:
 
 
 def with_scripts(page: bytes, scripts: bytes) -> bytes:
-    """A page that runs some scripts before its first one, or at the end of its head."""
+    """A page with scripts inserted before its first one, or at the end of its head."""
     for place in (b"<script", b"</head>"):
         before, found, after = page.partition(place)
         if found:
@@ -31,13 +31,13 @@ def with_scripts(page: bytes, scripts: bytes) -> bytes:
 
 @cache
 def our_scripts() -> bytes:
-    """Every file of assets/page, in order of name, each an element of its own."""
+    """All files of assets/page, in order of name, each as a <script> element."""
     files = sorted(asset_path("page").glob("*.js"))
     return b"".join(b"<script>\n" + file.read_bytes() + b"</script>\n" for file in files)
 
 
 @lru_cache(maxsize=4)
 def _page(body: bytes, packed: bool) -> bytes:
-    """The same bytes for the same page: viser keeps its own, so that comparing costs nothing."""
+    """The page with our scripts. Cached, because viser serves the same bytes every time."""
     page = with_scripts(gzip.decompress(body) if packed else body, our_scripts())
     return gzip.compress(page, mtime=0) if packed else page

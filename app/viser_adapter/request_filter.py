@@ -1,4 +1,4 @@
-"""Who may open a websocket, and which paths may be read: the HTTP request before anything else."""
+"""Filters HTTP requests: which origins may open a websocket, and which paths may be read."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from urllib.parse import unquote, urlsplit
 
 from websockets.http11 import Request
 
-LONGEST_PATH = 200  # [characters]; a file system would complain
-HEALTH = "/health"  # answered while the network thread is alive, for those who restart servers
+LONGEST_PATH = 200  # [characters]; file systems have limits
+HEALTH = "/health"  # answered while the network thread is alive, for process supervisors
 
 
 def well(_query: str) -> str:
-    """How a server is, when nothing else is known of it."""
+    """The default health report."""
     return "well\n"
 
 
 class RequestFilter:
-    """Decides on requests. Closed to websockets until `open` is set, lest one slip in early."""
+    """Decides on requests. Rejects websockets until `open` is set."""
 
     def __init__(
         self,
@@ -28,12 +28,11 @@ class RequestFilter:
         local_only: bool,
         health: Callable[[str], str] = well,
     ) -> None:
-        """
-        Args:
-            allowed_origins: pages of other sites that may connect, "https://lab.example:8443".
-            local_only: the server listens to this machine alone. A page may then name itself only
-                by a local name: else any site could point its own name at 127.0.0.1 and get in.
-            health: what to tell those who ask for `HEALTH`, given what follows its "?".
+        """Args:
+        allowed_origins: pages of other sites that may connect, "https://lab.example:8443".
+        local_only: whether the server listens on this machine only. The page's origin must then
+            be a local name; else any site could point its own name at 127.0.0.1 (DNS rebinding).
+        health: the report for `HEALTH`, given the query string.
         """
         self.open = False
         self._health = health
@@ -41,7 +40,7 @@ class RequestFilter:
         self._local_only = local_only
 
     def refusal(self, request: Request) -> tuple[HTTPStatus, str] | None:
-        """Status and text to answer with at once, or None to let the request through."""
+        """Status and text with which to answer at once, or None to let the request through."""
         asked, _, query = request.path.partition("?")
         if asked == HEALTH:
             return HTTPStatus.OK, self._health(query)
@@ -60,7 +59,7 @@ class RequestFilter:
 
     def _trusts(self, request: Request) -> bool:
         origins = request.headers.get_all("Origin")
-        if not origins:  # every browser sends it: this is a program, which could write anything
+        if not origins:  # not a browser; other programs could send any origin anyway
             return True
         origin = origins[0].lower()
         if len(origins) > 1 or origin in self._allowed:
@@ -75,7 +74,7 @@ class RequestFilter:
 
 
 def is_loopback(host: str) -> bool:
-    """Whether `host`, a name or an address, is this machine seen from itself."""
+    """Whether a host name or address is this machine's loopback."""
     try:
         return host == "localhost" or ip_address(host).is_loopback
     except ValueError:

@@ -1,9 +1,9 @@
-"""Protects a viser server from an untrusted browser.
+"""Protects a viser server from untrusted browsers.
 
 What a browser sends passes the handshake (request_filter.py), the websocket (`_SecureConnection`:
-size and rate; message_schema.py) and then message_filter.py (which widget) and widget_validation.py
-(which value). What a callback raises is logged (error_log.py). Written against viser 1.1.1; a test
-pins the private names.
+size and rate; message_schema.py), message_filter.py (which widget) and widget_validation.py (which
+value). Exceptions in callbacks are logged (error_log.py). Written against viser 1.1.1; a test pins
+the private names.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ _FROM_BROWSER: tuple[type[Any], ...] = (
 _SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
 
 
-STARTING = 8.0  # [s] that a request waits at most for the guards; websockets gives up after 10
+STARTING = 8.0  # [s] that a request waits until the server is ready; websockets gives up after 10
 
 
 def make_server(
@@ -78,21 +78,21 @@ def make_server(
     health: Callable[[str], str] = well,
     verbose: bool = False,
 ) -> viser.ViserServer:
-    """A hardened server that listens on exactly this address; port 0 takes a free one.
+    """A protected server that listens on exactly this address; port 0 takes a free one.
 
     Args:
         allowed_origins: pages of other sites that may connect, "https://lab.example:8443". The
-            server's own page always may, and so may a client that is no browser.
+            server's own page always may, and so may clients that are not browsers.
         trusted_proxies: see `app.viser_adapter.connection_limits.Proxies`.
-        share_port: other processes of this user may hold the same port, or listen on it.
-        unix_socket: listen on this file alone, for a proxy of this user's that puts the page
-            into a folder of its own.
-        listener: listen with this instead.
+        share_port: whether other processes of this user may listen on the same port.
+        unix_socket: listen on this file only, for a proxy of the same user that serves the page in
+            a folder of its own.
+        listener: listen with this socket instead.
         health: see `RequestFilter`.
 
     Raises:
-        ValueError: there can be no such proxy.
-        PortInUse: where viser alone would move on to the next port without a word.
+        ValueError: a proxy is malformed.
+        PortInUse: the port is taken; viser alone would silently use the next one.
         OSError: the address cannot be bound.
     """
     connections = ConnectionLimits(limits, Proxies(trusted_proxies))
@@ -111,7 +111,7 @@ def make_server(
 
 
 def _cache_icons() -> None:
-    """viser reads its archive of icons anew for every button, 25 ms each; once is enough."""
+    """Cache viser's icons, which it reads from an archive for every button, 25 ms each."""
     if not hasattr(_icons.svg_from_icon, "cache_info"):
         cached: Any = cache(_icons.svg_from_icon)
         for module in (_icons, _gui_api, _gui_handles):
@@ -119,9 +119,10 @@ def _cache_icons() -> None:
 
 
 def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
-    """Guard what viser has decoded, of all clients to come; once, before the first one.
+    """Filter the decoded messages of all future clients. Call it once, before the first one.
 
-    `make_server` does this and adds the gates before decoding, which need the construction.
+    `make_server` does this and adds the checks before decoding, which must be installed while viser
+    constructs its server.
     """
     websock = server._websock_server
     for message in _SHARE_TUNNEL:
@@ -137,8 +138,11 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
 
 
 def _to_page(connection: ServerConnection, request: Request) -> Response:
-    """viser's page opens its websocket at its own address without the last slash: in a proxy's
-    folder that is not the lab's, but a file's address is."""
+    """Redirect to index.html.
+
+    viser's page opens its websocket at its own address without the trailing slash. Behind a proxy
+    that serves the lab in a folder, that is another address, while that of a file is the lab's.
+    """
     response = connection.respond(HTTPStatus.FOUND, "")
     response.headers["Location"] = "index.html" + request.path[1:]
     return response
@@ -155,7 +159,7 @@ def _guarded_serve(
     counts: ConnectionLimits,
     in_folder: bool,
 ) -> Iterator[None]:
-    """Put our checks into the one call of websockets' `serve` that viser makes on construction."""
+    """Install our checks in the one call of `websockets.serve` that viser makes."""
     library: Any = websockets.asyncio.server
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
@@ -163,7 +167,7 @@ def _guarded_serve(
             connection: CountedConnection, request: Request
         ) -> Response | None:
             await _opened(requests)
-            if refusal := requests.refusal(request):  # or health, whoever is here
+            if refusal := requests.refusal(request):  # or the health report, even when full
                 return connection.respond(*refusal)
             if not counts.admits(connection, request):
                 return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
@@ -180,7 +184,7 @@ def _guarded_serve(
         )
 
     with _patching:
-        genuine = library.serve  # read in here: outside it may be another thread's replacement
+        genuine = library.serve  # read under the lock: else it may be another thread's patch
         library.serve = serve
         try:
             yield
@@ -189,12 +193,12 @@ def _guarded_serve(
 
 
 def _of_our_version(handler: Any) -> Callable[[ServerConnection], Awaitable[None]]:
-    """The handler for pages of this version; others are closed with a reason."""
+    """The handler for pages of this version; connections of others are closed with a reason."""
 
     async def handle(connection: ServerConnection) -> None:
         if connection.subprotocol == _SUBPROTOCOL:
             await handler(connection)
-        else:  # before viser, which would print what it was told
+        else:  # viser would print what the browser sent
             reason = "this page is of another version of the server: reload it"
             await connection.close(CloseCode.PROTOCOL_ERROR, reason)
 
@@ -202,7 +206,7 @@ def _of_our_version(handler: Any) -> Callable[[ServerConnection], Awaitable[None
 
 
 async def _opened(requests: RequestFilter) -> None:
-    """Wait until the server is ready, but not for ever."""
+    """Wait until the server is ready, for a limited time."""
     until = time.monotonic() + STARTING
     while not requests.open and time.monotonic() < until:
         await asyncio.sleep(0.02)
@@ -214,7 +218,7 @@ def _forms(max_magnitude: float) -> MessageSchemas:
 
 
 class _SecureConnection(CountedConnection):
-    """A websocket that yields only well-formed messages, and is closed when they are too many."""
+    """A websocket that yields only valid messages, and is closed when there are too many."""
 
     def __init__(self, *args: Any, limits: Limits, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -224,7 +228,7 @@ class _SecureConnection(CountedConnection):
         self._closing: asyncio.Task[None] | None = None
 
     def process_event(self, event: Any) -> None:
-        """Count frames as they arrive, pings and fragments too; drop what exceeds the rate."""
+        """Count all frames, including pings and fragments, and drop those that exceed the rate."""
         if isinstance(event, Frame) and event.opcode is not Opcode.CLOSE:
             if self._closing is None and not self._affords(event):
                 warn_once(self, "a flood of messages")
@@ -259,7 +263,7 @@ def _log_outcome(done: Any) -> None:
 
 
 def _log_errors_of_callbacks(server: viser.ViserServer) -> None:
-    """viser prints each traceback; the replaced functions are the process's, hence all servers'."""
+    """Log exceptions in callbacks, which viser prints. This patches viser for the whole process."""
     for module in (_gui_api, _gui_handles, _scene_api, _viser):
         for name, log in _PRINTERS.items():
             if hasattr(module, name):

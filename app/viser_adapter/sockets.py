@@ -1,4 +1,4 @@
-"""Sockets to listen on: a port of one's own, a port of a few processes, a file."""
+"""Sockets to listen on: a port, a port shared by several processes, or a file."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from pathlib import Path
 
 
 class PortInUse(OSError):
-    """The port is taken; the message says which, and the way out."""
+    """The port is taken; the message names it and suggests what to do."""
 
 
 def listen(host: str, port: int, share_port: bool = False) -> socket.socket:
     """Listen on exactly this address; port 0 takes a free one.
 
     Raises:
-        PortInUse: somebody else does.
-        OSError: the address cannot be had; the message names it.
-        ValueError: there is no such port.
+        PortInUse: another program listens there.
+        OSError: the address cannot be bound; the message names it.
+        ValueError: the port is out of range.
     """
     with _address_named(host, port):
         return socket.create_server((host, port), family=_family(host), reuse_port=share_port)
@@ -30,7 +30,7 @@ def listen_unix(file: Path) -> socket.socket:
     """Listen on a file that only this user can open.
 
     Raises:
-        OSError: the file cannot be made; the message names it.
+        OSError: the file cannot be created; the message names it.
     """
     listener = socket.socket(socket.AF_UNIX)
     before = os.umask(0o177)
@@ -46,12 +46,12 @@ def listen_unix(file: Path) -> socket.socket:
 
 
 def reserve(host: str, port: int) -> socket.socket:
-    """An address for a process that is to listen there, held without listening.
+    """Bind an address for a process that will listen there, without listening.
 
     Raises:
-        PortInUse: somebody else listens there, sharing or not.
-        OSError: the address cannot be had; the message names it.
-        ValueError: there is no such port.
+        PortInUse: another program listens there, sharing the port or not.
+        OSError: the address cannot be bound; the message names it.
+        ValueError: the port is out of range.
     """
     with _address_named(host, port):
         if port:

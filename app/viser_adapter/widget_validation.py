@@ -1,4 +1,4 @@
-"""Which values a widget takes from a browser: the right type, finite, inside its own limits."""
+"""Validates the values that a browser sends for widgets: type, finiteness and range."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ Bound = Number | None
 
 
 class Refused(ValueError):
-    """A value that the widget cannot hold; the message says what was expected."""
+    """A value that the widget cannot have; the message says what was expected."""
 
 
 def accepted_value(handle: Any, value: object, max_text_length: int) -> Any:
-    """The value that the widget shall hold when a browser asks for `value`.
+    """The value that a widget takes when a browser sends `value`.
 
-    Numbers outside the widget's limits are clamped and long texts cut, because a user may well
-    type them; what no widget sends is refused.
+    Numbers outside the widget's limits are clamped and long texts are cut, because users may type
+    them. Values that no widget sends are refused.
 
     Args:
         handle: the widget, any of viser's GUI input handles.
@@ -69,7 +69,7 @@ def _numbers(
 
 
 def _number(value: object, like: Number, low: Bound, high: Bound) -> Number:
-    """`value` clamped, in the type of `like`: a slider of integers stays one."""
+    """The value clamped, in the type of `like`: an integer slider keeps integers."""
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         raise Refused("expected a finite number")
     clamped = max(value, -math.inf if low is None else low)

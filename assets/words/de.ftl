@@ -631,11 +631,12 @@ fault-bends = die Bahn ist zu scharf gebogen: Eine Biegung braucht mindestens { 
 fault-cusp = die Bahn hat einen Umkehrpunkt, an dem sie keine Richtung hat
 fault-crosses = die Bahn kreuzt sich selbst: An der Kreuzung hat sie zwei Richtungen
 
-## Why a robot has stopped
+## Why a robot has stopped (the models' `fault`)
 
-diverged-range = die Zahlen sind größer, als ein Rechner rechnen kann
-diverged-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist davongelaufen
+stop-range = die Zahlen sind größer, als ein Rechner rechnen kann
+stop-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist davongelaufen
 stop-collapsed = das Getriebe ist zusammengeklappt (alle Glieder auf einer Geraden): Aus einer singulären Stellung weiß der Regler keinen Weg
+stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren den Endpunkt nicht in jede Richtung bewegen
 stop-bent = der Balken biegt sich zu weit, obwohl seine Nulldynamik stabil ist: Der Zug ist zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
 stop-unstable = der Ausgang ist auf der Bahn, das Innere nicht: instabile Nulldynamik
 

@@ -1,9 +1,8 @@
 ### What the interface says in English, for Project Fluent (https://projectfluent.org/).
 ###
 ### Every language has the same messages, with the same arguments. The code asks for "lesson.next"
-### where this file has lesson-next. Only the names of parameters, paths and robots, and a robot's own
-### reasons to stop, stand in models/ in English; other languages have them here, under parameter-,
-### path-, machine- and stop-.
+### where this file has lesson-next. Only the names of parameters, paths and robots stand in models/
+### in English; other languages have them here, under parameter-, path- and machine-.
 ### A count is a number, so that a language can choose the plural: { $count -> [one] … *[other] … }.
 
 ## Lessons
@@ -504,10 +503,14 @@ fault-bends = the path bends too sharply: a bend needs a radius of at least { $r
 fault-cusp = the path has a cusp, where it has no direction
 fault-crosses = the path crosses itself: at a crossing it has two directions
 
-## Why a robot has stopped; what is one robot's own stands in its file
+## Why a robot has stopped (the models' `fault`)
 
-diverged-range = the numbers have left the range of a computer
-diverged-fast = a joint turns faster than { $limit } rad/s: the motion has diverged
+stop-range = the numbers have left the range of a computer
+stop-fast = a joint turns faster than { $limit } rad/s: the motion has diverged
+stop-collapsed = the linkage has collapsed (all links in one line): the controller cannot see its way out of a singular configuration
+stop-singular = the robot is close to a singular configuration (two links in one line): there its motors cannot move the end-point in every direction
+stop-bent = the link bends too far although its zero dynamics are stable: the pull is too strong, the control too slow or the controller's model too wrong
+stop-unstable = the output is on the path, the inside is not: unstable zero dynamics
 
 ## Refusals: a path's points
 

@@ -1,1 +1,1 @@
-"""One control tick as one function, interpreted or compiled, and its record."""
+"""One control tick as one function, interpreted or compiled, and the record of a run."""

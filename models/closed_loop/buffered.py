@@ -1,4 +1,4 @@
-"""A CasADi function called on flat arrays, at a tenth of the price of its usual call."""
+"""Calls of CasADi functions on flat arrays, at a tenth of the cost of the usual call."""
 
 from __future__ import annotations
 
@@ -11,7 +11,13 @@ from onpath.models.arrays import Array
 
 
 class Buffered:
-    """A function with memory of its own for what goes in and out. One thread at a time."""
+    """A CasADi function with preallocated arguments and results.
+
+    Not thread-safe: use one instance per thread.
+
+    Args:
+        function: with dense inputs and outputs.
+    """
 
     def __init__(self, function: ca.Function) -> None:
         self._arguments = [np.zeros(function.nnz_in(i)) for i in range(function.n_in())]
@@ -22,10 +28,17 @@ class Buffered:
             buffer.set_arg(i, argument.data)
         for i, result in enumerate(self._results):
             buffer.set_res(i, result.data)
-        self._buffer = buffer  # keeps the memory alive
+        self._buffer = buffer  # keeps a reference, so that the memory stays valid
 
     def __call__(self, *arguments: Array | float) -> list[Array]:
-        """Dense matrices, by columns, flat; the results are overwritten by the next call."""
+        """Evaluate the function.
+
+        Args:
+            arguments: dense matrices, flattened by columns.
+
+        Returns:
+            The results, flattened by columns. The next call overwrites them.
+        """
         for own, given in zip(self._arguments, arguments, strict=True):
             own[:] = given
         self._evaluate()

@@ -1,9 +1,11 @@
-"""The closed loop as one function: one control tick of one robot under one controller.
+"""The closed loop as one function: one tick of one robot under one control law.
 
-A tick is: measure, look half a tick ahead, project, control, saturate, push, integrate, log.
-State, settings and curve are inputs, so that nothing a user turns ever rebuilds the function. Time
-passes in steps of dt (1 ms; 0.5 ms at 2 kHz); the controller acts at every `hold_ticks`-th tick
-and its torque is held between.
+A tick measures, predicts half a tick ahead, projects onto the path, evaluates the control law,
+limits the torque, adds external forces, integrates the plant and writes a log row. State, settings
+and curve are inputs of the function, so that no user action requires it to be rebuilt.
+
+A tick lasts dt = 1 ms (0.5 ms at 2 kHz). The control law is evaluated in every `hold_ticks`-th
+tick, and its torque is held in between.
 """
 
 from __future__ import annotations
@@ -32,40 +34,45 @@ DEFAULT_GRIP = forces.Grip()
 
 @dataclass(frozen=True, slots=True)
 class Kernel:
-    """One tick of one closed loop, and what its flat vectors hold.
+    """One tick of a closed loop, and the layouts of its flat vectors.
 
     Attributes:
-        basis: (state, settings) -> basis functions of the curve where the tick needs them.
-        turn: (state, settings, table @ basis) -> (state, log row, basis of the next tick).
+        basis: (state, settings) -> basis functions of the curve at the parameters that the tick
+            needs, (TERMS, 1 or 2).
+        advance: (state, settings, table @ basis) -> (next state, log row, basis for the next tick).
+        state, settings, log: layouts of the vectors.
     """
 
     basis: ca.Function
-    turn: ca.Function
+    advance: ca.Function
     state: Layout
     settings: Layout
     log: Layout
 
     def block(self, ticks: int) -> ca.Function:
-        """(state, settings, curve table) -> (state, log rows as columns).
+        """Many ticks, for an interpreter: (state, settings, curve table) -> (state, log columns).
 
-        The curve enters by one dense product a tick, outside the scalar graphs: an interpreter
-        runs that at compiled speed.
+        The curve enters by one dense matrix product per tick, outside the scalar graphs, because
+        CasADi's virtual machine runs that product as compiled code.
         """
         state = ca.MX.sym("state", self.state.size)
         settings = ca.MX.sym("settings", self.settings.size)
         table = ca.MX.sym("curve", *TABLE_SHAPE)
         after, basis, rows = state, self.basis(state, settings), list[ca.MX]()
         for _ in range(ticks):
-            after, row, basis = self.turn(after, settings, table @ basis)
+            after, row, basis = self.advance(after, settings, table @ basis)
             rows.append(row)
         return ca.Function("block", [state, settings, table], [after, ca.horzcat(*rows)])
 
     def tick(self) -> ca.Function:
-        """(state, settings, curve table) -> (state, log row), one scalar graph for a compiler."""
+        """One tick, for a compiler, as one scalar graph.
+
+        (state, settings, curve table) -> (state, log row)
+        """
         state = ca.SX.sym("state", self.state.size)
         settings = ca.SX.sym("settings", self.settings.size)
         table = ca.SX.sym("curve", *TABLE_SHAPE)
-        after, row, _ = self.turn(state, settings, table @ self.basis(state, settings))
+        after, row, _ = self.advance(state, settings, table @ self.basis(state, settings))
         return ca.Function("onpath_tick", [state, settings, table], [after, row])
 
 
@@ -76,12 +83,15 @@ def build_kernel(
     substeps: int = 1,
     grip: forces.Grip = DEFAULT_GRIP,
 ) -> Kernel:
-    """Assemble the tick.
+    """Build the tick function.
 
     Args:
-        substeps: Runge-Kutta steps per tick; the fastest mode times dt / substeps must stay
-            below 2.8.
-        grip: how a hand and a brake take hold of the end-point.
+        system: the robot's equations of motion.
+        frame: how the plane of the path lies in the output space.
+        kind: control law, kind of curve and sensing.
+        substeps: Runge-Kutta steps per tick. The stability limit of the classical method requires
+            ω_max dt / substeps < 2.8 for the fastest mode.
+        grip: springs of the hand and the brake.
 
     Raises:
         ValueError: an unknown controller.
@@ -90,7 +100,7 @@ def build_kernel(
         raise ValueError(f"controller {kind.controller!r}: expected one of {controllers.NAMES}")
     layouts = state_layout(system), settings_layout(system), log_layout(system)
     bases = _bases(system, kind)
-    return Kernel(bases, _turn(system, frame, kind, (substeps, grip), bases), *layouts)
+    return Kernel(bases, _advance(system, frame, kind, (substeps, grip), bases), *layouts)
 
 
 def _tracks(kind: Kind) -> bool:
@@ -98,11 +108,12 @@ def _tracks(kind: Kind) -> bool:
 
 
 def _predicted(state: Fields, settings: Fields) -> ca.SX:
+    """The θ at which the curve is evaluated, θ_0 = θ + dt θ', [rad]."""
     return state["theta"] + settings["dt"] * state["theta_rate"]
 
 
 def _bases(system: MechanicalSystem, kind: Kind) -> ca.Function:
-    """(state, settings) -> basis at the predicted closest point and, tracking, the reference."""
+    """(state, settings) -> basis at the predicted closest point and, if tracking, at θ_r."""
     state_symbol, state = state_layout(system).symbols("state")
     settings_symbol, settings = settings_layout(system).symbols("settings")
     columns = basis(_predicted(state, settings), kind.closed)
@@ -112,14 +123,19 @@ def _bases(system: MechanicalSystem, kind: Kind) -> ca.Function:
     return ca.Function("bases", [state_symbol, settings_symbol], [ca.densify(columns)])
 
 
-def _turn(
+def _advance(
     system: MechanicalSystem,
     frame: Frame,
     kind: Kind,
-    world: tuple[int, forces.Grip],
+    plant: tuple[int, forces.Grip],
     bases: ca.Function,
 ) -> ca.Function:
-    """All scalar operations of a tick; see `Kernel.turn`. `world`: substeps and grip."""
+    """All scalar operations of a tick: see `Kernel.advance`.
+
+    Args:
+        plant: number of Runge-Kutta steps, and the springs of hand and brake.
+        bases: from `_bases`.
+    """
     state_symbol, state = state_layout(system).symbols("state")
     settings_symbol, settings = settings_layout(system).symbols("settings")
     values = ca.SX.sym("values", TABLE_SHAPE[0], 2 if _tracks(kind) else 1)
@@ -131,10 +147,10 @@ def _turn(
     command, error = _command(frame, kind, state, settings, values, output, (y, y_rate), beam)
     wanted, memory = _wanted(system, state, settings, q, v, command, beam)
     u, acts, saturated = held_torque(kind, state, settings, wanted)
-    tip, force, effort = push(system, kind, state, settings, u, world[1])
+    tip, force, tau = push(system, kind, state, settings, u, plant[1])
 
     after = {
-        **integrate(system, state, settings, effort, world[0]),
+        **integrate(system, state, settings, tau, plant[0]),
         "theta": output.theta,
         "theta_rate": output.theta_rate,
         "theta_ref": state["theta_ref"] + settings["dt"] * _reference(kind, state, settings)[1],
@@ -144,27 +160,27 @@ def _turn(
         "u": u,
         "phase": ca.SX(0) if kind.free else _next_phase(state, settings),
     }
-    seen = output
-    if beam is None:  # the log's speed is from velocities as they are measured
-        own = _controlled(system, settings, q, measured_v)
-        seen = _coordinates(frame, kind, state, settings, values[:, 0], *own)
-    row = state | {"y": tip, "u": u, "force": force} | logged(output, seen.theta_rate, settings)
+    measured = output
+    if beam is None:  # the logged speed is that of the measured velocities
+        y_pair = _controlled(system, settings, q, measured_v)
+        measured = _coordinates(frame, kind, state, settings, values[:, 0], *y_pair)
+    row = state | {"y": tip, "u": u, "force": force} | logged(output, measured.theta_rate, settings)
     later = state_layout(system).join(after)
     outputs = [later, log_layout(system).join(row), bases(later, settings_symbol)]
-    return ca.Function("turn", [state_symbol, settings_symbol, values], ca.cse(outputs))
+    return ca.Function("advance", [state_symbol, settings_symbol, values], ca.cse(outputs))
 
 
 def _controlled(
     system: MechanicalSystem, settings: Fields, q: ca.SX, v: ca.SX
 ) -> tuple[ca.SX, ca.SX]:
-    """The controlled output and its rate, as the controller believes them."""
+    """The controlled output and its rate, by the controller's model, each (p, 1), [m], [m/s]."""
     return system.with_rate(system.controlled_output)(q, v, settings["model"])
 
 
 def _beam(
     system: MechanicalSystem, state: Fields, settings: Fields, q: ca.SX, v: ca.SX
 ) -> composite.Compensation:
-    """What composite control makes of the flexible link, half a tick ahead."""
+    """Composite control's estimate of the flexible link, half a tick ahead."""
     memory = {name: state[name] for name, _ in composite.MEMORY.fields}
     gains = composite.CompositeGains(*[settings[name] for name in composite.GAINS])
     later = composite.ahead(memory, settings["dt"] / 2)
@@ -180,7 +196,7 @@ def _wanted(
     command: ca.SX,
     beam: composite.Compensation | None,
 ) -> tuple[ca.SX, Fields]:
-    """Torque for the commanded y'', and the memory of composite control a tick later."""
+    """Torque for the commanded y'', (m, 1), and the memory of composite control after this tick."""
     memory = {name: state[name] for name, _ in composite.MEMORY.fields if name in state}
     if beam is None:
         return controllers.linearization(system, q, v, settings["model"], command), memory
@@ -190,6 +206,7 @@ def _wanted(
 
 
 def _next_phase(state: Fields, settings: Fields) -> ca.SX:
+    """Ticks since the last evaluation of the control law, modulo `hold_ticks`."""
     phase = state["phase"] + 1
     return phase * (phase < settings["hold_ticks"] - 0.5)
 
@@ -197,7 +214,12 @@ def _next_phase(state: Fields, settings: Fields) -> ca.SX:
 def _integral(
     kind: Kind, state: Fields, settings: Fields, acts: ca.SX, saturated: ca.SX, error: ca.SX
 ) -> ca.SX:
-    """What K3 multiplies; empty without K3, and still while its error cannot be acted on."""
+    """The next value of the integral that K3 multiplies; 0 if K3 = 0.
+
+        I⁺ = I + hold_ticks dt e  in ticks in which the control law is evaluated.
+
+    It is frozen while a torque saturates (anti-windup) and while the brake is on.
+    """
     interval = settings["dt"]
     if not kind.free:
         counts = acts * (1 - saturated) * (1 - settings["hold_active"])
@@ -214,6 +236,7 @@ def _coordinates(
     y: ca.SX,
     y_rate: ca.SX,
 ) -> VirtualOutput:
+    """The virtual output at y, from the curve's `values` at the predicted θ."""
     names = ("level_centre", "level_weights", "level_constant")
     level = LevelSet(*[settings[name] for name in names]) if kind.level_set else None
     start = LocalCurve.from_values(_predicted(state, settings), kind.closed, values)
@@ -221,7 +244,7 @@ def _coordinates(
 
 
 def _reference(kind: Kind, state: Fields, settings: Fields) -> tuple[ca.SX, ca.SX]:
-    """The tracker's reference point half a tick ahead, and its speed."""
+    """The reference θ_r of trajectory tracking half a tick ahead [rad], and its rate [rad/s]."""
     speed = state["speed_chain"][0] if kind.law == "composite" else settings["speed"]
     task = PathReference(settings["position"], settings["target"], speed)
     theta_ref, dt = state["theta_ref"], settings["dt"]
@@ -239,7 +262,7 @@ def _command(
     measured: tuple[ca.SX, ca.SX],
     beam: composite.Compensation | None,
 ) -> tuple[ca.SX, ca.SX]:
-    """Commanded y'' and the error to integrate, both (p, 1)."""
+    """Commanded y'' and the error that is integrated (ξ or e), both (p, 1)."""
     gains = Gains(*[settings[name] for name in GAINS])
     k5, speed = settings["K5"], settings["speed"]
     speed = speed if beam is None else composite.wanted_speed(beam, output, k5)

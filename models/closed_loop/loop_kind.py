@@ -1,4 +1,4 @@
-"""What a closed loop is made of, beyond its robot."""
+"""The structural choices of a closed loop, beyond its robot."""
 
 from __future__ import annotations
 
@@ -7,17 +7,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """What a loop is made of; all else is a run-time setting.
+    """The choices that need a kernel of their own; everything else is a run-time setting.
 
     Attributes:
-        controller: one of `controllers.NAMES`.
-        closed: whether its path is a closed curve.
-        level_set: lambda is the paper's s(y) instead of the distance.
-        encoder: the controller sees encoder steps and filtered velocities, not the truth.
-        free: nothing pushes, no limit or dry friction bears on the torque, and the controller
-            acts in every tick; what these need is left out, for speed alone.
-        law: what is put on the path, the "redefined" output, or by "composite" control the tip
-            of a flexible link; see composite_control.py.
+        controller: one of `laws.NAMES`.
+        closed: whether the path is a closed curve.
+        level_set: whether λ is the paper's s(y) instead of the signed distance.
+        encoder: whether the controller gets quantised angles and filtered velocities instead of the
+            exact state.
+        free: whether the loop may omit external forces, torque limits, dry friction and held
+            torques, for speed. It is equivalent to the full loop while none of these act.
+        law: the controlled output of a flexible robot: "redefined" (with a share α of the
+            deflection) or "composite" (the tip, see models/control/composite_control.py).
     """
 
     controller: str

@@ -1,4 +1,4 @@
-"""What the flat vectors of a closed loop hold: its state, its settings, its log rows."""
+"""Fields of the flat vectors of a closed loop: state, settings and log row."""
 
 from __future__ import annotations
 
@@ -10,27 +10,31 @@ GAINS = ("K1", "K2", "K3", "K4", "K5")
 
 
 def state_layout(system: MechanicalSystem) -> Layout:
-    """What one robot carries from tick to tick, the same for both controllers."""
+    """The state that a closed loop carries from tick to tick, the same for both control laws."""
     n, m, p = system.n, system.m, system.p
     return Layout(
         (
             ("q", n),
             ("v", n),
-            ("theta", 1),  # closest point
-            ("theta_rate", 1),  # predicts the next one
-            ("theta_ref", 1),  # the tracker's reference point
-            ("integral", p),  # of xi, or of the tracking error
-            ("encoder", m),  # last reading
-            ("encoder_rate", m),  # filtered velocity
+            ("theta", 1),  # closest point, [rad]
+            ("theta_rate", 1),  # its rate, which predicts the next one, [rad/s]
+            ("theta_ref", 1),  # reference point of trajectory tracking, [rad]
+            ("integral", p),  # of ξ, or of the tracking error
+            ("encoder", m),  # last reading, [rad]
+            ("encoder_rate", m),  # filtered velocity, [rad/s]
             *(composite.MEMORY.fields if n > m else ()),
-            ("u", m),  # torque being held
-            ("phase", 1),  # ticks since the controller acted
+            ("u", m),  # torque that is held, [N m]
+            ("phase", 1),  # ticks since the control law was evaluated
         )
     )
 
 
 def settings_layout(system: MechanicalSystem) -> Layout:
-    """All that may change between ticks, but for the curve's coefficients."""
+    """Everything that may change between ticks, except for the curve.
+
+    Units as in models/systems/parameters.py; "plant" and "model" are the system's parameters as
+    they are and as the controller assumes them.
+    """
     p, k = system.p, len(system.parameter_names)
     scalars = (*GAINS, "position", "target", "speed")
     flexible = tuple(composite.GAINS) if system.n > system.m else ()
@@ -54,7 +58,7 @@ def settings_layout(system: MechanicalSystem) -> Layout:
 
 
 def log_layout(system: MechanicalSystem) -> Layout:
-    """One row: the instant a tick begins, and the torque and force during it."""
+    """One log row: the state at the beginning of a tick, and the torque and force during it."""
     n, m, p = system.n, system.m, system.p
     return Layout(
         (

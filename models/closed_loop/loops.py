@@ -1,8 +1,8 @@
-"""How a kernel runs: interpreted by CasADi's virtual machine, or compiled to machine code.
+"""Two ways to run a kernel: interpreted by CasADi's virtual machine, or compiled to machine code.
 
-Both take many ticks in one call and agree to the last bit. The interpreted loop is there at once;
-the compiled one, made by translated_loop.py, is an order of magnitude faster and lets other threads
-run meanwhile.
+Both run many ticks per call and agree bit by bit. The interpreted loop is available at once. The
+compiled loop (translated_loop.py) is an order of magnitude faster and, in long calls, releases the
+Python interpreter's lock.
 """
 
 from __future__ import annotations
@@ -16,33 +16,36 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.closed_loop.kernel import Kernel
 
-BLOCK = 16  # ticks per call of the interpreted loop, about one frame
-SHORT = 100  # ticks, for which a compiled loop keeps the interpreter's lock
+BLOCK = 16  # ticks per call of the interpreted loop, about one frame of the display
+SHORT = 100  # ticks up to which a compiled loop does not release the interpreter's lock
 
 
 class Loop(Protocol):
-    """A kernel that runs."""
+    """A kernel that can be run."""
 
     @property
     def kernel(self) -> Kernel:
-        """What runs."""
+        """The kernel."""
         ...
 
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """Advance by `ticks`.
 
         Args:
-            state, settings: flat vectors, laid out as the kernel says.
+            state, settings: flat vectors, laid out as the kernel's `state` and `settings`.
             table: `Curve.table()`.
 
         Returns:
-            The new state, shape (kernel.state.size,), and the rows, (ticks, kernel.log.size).
+            The new state, shape (kernel.state.size,), and the log rows, (ticks, kernel.log.size).
         """
         ...
 
 
 class InterpretedLoop:
-    """Runs in CasADi's virtual machine. One thread at a time."""
+    """Runs a kernel in CasADi's virtual machine.
+
+    Not thread-safe: use one instance per thread.
+    """
 
     def __init__(self, kernel: Kernel) -> None:
         self.kernel = kernel
@@ -61,15 +64,17 @@ class InterpretedLoop:
 
 
 class CompiledLoop:
-    """Runs machine code through ctypes. Re-entrant.
+    """Runs machine code through ctypes. Thread-safe.
 
-    Other Python threads run during a long call, but not during a frame's worth: that takes some
-    microseconds, and to get the interpreter back from a busy thread takes a hundred times as long.
+    Calls of more than `SHORT` ticks release the interpreter's lock. Shorter ones keep it: a frame's
+    worth of ticks takes some microseconds, while reacquiring the lock from a busy thread takes
+    about a hundred times as long.
 
     Args:
+        kernel: what was compiled.
         address: of `void onpath_run(const double* settings, const double* curve, double* state,
             double* log, long long ticks)`, which advances the state and fills the log.
-        owner: what keeps the machine code in memory.
+        owner: the object that keeps the machine code in memory.
     """
 
     def __init__(self, kernel: Kernel, address: int, owner: object) -> None:
@@ -96,5 +101,5 @@ _addressof = ctypes.addressof
 
 
 def _address(array: Array) -> int:
-    """Of the numbers of a contiguous array; quicker than `array.ctypes.data`."""
+    """Address of the data of a contiguous array; faster than `array.ctypes.data`."""
     return _addressof(_begin(array.data))

@@ -1,4 +1,4 @@
-"""The robot's part of a tick: the torque that is held, pushes from outside, Runge-Kutta."""
+"""The plant's part of a tick: the held torque, external forces, and Runge-Kutta integration."""
 
 from __future__ import annotations
 
@@ -13,7 +13,15 @@ from onpath.models.systems.system import MechanicalSystem
 def held_torque(
     kind: Kind, state: Fields, settings: Fields, wanted: ca.SX
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """Torque of this tick, whether the controller acts in it, whether it saturates."""
+    """The torque of this tick, with the limit |u_i| <= torque_limit.
+
+    Args:
+        wanted: torque that the control law would apply now, (m, 1), [N m].
+
+    Returns:
+        u, (m, 1), [N m]; whether the control law is evaluated in this tick; whether a torque
+        saturates. The last two are 0 or 1.
+    """
     limit = settings["torque_limit"]
     fresh = ca.fmin(ca.fmax(wanted, -limit), limit)
     if kind.free:
@@ -30,7 +38,18 @@ def push(
     u: ca.SX,
     grip: forces.Grip,
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """The actual end-point, the force on it, and all generalized forces, held over the tick."""
+    """The external forces on the plant, held constant over the tick.
+
+        τ = (u + dry friction, 0) + J_h^T (F_hand + F_brake)
+
+    Args:
+        u: torque of the motors, (m, 1), [N m].
+        grip: springs of the hand and the brake.
+
+    Returns:
+        The actual end-point y (p, 1) [m], the force on it (p, 1) [N], and all generalized forces τ
+        (n, 1).
+    """
     y, y_rate = system.with_rate(system.output)(state["q"], state["v"], settings["plant"])
     unactuated = ca.SX(system.n - system.m, 1)
     if kind.free:
@@ -52,7 +71,16 @@ def push(
 def integrate(
     system: MechanicalSystem, state: Fields, settings: Fields, tau: ca.SX, substeps: int
 ) -> Fields:
-    """Classical Runge-Kutta of the plant over one tick with generalized forces tau held."""
+    """(q, v) after one tick, by the classical Runge-Kutta method with τ held constant.
+
+    With q' = v and v' = a(q, v), the four slopes of q are eliminated:
+
+        q⁺ = q + h v + h²/6 (a1 + a2 + a3),   v⁺ = v + h/6 (a1 + 2 a2 + 2 a3 + a4).
+
+    Args:
+        tau: generalized forces, (n, 1).
+        substeps: steps per tick; h = dt / substeps.
+    """
     slope = ca.Function(
         "slope",
         [system.q, system.v, system.tau, system.parameters],

@@ -1,4 +1,4 @@
-"""What the controllers see in a tick: encoders or the truth, and half a tick ahead."""
+"""What the control laws know in a tick: exact or measured states, predicted half a tick ahead."""
 
 from __future__ import annotations
 
@@ -13,10 +13,15 @@ from onpath.models.systems.system import MechanicalSystem
 def measure(
     system: MechanicalSystem, kind: Kind, state: Fields, settings: Fields
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """q and v as the controller sees them, and the encoders' reading.
+    """q and v as measured, each (n, 1), and the encoder readings, (m, 1), [rad].
 
-    Without encoders it sees the truth; with them joint angles come in steps and velocities from
-    their filtered differences. Coordinates without a motor are seen exactly.
+    Without encoders the state is exact. With encoders the joint angles are rounded to
+    `encoder_step`, and the velocities are their differences behind a first-order low-pass filter of
+    time constant `encoder_filter`:
+
+        v_f⁺ = v_f + T / (encoder_filter + T) ((q - q_previous) / T - v_f),   T = hold_ticks dt.
+
+    Coordinates without a motor are always exact.
     """
     q, v, m = state["q"], state["v"], system.m
     if not kind.encoder:
@@ -32,25 +37,35 @@ def measure(
 def look_ahead(
     system: MechanicalSystem, state: Fields, settings: Fields, q: ca.SX, v: ca.SX
 ) -> tuple[ca.SX, ca.SX]:
-    """q and v half a tick later, by the controller's model under the torque held so far.
+    """q and v half a tick later, by the controller's model under the torque held until now.
 
-    A torque held over a tick acts, on average, half a tick late; meeting the robot there keeps
-    the path invariant to O(dt^2) and not only O(dt), if the controller acts every tick. At lower
-    control rates the torque is held longer, and half a tick is not enough.
+    A torque held over a tick acts, on average, half a tick late. Evaluating the control law for the
+    state in the middle of the tick keeps the path invariant to O(dt²) instead of O(dt), provided
+    that the law is evaluated in every tick. At lower control rates the torque is held for longer
+    than the prediction covers, and part of the delay remains.
+
+        q̂ = q + h v + h²/2 a(q, v),   v̂ = v + h a(q, v),   h = dt / 2
+
+    Args:
+        q, v: as measured, (n, 1).
     """
     inputs = [system.q, system.v, system.tau, system.parameters]
     slope = ca.Function("slope", inputs, [system.acceleration])
-    effort = ca.vertcat(state["u"], ca.SX(system.n - system.m, 1))
+    tau = ca.vertcat(state["u"], ca.SX(system.n - system.m, 1))
     half = settings["dt"] / 2
-    gained = half * slope(q, v, effort, settings["model"])
-    return q + half * (v + gained / 2), v + gained
+    change = half * slope(q, v, tau, settings["model"])  # of v
+    return q + half * (v + change / 2), v + change
 
 
 def logged(output: VirtualOutput, theta_rate: ca.SX, settings: Fields) -> Fields:
-    """What the log says of theta and xi: half a tick back from where the controller looked.
+    """θ, ξ and their rates for the log, extrapolated back to the beginning of the tick.
 
-    The speed along the path is the measured one: under a push that the controller cannot foresee,
-    the one it looks ahead to would be wrong for as long as the push lasts.
+    The speed along the path is the measured one. Under an external force, which the prediction does
+    not know, the predicted speed would be wrong for as long as the force lasts.
+
+    Args:
+        output: the virtual output at the predicted state.
+        theta_rate: θ' from the measured velocities, [rad/s].
     """
     half = settings["dt"] / 2
     per_radian = output.per_radian - half * theta_rate * output.stretch
@@ -64,7 +79,13 @@ def logged(output: VirtualOutput, theta_rate: ca.SX, settings: Fields) -> Fields
 
 
 def remembered(kind: Kind, state: Fields, acts: ca.SX, reading: ca.SX, rate: ca.SX) -> Fields:
-    """What the encoders remember: exact sensing needs no sampling."""
+    """The encoder readings and filtered velocities that the next evaluation differentiates.
+
+    Args:
+        acts: whether the control law is evaluated in this tick.
+        reading: (m, 1), [rad].
+        rate: filtered velocity, (m, 1), [rad/s].
+    """
     if not kind.encoder:
         return {"encoder": reading, "encoder_rate": rate}
     return {

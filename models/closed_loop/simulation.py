@@ -1,4 +1,4 @@
-"""From what a user sets to what the compiled loop takes: kinds, settings vectors, first states."""
+"""From a user's parameters to the inputs of a closed loop: kind, settings vector, initial state."""
 
 from __future__ import annotations
 
@@ -16,33 +16,35 @@ from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import TICK, Parameters, time_step
 from onpath.models.systems.robots import Robot
 
-NO_LIMIT = 1000.0  # [N m], a bound far beyond any motor, so that torques stay finite
+NO_LIMIT = 1000.0  # [N m], the limit when there is none: far above any motor, but finite
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Push:
-    """Who acts on the end-point from outside, in output coordinates.
+    """What acts on the end-point from outside, in output coordinates.
 
     Attributes:
-        hand: where the hand is, shape (p,), or None.
-        hold: anchor and unit tangent of the brake, each shape (p,), or None.
+        hand: position of the hand, shape (p,), [m], or None.
+        hold: anchor [m] and unit tangent of the brake, each shape (p,), or None.
     """
 
     hand: Array | None = None
     hold: tuple[Array, Array] | None = None
 
 
-FREE = Push()
-_conic = lru_cache(maxsize=64)(Curve.conic)  # asked for at every change of a setting
+FREE = Push()  # nothing acts
+_conic = lru_cache(maxsize=64)(Curve.conic)  # needed at every change of a setting
 
 
 def kind_of(
     controller: str, parameters: Parameters, curve: Curve, push: Push | None = None
 ) -> Kind:
-    """Which loop serves this choice.
+    """The kind of loop that these parameters need.
 
     Args:
-        push: what acts from outside, where a leaner loop may serve while nothing does.
+        controller: one of `laws.NAMES`.
+        curve: the path.
+        push: what acts from outside. If given and nothing acts, the kind may be a `free` one.
     """
     plain = parameters.torque_limit == 0 == parameters.coulomb
     every_tick = parameters.control_rate * TICK >= 1
@@ -59,14 +61,22 @@ def kind_of(
 
 @lru_cache(maxsize=64)
 def kernel_of(robot: Robot, kind: Kind) -> Kernel:
-    """The kernel of a robot and kind, built once."""
+    """The kernel for a robot and a kind, built once."""
     return build_kernel(robot.system, robot.frame, kind, robot.substeps, robot.grip)
 
 
 def settings_vector(
     robot: Robot, kernel: Kernel, parameters: Parameters, curve: Curve, push: Push
 ) -> Array:
-    """Everything but state and curve, as the loop takes it."""
+    """The settings of a closed loop as a flat vector: everything but the state and the curve.
+
+    Args:
+        curve: for its level set only.
+        push: what acts from outside.
+
+    Returns:
+        Shape (kernel.settings.size,).
+    """
     p, dt = robot.system.p, time_step(parameters)
     centre, weights, constant = _conic(curve) or (np.zeros(2), np.ones(2), 1.0)
     counts = parameters.encoder_counts
@@ -94,7 +104,10 @@ def settings_vector(
 
 
 def pushed(kernel: Kernel, settings: Array, push: Push) -> Array:
-    """The same settings with another push: much less work, and done for every move of a hand."""
+    """The same settings with another push.
+
+    Much cheaper than `settings_vector`, because it runs for every movement of a hand.
+    """
     result, slices = settings.copy(), kernel.settings.slices
     for name, value in _push_fields(push, result[slices["hand_target"]].size).items():
         result[slices[name]] = value
@@ -113,13 +126,13 @@ def _push_fields(push: Push, p: int) -> dict[str, float | Array]:
 
 
 def _composite_gains(kernel: Kernel, parameters: Parameters) -> dict[str, float]:
-    """Those of composite control, where the robot has a use for them."""
+    """The gains of composite control, if the robot has a flexible link."""
     names = kernel.settings.slices.keys() & composite_control.GAINS.keys()
     return {name: getattr(parameters, name) for name in names}
 
 
 def _empty_memory(kernel: Kernel) -> dict[str, Array]:
-    """Composite control's, at the start of a run."""
+    """The memory of composite control at the start of a run."""
     fields = composite_control.MEMORY.fields
     return {name: np.zeros(size) for name, size in fields if name in kernel.state.slices}
 
@@ -127,10 +140,15 @@ def _empty_memory(kernel: Kernel) -> dict[str, Array]:
 def first_state(
     robot: Robot, kernel: Kernel, curve: Curve, q: Array, v: Array | None = None
 ) -> Array:
-    """State at the start of a run: closest point found globally, reference point there too.
+    """The state at the start of a run, with θ and θ_r at the closest point, by global search.
 
     Args:
-        q, v: configuration and velocity (None: at rest), shape (n,).
+        curve: the path.
+        q: configuration, shape (n,).
+        v: velocity, shape (n,); None: at rest.
+
+    Returns:
+        Shape (kernel.state.size,).
     """
     velocity = np.zeros_like(q) if v is None else v
     y = robot.endpoint(q)
@@ -154,6 +172,11 @@ def first_state(
 
 
 def brake_at(robot: Robot, curve: Curve, y: Array, theta: float) -> tuple[Array, Array]:
-    """Anchor and unit tangent of a hold that begins at the end-point y, near theta."""
+    """Anchor and unit tangent of a brake that is applied at the end-point y, each shape (p,).
+
+    Args:
+        y: shape (p,), [m].
+        theta: of the closest point, whose tangent is taken, [rad].
+    """
     first = robot.frame.lift(curve.at(np.array(theta), 1)) - robot.frame.lift(np.zeros(2))
     return np.array(y), first / np.linalg.norm(first)

@@ -1,4 +1,4 @@
-"""The record of a run: named columns over time, to CSV and back."""
+"""The record of a run: named columns over time, written to and read from CSV."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from onpath.models.systems.robots import Robot
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Trajectory:
-    """One robot under one controller, one row per millisecond.
+    """The record of one robot under one control law.
 
     Attributes:
-        controller: which one drove it.
-        t: shape (n,), [s].
-        fields: the log of models/closed_loop/kernel.py by name, each shape (n, size).
-        distance: of the actual end-point to the path, shape (n,), [m].
+        controller: name of the control law.
+        t: time, shape (n,), [s].
+        fields: the log by name (models/closed_loop/loop_vectors.py), each shape (n, size).
+        distance: from the actual end-point to the path, shape (n,), [m].
         speed: along the path, shape (n,), [m/s].
-        held: whether the hold acted, shape (n,).
-        diverged_at: [s], or None.
-        reason: why it counts as diverged, or "".
+        held: whether the brake was on, shape (n,).
+        diverged_at: time at which the run was stopped as diverged, [s], or None.
+        reason: why it was stopped, or "".
     """
 
     controller: str
@@ -42,12 +42,12 @@ class Trajectory:
     reason: str = ""
 
     def thinned(self) -> Trajectory:
-        """One row per millisecond, whatever the tick was."""
+        """The record with one row per millisecond, whatever the tick was."""
         if len(self.t) < 2:
             return self
         dt = self.t[1] - self.t[0]
         every = max(1, round(1e-3 / dt))
-        kept = slice(-round(self.t[0] / dt) % every, None, every)  # whole milliseconds
+        kept = slice(-round(self.t[0] / dt) % every, None, every)  # rows at whole milliseconds
         return replace(
             self,
             t=self.t[kept],
@@ -59,10 +59,10 @@ class Trajectory:
 
 
 def join(controller: str, parts: list[Trajectory]) -> Trajectory:
-    """Consecutive parts as one.
+    """Consecutive parts of a run as one trajectory.
 
     Raises:
-        ValueError: there are none.
+        ValueError: `parts` is empty.
     """
     if not parts:
         raise ValueError(f"{controller}: there is nothing to show")
@@ -89,6 +89,7 @@ def record(
     """A trajectory from log rows, one per tick.
 
     Args:
+        log: layout of the rows.
         segments: consecutive (rows, curve, held).
         dt: time between rows, [s].
         times: of the rows, [s]; None: from 0 on.
@@ -126,7 +127,10 @@ def header(robot: Robot) -> list[str]:
 
 
 def write_csv(file: TextIO, robot: Robot, trajectories: Iterable[Trajectory]) -> None:
-    """One row per millisecond and controller."""
+    """Write one row per millisecond and control law, with nine significant digits.
+
+    The same trajectories give the same bytes.
+    """
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(header(robot))
     for run in trajectories:
@@ -135,12 +139,12 @@ def write_csv(file: TextIO, robot: Robot, trajectories: Iterable[Trajectory]) ->
             [f["q"], f["y"], f["theta"], run.speed, run.distance, f["u"], f["force"]]
         )
         for time, values in zip(run.t, columns, strict=True):
-            numbers = [f"{value:.9g}" for value in values + 0.0]  # no -0
+            numbers = [f"{value:.9g}" for value in values + 0.0]  # + 0.0 turns -0 into 0
             writer.writerow([f"{time:.6g}", run.controller, *numbers])
 
 
 def read_csv(file: TextIO) -> dict[str, dict[str, Array]]:
-    """Columns by controller, then by name.
+    """Columns of a file written by `write_csv`: controller -> column name -> array.
 
     Raises:
         ValueError: not a trajectory file; the message names the line.

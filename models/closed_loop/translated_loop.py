@@ -1,7 +1,7 @@
-"""A kernel compiled to machine code in this process.
+"""Compiles a kernel to machine code in this process, with LLVM.
 
-The instructions of a tick are translated one by one to LLVM's language, which LLVM compiles. Each
-rounds as it does in CasADi's virtual machine: both loops agree to the last bit.
+The scalar instructions of a tick are translated one by one to LLVM's intermediate language. Each
+rounds exactly as in CasADi's virtual machine, so that both loops agree bit by bit.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import casadi as ca
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loops import CompiledLoop
 
-_LIBRARY = ("sin", "cos")  # what LLVM leaves to the library of C
+_LIBRARY = ("sin", "cos")  # LLVM calls these from the C library
 OPERATIONS = {
     ca.OP_ADD: "{v} = fadd double {0}, {1}",
     ca.OP_SUB: "{v} = fsub double {0}, {1}",
@@ -60,22 +60,23 @@ after:
 
 
 def translate(kernel: Kernel) -> str:
-    """The loop around the kernel's tick in LLVM's language, `onpath_run`; see `CompiledLoop`.
+    """LLVM assembly of `onpath_run`, the loop around the kernel's tick; see `CompiledLoop`.
 
     Raises:
-        NotImplementedError: the tick has an operation without a translation; the message has it.
+        NotImplementedError: the tick contains an operation without a translation; the message names
+            it.
     """
     tick = instructions(kernel.tick(), ("%state", "%settings", "%curve"), ("%state", "%row"))
     return _LOOP.format(width=kernel.log.size, tick="\n  ".join(tick))
 
 
 def instructions(function: ca.Function, inputs: Sequence[str], outputs: Sequence[str]) -> list[str]:
-    """The scalar instructions of an SX function.
+    """LLVM instructions for an SX function.
 
-    All is read before anything is written, so that an output may overwrite an input.
+    All inputs are read before any output is written, so that an output may overwrite an input.
 
     Args:
-        inputs, outputs: names of pointers to dense matrices, by columns.
+        inputs, outputs: names of pointers to dense matrices, stored by columns.
 
     Raises:
         NotImplementedError: see `translate`.
@@ -105,7 +106,7 @@ def _place(v: str, matrix: str, index: int) -> str:
 
 
 def _literal(value: float) -> str:
-    """Every bit of it."""
+    """The number as LLVM's hexadecimal literal, which is exact."""
     return f"0x{struct.pack('>d', value).hex()}"
 
 
@@ -117,13 +118,13 @@ def _operation(code: int) -> str:
 
 
 def translate_loop(kernel: Kernel) -> CompiledLoop:
-    """Translate a kernel and compile it for this processor, within some tenths of a second.
+    """Translate a kernel and compile it for this processor; takes 50 to 150 ms.
 
     Raises:
         NotImplementedError: see `translate`.
-        RuntimeError: LLVM does not know this machine.
+        RuntimeError: LLVM does not support this machine.
     """
-    import llvmlite.binding as llvm  # takes 0.1 s: not before the first picture
+    import llvmlite.binding as llvm  # takes 0.1 s, which must not delay the first frame
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
@@ -132,7 +133,7 @@ def translate_loop(kernel: Kernel) -> CompiledLoop:
     )
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(translate(kernel)), machine)
     missing = [name for name in _LIBRARY if llvm.address_of_symbol(name) is None]
-    if missing:  # or LLVM would end the process
+    if missing:  # otherwise LLVM would abort the process
         raise RuntimeError(f"not found in this process: {', '.join(missing)}")
     engine.finalize_object()
     return CompiledLoop(kernel, engine.get_function_address("onpath_run"), engine)

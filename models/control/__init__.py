@@ -1,1 +1,1 @@
-"""Virtual outputs, control laws, and what can be said of them."""
+"""Virtual outputs, control laws, and the analysis of both (poles, rank test)."""

@@ -1,7 +1,8 @@
-"""The two controllers. Both ask for an acceleration of the output; one linearization gives torques.
+"""The two control laws command an output acceleration y''; `linearization` turns it into torques.
 
-Path following knows where the path is and how fast to go along it. Trajectory tracking knows where
-a point that runs along the path by the clock is now. Same gains, same linearization, same limits.
+Path following (16)-(19) regulates the distance to the path and the speed along it; it knows no
+clock. Trajectory tracking regulates the error to a reference point that moves along the path by the
+clock. Both have the same gains, the same linearization and the same torque limits.
 """
 
 from __future__ import annotations
@@ -21,7 +22,13 @@ NAMES = ("trajectory_tracking", "path_following")
 
 @dataclass(frozen=True, slots=True)
 class Gains:
-    """K1 [1/s^2], K2 [1/s], K3 [1/s^3] across (18); K4 [1/s^2], K5 [1/s] along (19)."""
+    """The gains of the control laws.
+
+    Attributes:
+        k1, k2, k3: proportional [1/s²], derivative [1/s] and integral [1/s³] gain: of the
+            transversal law (18), and of the tracking error.
+        k4, k5: position [1/s²] and speed gain [1/s] of the tangential law (19).
+    """
 
     k1: ca.SX
     k2: ca.SX
@@ -32,7 +39,13 @@ class Gains:
 
 @dataclass(frozen=True, slots=True)
 class PathReference:
-    """Motion along the path: hold `target` [rad] where `position` is 1, else `speed` [rad/s]."""
+    """The wanted motion along the path.
+
+    Attributes:
+        position: 1 to hold the position θ_ref, 0 to hold the speed ω_ref.
+        target: θ_ref, [rad].
+        speed: ω_ref, [rad/s].
+    """
 
     position: ca.SX
     target: ca.SX
@@ -42,12 +55,21 @@ class PathReference:
 def path_following(
     output: VirtualOutput, closed: bool, gains: Gains, task: PathReference, integral: ca.SX
 ) -> ca.SX:
-    """Commanded y'', (p, 1), [m/s^2].
+    """Commanded y'' of path following, (p, 1), [m/s²].
+
+        v_perp = -K1 ξ - K2 ξ' - K3 ∫ξ dt                     (18)
+        v_par  = -K4 (θ - θ_ref) - K5 θ'    (position task)   (19)
+        v_par  = -K5 (θ' - ω_ref)           (speed task)      (19) with K4 = 0
+
+    where θ - θ_ref is taken modulo 2π on a closed curve. `VirtualOutput.acceleration` turns (v_par,
+    v_perp) into y''. On an open curve ω_ref is reduced near the ends.
 
     Args:
         output: coordinates along and across the path.
         closed: whether the curve is closed.
-        integral: integral of xi, (p - 1, 1), [m s].
+        gains: K1 to K5.
+        task: the wanted motion along the path.
+        integral: ∫ξ dt, (p - 1, 1), [m s].
 
     Source: eqs. (16), (18), (19).
     """
@@ -59,16 +81,31 @@ def path_following(
 
 
 def _fading(theta: ca.SX, speed: ca.SX, k5: ca.SX) -> ca.SX:
-    """The speed reference on an open curve: it fades out at the ends, critically damped."""
+    """The speed reference on an open curve, which goes to 0 at both ends, [rad/s].
+
+        ω_ref = clip(speed, K5/4 (-π - θ), K5/4 (π - θ))
+
+    Near the end (19) becomes θ'' = -K5 θ' - K5²/4 (θ - π), which is critically damped.
+    """
     pull = k5 / 4
     return ca.fmin(ca.fmax(speed, pull * (-np.pi - theta)), pull * (np.pi - theta))
 
 
 def reference_rate(theta_ref: ca.SX, closed: bool, task: PathReference, dt: ca.SX) -> ca.SX:
-    """Speed of the tracker's reference point, by the clock alone, [rad/s].
+    """Speed ω of the reference point of trajectory tracking, [rad/s].
 
-    With the position task it runs to the target at |speed| and stays; on an open curve it stops
-    at the end.
+        position task:  ω = clip(wrap(θ_target - θ_r) / dt, -|speed|, |speed|)
+        speed task:     ω = speed
+
+    In the position task the point stops at the target after at most one tick of rounding. On an
+    open curve it stops at the end. No measured quantity enters: the reference does not wait for the
+    robot.
+
+    Args:
+        theta_ref: θ_r, [rad].
+        closed: whether the curve is closed.
+        task: the wanted motion along the path.
+        dt: length of a tick, [s].
     """
     limit = ca.fabs(task.speed)
     to_target = wrap(task.target - theta_ref, closed) / dt
@@ -83,7 +120,16 @@ def reference_rate(theta_ref: ca.SX, closed: bool, task: PathReference, dt: ca.S
 def tracking_error(
     reference: LocalCurve, frame: Frame, y: ca.SX, y_rate: ca.SX, rate: ca.SX
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """(e, e', y_r'') against the reference point moving at `rate` [rad/s], each (p, 1)."""
+    """(e, e', y_r'') for the reference point y_r = σ(θ_r), each (p, 1), [m], [m/s], [m/s²].
+
+        e = y - σ(θ_r),   e' = y' - σ'(θ_r) ω,   y_r'' = σ''(θ_r) ω²
+
+    Args:
+        reference: the curve about θ_r.
+        frame: how the plane of the path lies in the output space.
+        y, y_rate: the output and its rate, (p, 1), [m], [m/s].
+        rate: ω = dθ_r/dt, [rad/s]; taken as constant.
+    """
     none = ca.SX.zeros(frame.p - 2, 1)
     error = y - frame.join(reference.sigma, none)
     error_rate = y_rate - frame.join(reference.first * rate, none, rate=True)
@@ -93,21 +139,38 @@ def tracking_error(
 def trajectory_tracking(
     error: ca.SX, error_rate: ca.SX, feedforward: ca.SX, gains: Gains, integral: ca.SX
 ) -> ca.SX:
-    """Commanded y'' = y_r'' - K2 e' - K1 e - K3 integral(e), (p, 1), [m/s^2]."""
+    """Commanded y'' = y_r'' - K2 e' - K1 e - K3 ∫e dt, (p, 1), [m/s²].
+
+    Args:
+        error, error_rate, feedforward: e, e' and y_r'' of `tracking_error`.
+        gains: K1 to K3.
+        integral: ∫e dt, (p, 1), [m s].
+
+    Source: computed-torque control, as in any textbook.
+    """
     return feedforward - gains.k2 * error_rate - gains.k1 * error - gains.k3 * integral
 
 
 def linearization(
     system: MechanicalSystem, q: ca.SX, v: ca.SX, model: ca.SX, acceleration: ca.SX
 ) -> ca.SX:
-    """Inputs that give the controlled output the commanded acceleration, if the model is right.
+    """Inputs u that give the controlled output the acceleration y'', if the model is right, (m, 1).
 
-    y'' = J (f_v + g_v u) + J' v, solved for u; with as many inputs as coordinates and outputs that
-    is u = M J^-1 (y'' - J' v) + c.
+    With J = dh/dq, f_v and g_v of (2), and J' v the part of y'' that is quadratic in the
+    velocities,
+
+        y'' = J (f_v + g_v u) + J' v.
+
+    This is solved for u. For n = m = p it simplifies to u = M J⁻¹ (y'' - J' v) + c.
 
     Args:
-        model: the controller's idea of the plant's parameters, (k, 1).
-        acceleration: commanded y'', (p, 1), [m/s^2].
+        system: the equations of motion.
+        q, v: configuration and velocity, (n, 1).
+        model: the plant's parameters as the controller assumes them, (k, 1).
+        acceleration: commanded y'', (p, 1), [m/s²].
+
+    Returns:
+        Generalized forces of the inputs, (m, 1), [N m].
 
     Source: eq. (16).
     """
@@ -124,5 +187,5 @@ def linearization(
 
 
 def _solve(matrix: ca.SX, rhs: ca.SX) -> ca.SX:
-    """A^-1 r of a small dense matrix by its adjugate: one division."""
+    """A⁻¹ r of a small dense matrix as adj(A) r / det(A), which needs a single division."""
     return (1 / ca.det(matrix)) * (ca.adj(matrix) @ rhs)

@@ -1,7 +1,7 @@
-"""The rank test (11) over the workspace: where the virtual output has a relative degree.
+"""The rank test (11): where the virtual output has a well-defined relative degree.
 
-The test asks whether dh/dq g_v(q) has rank p; as a number it is that matrix's smallest over its
-largest singular value, 0 where the controllers cannot work.
+The test asks whether J g_v, with J = dh/dq, has rank p. As a number it is σ_min / σ_max, the ratio
+of the smallest to the largest singular value: 1 at best, and 0 where the control laws do not exist.
 """
 
 from __future__ import annotations
@@ -19,23 +19,32 @@ from onpath.models.systems.system import conditioning, decoupling_matrix
 
 @lru_cache(maxsize=16)
 def _matrix(robot: Robot) -> ca.Function:
+    """J g_v as a function, built once for each robot."""
     return decoupling_matrix(robot.system)
 
 
 def rank_number(robot: Robot, parameters: Parameters, q: Array) -> float:
-    """The test at one configuration, shape (n,), in [0, 1]. Source: eq. (11)."""
+    """σ_min / σ_max of J g_v at one configuration, in [0, 1].
+
+    Args:
+        parameters: of the plant.
+        q: shape (n,).
+
+    Source: eq. (11).
+    """
     matrix = np.array(_matrix(robot)(q, robot.plant(parameters)))
     return float(conditioning(matrix))
 
 
 def rank_map(robot: Robot, parameters: Parameters, z: Array) -> Array:
-    """The test with the end-point at rest at points of the path's plane; NaN out of reach.
+    """The rank number with the end-point at rest at points of the path's plane; NaN out of reach.
 
     Args:
+        parameters: of the plant.
         z: planar coordinates, shape (..., 2), [m].
 
     Returns:
-        shape (...,), in [0, 1].
+        Shape (...,), in [0, 1].
 
     Source: eq. (11).
     """

@@ -1,8 +1,9 @@
-"""Why a curve cannot be a path for a robot, in words, and where.
+"""Checks whether a robot can follow a curve, with the reason and the place of every fault.
 
-A path must lie in the workspace, away from singular configurations (14), must not cross itself,
-and must not bend more sharply than the tube around it allows: inside that tube the closest point
-is unique (section II.D), and nothing here works without it.
+A path must lie in the workspace, stay away from singular configurations (14), not intersect itself,
+and have a curvature |κ| <= 1 / TUBE. The last condition makes the closest point (7) locally unique
+within the tube of radius TUBE around the path (section II.D of the paper); the control laws need
+that uniqueness.
 """
 
 from __future__ import annotations
@@ -16,18 +17,18 @@ from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.paths.curves import Curve
 
-TUBE = 0.008  # [m], radius within which the closest point must be unique
-LEAST_MARGIN = 0.2  # of Robot.margin
-SAMPLES = 240
+TUBE = 0.008  # [m], radius of the tube in which the closest point must be unique
+LEAST_MARGIN = 0.2  # smallest admissible value of Robot.margin, which is 1 at best
+SAMPLES = 240  # points of the curve that are checked
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fault:
-    """One thing wrong.
+    """One reason why a curve cannot be followed.
 
     Attributes:
-        reason: what, for a user.
-        points: where, shape (n, 2), [m].
+        reason: one sentence for the user.
+        points: where the fault is, shape (n, 2), [m]; empty if it has no place.
     """
 
     reason: Message
@@ -35,10 +36,15 @@ class Fault:
 
 
 def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
-    """All that is wrong with a curve as a path for a robot; empty if it will do.
+    """All faults of a curve as a path for a robot; an empty list if it can be followed.
+
+    The curve is checked at `SAMPLES` values of θ for: finite coordinates, margin > 0 (inside the
+    workspace), margin >= LEAST_MARGIN (away from singular configurations), |κ| <= 1 / TUBE, |σ'|
+    not nearly 0 (no cusp), and no self-intersections.
 
     Args:
-        reach: the robot's `Robot.margin`.
+        reach: the robot's `Robot.margin`, shape (n, 2) -> (n,).
+        curve: the candidate, in coordinates of the path's plane.
     """
     theta = curve.sample(SAMPLES)
     z, first = curve.at(theta), curve.at(theta, 1)
@@ -62,7 +68,16 @@ def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
 
 
 def self_crossings(z: Array, closed: bool) -> Array:
-    """Where a polyline crosses itself, shape (n, 2) -> (k, 2)."""
+    """Points where a polyline intersects itself, shape (n, 2) -> (k, 2), [m].
+
+    Segments i and j intersect where a_i + s d_i = a_j + t d_j with s and t in [0, 1):
+
+        s = (a_j - a_i) × d_j / (d_i × d_j),    t = (a_j - a_i) × d_i / (d_i × d_j).
+
+    Args:
+        z: corners of the polyline, shape (n, 2), [m].
+        closed: whether the last corner is joined to the first.
+    """
     line = np.vstack([z, z[:1]]) if closed else z
     a, d = line[:-1], np.diff(line, axis=0)
     i, j = np.triu_indices(len(a), k=2)
@@ -78,4 +93,5 @@ def self_crossings(z: Array, closed: bool) -> Array:
 
 
 def _cross(a: Array, b: Array) -> Array:
+    """The planar cross product a1 b2 - a2 b1, shape (..., 2) -> (...)."""
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]

@@ -1,6 +1,8 @@
-"""Curves from what a hand gives: control points or a freehand stroke.
+"""Fits curves to control points and to freehand strokes.
 
-Periodic resampling at equal arc length, then FFT, low-passed (closed), or a Chebyshev fit (open).
+A cubic spline through the points is resampled at equal arc length. A closed curve is then the
+Fourier series of the samples, truncated after `HARMONICS`; an open curve is their Chebyshev series
+of that degree, fitted by least squares.
 """
 
 from __future__ import annotations
@@ -13,18 +15,25 @@ from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import HARMONICS, Curve, chebyshev_curve, fourier
 
-SAMPLES = 256
-SHORTEST = 0.02  # [m], total length below which a stroke is no path
+SAMPLES = 256  # points at equal arc length that a series is fitted to
+SHORTEST = 0.02  # [m], shortest total length of a path
 
 
 def closed_through(points: Array) -> Curve:
-    """A smooth closed curve through (nearly: it is low-passed) the points, in their order.
+    """A smooth closed curve near the given points, in their order.
+
+    The curve does not pass exactly through the points, because its series is truncated. With
+    samples z_n at θ_n = -π + 2πn/N and their discrete Fourier transform c_k (divided by N), the
+    coefficients of cos kθ and sin kθ are
+
+        a_k = 2 (-1)^k Re c_k,    b_k = -2 (-1)^k Im c_k.
 
     Args:
         points: shape (n, 2) with n >= 3, [m].
 
     Raises:
-        ValueError: too few points, or all of them in one place.
+        ValueError: points that are not finite, fewer than three distinct points, or a total length
+            below `SHORTEST`.
     """
     points = _distinct(points, least=3)
     ring = np.vstack([points, points[:1]])
@@ -36,10 +45,16 @@ def closed_through(points: Array) -> Curve:
 
 
 def open_through(points: Array) -> Curve:
-    """A smooth open curve near the points, from the first to the last; two give a segment.
+    """A smooth open curve near the given points, from the first to the last.
+
+    Two points give the straight segment between them.
+
+    Args:
+        points: shape (n, 2) with n >= 2, [m].
 
     Raises:
-        ValueError: too few points, or all of them in one place.
+        ValueError: points that are not finite, fewer than two distinct points, or a total length
+            below `SHORTEST`.
     """
     points = _distinct(points, least=2)
     if len(points) == 2:
@@ -52,15 +67,19 @@ def open_through(points: Array) -> Curve:
 
 
 def from_stroke(points: Array, closed: bool, passes: int = 40) -> Curve:
-    """A curve from a freehand stroke: evened out, smoothed, then fitted.
+    """A curve from a freehand stroke: resampled at 96 points, smoothed, then fitted.
+
+    With S the smoothing operator, the fitted points are S z + S (z - S z): smoothing the residual
+    and adding it back ("twicing") undoes most of the shrinkage that S alone causes.
 
     Args:
         points: the stroke as it was drawn, shape (n, 2), [m].
         closed: whether to join the ends.
-        passes: rounds of smoothing of 96 evenly spaced points; takes the tremor out.
+        passes: number of smoothing passes.
 
     Raises:
-        ValueError: the stroke is too short.
+        ValueError: points that are not finite, fewer than three distinct points, or a total length
+            below `SHORTEST`.
     """
     points = _distinct(points, least=3)
     if closed:
@@ -69,11 +88,12 @@ def from_stroke(points: Array, closed: bool, passes: int = 40) -> Curve:
     even = _even(0, s[-1], 96, endpoint=not closed)
     line = np.column_stack([np.interp(even, s, points[:, 0]), np.interp(even, s, points[:, 1])])
     smooth = _smoothed(line, closed, passes)
-    smooth = smooth + _smoothed(line - smooth, closed, passes)  # undoes most of the shrinking
+    smooth = smooth + _smoothed(line - smooth, closed, passes)
     return closed_through(smooth) if closed else open_through(smooth)
 
 
 def _smoothed(line: Array, closed: bool, passes: int) -> Array:
+    """Repeats z_i <- (z_(i-1) + 2 z_i + z_(i+1)) / 4; the ends of an open line stay fixed."""
     for _ in range(passes):
         padded = np.vstack([line[-1:], line, line[:1]] if closed else [line[:1], line, line[-1:]])
         between = (padded[:-2] + 2 * line + padded[2:]) / 4
@@ -82,7 +102,10 @@ def _smoothed(line: Array, closed: bool, passes: int) -> Array:
 
 
 def control_points(curve: Curve, count: int) -> Array:
-    """`count` points on the curve, evenly spaced by arc length, shape (count, 2), [m]."""
+    """`count` points on a curve at equal arc length, shape (count, 2), [m].
+
+    The ends of an open curve are included.
+    """
     theta = _even(-np.pi, np.pi, 2049)
     points = curve.at(theta)
     s = _arc_length(points)
@@ -91,6 +114,14 @@ def control_points(curve: Curve, count: int) -> Array:
 
 
 def _distinct(points: Array, least: int) -> Array:
+    """The points without repetitions (within 0.1 mm), shape (n, 2) -> (k, 2).
+
+    A last point that coincides with the first is dropped.
+
+    Raises:
+        ValueError: a wrong shape, points that are not finite, fewer than `least` distinct points,
+            or a total length below `SHORTEST`.
+    """
     points = np.asarray(points, dtype=float)
     if points.ndim != 2 or points.shape[1] != 2 or not np.all(np.isfinite(points)):
         raise ValueError("a path needs finite points, shape (n, 2)")
@@ -109,21 +140,26 @@ def _distinct(points: Array, least: int) -> Array:
 
 
 def _arc_length(points: Array) -> Array:
-    """Of a polyline up to each of its points, shape (n,), [m]."""
+    """Arc length of a polyline up to each of its points, shape (n, 2) -> (n,), [m]."""
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
 
 
 def _even(low: float, high: float, count: int, endpoint: bool = True) -> Array:
+    """`count` evenly spaced numbers from `low` to `high`, shape (count,)."""
     return np.linspace(float(low), float(high), count, endpoint=endpoint, dtype=np.float64)
 
 
 def _chords(points: Array) -> Array:
-    """Centripetal knots: no loops between unevenly spaced points."""
+    """Centripetal knots t_(i+1) = t_i + sqrt(|z_(i+1) - z_i|), shape (n, 2) -> (n,).
+
+    They keep a spline through unevenly spaced points free of loops.
+    """
     gaps = np.sqrt(np.linalg.norm(np.diff(points, axis=0), axis=1))
     return np.concatenate([[0.0], np.cumsum(gaps)])
 
 
 def _equal_arc(spline: CubicSpline, endpoint: bool) -> Array:
+    """`SAMPLES` points of a spline at equal arc length, shape (SAMPLES, 2), [m]."""
     knots = _even(spline.x[0], spline.x[-1], 16 * SAMPLES + 1)
     points = np.asarray(spline(knots), dtype=np.float64)
     s = _arc_length(points)
@@ -132,5 +168,5 @@ def _equal_arc(spline: CubicSpline, endpoint: bool) -> Array:
 
 
 def _half_turns() -> Array:
-    """theta starts at -pi, the FFT at 0."""
+    """The factors (-1)^k, shape (HARMONICS,): θ starts at -π, the Fourier transform at 0."""
     return np.array([(-1.0) ** k for k in range(1, HARMONICS + 1)])

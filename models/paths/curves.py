@@ -1,9 +1,12 @@
-"""Paths: closed curves as truncated Fourier series, open ones as Chebyshev series.
+"""Curves σ(θ), θ in [-π, π]: closed ones as Fourier series, open ones as Chebyshev series.
 
 A curve and its first three derivatives are series over one basis {1, C_1..C_K, S_1..S_K}:
-closed, C_k = cos k theta and S_k = sin k theta; open, C_k = T_k(theta / pi) and S is unused.
-Their coefficients are run-time parameters of the compiled loop, so that dragging a curve never
-rebuilds anything. theta runs over [-pi, pi]; an open curve goes on along its end tangents.
+
+    closed:  C_k = cos kθ,       S_k = sin kθ,
+    open:    C_k = T_k(θ / π),   S_k is not used.
+
+The coefficients are inputs of the compiled loop, so that dragging a curve never rebuilds it.
+Outside [-π, π] an open curve continues along its end tangents.
 """
 
 from __future__ import annotations
@@ -17,29 +20,38 @@ from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 
-HARMONICS = 12
-TERMS = 2 * HARMONICS + 1
-ORDERS = 4  # the curve and three derivatives
-TABLE_SHAPE = (2 * ORDERS, TERMS)
-PERIOD = 2 * np.pi
+HARMONICS = 12  # K
+TERMS = 2 * HARMONICS + 1  # size of the basis
+ORDERS = 4  # the curve and its first three derivatives
+TABLE_SHAPE = (2 * ORDERS, TERMS)  # of `Curve.table`, before it is flattened
+PERIOD = 2 * np.pi  # [rad]
 _ORDER = np.arange(1.0, HARMONICS + 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
-    """A planar curve sigma(theta), theta in [-pi, pi] (periodic when closed).
+    """A planar curve σ(θ), θ in [-π, π] (periodic when closed).
 
     Attributes:
-        closed: whether the ends meet.
-        series: coefficients of sigma and its derivatives, shape (ORDERS, TERMS, 2); per order a
-            constant, K rows of C_k, K rows of S_k, [m] (per rad to the order).
+        closed: whether the curve is closed.
+        series: coefficients of σ, σ', σ'' and σ''', shape (ORDERS, TERMS, 2). For each order: the
+            constant, K rows for C_k and K rows for S_k; [m] for σ, [m/rad^i] for its i-th
+            derivative.
     """
 
     closed: bool
     series: Array
 
     def at(self, theta: Array, order: int = 0) -> Array:
-        """sigma or a derivative of it at theta, shape (...,) -> (..., 2)."""
+        """σ or one of its derivatives at θ, shape (...,) -> (..., 2), [m/rad^order].
+
+        An open curve continues along its end tangents: σ(θ) = σ(±π) + (θ ∓ π) σ'(±π), and its
+        second and third derivatives are 0 there.
+
+        Args:
+            theta: [rad].
+            order: 0 for σ, 1 to 3 for a derivative.
+        """
         theta = np.asarray(theta, dtype=float)
         inner = theta if self.closed else np.clip(theta, -np.pi, np.pi)
         value = _basis(inner, self.closed) @ self.series[order]
@@ -51,7 +63,10 @@ class Curve:
         return value if order == 1 else np.where(beyond == 0, value, 0.0)
 
     def all_orders(self, theta: Array) -> list[Array]:
-        """sigma and its three derivatives at theta on the curve proper, each (n, 2)."""
+        """[σ, σ', σ'', σ'''] at θ, shape (n,) -> four arrays (n, 2).
+
+        Equal to four calls of `at`, but evaluates the basis once.
+        """
         inner = theta if self.closed else np.clip(theta, -np.pi, np.pi)
         basis = _basis(inner, self.closed)
         values = [basis @ self.series[order] for order in range(ORDERS)]
@@ -62,28 +77,34 @@ class Curve:
         return values
 
     def table(self) -> Array:
-        """The coefficients as the compiled loop takes them: TABLE_SHAPE, by columns, flat.
+        """The coefficients for the compiled loop: a TABLE_SHAPE matrix, flat, by columns.
 
-        Rows are the two coordinates of sigma, then of its derivatives; columns the basis.
+        Its product with the basis at θ is (σ, σ', σ'', σ'''), two rows each.
         """
         return np.ascontiguousarray(self.series.transpose(1, 0, 2)).ravel()
 
     def terms(self) -> Array:
-        """The coefficients that tell it, see `from_terms`; shape (TERMS or HARMONICS + 1, 2)."""
+        """The coefficients of σ alone, shape (TERMS or HARMONICS + 1, 2), [m]; see `from_terms`."""
         return self.series[0, : terms_of(self.closed)]
 
     def sample(self, count: int = 256) -> Array:
-        """Evenly spaced theta over the curve, shape (count,); a closed one's end is left out."""
+        """`count` evenly spaced θ, shape (count,), [rad]; a closed curve's end point is omitted."""
         return np.linspace(-np.pi, np.pi, count, endpoint=not self.closed)
 
     def curvature(self, theta: Array) -> Array:
-        """Signed curvature, positive where the curve turns left, [1/m]."""
+        """Signed curvature κ = (σ'_1 σ''_2 - σ'_2 σ''_1) / |σ'|³, shape (...,) -> (...), [1/m].
+
+        It is positive where the curve turns left.
+        """
         first, second = self.at(theta, 1), self.at(theta, 2)
         speed = np.maximum(np.hypot(first[..., 0], first[..., 1]), 1e-12)
         return (first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]) / speed**3
 
     def length(self) -> float:
-        """Arc length, [m]."""
+        """Arc length ∫ |σ'| dθ over [-π, π], [m], from 1024 samples.
+
+        On a closed curve this is the mean of a periodic function, which converges exponentially.
+        """
         theta = self.sample(1024)
         speed = np.linalg.norm(self.at(theta, 1), axis=-1)
         if self.closed:
@@ -91,22 +112,30 @@ class Curve:
         return float(np.trapezoid(speed, theta))
 
     def nearest(self, z: Array, samples: int = 256) -> tuple[Array, Array]:
-        """Closest points by global search, refined; the reference for every other projection.
+        """Closest points of the curve, ϖ(z) = argmin |z - σ(θ)|, by global search.
+
+        This search is the reference that all faster projections are tested against.
 
         Args:
             z: points, shape (n, 2), [m].
+            samples: size of the grid that the search starts from.
 
         Returns:
-            theta, shape (n,), [rad], and the distances, shape (n,), [m].
+            θ, shape (n,), [rad], and the distances, shape (n,), [m].
 
         Source: eq. (7).
         """
         return nearest(self.at, self.sample(samples), z)
 
     def conic(self) -> tuple[Array, Array, float] | None:
-        """(centre, weights, constant) of s(z) if this is an axis-parallel ellipse, else None.
+        """The level set s(z) of an axis-parallel ellipse, or None if the curve is none.
 
-        s(z) = gx (z1 - cx)^2 + gy (z2 - cy)^2 - r2, scaled so that a circle has weights 1.
+            s(z) = g1 (z1 - c1)² + g2 (z2 - c2)² - r²,   g = (b/a, a/b),   r² = a b
+
+        for half-axes a and b, which makes g = (1, 1) for a circle.
+
+        Returns:
+            (c, g, r²): shapes (2,), (2,) and a number, [m], [1], [m²].
 
         Source: eq. (15).
         """
@@ -120,15 +149,18 @@ class Curve:
 
 
 def nearest(curve: Callable[[Array], Array], grid: Array, points: Array) -> tuple[Array, Array]:
-    """Closest points of any curve in R^p: global search over `grid`, then golden sections.
+    """Closest points of any curve in R^p: a search over `grid`, then golden-section search.
+
+    The four lowest local minima on the grid are refined, and the best one is returned. 36 golden
+    sections shrink the bracket by 3e-8.
 
     Args:
-        curve: theta (...,) -> points (..., p).
-        grid: evenly spaced theta.
+        curve: θ (...,) -> points (..., p).
+        grid: evenly spaced θ, [rad].
         points: shape (n, p).
 
     Returns:
-        theta and distance, each shape (n,).
+        θ [rad] and distance, each shape (n,).
     """
     points = np.atleast_2d(points)
     middle: Array = grid[local_minima(((points[:, None, :] - curve(grid)) ** 2).sum(-1))]
@@ -151,10 +183,10 @@ def nearest(curve: Callable[[Array], Array], grid: Array, points: Array) -> tupl
 
 
 def local_minima(values: Array, most: int = 4) -> NDArray[np.intp]:
-    """Where each row has its lowest local minima, shape (n, k) -> (n, most).
+    """Indices of the lowest local minima of every row, shape (n, k) -> (n, most).
 
-    Two valleys of nearly the same depth are told apart only by their refined minima. Where a row
-    has fewer, its lowest one is repeated.
+    Several minima are returned because only refinement can tell two valleys of nearly the same
+    depth apart. If a row has fewer than `most`, its lowest one is repeated.
     """
     padded = np.pad(values, ((0, 0), (1, 1)), constant_values=np.inf)
     is_lowest = (values <= padded[:, :-2]) & (values <= padded[:, 2:])
@@ -165,6 +197,10 @@ def local_minima(values: Array, most: int = 4) -> NDArray[np.intp]:
 
 
 def _basis(theta: Array, closed: bool) -> Array:
+    """The basis {1, C_1..C_K, S_1..S_K} at θ, shape (...,) -> (..., TERMS).
+
+    For open curves T_k(x) = cos(k arccos x).
+    """
     values = np.empty((*theta.shape, TERMS))
     angle = (theta if closed else np.arccos(np.clip(theta / np.pi, -1, 1)))[..., None] * _ORDER
     values[..., 0] = 1.0
@@ -177,10 +213,10 @@ def _basis(theta: Array, closed: bool) -> Array:
 
 
 def fourier(constant: Array, cosine: Array, sine: Array) -> Curve:
-    """A closed curve from its Fourier coefficients.
+    """The closed curve σ(θ) = a_0 + Σ_k a_k cos kθ + b_k sin kθ.
 
     Args:
-        constant: a0, shape (2,), [m].
+        constant: a_0, shape (2,), [m].
         cosine, sine: a_k and b_k for k = 1.., shape (up to HARMONICS, 2), [m].
     """
     k = np.arange(1, HARMONICS + 1)[:, None]
@@ -194,7 +230,11 @@ def fourier(constant: Array, cosine: Array, sine: Array) -> Curve:
 
 
 def chebyshev_curve(coefficients: Array) -> Curve:
-    """An open curve from Chebyshev coefficients in x = theta / pi, shape (up to K + 1, 2), [m]."""
+    """The open curve σ(θ) = Σ_k c_k T_k(θ / π).
+
+    Args:
+        coefficients: c_k for k = 0.., shape (up to HARMONICS + 1, 2), [m].
+    """
     orders: list[Array] = []
     for order in range(ORDERS):
         table = np.zeros((TERMS, 2))
@@ -205,7 +245,7 @@ def chebyshev_curve(coefficients: Array) -> Curve:
 
 
 def terms_of(closed: bool) -> int:
-    """How many coefficients tell a curve."""
+    """Number of coefficients that determine a curve: see `Curve.terms`."""
     return TERMS if closed else HARMONICS + 1
 
 
@@ -217,33 +257,47 @@ def from_terms(closed: bool, terms: Array) -> Curve:
 
 
 def ellipse(half_axes: tuple[float, float], centre: tuple[float, float] = (0.0, 0.0)) -> Curve:
-    """An axis-parallel ellipse, exact; theta is its eccentric anomaly. [m]"""
+    """σ(θ) = c + (a cos θ, b sin θ), represented exactly.
+
+    Args:
+        half_axes: (a, b), [m].
+        centre: c, [m].
+    """
     return fourier(
         np.array(centre), np.array([[half_axes[0], 0.0]]), np.array([[0.0, half_axes[1]]])
     )
 
 
 def circle(radius: float, centre: tuple[float, float] = (0.0, 0.0)) -> Curve:
-    """A circle, exact; theta is the angle. [m]. Source: eq. (15)."""
+    """σ(θ) = c + r (cos θ, sin θ), represented exactly.
+
+    Args:
+        radius: r, [m].
+        centre: c, [m].
+
+    Source: section III.B, eq. (15).
+    """
     return ellipse((radius, radius), centre)
 
 
 def segment(start: tuple[float, float], end: tuple[float, float]) -> Curve:
-    """A straight segment from start to end, [m]."""
+    """The straight segment from `start` (θ = -π) to `end` (θ = π), [m]."""
     a, b = np.array(start), np.array(end)
     return chebyshev_curve(np.stack([(a + b) / 2, (b - a) / 2]))
 
 
 def blend(old: Curve, new: Curve, fraction: float) -> Curve:
-    """Between two curves of the same kind: `old` at 0, `new` at 1."""
+    """The curve (1 - fraction) old + fraction new; both are closed, or both open."""
     return Curve(new.closed, (1 - fraction) * old.series + fraction * new.series)
 
 
 def aligned(curve: Curve, to: Curve) -> Curve:
-    """The same curve, begun and run through as `to` is, a curve of the same kind.
+    """The same curve with its parameter shifted, and reversed if necessary, to match `to`.
 
-    Between curves that run against each other, or begin on opposite sides, a blend would shrink
-    to a point or a line on its way.
+    A closed curve becomes σ(±(θ + δ)); sign and δ maximise the correlation of its Fourier
+    coefficients with those of `to`. An open curve is reversed if that brings it nearer to `to`.
+    Without this, a blend of two curves with opposite directions or starting points would shrink to
+    a point or a line half-way.
     """
     if not curve.closed:
         theta = to.sample(64)
@@ -264,5 +318,5 @@ def aligned(curve: Curve, to: Curve) -> Curve:
 
 
 def _harmonics(curve: Curve) -> tuple[Array, Array]:
-    """a_k and b_k of a closed curve, each (HARMONICS, 2)."""
+    """The Fourier coefficients a_k and b_k of a closed curve, each (HARMONICS, 2), [m]."""
     return curve.series[0, 1 : HARMONICS + 1], curve.series[0, HARMONICS + 1 :]

@@ -1,4 +1,4 @@
-"""Distance of end-points to the path in the output space, apart from any controller."""
+"""Euclidean distance from points of the output space to the path, without any control law."""
 
 from __future__ import annotations
 
@@ -8,14 +8,21 @@ from onpath.models.arrays import Array
 from onpath.models.paths.curves import Curve, local_minima
 from onpath.models.paths.frames import Frame
 
-CHUNK = 4096
-NEAR = 0.1  # [rad]; within it the Taylor polynomial stands for the curve
+CHUNK = 4096  # points per array operation, which bounds the memory
+NEAR = 0.1  # [rad], largest correction of a guess for which its Taylor polynomial is trusted
 
 
 def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> Array:
-    """Euclidean distance by global search, shape (n, p) -> (n,), [m].
+    """Distance min over θ of |y - σ(θ)|, by global search, shape (n, p) -> (n,), [m].
 
-    An open curve goes on along its end tangents.
+    The lowest local minima over a grid are refined by Newton steps on the curve's Taylor
+    polynomial. An open curve includes the continuation along its end tangents.
+
+    Args:
+        frame: how the curve's plane lies in the output space.
+        curve: σ, in coordinates of that plane.
+        y: points, shape (n, p), [m].
+        samples: size of the grid.
     """
     grid = curve.sample(samples)
     points, step = frame.lift(curve.at(grid)), float(grid[1] - grid[0])
@@ -32,7 +39,7 @@ def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> A
 
 
 def _beyond_the_ends(frame: Frame, curve: Curve, y: Array) -> Array:
-    """Distance to the two tangents on which an open curve goes on, shape (n,), [m]."""
+    """Distance to the half-lines by which an open curve continues, shape (n, p) -> (n,), [m]."""
     ends = np.array([-np.pi, np.pi])
     points = frame.lift(curve.at(ends))
     tangents = frame.lift(curve.at(ends, 1)) - frame.lift(np.zeros(2))
@@ -43,9 +50,17 @@ def _beyond_the_ends(frame: Frame, curve: Curve, y: Array) -> Array:
 
 
 def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:
-    """The same from guesses near the closest points, shape (n,), [rad]; for live display.
+    """The same distance from guesses of the closest points; faster, for live display.
 
-    Where a guess proves to be far off, the search is global.
+    Where Newton's method moves a guess by more than `NEAR`, or makes it worse, the search is
+    global.
+
+    Args:
+        y: points, shape (n, p), [m].
+        theta: guesses, shape (n,), [rad].
+
+    Returns:
+        Shape (n,), [m].
     """
     better, distances = _refined(frame, curve, y, theta)
     guessed = np.sqrt(((frame.lift(curve.at(theta)) - y) ** 2).sum(-1))
@@ -58,18 +73,25 @@ def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:
 def _refined(
     frame: Frame, curve: Curve, y: Array, theta: Array, reach: float = np.inf
 ) -> tuple[Array, Array]:
-    """Better theta and the distance there, by Newton on the curve's cubic Taylor polynomial.
+    """Improved θ and the distance there, by two Newton steps.
+
+    With the curve's cubic Taylor polynomial P(δ) about θ, Newton's method solves (P(δ) - y) · P'(δ)
+    = 0. The derivative |P'|² + (P - y) · P'' is bounded from below by a fraction of |P'|², because
+    it vanishes near the centre of curvature.
 
     Args:
-        reach: how far a step may go, [rad]; with a bound steps may be bold near a centre of
-            curvature, where all of the curve is nearly equally far.
+        reach: largest |δ|, [rad]. With a finite bound the derivative may become much smaller, so
+            that steps can be long where nearly all of the curve is equally far away.
+
+    Returns:
+        θ + δ [rad] and |P(δ) - y| [m], each shape (n,).
     """
     origin = frame.lift(np.zeros(2))
     sigma, *derivatives = curve.all_orders(theta)
     point = frame.lift(sigma)
     first, second, third = (frame.lift(derivative) - origin for derivative in derivatives)
     step = np.zeros((len(theta), 1))
-    least = 0.2 if reach == np.inf else 1e-4  # of the slope, against |sigma'|^2
+    least = 0.2 if reach == np.inf else 1e-4  # smallest derivative, in units of |P'|²
     for _ in range(2):
         gap = point + step * (first + step / 2 * (second + step / 3 * third)) - y
         tangent = first + step * (second + step / 2 * third)

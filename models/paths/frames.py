@@ -1,7 +1,8 @@
-"""Where the planar curve lies in the output space.
+"""How the plane of the path lies in the output space.
 
-A point y of the output space has planar coordinates z (2) and residuals zeta (p - 2) that vanish
-on the plane of the path: none in the plane, y1 - b y2 - d for the slanted plane of eq. (23).
+A point y of the output space has planar coordinates z (2) and residuals ζ (p - 2) that are zero on
+the plane of the path. For p = 2 there are no residuals; for the plane of eq. (23), ζ = y1 - b y2 -
+d.
 """
 
 from __future__ import annotations
@@ -16,7 +17,10 @@ from onpath.models.arrays import Array
 
 
 class Frame(Protocol):
-    """How planar curves are put into R^p; all maps are affine, so rates map alike."""
+    """An affine map between the output space R^p and planar coordinates.
+
+    Because the map is affine, time derivatives are mapped by its linear part: `rate=True`.
+    """
 
     @property
     def p(self) -> int:
@@ -24,25 +28,29 @@ class Frame(Protocol):
         ...
 
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
-        """y -> (z, zeta), shapes (2, 1), (p - 2, 1); with `rate`, of a time derivative of y."""
+        """y -> (z, ζ), shapes (p, 1) -> (2, 1), (p - 2, 1), [m].
+
+        Args:
+            rate: whether y is a time derivative, which is mapped without the constant offset.
+        """
         ...
 
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
-        """The inverse of `split`."""
+        """The inverse of `split`: (z, ζ) -> y."""
         ...
 
     def planar(self, y: Array) -> Array:
-        """z of points, shape (..., p) -> (..., 2), [m]."""
+        """Planar coordinates z of points y, shape (..., p) -> (..., 2), [m]."""
         ...
 
     def lift(self, z: Array) -> Array:
-        """Points on the plane, shape (..., 2) -> (..., p), [m]."""
+        """Points y of the plane (ζ = 0), shape (..., 2) -> (..., p), [m]."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """The output space is the plane itself, p = 2."""
+    """The output space is the plane of the path: p = 2 and z = y."""
 
     p: int = 2
 
@@ -65,10 +73,18 @@ class Plane:
 
 @dataclass(frozen=True, slots=True)
 class SlantedPlane:
-    """The plane y1 = b y2 + d in R^3, with z = (y2, y3). Source: eq. (23)."""
+    """The plane y1 = b y2 + d in R³, with z = (y2, y3) and ζ = y1 - b y2 - d.
+
+    Attributes:
+        b: slope.
+        d: offset, [m].
+        p: dimension of the output space.
+
+    Source: eq. (23), with the paper's b and d.
+    """
 
     b: float = 0.1
-    d: float = 0.5  # [m]
+    d: float = 0.5
     p: int = 3
 
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:

@@ -1,4 +1,7 @@
-"""A path as a user makes it: control points, presets, strokes. Immutable; edits give a new one."""
+"""Paths as users edit them: a curve with control points, made from presets or freehand strokes.
+
+A `PathDesign` is immutable; every edit returns a new one.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ from onpath.models.paths.curve_fit import closed_through, control_points, from_s
 from onpath.models.paths.curves import Curve, aligned, circle, ellipse, fourier, segment
 
 MOST_POINTS = 24
-REACH = 0.2  # [m], control points stay within this of the middle
+REACH = 0.2  # [m], largest coordinate of a control point, in absolute value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,9 +26,10 @@ class PathDesign:
     """A curve with the control points that shape it.
 
     Attributes:
-        name: of the preset it began as, "drawn" for a stroke, "edited" after a change.
-        curve: what is followed.
-        points: control points, shape (k, 2), [m]; near the curve, not always on it.
+        name: name of the preset, "drawn" for a stroke, or "edited" after a change.
+        curve: the path, in coordinates of its plane.
+        points: control points, shape (k, 2), [m]. The curve passes near them, not exactly through
+            them.
     """
 
     name: str
@@ -33,10 +37,14 @@ class PathDesign:
     points: Array
 
     def moved(self, index: int, z: Array) -> PathDesign:
-        """With a control point elsewhere.
+        """The design with one control point moved.
+
+        Args:
+            index: of the control point.
+            z: its new place, shape (2,), [m]; clipped to ±REACH.
 
         Raises:
-            ValueError: no such point, not finite, or points that make no curve.
+            ValueError: there is no such point, z is not finite, or no curve can be fitted.
         """
         self._check(index)
         if not np.all(np.isfinite(z)):
@@ -46,10 +54,15 @@ class PathDesign:
         return self._through(points)
 
     def added(self, index: int) -> PathDesign:
-        """With a control point more, half-way to the next one.
+        """The design with a new control point on the curve, half-way to the next one.
+
+        After the last point of an open curve, the new one is put before it.
+
+        Args:
+            index: of the control point after which to insert.
 
         Raises:
-            ValueError: no such point, or already as many as there may be.
+            ValueError: there is no such point, or there are `MOST_POINTS` already.
         """
         self._check(index)
         count = len(self.points)
@@ -62,10 +75,13 @@ class PathDesign:
         return self._through(np.insert(self.points, where, self.curve.at(theta)[0], axis=0))
 
     def removed(self, index: int) -> PathDesign:
-        """With a control point less.
+        """The design without one control point.
+
+        Args:
+            index: of the control point.
 
         Raises:
-            ValueError: no such point, or too few would be left.
+            ValueError: there is no such point, or fewer than 3 (closed) or 2 (open) would remain.
         """
         self._check(index)
         least = 3 if self.curve.closed else 2
@@ -74,20 +90,28 @@ class PathDesign:
         return self._through(np.delete(self.points, index, axis=0))
 
     def _through(self, points: Array) -> PathDesign:
+        """The design with the curve fitted to new control points."""
         fit = closed_through if self.curve.closed else open_through
-        within = np.clip(points, -REACH, REACH)  # between its points a curve may swing beyond
+        within = np.clip(points, -REACH, REACH)  # the curve between them may still lie outside
         return PathDesign("edited", fit(within), within)
 
     def _check(self, index: int) -> None:
+        """Raise ValueError unless `index` is that of a control point."""
         if index not in range(len(self.points)):
             raise CodedError("error.no_point", index=index, count=len(self.points))
 
 
 def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
-    """From a freehand stroke, closed if its ends are near each other.
+    """A design from a freehand stroke.
 
-    It begins and turns as the presets do, an open one as the open path `before` it, whichever way
-    the hand went: so the robots keep their direction, and one path blends into another smoothly.
+    The curve is closed if the ends of the stroke are nearer to each other than a quarter of its
+    length. Its parameter is aligned with that of a circle (closed), or with `before` or a segment
+    to the right (open), whatever the direction of the stroke: the robots keep their direction of
+    travel, and the old path can be blended into the new one.
+
+    Args:
+        stroke: shape (n, 2), [m]; clipped to ±REACH.
+        before: the curve that is replaced.
 
     Raises:
         ValueError: the stroke is too short or not finite.
@@ -104,10 +128,12 @@ def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
 
 
 def _designed(name: str, curve: Curve, count: int) -> PathDesign:
+    """A design with `count` control points on a given curve."""
     return PathDesign(name, curve, control_points(curve, count))
 
 
 def _rounded_square(half: float = 0.05, power: float = 5.0) -> Curve:
+    """The superellipse |z1|^power + |z2|^power = half^power, half in [m]."""
     angle = np.linspace(-np.pi, np.pi, 96, endpoint=False)
     c, s = np.cos(angle), np.sin(angle)
     radius = half / (np.abs(c) ** power + np.abs(s) ** power) ** (1 / power)
@@ -115,7 +141,11 @@ def _rounded_square(half: float = 0.05, power: float = 5.0) -> Curve:
 
 
 def _clover() -> Curve:
-    """r = 0.055 (1 + 0.2 cos 4 theta), exact: products of cosines are sums of harmonics."""
+    """r(φ) = 0.055 (1 + 0.2 cos 4φ) in polar coordinates, [m], represented exactly.
+
+    cos φ cos 4φ = (cos 3φ + cos 5φ) / 2 and sin φ cos 4φ = (sin 5φ - sin 3φ) / 2 make both
+    coordinates sums of harmonics.
+    """
     a, lobe = 0.055, 0.055 * 0.2 / 2
     cosine, sine = np.zeros((5, 2)), np.zeros((5, 2))
     cosine[[0, 2, 4], 0] = a, lobe, lobe
@@ -124,13 +154,20 @@ def _clover() -> Curve:
 
 
 def _figure_eight() -> Curve:
+    """σ(θ) = (0.06 cos θ, 0.04 sin 2θ), [m]."""
     cosine = np.array([[0.06, 0.0]])
     return fourier(np.zeros(2), cosine, np.array([[0.0, 0.0], [0.0, 0.04]]))
 
 
 @cache
 def presets(radius: float = 0.05) -> Mapping[str, PathDesign]:
-    """Paths to choose from, by name; the figure of eight is there to be refused."""
+    """The predefined paths by name.
+
+    The figure of eight intersects itself: it shows how a path is refused.
+
+    Args:
+        radius: of the circle, [m]; the ellipse and the rounded square scale with it.
+    """
     designs = (
         _designed("circle", circle(radius), 8),
         _designed("ellipse", ellipse((1.4 * radius, 0.7 * radius)), 8),

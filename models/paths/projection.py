@@ -1,9 +1,11 @@
-"""The closest point of the path, inside the compiled loop.
+"""The closest point of the path, as CasADi expressions for the compiled loop.
 
-Once a tick the curve and its derivatives are evaluated at a predicted theta_0; Newton on
-(sigma(theta) - y) . sigma'(theta) = 0 then runs, unrolled, on the cubic Taylor polynomial there.
-The prediction is good to about 1e-4 rad at 1 kHz, where that polynomial is exact to rounding, and
-the next tick starts from the result. Derivatives of theta come from the implicit function theorem.
+In every tick the curve and its derivatives are evaluated once, at a predicted θ_0. Newton's method
+for (z - σ(θ)) · σ'(θ) = 0 then runs on the cubic Taylor polynomial about θ_0, with a fixed number
+of steps and no further evaluation of the series. At 1 kHz the prediction is good to about 1e-4 rad,
+where the polynomial is exact to rounding; the next tick starts from the result. Time derivatives of
+θ follow from the implicit function theorem, see models/control/virtual_output.py.
+
 Source: eq. (7).
 """
 
@@ -17,14 +19,15 @@ import numpy as np
 from onpath.models.paths.curves import HARMONICS
 
 NEWTON_STEPS = 2
-LARGEST_STEP = 0.5  # [rad]
-LEAST_SLOPE = 0.05  # of |sigma'|^2: keeps Newton going near a centre of curvature
+LARGEST_STEP = 0.5  # [rad], of one Newton step
+LEAST_SLOPE = 0.05  # least Newton derivative in units of |σ'|²; it is 0 at the centre of curvature
 
 
 def basis(theta: ca.SX, closed: bool) -> ca.SX:
-    """{1, C_1..C_K, S_1..S_K} at theta, (TERMS, 1); see models/paths/curves.py.
+    """The basis {1, C_1..C_K, S_1..S_K} of models/paths/curves.py at θ, (TERMS, 1).
 
-    Fourier and Chebyshev bases obey one three-term recurrence: P_k+1 = 2 x P_k - P_k-1.
+    Both cos kθ, sin kθ (with x = cos θ) and T_k(x) obey P_(k+1) = 2 x P_k - P_(k-1), so that one
+    sine and one cosine suffice for all harmonics.
     """
     if closed:
         cosine, sine = ca.cos(theta), ca.sin(theta)
@@ -34,7 +37,7 @@ def basis(theta: ca.SX, closed: bool) -> ca.SX:
 
 
 def _recurrence(x: ca.SX, first: ca.SX, before: float) -> ca.SX:
-    """P_1..P_K from P_0 = before, P_1 = first."""
+    """P_1..P_K of P_(k+1) = 2 x P_k - P_(k-1), from P_0 = before and P_1 = first, (K, 1)."""
     terms = [ca.SX(before), first]
     double = x + x
     for _ in range(HARMONICS - 1):
@@ -43,16 +46,19 @@ def _recurrence(x: ca.SX, first: ca.SX, before: float) -> ca.SX:
 
 
 def _clamped(theta: ca.SX) -> ca.SX:
+    """θ limited to [-π, π]."""
     return ca.fmin(ca.fmax(theta, -np.pi), np.pi)
 
 
 @dataclass(frozen=True, slots=True)
 class LocalCurve:
-    """A curve near theta_0 as its cubic Taylor polynomial; columns (2, 1).
+    """A curve near θ_0, as its cubic Taylor polynomial; columns (2, 1).
+
+        P(δ) = σ + δ σ' + δ²/2 σ'' + δ³/6 σ'''
 
     Attributes:
-        theta: theta_0, [rad].
-        sigma, first, second, third: the curve and its derivatives there.
+        theta: θ_0, [rad].
+        sigma, first, second, third: σ, σ', σ'' and σ''' at θ_0, [m], [m/rad], [m/rad²], [m/rad³].
     """
 
     theta: ca.SX
@@ -63,9 +69,14 @@ class LocalCurve:
 
     @staticmethod
     def from_values(theta: ca.SX, closed: bool, values: ca.SX) -> LocalCurve:
-        """From the (8, 1) product of the curve's table with `basis` at theta.
+        """The polynomial from the product of the curve's table with `basis` at θ.
 
-        An open curve goes on along its end tangents.
+        Outside [-π, π] an open curve continues along its end tangent.
+
+        Args:
+            theta: θ_0, [rad].
+            closed: whether the curve is closed.
+            values: `Curve.table` times `basis(theta, closed)`, (8, 1).
         """
         sigma, first, second, third = ca.vertsplit(values, 2)
         if closed:
@@ -75,7 +86,7 @@ class LocalCurve:
         return LocalCurve(theta, sigma + beyond * first, first, curved * second, curved * third)
 
     def moved(self, step: ca.SX) -> LocalCurve:
-        """The same polynomial expanded about theta + step."""
+        """The same polynomial expanded about θ_0 + step."""
         half, bend = step / 2, step * self.third
         second = self.second + bend
         first = self.first + half * (self.second + second)
@@ -83,7 +94,15 @@ class LocalCurve:
         return LocalCurve(self.theta + step, sigma, first, second, self.third)
 
     def project(self, z: ca.SX) -> LocalCurve:
-        """Expanded about the closest point to z, (2, 1), [m]."""
+        """The polynomial expanded about the point closest to z.
+
+        Newton's method for (z - σ) · σ' = 0:
+
+            δ = (z - σ) · σ' / max(|σ'|² - (z - σ) · σ'', LEAST_SLOPE |σ'|²),   |δ| <= LARGEST_STEP.
+
+        Args:
+            z: planar coordinates, (2, 1), [m].
+        """
         local = self
         for _ in range(NEWTON_STEPS):
             gap = z - local.sigma
@@ -95,5 +114,5 @@ class LocalCurve:
 
 
 def wrap(angle: ca.SX, closed: bool) -> ca.SX:
-    """The angle in [-pi, pi) on a closed curve; unchanged on an open one."""
+    """The angle modulo 2π, in [-π, π), on a closed curve; unchanged on an open one. [rad]"""
     return angle - 2 * np.pi * ca.floor(angle / (2 * np.pi) + 0.5) if closed else angle

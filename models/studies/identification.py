@@ -1,13 +1,18 @@
-"""Inertia and friction of the five-bar from data, by linear least squares.
+"""Identification of the five-bar's inertia and friction by linear least squares.
 
-The equations of motion are linear in their parameters. To differentiate measured angles twice would
-amplify their noise; so both sides are filtered by the same smooth bump w of finite length, onto
-which the derivatives move by partial integration:
+The equations of motion are linear in their parameters. Differentiating measured angles twice would
+amplify their noise. Instead both sides are multiplied by a smooth window w of finite length and
+integrated; integration by parts moves the derivatives onto w:
 
-    M11 <w'', q1> - b1 <w', q1> = <w, u1 + (J^T F)1>,    <w, x> the integral of w(t) x(t).
+    M11 <w'', q1> - b1 <w', q1> = <w, u1 + (J^T F)_1>,    <w, x> = ∫ w(t) x(t) dt.
 
-Each place of the bump along the record gives one equation for each joint. The same is done with
-what a balanced linkage without dry friction does not have: coupling, gravity, Coulomb friction.
+Every position of the window along the record gives one equation per joint. The same is done for the
+terms that a balanced linkage without dry friction does not have:
+
+    coupling (joint 1)   M12 (cos(q2 - q1) q2'' - sin(q2 - q1) q2'²)
+    coupling (joint 2)   M12 (cos(q2 - q1) q1'' + sin(q2 - q1) q1'²)
+    gravity              G_i cos q_i
+    dry friction         c_i q_i' / sqrt(q_i'² + ε²)
 """
 
 from __future__ import annotations
@@ -23,34 +28,35 @@ from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.systems.forces import DRY_VELOCITY
 
-INERTIA = ("M11", "M22", "b1", "b2")  # what the controller's model has, eq. (12)
+INERTIA = ("M11", "M22", "b1", "b2")  # the parameters of eq. (12), [kg m²] and [N m s]
 DRY = ("c1", "c2")  # dry friction of the joints, [N m]
-BALANCE = ("M12", "G1", "G2")  # coupling and gravity of a linkage out of balance
+BALANCE = ("M12", "G1", "G2")  # coupling [kg m²] and gravity [N m] of an unbalanced linkage
 ALL = INERTIA + DRY + BALANCE
 CHOICES = (INERTIA, INERTIA + DRY, INERTIA + BALANCE, ALL)
 
-BUMP = 0.25  # [s], length of the filter
-OVERLAP = 5  # bumps that cover an instant
-LAGS = 2 * OVERLAP  # over which residuals may be correlated
-FEWEST = 20  # samples in a bump
-SMOOTHING = 41  # samples
-SHORTEST = 1.0  # [s]
-LEAST_MOTION = 0.02  # [rad], of each joint, from end to end
-WORST_CONDITION = 200.0
-WORST_ERROR = 0.1  # of an inertia, relative
-ENOUGH = 1.25  # times the best residual: simpler is then good enough
-EXACT = 1e-3  # of the torque: a residual that needs no explanation
+BUMP = 0.25  # [s], length of the window w
+OVERLAP = 5  # windows that contain any one instant
+LAGS = 2 * OVERLAP  # windows over which residuals may be correlated
+FEWEST = 20  # least number of samples in a window
+SMOOTHING = 41  # samples of the Savitzky-Golay filter
+SHORTEST = 1.0  # [s], shortest record
+LEAST_MOTION = 0.02  # [rad], least peak-to-peak motion of each joint
+WORST_CONDITION = 200.0  # largest condition number of the scaled regressor
+WORST_ERROR = 0.1  # largest relative standard error of an inertia
+ENOUGH = 1.25  # a simpler model may leave this many times the smallest residual
+EXACT = 1e-3  # residual, as a fraction of the torque, that needs no further terms
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointRecord:
-    """What was measured, at uniform steps.
+    """Measured motion and torque at uniform time steps.
 
     Attributes:
-        dt: [s].
+        dt: time step, [s].
         q: joint angles, shape (n, 2), [rad].
-        v: joint velocities, for dry friction and coupling alone, shape (n, 2), [rad/s].
-        torque: of motors and external force, u + J^T F, held over each step, shape (n, 2), [N m].
+        v: joint velocities, used for dry friction and coupling only, shape (n, 2), [rad/s].
+        torque: u + J^T F of the motors and the external force, constant over each step, shape (n,
+            2), [N m].
     """
 
     dt: float
@@ -61,14 +67,14 @@ class JointRecord:
 
 @dataclass(frozen=True, slots=True)
 class Identified:
-    """What a record says.
+    """The result of an identification.
 
     Attributes:
         values: estimates by name (SI).
         errors: their standard errors.
-        residual: filtered torque that is not explained, rms, [N m].
-        torque: all of it, rms, [N m].
-        condition: of the regressor with columns of equal length.
+        residual: rms of the filtered torque that the model does not explain, [N m].
+        torque: rms of the filtered torque, [N m].
+        condition: condition number of the regressor with columns scaled to equal length.
     """
 
     values: dict[str, float]
@@ -79,23 +85,38 @@ class Identified:
 
     @property
     def unexplained(self) -> float:
-        """Residual over torque."""
+        """residual / torque."""
         return self.residual / self.torque if self.torque else 0.0
 
 
 def joint_torques(q: Array, force: Array, l1: float, l4: float) -> Array:
-    """J^T F of a force at the end-point, (n, 2) and (n, 2) -> (n, 2), [N m]. Source: eq. (13)."""
+    """Joint torques J^T F of a force at the end-point, [N m].
+
+        τ1 = l1 (cos q1 F2 - sin q1 F1),   τ2 = -l4 (cos q2 F2 - sin q2 F1)
+
+    Args:
+        q: joint angles, shape (n, 2), [rad].
+        force: F, shape (n, 2), [N].
+        l1, l4: link lengths, [m].
+
+    Returns:
+        Shape (n, 2).
+
+    Source: the Jacobian of eq. (13).
+    """
     across = np.cos(q) * force[:, 1:] - np.sin(q) * force[:, :1]
     return across * np.array([l1, -l4])
 
 
 def smooth_velocities(q: Array, dt: float) -> Array:
-    """Joint velocities from angles in encoder steps, (n, 2) -> (n, 2), without delay.
+    """Joint velocities from quantised angles by a Savitzky-Golay filter, (n, 2) -> (n, 2), [rad/s].
+
+    The filter is symmetric and therefore has no delay.
 
     Raises:
-        ValueError: less data than the filter is long.
+        ValueError: fewer than `SMOOTHING` samples.
     """
-    from scipy.signal import savgol_filter  # takes long; see app/server/lazy_imports.py
+    from scipy.signal import savgol_filter  # slow to import; see app/server/lazy_imports.py
 
     if len(q) < SMOOTHING:
         raise CodedError("error.hardly_any_data")
@@ -103,21 +124,25 @@ def smooth_velocities(q: Array, dt: float) -> Array:
 
 
 def identify(record: JointRecord, names: tuple[str, ...] = INERTIA) -> Identified:
-    """Least squares for the parameters in `names`; what is not named is taken to be zero.
+    """Least-squares estimates of the parameters in `names`; all others are taken to be zero.
 
     Raises:
-        ValueError: the record is too short, or the motion too poor to tell them apart.
+        ValueError: the record is too short or too coarse, or the motion does not determine the
+            parameters.
 
-    Source: eq. (12), and Spong and Vidyasagar 6.4.1 for coupling and gravity.
+    Source: eq. (12); Spong and Vidyasagar 6.4.1 for coupling and gravity.
     """
     return _estimated(names, *_equations(record))
 
 
 def simplest(record: JointRecord) -> Identified:
-    """With the fewest kinds of terms that explain the record about as well as all of them.
+    """The estimate with the fewest terms that explains the record about as well as the best one.
+
+    The models are tried in the order of `CHOICES`; the first one whose residual is at most `ENOUGH`
+    times the smallest, or `EXACT` times the torque, is taken.
 
     Raises:
-        ValueError: as `identify`, if nothing can be told.
+        ValueError: as `identify`, if no model can be estimated.
     """
     equations = _equations(record)
     found, refusals = list[Identified](), list[ValueError]()
@@ -133,7 +158,13 @@ def simplest(record: JointRecord) -> Identified:
 
 
 def _estimated(names: tuple[str, ...], columns: Array, torque: Array) -> Identified:
-    """Estimates and errors from the equations of a record."""
+    """Estimates and standard errors from the equations of a record.
+
+    The columns of the regressor are scaled to unit rms before solving.
+
+    Raises:
+        ValueError: the motion does not determine the parameters.
+    """
     regressor = columns[..., [ALL.index(name) for name in names]]
     scale = np.sqrt(np.mean(regressor**2, axis=(0, 1)))
     scaled = regressor / np.where(scale > 0, scale, 1.0)
@@ -153,6 +184,11 @@ def _estimated(names: tuple[str, ...], columns: Array, torque: Array) -> Identif
 
 
 def _trusted(result: Identified) -> Identified:
+    """The result, unless an inertia is not positive or its standard error exceeds `WORST_ERROR`.
+
+    Raises:
+        ValueError: it does.
+    """
     for name in ("M11", "M22"):
         value, error = result.values[name], result.errors[name]
         if value <= 0 or error > WORST_ERROR * value:
@@ -163,19 +199,25 @@ def _trusted(result: Identified) -> Identified:
 
 
 def _solved(regressor: Array, torque: Array) -> tuple[Array, float]:
-    """Least squares solution and condition number."""
+    """Least-squares solution (unknowns,) and condition number of the regressor."""
     solution = lstsq(regressor.reshape(-1, regressor.shape[-1]), torque.ravel())
     singular = solution[3]
-    assert singular is not None  # LAPACK's default driver gives them
+    assert singular is not None  # LAPACK's default driver returns them
     condition = float(singular[0] / singular[-1]) if singular[-1] > 0 else np.inf
     return solution[0], condition
 
 
 def _standard_errors(regressor: Array, residual: Array) -> Array:
-    """Of the least squares solution, (unknowns,), from residuals that overlapping bumps correlate.
+    """Standard errors of the least-squares estimates, shape (unknowns,).
 
-    Noise is taken to be stationary: its covariance is averaged over the record, for each joint,
-    and fades with the lag (Bartlett's weights), so that no variance becomes negative.
+    Neighbouring windows overlap, so their residuals are correlated. The covariance of the estimates
+    is therefore the sandwich A⁻¹ S A⁻¹ with A = X^T X and S from the residuals' autocovariance,
+    assumed stationary for each joint and tapered linearly with the lag (Bartlett's weights, as in
+    Newey and West), which keeps all variances non-negative.
+
+    Args:
+        regressor: X, shape (k, 2, unknowns).
+        residual: shape (k, 2).
     """
     k, joints, unknowns = regressor.shape
     flat = regressor.reshape(-1, unknowns)
@@ -191,7 +233,7 @@ def _standard_errors(regressor: Array, residual: Array) -> Array:
 
 
 def _equations(record: JointRecord) -> tuple[Array, Array]:
-    """Regressor (k, 2, len(ALL)) and right side (k, 2), one row for each place of the bump.
+    """Regressor, shape (k, 2, len(ALL)), and right-hand side, shape (k, 2), for k window positions.
 
     Raises:
         ValueError: the record is too short or too coarse, or a joint hardly moved.
@@ -223,6 +265,7 @@ def _equations(record: JointRecord) -> tuple[Array, Array]:
 
 
 def _check(record: JointRecord) -> None:
+    """Raise ValueError if the record is too coarse, too short, or has too little motion."""
     if record.dt > BUMP / FEWEST:
         raise ValueError(f"samples every {record.dt:g} s: at most {BUMP / FEWEST:g} s apart")
     duration = len(record.q) * record.dt
@@ -233,9 +276,11 @@ def _check(record: JointRecord) -> None:
 
 
 def _bump(dt: float) -> tuple[Array, Array, Array, Array]:
-    """Weights w, w' and w'' at the samples, and of w over each step for what is held over it.
+    """Samples of w, w' and w'', times dt, and the integrals of w over each time step.
 
-    The bump has unit area and vanishes at its ends so smoothly that sums are exact integrals.
+    The window is w(t) ∝ (1 - x²)⁶ with x = 2 t / BUMP in [-1, 1] and unit area. It vanishes at its
+    ends to such an order that sums over samples equal the integrals to rounding. The integrals over
+    steps are for signals that are constant over each step, such as the torque.
     """
     steps, half = round(BUMP / dt), BUMP / 2
     x = np.linspace(-1, 1, steps + 1)

@@ -1,1 +1,1 @@
-"""Mechanical systems, robots, their parameters, and forces on them."""
+"""Equations of motion, robots, their parameters, and external forces."""

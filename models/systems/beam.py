@@ -1,8 +1,13 @@
-"""Assumed modes of a uniform beam, clamped at s = 0 and free at s = l (Euler-Bernoulli).
+"""Assumed modes of a uniform Euler-Bernoulli beam, clamped at s = 0 and free at s = l.
 
-w(s, t) = sum_j phi_j(s) f_j(t), with the integral of phi_i phi_j over the beam delta_ij: the shapes
-know nothing of the beam's mass. Mass-normalised ones, rho integral of phi_i phi_j = delta_ij, are
-these over sqrt(rho), and their modal coordinates sqrt(rho) f_j.
+The deflection is w(s, t) = Σ_j φ_j(s) f_j(t) with shapes normalised to ∫ φ_i φ_j ds = δ_ij,
+independent of the beam's mass:
+
+    φ_j(s) = (cosh x - cos x - σ_j (sinh x - sin x)) / sqrt(l),   x = β_j s / l,
+    cos β_j cosh β_j = -1,   σ_j = (sinh β_j - sin β_j) / (cosh β_j + cos β_j).
+
+Mass-normalised shapes, with ρ ∫ φ_i φ_j ds = δ_ij, are φ_j / sqrt(ρ); their modal coordinates are
+sqrt(ρ) f_j.
 """
 
 from __future__ import annotations
@@ -18,14 +23,14 @@ MOST_MODES = 6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BeamModes:
-    """The first modes of a clamped-free beam.
+    """The first N modes of a clamped-free beam.
 
     Attributes:
         length: l, [m].
-        roots: beta_j, roots of cos(b) cosh(b) = -1, shape (N,).
-        tip: phi_j(l), shape (N,), [m^-1/2].
-        area: integral of phi_j, shape (N,), [m^1/2].
-        moment: integral of s phi_j, shape (N,), [m^3/2].
+        roots: β_j, shape (N,).
+        tip: φ_j(l) = ±2 / sqrt(l), shape (N,), [m^-1/2].
+        area: ∫ φ_j ds = 2 σ_j sqrt(l) / β_j, shape (N,), [m^1/2].
+        moment: ∫ s φ_j ds = 2 l^1.5 / β_j², shape (N,), [m^3/2].
     """
 
     length: float
@@ -36,22 +41,26 @@ class BeamModes:
 
     @property
     def overtones(self) -> Array:
-        """omega_j / omega_1, shape (N,)."""
+        """Frequency ratios ω_j / ω_1 = (β_j / β_1)², shape (N,)."""
         return (self.roots / self.roots[0]) ** 2
 
     def frequencies(self, rigidity: float, density: float) -> Array:
-        """omega_j, shape (N,), [rad/s].
+        """ω_j = β_j² sqrt(EI / ρ) / l², shape (N,), [rad/s].
 
         Args:
-            rigidity: EI, [N m^2].
-            density: rho, [kg/m].
+            rigidity: EI, [N m²].
+            density: ρ, [kg/m].
         """
         return self.roots**2 * np.sqrt(rigidity / density) / self.length**2
 
     def shapes(self, s: Array) -> Array:
-        """phi_j(s), shape (...,) -> (..., N), [m^-1/2].
+        """φ_j(s), shape (...,) -> (..., N), [m^-1/2].
 
-        cosh - sigma sinh is written in exponentials: the two differ by 1e-7 of themselves.
+        cosh x - σ sinh x is written as (1 - d/2) e^-x + d/2 e^x with d = 1 - σ, because the two
+        terms agree to 1e-7 for the sixth mode, and their difference would lose those digits.
+
+        Args:
+            s: distance from the clamped end, [m].
         """
         x = np.asarray(s, dtype=float)[..., None] / self.length * self.roots
         defect = _defect(self.roots)
@@ -61,10 +70,14 @@ class BeamModes:
 
 
 def beam_modes(count: int, length: float) -> BeamModes:
-    """The first `count` modes of a beam of some length, [m].
+    """The first `count` modes of a beam, with β_j from Newton's method.
+
+    Args:
+        count: N.
+        length: l, [m].
 
     Raises:
-        ValueError: fewer than one mode or more than `MOST_MODES`.
+        ValueError: `count` is not between 1 and `MOST_MODES`.
     """
     if not 1 <= count <= MOST_MODES:
         raise ValueError(f"modes: {count} is not between 1 and {MOST_MODES}")
@@ -81,17 +94,17 @@ def beam_modes(count: int, length: float) -> BeamModes:
 
 
 def rigidity(frequency: float, length: float, density: float) -> float:
-    """EI of a beam whose first frequency is given, [N m^2].
+    """EI = ρ (2π f_1)² l⁴ / β_1⁴ of a beam with a given first frequency, [N m²].
 
     Args:
-        frequency: of the first mode, clamped, [Hz].
-        length: [m].
-        density: [kg/m].
+        frequency: f_1, clamped, [Hz].
+        length: l, [m].
+        density: ρ, [kg/m].
     """
     wave = float(beam_modes(1, length).roots[0]) / length
     return density * (2 * np.pi * frequency) ** 2 / wave**4
 
 
 def _defect(b: Array) -> Array:
-    """1 - (sinh b - sin b) / (cosh b + cos b), some 1e-7 for the sixth mode."""
+    """d = 1 - σ = (e^-b + cos b + sin b) / (cosh b + cos b), about 1e-7 for the sixth mode."""
     return (np.exp(-b) + np.cos(b) + np.sin(b)) / (np.cosh(b) + np.cos(b))

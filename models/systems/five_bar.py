@@ -1,8 +1,12 @@
-"""The planar five-bar linkage with rigid links: parallelogram, both motors at the base.
+"""The planar five-bar linkage with rigid links: a parallelogram with both motors at the base.
 
-Link 3 stays parallel to link 1 and link 4 to link 2, so the two base angles are coordinates.
-Full dynamics before balancing (Spong and Vidyasagar 6.4.1); the paper's robot, eqs. (12)-(13),
-is the parameter set whose coupling and gravity terms vanish.
+Link 3 stays parallel to link 1 and link 4 to link 2, so that the two base angles are coordinates.
+The equations of motion (Spong and Vidyasagar 6.4.1) are
+
+    M11 q1'' + M12 cos(q2 - q1) q2'' - M12 sin(q2 - q1) q2'² + G1 cos q1 + b1 q1' = τ1,
+    M22 q2'' + M12 cos(q2 - q1) q1'' + M12 sin(q2 - q1) q1'² + G2 cos q2 + b2 q2' = τ2.
+
+The paper's robot, eqs. (12)-(13), is balanced and decoupled: M12 = G1 = G2 = 0.
 """
 
 from __future__ import annotations
@@ -23,7 +27,14 @@ HOME = np.array([np.pi / 2, np.pi])
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """One link. Units: m, kg, kg m^2; centre of mass from the joint, along the link."""
+    """One link of the linkage.
+
+    Attributes:
+        length: [m].
+        mass: [kg].
+        centre_of_mass: distance from the joint, along the link, [m].
+        inertia: about the centre of mass, [kg m²].
+    """
 
     length: float
     mass: float
@@ -33,20 +44,20 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class FiveBarLinks:
-    """Links and joint friction of a five-bar; `spoiled` takes the balance away."""
+    """Links and joint friction of a five-bar."""
 
     link1: Link
     link2: Link
     link3: Link
     link4: Link
-    viscous1: float  # [N m s]
-    viscous2: float  # [N m s]
+    viscous1: float  # b1, [N m s]
+    viscous2: float  # b2, [N m s]
 
     def spoiled(self, removed: float, payload: float) -> FiveBarLinks:
-        """The same linkage with part of its counterweights gone and a mass at the end-point.
+        """The linkage without some of its counterweights and with a mass at the end-point.
 
         Args:
-            removed: fraction of the counterweight moments taken off, 0 to 1.
+            removed: fraction of the counterweights' moments that is removed, 0 to 1.
             payload: mass at the end-point, [kg].
         """
         total = self.link4.mass + payload
@@ -65,9 +76,15 @@ class FiveBarLinks:
         )
 
     def lumped(self) -> dict[str, float]:
-        """The numbers that the equations of motion need, by name (SI).
+        """The parameters of the equations of motion by name (SI).
 
-        Source: Spong and Vidyasagar 6.4.1; M12 and G1, G2 vanish for the paper's robot (12).
+        With lengths l, masses m, centres of mass c and inertias I of the links:
+
+            M11 = I1 + m1 c1² + I3 + m3 c3² + m4 l1²,   G1 = g (m1 c1 + m3 c3 + m4 l1),
+            M22 = I2 + m2 c2² + I4 + m4 c4² + m3 l2²,   G2 = g (m2 c2 + m3 l2 - m4 c4),
+            M12 = l2 m3 c3 - l1 m4 c4.
+
+        Source: Spong and Vidyasagar 6.4.1.
         """
         one, two, three, four = self.link1, self.link2, self.link3, self.link4
         moment3 = three.mass * three.centre_of_mass
@@ -94,16 +111,16 @@ class FiveBarLinks:
 
 
 def load_links() -> FiveBarLinks:
-    """The illustrative linkage of assets/five_bar.toml: balanced and decoupled."""
+    """The illustrative linkage of assets/five_bar.toml, which is balanced and decoupled."""
     data = tomllib.loads(asset_path("five_bar.toml").read_text())
     links = {name: Link(**data[name]) for name in ("link1", "link2", "link3", "link4")}
     return FiveBarLinks(**links, **data["friction"])
 
 
 def five_bar() -> MechanicalSystem:
-    """The five-bar as symbols, parameters named as in `FiveBarLinks.lumped`.
+    """The five-bar's equations of motion, with parameters named as in `FiveBarLinks.lumped`.
 
-    Source: eqs. (12)-(13), and Spong and Vidyasagar 6.4.1 for the coupling and gravity terms.
+    Source: eqs. (12)-(13); Spong and Vidyasagar 6.4.1 for the coupling and gravity terms.
     """
     names = ("M11", "M22", "M12", "G1", "G2", "b1", "b2", "l1", "l4")
     parameters = ca.SX.sym("parameters", len(names))
@@ -133,7 +150,7 @@ def five_bar() -> MechanicalSystem:
 
 
 def _solve_symmetric(mass: ca.SX, rhs: ca.SX) -> ca.SX:
-    """M^-1 R of a symmetric 2 x 2 matrix by elimination; 1 / M11 is shared between calls."""
+    """M⁻¹ R of a symmetric 2 x 2 matrix by elimination; both calls share 1 / M11."""
     inverse, b = 1 / mass[0, 0], mass[0, 1]
     part = inverse * b
     second = (rhs[1, :] - part * rhs[0, :]) / (mass[1, 1] - part * b)
@@ -141,26 +158,31 @@ def _solve_symmetric(mass: ca.SX, rhs: ca.SX) -> ca.SX:
 
 
 def end_point(q: Array, l1: float, l4: float) -> Array:
-    """y = h(q), shape (..., 2) -> (..., 2), [m]. Source: eq. (13)."""
+    """The end-point y = h(q), shape (..., 2) -> (..., 2), [m].
+
+        y = (l1 cos q1 - l4 cos q2 - l4, l1 sin q1 - l4 sin q2 - l1)
+
+    Source: eq. (13).
+    """
     q1, q2 = q[..., 0], q[..., 1]
     x, z = l1 * np.cos(q1) - l4 * np.cos(q2), l1 * np.sin(q1) - l4 * np.sin(q2)
     return np.stack([x - l4, z - l1], axis=-1)
 
 
 def inverse_kinematics(y: Array, l1: float, l4: float) -> Array:
-    """Joint angles of the elbow-up pose that puts the end-point at y.
+    """Joint angles of the elbow-up pose with the end-point at y.
 
     Args:
         y: end-point, shape (..., 2), [m].
         l1, l4: link lengths, [m].
 
     Returns:
-        q, shape (..., 2), [rad]; near home q = (pi/2, pi).
+        q, shape (..., 2), [rad]; the home pose is q = (π/2, π).
 
     Raises:
         ValueError: a point is out of reach.
 
-    Source: eq. (13).
+    Source: inverse of eq. (13).
     """
     x, z = y[..., 0] + l4, y[..., 1] + l1
     reach = np.hypot(x, z)
@@ -176,7 +198,7 @@ def inverse_kinematics(y: Array, l1: float, l4: float) -> Array:
 
 
 def singularity_margin(q: Array) -> Array:
-    """|sin(q1 - q2)|, zero where the parallelogram collapses, shape (..., 2) -> (...).
+    """|sin(q1 - q2)|, which is 0 where the parallelogram collapses, shape (..., 2) -> (...).
 
     Source: eq. (14).
     """
@@ -187,11 +209,12 @@ def skeleton(q: ca.SX, l1: float, l2: float, l4: float) -> tuple[ca.SX, ca.SX]:
     """Links and bearings in the robot's frame (x right, y away, z up, base pivot at the origin).
 
     Args:
-        q: joint angles, at least 2, symbols or numbers of CasADi, [rad].
+        q: joint angles, at least 2, CasADi symbols or numbers, [rad].
+        l1, l2, l4: link lengths, [m].
 
     Returns:
-        bars, shape (3, 8), links 1 to 4 as end to end segments, begin and end as columns; joints,
-        shape (3, 4): base, link 1-4, link 2-3, link 3-4, [m].
+        bars, shape (3, 8): begin and end of links 1 to 4 as columns, [m]. joints, shape (3, 4):
+        base, link 1-4, link 2-3, link 3-4, [m].
     """
     one, two = (ca.vertcat(ca.cos(q[i]), 0, ca.sin(q[i])) for i in range(2))
     base, a, b, tip = 0 * one, l1 * one, l2 * two, l1 * one - l4 * two

@@ -1,9 +1,15 @@
-"""The five-bar linkage on a turning waist, its last link a beam that bends horizontally.
+"""The five-bar on a rotating waist, whose last link is a beam that bends horizontally.
 
-Coordinates q = (q1, q2, q3, f1..fN): base angles as in the rigid linkage, waist angle, modal
-coordinates of the deflection w(s) = sum_j phi_j(s) f_j across the linkage's vertical plane. Inputs
-act on q1, q2, q3. Gravity is balanced. A point s of the beam is at radius r = l1 cos q1 - s cos q2
-and w across it, so that T = 1/2 rho integral (r' - w q3')^2 + (r q3' + w')^2 ds + the linkage's.
+Coordinates q = (q1, q2, q3, f1..fN): base angles as in the rigid linkage, waist angle, and modal
+coordinates of the deflection w(s) = Σ_j φ_j(s) f_j across the vertical plane of the linkage. Inputs
+act on q1, q2 and q3. Gravity is balanced. A point s of the beam lies at the radius r = l1 cos q1 -
+s cos q2 and at w across it, so that
+
+    T = ½ (M11 q1'² + M22 q2'² + (J0 + J1 cos² q1) q3'²)
+        + ½ ρ ∫ ((r' - w q3')² - r'² + (r q3' + w')²) ds,
+    V = ½ ρ Σ_j ω_j² f_j².
+
+M11 and M22 include the beam's motion in the plane of the linkage, hence the term -r'².
 """
 
 from __future__ import annotations
@@ -20,16 +26,25 @@ from onpath.models.systems.beam import BeamModes, beam_modes
 from onpath.models.systems.system import MechanicalSystem, mechanical_system
 
 PLANTS = ("lagrangian", "unit_modes")
-FORMER_PLANTS = {"as_printed": "unit_modes"}  # in share codes, kept labs and lessons of others
+FORMER_PLANTS = {"as_printed": "unit_modes"}  # names in existing share codes, labs and lessons
 _NAMES = "M11 M22 J0 J1 l1 l rho omega1 zeta alpha b1 b2 b3"
 NAMES: tuple[str, ...] = tuple(_NAMES.split())
 HOME = np.array([np.pi / 2, np.pi, 0.0])
-RIGID = 3  # coordinates that are joints
+RIGID = 3  # number of joints, the first coordinates of q
 
 
 @dataclass(frozen=True, slots=True)
 class FlexibleLinks:
-    """Linkage and beam. Units: m, kg m^2, kg/m, Hz, N m s."""
+    """Linkage and beam.
+
+    Attributes:
+        link1, link2, beam: lengths l1, l2 and l, [m].
+        M11, M22, J0, J1: inertias, [kg m²].
+        rho: mass of the beam per length, [kg/m].
+        frequency: of the first mode, clamped, [Hz].
+        zeta: damping ratio of every mode.
+        b1, b2, b3: viscous friction of the joints, [N m s].
+    """
 
     link1: float
     link2: float
@@ -46,17 +61,18 @@ class FlexibleLinks:
     b3: float
 
     def lumped(self, alpha: float) -> dict[str, float]:
-        """The numbers that the equations need, by name (SI).
+        """The parameters of the equations of motion by name (SI).
 
         Args:
-            alpha: share of the deflection in the controlled output: 1 the tip, 0 the rigid link.
+            alpha: α, share of the deflection in the controlled output: 1 for the tip, 0 for the
+                rigid link.
         """
         own = {name: getattr(self, name) for name in NAMES if hasattr(self, name)}
         omega1 = 2 * np.pi * self.frequency
         return own | {"l1": self.link1, "l": self.beam, "omega1": omega1, "alpha": alpha}
 
     def changed(self, rho: float, frequency: float, zeta: float) -> FlexibleLinks:
-        """The same with another beam, [kg/m], [Hz]."""
+        """The same linkage with another beam: `rho` in [kg/m], `frequency` in [Hz]."""
         return replace(self, rho=rho, frequency=frequency, zeta=zeta)
 
 
@@ -68,14 +84,15 @@ def load_links() -> FlexibleLinks:
 
 @dataclass(frozen=True, slots=True)
 class _Symbols:
-    """What the equations are made of. The beam enters by P and Q: Psi = P a - Q b.
+    """The terms of the equations of motion.
 
     Attributes:
         p: parameters by name.
         q, v: coordinates and velocities.
-        P, Q: sqrt(l) l1 cos q1 and sqrt(l)^3 cos q2.
+        P, Q: sqrt(l) l1 cos q1 and l^1.5 cos q2, so that Ψ = P a - Q b with the integrals a = ∫ φ
+            ds and b = ∫ s φ ds of the unit beam.
         P1, Q2: dP/dq1 and dQ/dq2.
-        beam: of unit length.
+        beam: modes of the beam of unit length.
     """
 
     p: dict[str, ca.SX]
@@ -94,30 +111,30 @@ class _Symbols:
 
     @property
     def f_rate(self) -> ca.SX:
-        """Their rates, (N, 1)."""
+        """Their rates f', (N, 1)."""
         return self.v[RIGID:]
 
     @property
     def coupling(self) -> ca.SX:
-        """Psi_j = integral of r phi_j, (N, 1)."""
+        """Ψ_j = ∫ r φ_j ds, (N, 1)."""
         return self.P * ca.DM(self.beam.area) - self.Q * ca.DM(self.beam.moment)
 
     @property
     def stiffness(self) -> ca.SX:
-        """omega_j^2, (N, 1)."""
+        """ω_j², (N, 1), [1/s²]."""
         return (self.p["omega1"] * ca.DM(self.beam.overtones)) ** 2
 
     @property
     def elastic(self) -> ca.SX:
-        """omega_j^2 f_j + 2 zeta omega_j f_j', the beam's own force over rho, (N, 1)."""
+        """ω_j² f_j + 2 ζ ω_j f_j', the beam's elastic and damping force over ρ, (N, 1)."""
         damping = (2 * self.p["zeta"] * self.p["omega1"]) * ca.DM(self.beam.overtones)
         return self.stiffness * self.f + damping * self.f_rate
 
     @property
     def waist(self) -> ca.SX:
-        """M' = J - rho |Psi|^2 for the straight beam: what q3'' feels while the modes give way.
+        """M' = J - ρ |Ψ|² for the straight beam: the inertia at q3 with the modes eliminated.
 
-        J = J0 + J1 cos^2 q1 + rho times the integral of r^2, which is P^2 - P Q + Q^2 / 3.
+        J = J0 + J1 cos² q1 + ρ ∫ r² ds, and ∫ r² ds = P² - P Q + Q² / 3.
         """
         a, b = self.beam.area, self.beam.moment
         beam = self.P * ((1 - a @ a) * self.P - (1 - 2 * a @ b) * self.Q)
@@ -127,13 +144,13 @@ class _Symbols:
 
 @dataclass(frozen=True, slots=True)
 class _Dynamics:
-    """M and c by blocks. Modal rows are divided by rho, so that their own block of M is I.
+    """M and c by blocks. The modal rows are divided by ρ, so that their own block of M is I.
 
     Attributes:
-        joints: M of q1 to q3 with the Schur complement of the modes at q3, an arrow, (3, 3).
-        row, column: what couples modes into q3's row, and q3 into the modes' rows, (N, 1).
+        joints: M of q1 to q3 after elimination of the modes (Schur complement at q3), (3, 3).
+        row, column: coupling of the modes into q3's row, and of q3 into the modes' rows, (N, 1).
         bias: c of the joints, (3, 1).
-        modal_bias: c of the modes over rho, (N, 1).
+        modal_bias: c of the modes over ρ, (N, 1).
     """
 
     joints: ca.SX
@@ -161,12 +178,12 @@ def _symbols(modes: int, parameters: ca.SX) -> _Symbols:
 
 
 def flexible_five_bar(modes: int = 3, plant: str = "lagrangian") -> MechanicalSystem:
-    """The robot as symbols, parameters named as in `NAMES`.
+    """The robot's equations of motion, with parameters named as in `NAMES`.
 
     Args:
-        modes: assumed modes of the beam, 1 to 6.
-        plant: "lagrangian", or "unit_modes": (20)-(21) with Coriolis terms cancelled beforehand,
-            as there, and their symbols read with the integral of phi^2 = 1. See `_unit_modes`.
+        modes: number of assumed modes, 1 to 6.
+        plant: "lagrangian", or "unit_modes": (20)-(21), which cancel the Coriolis terms beforehand,
+            with shapes normalised to ∫ φ² ds = 1. See `_unit_modes`.
 
     Raises:
         ValueError: an unknown plant or number of modes.
@@ -197,7 +214,7 @@ def flexible_five_bar(modes: int = 3, plant: str = "lagrangian") -> MechanicalSy
 
 
 def _end_point(s: _Symbols, w: ca.SX) -> ca.SX:
-    """y for a tip that is w off the straight link. Source: eq. (22)."""
+    """y of a tip that is displaced by w from the straight link. Source: eq. (22)."""
     l1, beam = s.p["l1"], s.p["l"]
     radius = l1 * ca.cos(s.q[0]) - beam * ca.cos(s.q[1])
     c3, s3 = ca.cos(s.q[2]), ca.sin(s.q[2])
@@ -206,9 +223,10 @@ def _end_point(s: _Symbols, w: ca.SX) -> ca.SX:
 
 
 def _lagrangian(s: _Symbols) -> _Dynamics:
-    """From the kinetic energy in this file's head; a test differentiates it.
+    """Lagrange's equations for T and V of this module; a test differentiates them.
 
-    With A = a.f and B = b.f the beam's coupling term is rho q3' (Psi.f' - P1 q1' A + Q2 q2' B).
+    With A = Σ a_j f_j and B = Σ b_j f_j, the terms of T that couple beam and joints are ρ q3' (Ψ ·
+    f' - P1 q1' A + Q2 q2' B).
     """
     rho, (v1, v2, v3) = s.p["rho"], ca.vertsplit(s.v[:RIGID])
     a, b = ca.DM(s.beam.area), ca.DM(s.beam.moment)
@@ -238,17 +256,16 @@ def _lagrangian(s: _Symbols) -> _Dynamics:
 
 
 def _unit_modes(s: _Symbols) -> _Dynamics:
-    """M' q3'' = u3 + Psi.Omega and f'' = -rho Psi q3'' - Omega / rho with integral of phi^2 = 1.
+    """M' q3'' = u3 + Ψ · Ω and f'' = -ρ Ψ q3'' - Ω / ρ, with ∫ φ² ds = 1.
 
-    The paper leaves Psi, Omega and M' to [15], which is not at hand. With mass-normalised shapes,
-    rho integral of phi_i phi_j = delta_ij, these equations are those of Lagrange for small
-    deflections; a test shows it. With this file's own shapes the term rho Psi q3'' has not the
-    units of f'', the modes feel the waist rho times (in SI) as strongly as Lagrange's equations
-    say, `mass` is not symmetric and there is no energy balance. This reading is kept because with
-    rho = 0.2 it reproduces the paper's figures 6 and 7 with the actual tip, and for no other
-    reason. The friction of the joints, b1 to b3, is this project's addition: (20) has none.
+    The paper defines Ψ, Ω and M' in [15] only. With mass-normalised shapes, ρ ∫ φ_i φ_j ds = δ_ij,
+    these equations are Lagrange's for small deflections, as a test shows. With the shapes of this
+    project, the units of ρ Ψ q3'' are not those of f'', the waist acts on the modes ρ times (in SI)
+    as strongly as in Lagrange's equations, the mass matrix is not symmetric, and energy is not
+    conserved. This reading is kept only because, with ρ = 0.2, it reproduces the paper's figures 6
+    and 7 with the actual tip. The friction of the joints, b1 to b3, is an addition of this project.
 
-    Source: eqs. (20)-(21).
+    Source: eqs. (20)-(21), with Ω_j = ρ (ω_j² f_j + 2 ζ ω_j f_j').
     """
     rho = s.p["rho"]
     return _Dynamics(
@@ -261,7 +278,7 @@ def _unit_modes(s: _Symbols) -> _Dynamics:
 
 
 def _mass(parts: _Dynamics, rho: ca.SX) -> ca.SX:
-    """M with the Schur complement undone."""
+    """M, with the modes that `_Dynamics.joints` eliminates put back."""
     joints, n = ca.SX(parts.joints), parts.row.numel()
     joints[2, 2] += ca.dot(parts.row, parts.column)
     above = ca.horzcat(joints, ca.vertcat(ca.SX(2, n), parts.row.T))
@@ -269,7 +286,7 @@ def _mass(parts: _Dynamics, rho: ca.SX) -> ca.SX:
 
 
 def _solve(parts: _Dynamics, rho: ca.SX, rhs: ca.SX) -> ca.SX:
-    """M^-1 R: first the waist, to which all else is coupled and nothing else to one another."""
+    """M⁻¹ R: q3 first, since it couples to everything, while nothing else is coupled."""
     joints, modal = parts.joints, _over(rho, rhs[RIGID:, :])
     arm1, arm2 = _over(joints[0, 0], joints[0, 2]), _over(joints[1, 1], joints[1, 2])
     waist = joints[2, 2] - arm1 * joints[0, 2] - arm2 * joints[1, 2]
@@ -284,7 +301,10 @@ def _solve(parts: _Dynamics, rho: ca.SX, rhs: ca.SX) -> ca.SX:
 
 
 def _over(divisor: ca.SX, value: ca.SX) -> ca.SX:
-    """value / divisor by a product: 2 / divisor is shared, where 1 / divisor would be undone."""
+    """value / divisor as (2 / divisor) (value / 2).
+
+    CasADi would turn a product with 1 / divisor back into a division; 2 / divisor can be shared.
+    """
     return (2 / divisor) * (0.5 * value)
 
 
@@ -293,7 +313,8 @@ def end_point(q: Array, l1: float, beam: BeamModes, alpha: float = 1.0) -> Array
 
     Args:
         l1: length of link 1, [m].
-        alpha: share of the deflection: 1 the actual tip, 0 that of a rigid link.
+        beam: the modes.
+        alpha: share of the deflection: 1 for the actual tip, 0 for that of a rigid link.
 
     Source: eq. (22).
     """

@@ -1,7 +1,8 @@
-"""The flexible five-bar as the lab and the experiments use it: parameters, limits, drawing."""
+"""The flexible five-bar for the lab and the experiments: limits, model errors, drawing."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -13,190 +14,48 @@ from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, SlantedPlane
 from onpath.models.systems import five_bar, flexible_five_bar
 from onpath.models.systems.beam import MOST_MODES, BeamModes, beam_modes
-from onpath.models.systems.flexible_five_bar import FORMER_PLANTS, PLANTS, RIGID, FlexibleLinks
+from onpath.models.systems.drawing import BACK_LAYER, BOSS, FRONT_LAYER, Depths, Drawing
+from onpath.models.systems.five_bar_robot import collapse
+from onpath.models.systems.flexible_five_bar import RIGID, FlexibleLinks
+from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.forces import Grip, SpringLimits
-from onpath.models.systems.parameters import Parameters, choice, number
-from onpath.models.systems.robots import collapse, first_fault
+from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import BalancedLinkage, RobotEntry, first_fault
 from onpath.models.systems.system import MechanicalSystem, conditioning, decoupling_matrix
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
 
-MOST_BENT = 0.3  # of the beam's length: far beyond what small deflections allow
-FASTEST_TIP = 20.0  # [m/s], of the deflection
-BENT = Message(
-    "stop.bent",
-    english="the link bends too far although its zero dynamics are stable: the pull is too strong,"
-    " the control too slow or the controller's model too wrong",
-)
-UNSTABLE = Message(
-    "stop.unstable",
-    english="the output is on the path, the inside is not: unstable zero dynamics",
-)
-# The bare tip is light and soft (15 N/m): a stiff grip held over a tick would chatter.
+MOST_BENT = 0.3  # largest deflection over beam length; far outside the small-deflection model
+FASTEST_TIP = 20.0  # [m/s], largest rate of the deflection
+BENT = Message("stop.bent")
+UNSTABLE = Message("stop.unstable")
+# The tip is light and soft (15 N/m): stiff springs, with forces held over a tick, would chatter.
 SOFT_GRIP = Grip(SpringLimits(100.0, 2.0, 1.0), SpringLimits(500.0, 4.0, 5.0))
-PIECES = 10  # straight bars that the bent link is drawn with
+PIECES = 10  # straight bars by which the bent link is drawn
 _SHARES = np.linspace(0.0, 1.0, PIECES + 1)
-
-
-@dataclass(frozen=True, slots=True)
-class FlexibleParameters(Parameters):
-    """The flexible five-bar's own: beam, output, model errors. `modes` and `plant` pick a robot."""
-
-    K5: float = number(
-        5.0,
-        "1/s",
-        (0, 100, 0.5),
-        "how hard the speed along the path is held",
-        group="gains",
-        label="K5 along",
-    )
-    speed: float = number(
-        2.0,
-        "rad/s",
-        (-10, 10, 0.1),
-        "wanted speed along the path; negative: backwards",
-        group="task",
-        label="Speed",
-    )
-    alpha: float = number(
-        0.5,
-        "",
-        (-1, 1, 0.01),
-        "share of the deflection that the controller sees: 1 the tip, 0 the straight link",
-        group="basic",
-        label="α",
-    )
-    law: str = choice(
-        "redefined",
-        ("redefined", "composite"),
-        "what the controller puts on the path: y with a share of the deflection, or the tip itself",
-        group="basic",
-        label="Output",
-    )
-    tip_damping: float = number(
-        0.3,
-        "",
-        (0.02, 0.7, 0.01),
-        "damping ratio that the waist gives the beam",
-        group="gains",
-        label="Tip damping",
-    )
-    tip_prediction: float = number(
-        1.2,
-        "ω₁",
-        (0.3, 2, 0.1),
-        "how quickly the deflection is foreseen",
-        group="gains",
-        label="Tip prediction",
-    )
-    tip_shaping: float = number(
-        0.25,
-        "ω₁",
-        (0.05, 2, 0.05),
-        "how quickly the wanted speed may change",
-        group="gains",
-        label="Speed shaping",
-    )
-    tip_yielding: float = number(
-        100.0,
-        "1/s²",
-        (0, 200, 5),
-        "how much progress gives way to a tip held back",
-        group="gains",
-        label="Yielding",
-    )
-    plant: str = choice(
-        "lagrangian",
-        PLANTS,
-        "Lagrange's equations, or (20)-(21) read with ∫φ² = 1, whose coupling has odd units",
-        group="robot",
-        label="Plant",
-        former=FORMER_PLANTS,
-    )
-    modes: int = choice(
-        3,
-        tuple(range(1, MOST_MODES + 1)),
-        "how many modes of the beam are simulated",
-        group="robot",
-        label="Modes",
-    )
-    rho: float = number(
-        0.2,
-        "kg/m",
-        (0.05, 1, 0.01),
-        "mass of the beam per metre",
-        group="robot",
-        label="ρ",
-    )
-    frequency: float = number(
-        4.0,
-        "Hz",
-        (1, 10, 0.1),
-        "first frequency of the clamped beam",
-        group="robot",
-        label="First frequency",
-    )
-    zeta: float = number(
-        0.01,
-        "",
-        (0, 0.2, 0.005),
-        "damping ratio of every mode",
-        group="robot",
-        label="Damping ζ",
-    )
-    error_M11: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's M11 is off by this",
-        group="realism",
-        label="M11 wrong",
-        on=30.0,
-    )
-    error_M22: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's M22 is off by this",
-        group="realism",
-        label="M22 wrong",
-        on=30.0,
-    )
-    error_J0: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's waist inertia J0 is off by this",
-        group="realism",
-        label="J0 wrong",
-        on=30.0,
-    )
-    error_rho: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's ρ is off by this",
-        group="realism",
-        label="ρ wrong",
-        on=30.0,
-    )
-    error_omega1: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's first frequency is off by this",
-        group="realism",
-        label="Frequency wrong",
-        on=10.0,
-    )
+DRAWING = Drawing(
+    strip=PIECES,
+    base="pedestal",
+    away=(-1.0, 0.0),
+    depths=Depths(back=BACK_LAYER - FRONT_LAYER, front=0.0, boss=BOSS - FRONT_LAYER, pen=0.0),
+    elevation=math.radians(30.0),
+    azimuth=math.radians(24.0),
+    box=((-0.12, -0.54, -0.17), (0.12, 0.12, 0.47)),
+    apart=0.56,
+    title=(0.0, 0.0, 0.475),
+    note=(0.0, -0.5, 0.08),
+    force=(0.0, -0.5, 0.13),
+    force_scale=0.04,
+    sheet=((-0.24, 0.1), (0.24, 0.5), -0.56),
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FlexibleFiveBar:
-    """The five-bar on a waist with a flexible last link, section IV.
+    """The five-bar on a waist with a flexible last link, of section IV of the paper.
 
-    Its frame for drawing has x right, y away, z up and the waist's foot at the origin. The arm
-    reaches towards the viewer and the path's plane faces them: (y1, y2, y3) is at
-    (y2, -y1, l1 + y3), a rotation and a shift.
+    The frame for drawing has x right, y away from the viewer, z up, and its origin at the foot of
+    the waist. The arm points towards the viewer, who faces the plane of the path: (y1, y2, y3) is
+    drawn at (y2, -y1, l1 + y3).
     """
 
     modes: int = 3
@@ -210,6 +69,8 @@ class FlexibleFiveBar:
     label: str = "Five-bar with a flexible link"
     substeps: int = 2
     grip: Grip = SOFT_GRIP
+    drawing: Drawing = DRAWING
+    linkage: BalancedLinkage | None = None
 
     def __post_init__(self) -> None:
         system = flexible_five_bar.flexible_five_bar(self.modes, self.plant_name)
@@ -220,12 +81,18 @@ class FlexibleFiveBar:
 
     @property
     def start(self) -> Array:
-        """At rest 10 mm off the default path, shape (n,)."""
+        """A configuration at rest, 10 mm off the default path, shape (n,)."""
         return np.concatenate([[np.pi / 2, np.pi - 0.12, 0.0], np.zeros(self.modes)])
 
     @property
+    def reach(self) -> tuple[float, float]:
+        """See `Robot.reach`: of the linkage in its vertical plane."""
+        l1, beam = self.links.link1, self.links.beam
+        return abs(l1 - beam), l1 + beam
+
+    @property
     def coordinate_names(self) -> tuple[str, ...]:
-        """See `Robot.coordinate_names`; f in m^1.5, because phi is in m^-0.5."""
+        """See `Robot.coordinate_names`; f is in m^1.5, because φ is in m^-0.5."""
         modal = (f"f{j + 1}_m1.5" for j in range(self.modes))
         return ("q1_rad", "q2_rad", "q3_rad", *modal)
 
@@ -236,7 +103,7 @@ class FlexibleFiveBar:
         return self.system.parameter_vector(links.lumped(own.alpha))
 
     def model(self, parameters: Parameters) -> Array:
-        """See `Robot.model`: each entry wrong as asked."""
+        """See `Robot.model`: the plant, with the chosen model errors."""
         own = _own(parameters)
         values = dict(zip(self.system.parameter_names, self.plant(own).tolist(), strict=True))
         for name in ("M11", "M22", "J0", "rho", "omega1"):
@@ -244,7 +111,7 @@ class FlexibleFiveBar:
         return self.system.parameter_vector(values)
 
     def rest(self, y: Array) -> Array:
-        """See `Robot.rest`: with the beam straight; (..., 3) -> (..., n)."""
+        """See `Robot.rest`, with the beam straight; shape (..., 3) -> (..., n)."""
         planar = np.stack([np.hypot(y[..., 0], y[..., 1]) - self.links.beam, y[..., 2]], axis=-1)
         angles = five_bar.inverse_kinematics(planar, self.links.link1, self.links.beam)
         waist = np.arctan2(y[..., 1], y[..., 0])[..., None]
@@ -255,22 +122,22 @@ class FlexibleFiveBar:
         return flexible_five_bar.end_point(q, self.links.link1, self.beam)
 
     def rigid_endpoint(self, q: Array) -> Array:
-        """Where the tip would be if the link were straight, (..., n) -> (..., 3), [m]."""
+        """Tip of the straight link, shape (..., n) -> (..., 3), [m]."""
         return flexible_five_bar.end_point(q, self.links.link1, self.beam, alpha=0.0)
 
     def deflection(self, q: Array) -> Array:
-        """w at the tip, (..., n) -> (...), [m]."""
+        """Deflection w(l) = Σ φ_j(l) f_j of the tip, shape (..., n) -> (...), [m]."""
         return q[..., RIGID:] @ self.beam.tip
 
     def internal_energy(self, q: Array, v: Array, parameters: Parameters) -> Array:
-        """Of bending and of the modes' motion, (..., n), (..., n) -> (...), [J]."""
+        """Energy of the modes ½ ρ Σ (f_j'² + ω_j² f_j²), shapes (..., n) -> (...), [J]."""
         own = _own(parameters)
         frequencies = 2 * np.pi * own.frequency * self.beam.overtones
         f, f_rate = q[..., RIGID:], v[..., RIGID:]
         return own.rho / 2 * (f_rate**2 + (frequencies * f) ** 2).sum(-1)
 
     def margin(self, z: Array) -> Array:
-        """See `Robot.margin`: the rank test (11), beam straight, in parts of its value at home."""
+        """See `Robot.margin`: the rank number (11), beam straight, relative to that at home."""
         l1, beam = self.links.link1, self.links.beam
         y = self.frame.lift(np.vstack([z, np.zeros((1, 2))]))
         reach = np.linalg.norm(y + np.array([0.0, 0.0, l1]), axis=-1)
@@ -280,13 +147,13 @@ class FlexibleFiveBar:
         return numbers[:-1] / numbers[-1]
 
     def _decoupling(self, q: Array) -> Array:
-        """The matrix of the test with default parameters, shape (k, n) -> (k, 3, 3)."""
+        """The decoupling matrix with default parameters, shape (k, n) -> (k, 3, 3)."""
         columns = _decoupling(self)(q.T, self.plant(FlexibleParameters())).full()
         return columns.reshape(RIGID, len(q), RIGID).transpose(1, 0, 2)
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """See `Robot.fault`."""
-        with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
+        with np.errstate(invalid="ignore"):  # `first_fault` finds numbers that are not finite
             bent = np.abs(self.deflection(q)) > MOST_BENT * self.links.beam
             bent |= np.abs(self.deflection(v)) > FASTEST_TIP
             found = first_fault(q, v, (bent, BENT), collapse(q))
@@ -295,7 +162,7 @@ class FlexibleFiveBar:
         return found[0], UNSTABLE
 
     def is_unstable_inside(self, q: Array, parameters: Parameters) -> bool:
-        """Whether the zero dynamics at rest are unstable with the joints as in q, (n,)."""
+        """Whether the zero dynamics at rest are unstable, at the joint angles in q, shape (n,)."""
         straight = np.concatenate([q[:RIGID], np.zeros(self.modes)])
         zero = flexible_zero_dynamics(self.modes, self.plant_name)
         return bool(zero.exponents(straight, self.plant(parameters))[0, 0].real > 0)
@@ -309,12 +176,12 @@ class FlexibleFiveBar:
         return np.stack([-point[..., 1], point[..., 0], point[..., 2] - self.links.link1], axis=-1)
 
     def marks(self, q: ca.SX) -> ca.SX:
-        """See `Robot.marks`: where the tip would be if the link were straight."""
+        """See `Robot.marks`: the tip of the straight link."""
         return self.skeleton(q, ca.SX(0))[0][:, -1]
 
     @property
     def extra_fields(self) -> tuple[tuple[str, int], ...]:
-        """See `Robot.extra_fields`: of the tip [m], of each mode at the tip [m], [J]."""
+        """See `Robot.extra_fields`: deflection [m], its share of each mode [m], energy [J]."""
         return (("deflection", 1), ("modes", self.modes), ("internal_energy", 1))
 
     def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
@@ -339,14 +206,14 @@ class FlexibleFiveBar:
         return self._turned(ca.horzcat(bars, *ends), q[2]), self._turned(joints, q[2])
 
     def _turned(self, points: ca.SX, waist: ca.SX) -> ca.SX:
-        """From (radius, w, height) to the frame for drawing."""
+        """From (radius, w, height) to the frame for drawing, (3, k), [m]."""
         radius, w, height = points[0, :], points[1, :], points[2, :]
         c, s = ca.cos(waist), ca.sin(waist)
         return ca.vertcat(radius * s + w * c, w * s - radius * c, height)
 
 
 def flexible_five_bar_robot(modes: int = 3, plant: str = "lagrangian") -> FlexibleFiveBar:
-    """The one instance for a number of modes and a plant: its kernels are built once.
+    """The only instance for a number of modes and a plant, so that its kernels are built once.
 
     Raises:
         ValueError: an unknown plant or number of modes.
@@ -365,7 +232,7 @@ def _decoupling(robot: FlexibleFiveBar) -> ca.Function:
 
 
 def robot_for(parameters: Parameters) -> FlexibleFiveBar:
-    """The instance that serves these parameters."""
+    """The instance for these parameters."""
     own = _own(parameters)
     return flexible_five_bar_robot(own.modes, own.plant)
 
@@ -375,3 +242,14 @@ def _own(parameters: Parameters) -> FlexibleParameters:
         kind = type(parameters).__name__
         raise TypeError(f"the flexible five-bar takes FlexibleParameters, got {kind}")
     return parameters
+
+
+ROBOT = RobotEntry(
+    name="flexible",
+    label="Five-bar with a flexible link",
+    text="Three motors, a last link that bends: the tip is not where the motors put it.",
+    picture="flexible_five_bar.png",
+    parameters=FlexibleParameters,
+    lab=FlexibleParameters(law="composite"),  # the only law that survives every pull at the tip
+    make=robot_for,
+)

@@ -1,4 +1,4 @@
-"""Forces that no controller knows of: a hand that pulls, a brake that holds back, dry friction."""
+"""Forces that the control laws do not know: a hand, a brake, and dry friction."""
 
 from __future__ import annotations
 
@@ -6,13 +6,19 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-TINY = 1e-12
+TINY = 1e-12  # [N²], keeps the square root differentiable at 0
 DRY_VELOCITY = 0.05  # [rad/s], width of the smooth sign in Coulomb friction
 
 
 @dataclass(frozen=True, slots=True)
 class SpringLimits:
-    """Stiffness [N/m], damping [N s/m], largest force [N]."""
+    """A spring with a damper and a limited force.
+
+    Attributes:
+        stiffness: [N/m].
+        damping: [N s/m].
+        largest: largest force, [N].
+    """
 
     stiffness: float
     damping: float
@@ -21,14 +27,21 @@ class SpringLimits:
 
 @dataclass(frozen=True, slots=True)
 class Grip:
-    """How a hand and a brake take hold of a robot's end-point."""
+    """The springs by which a hand and a brake act on a robot's end-point."""
 
     hand: SpringLimits = SpringLimits(stiffness=300.0, damping=10.0, largest=15.0)
     hold: SpringLimits = SpringLimits(stiffness=2000.0, damping=40.0, largest=30.0)
 
 
 def hand(y: ca.SX, y_rate: ca.SX, target: ca.SX, active: ca.SX, limits: SpringLimits) -> ca.SX:
-    """Spring-damper from the end-point to where the hand is, saturated, (p, 1), [N]."""
+    """F = k (target - y) - d y', scaled down to at most `limits.largest`, (p, 1), [N].
+
+    Args:
+        y, y_rate: end-point and its rate, (p, 1), [m], [m/s].
+        target: position of the hand, (p, 1), [m].
+        active: 1, or 0 for no force.
+        limits: k, d and the largest force.
+    """
     force = limits.stiffness * (target - y) - limits.damping * y_rate
     size = ca.sqrt(ca.dot(force, force) + TINY)
     return (active * ca.fmin(1, limits.largest / size)) * force
@@ -42,7 +55,16 @@ def hold(
     active: ca.SX,
     limits: SpringLimits,
 ) -> ca.SX:
-    """Stiff brake along the tangent at the anchor, nothing across it, (p, 1), [N].
+    """A brake along the tangent, F = -clip(k t · (y - anchor) + d t · y', ±largest) t, (p, 1), [N].
+
+    Across the tangent the end-point is free.
+
+    Args:
+        y, y_rate: end-point and its rate, (p, 1), [m], [m/s].
+        anchor: where it is held, (p, 1), [m].
+        tangent: t, of unit length, (p, 1).
+        active: 1, or 0 for no force.
+        limits: k, d and the largest force.
 
     Source: the obstruction of experiment 2.
     """
@@ -52,10 +74,10 @@ def hold(
 
 
 def dry_friction(v: ca.SX, coulomb: ca.SX) -> ca.SX:
-    """Coulomb friction of the joints with a smooth sign, (m, 1), [N m].
+    """τ = -c v / sqrt(v² + ε²): Coulomb friction with a smooth sign, (m, 1), [N m].
 
     Args:
         v: joint velocities, (m, 1), [rad/s].
-        coulomb: friction torque, [N m].
+        coulomb: friction torque c, [N m].
     """
     return -coulomb * v / ca.sqrt(v**2 + DRY_VELOCITY**2)

@@ -1,6 +1,6 @@
-"""Every number and choice a user can set, declared once with unit, range and help.
+"""All numbers and choices that a user can set, each declared once with unit, range and help.
 
-Widgets, the command line and files are built from these records: a new parameter needs one line.
+Widgets, the command line and files are generated from these declarations.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from typing import Any
 
 from onpath.models.errors import CodedError, Message
 
-TICK = 1e-3  # [s]
-NOTHING = 1e-9  # of any parameter; what is smaller is taken as 0, so that its inverse is finite
+TICK = 1e-3  # [s], length of a tick at control rates up to 1 kHz
+NOTHING = 1e-9  # smaller values of any parameter are set to 0, so that inverses are finite
 
 
 @dataclass(frozen=True, slots=True)
 class Spec:
-    """How a parameter is shown and what it may be.
+    """Declaration of a parameter.
 
     Attributes:
         group: "basic", "gains", "task", "realism" or "robot".
         label: name on a widget.
-        unit: of the value, "" for none.
+        unit: "" for none.
         low, high, step: range of a number.
         options: of a choice; empty for a number.
         help: one line.
-        on: where 0 means "off", the value that a switch turns it on with.
-        former: earlier names of options, still read wherever they were stored or typed.
+        on: for a parameter of which 0 means "off": the value that switches it on.
+        former: former names of options, which are still accepted.
     """
 
     group: str
@@ -47,7 +47,7 @@ class Spec:
     former: Mapping[str, str] | None = None
 
     def present(self, value: Any) -> Any:
-        """An option by the name that it has now; any other value as it is."""
+        """The present name of an option; any other value unchanged."""
         return self.former.get(str(value), value) if self.former else value
 
 
@@ -61,7 +61,7 @@ def number(
     label: str,
     on: float | None = None,
 ) -> Any:
-    """A numeric field; bounds are (low, high, step)."""
+    """A dataclass field for a number; `bounds` are (low, high, step)."""
     spec = Spec(group, label, unit, *bounds, (), text, on)
     return field(default=default, metadata={"spec": spec})
 
@@ -75,14 +75,14 @@ def choice(
     label: str,
     former: Mapping[str, str] | None = None,
 ) -> Any:
-    """A field that takes one of `options`, also by a former name."""
+    """A dataclass field for one of `options`; former names are accepted."""
     spec = Spec(group, label, "", 0.0, 0.0, 0.0, options, text, former=former)
     return field(default=default, metadata={"spec": spec})
 
 
 @dataclass(frozen=True, slots=True)
 class Parameters:
-    """What both controllers share: gains, task, realism. Defaults of the rigid robot."""
+    """Parameters of every robot: gains, task, realism. The defaults suit the rigid five-bar."""
 
     K1: float = number(
         400.0,
@@ -200,7 +200,7 @@ class Parameters:
 
 @dataclass(frozen=True, slots=True)
 class FiveBarParameters(Parameters):
-    """The rigid five-bar's own: a wrong model, a spoiled balance."""
+    """Parameters of the rigid five-bar: model errors, removed counterweights, payload."""
 
     error_M11: float = number(
         0.0,
@@ -259,7 +259,7 @@ class FiveBarParameters(Parameters):
 
 
 def specs(kind: type[Parameters] | Parameters) -> Mapping[str, Spec]:
-    """Field name -> Spec, in the order of declaration."""
+    """Name -> declaration of all parameters, in the order of declaration."""
     return _specs(kind if isinstance(kind, type) else type(kind))
 
 
@@ -269,7 +269,7 @@ def _specs(kind: type[Parameters]) -> Mapping[str, Spec]:
 
 
 def unknown_name(name: str, known: list[str], what: str = "parameter") -> CodedError:
-    """The error for a name that is not one of `known`, with the nearest ones."""
+    """The error for an unknown name, which suggests the nearest known ones."""
     near = get_close_matches(name, known, n=3, cutoff=0.4) or get_close_matches(
         name.lower(), known, n=3, cutoff=0.3
     )
@@ -307,7 +307,7 @@ def checked(spec: Spec, name: str, value: Any) -> Any:
 
 
 def changed(parameters: Parameters, name: str, value: Any) -> Parameters:
-    """The same with one field set; the same object if it has that value.
+    """The parameters with one value changed; the same object if it has that value already.
 
     Raises:
         ValueError: unknown name or bad value.
@@ -322,5 +322,5 @@ def changed(parameters: Parameters, name: str, value: Any) -> Parameters:
 
 
 def time_step(parameters: Parameters) -> float:
-    """Length of a tick, [s]: 1 ms, or less if the controller is faster."""
+    """Length of a tick, [s]: 1 ms, or one control interval if that is shorter."""
     return min(TICK, 1 / parameters.control_rate)

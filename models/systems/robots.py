@@ -1,10 +1,14 @@
-"""The robots as the lab and the experiments use them: one interface around each model."""
+"""The interface of robots, as the lab and the experiments use them.
+
+A module of this folder that defines a `ROBOT`, a `RobotEntry`, is found by the catalogue: one file
+with M, c, B, h, parameters and reach is a robot. Details of its drawing that do not follow from
+bars and joints are in `drawing.py`, with a default for each.
+"""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
-from functools import lru_cache
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from operator import itemgetter
 from typing import Protocol
 
@@ -15,25 +19,34 @@ from numpy.typing import NDArray
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, Plane
-from onpath.models.systems import five_bar
+from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
-from onpath.models.systems.parameters import FiveBarParameters, Parameters
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.system import MechanicalSystem
 
-FASTEST_JOINT = 100.0  # [rad/s], beyond it a run counts as diverged
-COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed
-NOT_FINITE = Message("diverged.range")
-COLLAPSE = Message(
-    "stop.collapsed",
-    english="the linkage has collapsed (all links in one line): the controller cannot see its way"
-    " out of a singular configuration",
-)
-SHORT = 20  # rows
-SLOW, FAR = 20.0, 0.5  # [rad/s] and of sin(q1 - q2): nowhere near a fault, nor since some ms
+FASTEST_JOINT = 100.0  # [rad/s]; a run with faster joints counts as diverged
+NOT_FINITE = Message("stop.range")
+
+
+@dataclass(frozen=True, slots=True)
+class BalancedLinkage:
+    """What the identification needs to know about a balanced five-bar.
+
+    Attributes:
+        l1, l4: lengths of links 1 and 4, [m].
+        built: true values of M11, M22, b1 and b2 (SI).
+    """
+
+    l1: float
+    l4: float
+    built: Mapping[str, float]
 
 
 class Robot(Protocol):
-    """A model with all that surrounds it. Planar coordinates z are those of the path's plane."""
+    """A robot: equations of motion, parameters, kinematics, limits and drawing.
+
+    Planar coordinates z are those of the path's plane.
+    """
 
     @property
     def name(self) -> str:
@@ -47,12 +60,12 @@ class Robot(Protocol):
 
     @property
     def system(self) -> MechanicalSystem:
-        """The equations."""
+        """The equations of motion."""
         ...
 
     @property
     def frame(self) -> Frame:
-        """Where the path's plane lies."""
+        """How the plane of the path lies in the output space."""
         ...
 
     @property
@@ -62,7 +75,7 @@ class Robot(Protocol):
 
     @property
     def grip(self) -> Grip:
-        """How a hand and a brake take hold of its end-point."""
+        """The springs by which a hand and a brake act on its end-point."""
         ...
 
     @property
@@ -75,200 +88,193 @@ class Robot(Protocol):
         ...
 
     def model(self, parameters: Parameters) -> Array:
-        """The system's parameters as the controller believes them, shape (k,)."""
+        """The system's parameters as the controller assumes them, shape (k,)."""
         ...
 
     def rest(self, y: Array) -> Array:
-        """A configuration at rest with the end-point at y, (p,) -> (n,).
+        """A configuration at rest with the end-point at y, shape (p,) -> (n,).
 
         Raises:
-            ValueError: out of reach.
+            ValueError: y is out of reach.
         """
         ...
 
     def endpoint(self, q: Array) -> Array:
-        """The actual end-point, (..., n) -> (..., p), [m]."""
+        """The actual end-point, shape (..., n) -> (..., p), [m]."""
         ...
 
     def margin(self, z: Array) -> Array:
-        """How far points of the path's plane are from singular, (n, 2) -> (n,); 0: out of reach."""
+        """Distance of points of the path's plane from singular configurations, (n, 2) -> (n,).
+
+        A number in [0, 1] or of that order; 0 out of reach.
+        """
         ...
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
-        """First row at which a run is no longer to be believed, and why. q, v: (rows, n)."""
+        """The first row in which the simulation has diverged, and why; None if in none.
+
+        Args:
+            q, v: shape (rows, n).
+        """
         ...
 
     def place(self, y: Array) -> Array:
-        """Points of the output space in the robot's frame for drawing, (..., p) -> (..., 3)."""
+        """Points of the output space in the frame for drawing, (..., p) -> (..., 3), [m]."""
         ...
 
     def unplace(self, point: Array) -> Array:
-        """The inverse of `place`, (..., 3) -> (..., p)."""
+        """The inverse of `place`, (..., 3) -> (..., p), [m]."""
         ...
 
     def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
         """Bars (3, 2 n), begin and end as columns, and joints (3, m) in the robot's frame, [m].
 
-        The last bar ends at the end-point. A deflection is drawn so many times larger than it is.
+        The last bar ends at the end-point. Deflections are multiplied by `exaggeration`.
         """
         ...
 
     def marks(self, q: ca.SX) -> ca.SX:
-        """Further points worth a mark, (n,) -> (3, k) in the robot's frame, [m]."""
+        """Further points to mark, in the robot's frame, (3, k), [m]."""
         ...
 
     @property
     def extra_fields(self) -> tuple[tuple[str, int], ...]:
-        """Names and sizes of what is worth a plot besides what every robot has."""
+        """Names and sizes of quantities to plot, besides those of every robot."""
         ...
 
     def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
-        """Their values, shape (size,) each, by name; q and v: (n,)."""
+        """The values of `extra_fields`, shape (size,) each; q and v: (n,)."""
+        ...
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Smallest and largest distance of the end-point from the base pivot, [m].
+
+        The robot is singular at both. The hand's target stays within the larger one of home.
+        """
+        ...
+
+    @property
+    def drawing(self) -> Drawing:
+        """What does not follow from bars and joints about its drawing."""
+        ...
+
+    @property
+    def linkage(self) -> BalancedLinkage | None:
+        """What can be identified from a record of its motion, or None."""
         ...
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RigidFiveBar:
-    """The planar five-bar linkage of section III."""
+class PlanarRobot:
+    """Common parts of robots with rigid links that move in the vertical plane y = 0.
 
-    links: five_bar.FiveBarLinks = field(default_factory=five_bar.load_links)
-    system: MechanicalSystem = field(default_factory=five_bar.five_bar, repr=False)
-    frame: Frame = field(default_factory=Plane)
-    name: str = "five_bar"
-    label: str = "Five-bar linkage"
-    substeps: int = 1
-    grip: Grip = field(default_factory=Grip)
-    coordinate_names: tuple[str, ...] = ("q1_rad", "q2_rad")
-    extra_fields: tuple[tuple[str, int], ...] = ()
+    The output space is that plane, and the end-point y = 0 lies at `home`.
+    """
+
+    __slots__ = ()
 
     @property
-    def _lengths(self) -> tuple[float, float]:
-        return self.links.link1.length, self.links.link4.length
+    def home(self) -> tuple[float, float]:
+        """The end-point y = 0 in the robot's frame, (x, z), [m]."""
+        raise NotImplementedError
 
-    def plant(self, parameters: Parameters) -> Array:
-        """See `Robot.plant`."""
-        own = _own(parameters)
-        return _plant(self, own.counterweights_removed / 100, own.payload)
+    @property
+    def frame(self) -> Frame:
+        """See `Robot.frame`."""
+        return _PLANE
 
-    def model(self, parameters: Parameters) -> Array:
-        """See `Robot.model`: the balanced robot of (12), each entry wrong as asked."""
-        own = _own(parameters)
-        return _model(self, own.error_M11, own.error_M22, own.error_b1, own.error_b2)
+    @property
+    def substeps(self) -> int:
+        """See `Robot.substeps`."""
+        return 1
 
-    def rest(self, y: Array) -> Array:
-        """See `Robot.rest`."""
-        return five_bar.inverse_kinematics(y, *self._lengths)
+    @property
+    def grip(self) -> Grip:
+        """See `Robot.grip`."""
+        return _GRIP
 
-    def endpoint(self, q: Array) -> Array:
-        """See `Robot.endpoint`."""
-        return five_bar.end_point(q, *self._lengths)
+    @property
+    def drawing(self) -> Drawing:
+        """See `Robot.drawing`: everything follows from the bars."""
+        return _DRAWING
 
-    def margin(self, z: Array) -> Array:
-        """See `Robot.margin`: |sin(q1 - q2)|, eq. (14)."""
-        l1, l4 = self._lengths
-        squared = (z[..., 0] + l4) ** 2 + (z[..., 1] + l1) ** 2
-        cosine = (l1**2 + l4**2 - squared) / (2 * l1 * l4)
-        return np.sqrt(np.maximum(1 - cosine**2, 0.0))
+    @property
+    def linkage(self) -> BalancedLinkage | None:
+        """See `Robot.linkage`."""
+        return None
 
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
-        """See `Robot.fault`."""
-        return None if is_calm(q, v) else first_fault(q, v, collapse(q))
-
-    def place(self, y: Array) -> Array:
-        """See `Robot.place`."""
-        l1, l4 = self._lengths
-        points = np.zeros((*y.shape[:-1], 3))
-        points[..., 0], points[..., 2] = y[..., 0] + l4, y[..., 1] + l1
-        return points
-
-    def unplace(self, point: Array) -> Array:
-        """See `Robot.unplace`."""
-        l1, l4 = self._lengths
-        return np.stack([point[..., 0] - l4, point[..., 2] - l1], axis=-1)
-
-    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """See `Robot.skeleton`: nothing bends."""
-        l1, l4 = self._lengths
-        return five_bar.skeleton(q, l1, self.links.link2.length, l4)
-
-    def marks(self, q: ca.SX) -> ca.SX:
-        """See `Robot.marks`: none."""
-        return ca.SX(3, 0)
+    @property
+    def extra_fields(self) -> tuple[tuple[str, int], ...]:
+        """See `Robot.extra_fields`: none."""
+        return ()
 
     def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
         """See `Robot.extras`: none."""
         return {}
 
+    def marks(self, q: ca.SX) -> ca.SX:
+        """See `Robot.marks`: none."""
+        return ca.SX(3, 0)
 
-@lru_cache(maxsize=64)
-def _plant(robot: RigidFiveBar, removed: float, payload: float) -> Array:
-    links = robot.links.spoiled(removed, payload)
-    return _constant(robot.system.parameter_vector(links.lumped()))
+    def place(self, y: Array) -> Array:
+        """See `Robot.place`."""
+        x, z = self.home
+        points = np.zeros((*y.shape[:-1], 3))
+        points[..., 0], points[..., 2] = y[..., 0] + x, y[..., 1] + z
+        return points
 
-
-@lru_cache(maxsize=64)
-def _model(robot: RigidFiveBar, *percent: float) -> Array:
-    values = robot.links.lumped()
-    for name, error in zip(("M11", "M22", "b1", "b2"), percent, strict=True):
-        values[name] *= 1 + error / 100
-    return _constant(robot.system.parameter_vector(values))
-
-
-def _constant(array: Array) -> Array:
-    """The same, for all who ask."""
-    array.flags.writeable = False
-    return array
+    def unplace(self, point: Array) -> Array:
+        """See `Robot.unplace`."""
+        x, z = self.home
+        return np.stack([point[..., 0] - x, point[..., 2] - z], axis=-1)
 
 
-@lru_cache(maxsize=1)
-def rigid_five_bar() -> RigidFiveBar:
-    """The one instance: its kernels are built once."""
-    return RigidFiveBar()
+_PLANE, _GRIP, _DRAWING = Plane(), Grip(), Drawing()  # shared, because they are keys of caches
 
 
-def collapse(q: Array) -> tuple[NDArray[np.bool_], Message]:
-    """Where a five-bar has collapsed, for `first_fault`. q: (rows, at least 2). Eq. (14)."""
-    with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
-        collapsed = five_bar.singularity_margin(q) < COLLAPSED
-    return collapsed, COLLAPSE
+@dataclass(frozen=True, slots=True)
+class RobotEntry:
+    """An entry of the catalogue.
 
-
-def is_calm(q: Array, v: Array) -> bool:
-    """Whether the last row is so far from any fault that those before it were none, either.
-
-    Args:
-        q, v: of some milliseconds, at most `SHORT` rows, (rows, 2). A NaN or an infinity stays.
+    Attributes:
+        name: as on the command line and in files.
+        label: as shown.
+        text: one sentence about the robot.
+        parameters: the type of its parameters, with the defaults of the experiments.
+        lab: parameters with which the lab starts.
+        make: the instance for given parameters; only structural parameters select it.
+        picture: name of an asset; if empty, the bars are sketched.
     """
-    (first, second), (fast, faster) = q[-1].tolist(), v[-1].tolist()
-    apart = abs(math.sin(first - second))  # false for NaN, as all comparisons with it are
-    return len(q) <= SHORT and abs(fast) < SLOW and abs(faster) < SLOW and apart > FAR
+
+    name: str
+    label: str
+    text: str
+    parameters: type[Parameters]
+    lab: Parameters
+    make: Callable[[Parameters], Robot]
+    picture: str = ""
 
 
 def first_fault(
     q: Array, v: Array, *checks: tuple[NDArray[np.bool_], Message]
 ) -> tuple[int, Message] | None:
-    """The earliest of: joints too fast, the given checks, and numbers that are not finite.
+    """The first row with a fault, and the reason: too fast, one of the checks, or not finite.
 
     Of several in one row, the first in this order.
 
     Args:
+        q, v: shape (rows, n).
         checks: (bad rows as booleans, reason).
     """
-    quiet = np.abs(v).max() <= FASTEST_JOINT and np.isfinite(q).all()  # not so if v has a NaN
+    quiet = np.abs(v).max() <= FASTEST_JOINT and np.isfinite(q).all()  # false if v has a NaN
     if quiet and not any(bad.any() for bad, _ in checks):
         return None
     finite = np.isfinite(q).all(-1) & np.isfinite(v).all(-1)
     fast = np.abs(np.where(np.isfinite(v), v, 0)).max(-1) > FASTEST_JOINT
     every = [
-        (fast, Message("diverged.fast", {"limit": f"{FASTEST_JOINT:.0f}"})),
+        (fast, Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})),
         *checks,
         (~finite, NOT_FINITE),
     ]
     found = [(int(bad.argmax()), why) for bad, why in every if bad.any()]
     return min(found, default=None, key=itemgetter(0))
-
-
-def _own(parameters: Parameters) -> FiveBarParameters:
-    if not isinstance(parameters, FiveBarParameters):
-        raise TypeError(f"the five-bar takes FiveBarParameters, got {type(parameters).__name__}")
-    return parameters

@@ -1,7 +1,10 @@
-"""A controlled mechanical system, defined once by symbols; all else is derived from it.
+"""A controlled mechanical system, defined by symbols; everything else is derived from them.
 
-The class of systems is eqs. (1)-(3):  M(q) v' + c(q, v) = B u + J_h(q)^T F,  y = h(q),
+    M(q) v' + c(q, v) = B u + J_h(q)^T F,   q' = v,   y = h(q),
+
 with F the external force at the end-point. CasADi differentiates; nothing is derived by hand.
+
+Source: eqs. (1)-(3).
 """
 
 from __future__ import annotations
@@ -17,24 +20,24 @@ from onpath.models.arrays import Array
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MechanicalSystem:
-    """Symbols of one robot. Columns throughout; n coordinates, m inputs, p outputs.
+    """The symbols of one robot: n coordinates, m inputs, p outputs. All vectors are columns.
 
     Attributes:
-        name: how the robot is called in files and on the command line.
-        q: generalized coordinates, (n, 1); the first m of them are the actuated joints.
+        name: as in files and on the command line.
+        q: generalized coordinates, (n, 1); the first m of them are actuated.
         v: their velocities, (n, 1).
         tau: generalized forces B u + J_h^T F, (n, 1).
-        parameters: numbers that a run may change without rebuilding, (k, 1).
+        parameters: numbers that may change without rebuilding, (k, 1).
         parameter_names: k names.
         mass: M(q), (n, n).
         bias: c(q, v), (n, 1).
-        acceleration: v' = M^-1 (tau - c), (n, 1).
-        drift: f_v(q, v) = -M^-1 c, (n, 1).
-        input_gain: g_v(q) = M^-1 B, (n, m).
+        acceleration: v' = M⁻¹ (τ - c), (n, 1).
+        drift: f_v(q, v) = -M⁻¹ c, (n, 1).
+        input_gain: g_v(q) = M⁻¹ B, (n, m).
         output: h(q), the actual end-point, (p, 1), [m].
-        controlled_output: what a controller is given instead of h, (p, 1), [m]; often h itself.
-        energy: total mechanical energy, (1, 1), [J].
-        n, m, p: numbers of degrees of freedom, inputs and outputs.
+        controlled_output: the output that a control law is given, (p, 1), [m]; often h itself.
+        energy: total mechanical energy ½ v^T M v + V(q), (1, 1), [J].
+        n, m, p: numbers of coordinates, inputs and outputs.
     """
 
     name: str
@@ -61,17 +64,17 @@ class MechanicalSystem:
         object.__setattr__(self, "p", self.output.numel())
 
     def function(self, *names: str) -> ca.Function:
-        """Numeric function (q, v, parameters) -> the named attributes (not `acceleration`)."""
+        """The function (q, v, parameters) -> the named attributes (all but `acceleration`)."""
         outputs = [getattr(self, name) for name in names]
         return ca.Function("_".join(names), [self.q, self.v, self.parameters], outputs)
 
     def with_rate(self, output: ca.SX) -> ca.Function:
-        """(q, v, parameters) -> an output of the configuration, and its rate of change."""
+        """The function (q, v, parameters) -> (y, (dy/dq) v) of an output y(q)."""
         rate = ca.jtimes(output, self.q, self.v)
         return ca.Function("with_rate", [self.q, self.v, self.parameters], [output, rate])
 
     def parameter_vector(self, values: dict[str, float]) -> Array:
-        """`values` by name, in the order of `parameters`, shape (k,)."""
+        """The values in the order of `parameter_names`, shape (k,)."""
         return np.array([values[name] for name in self.parameter_names])
 
 
@@ -94,9 +97,12 @@ def mechanical_system(
 
     Args:
         mass: M(q), (n, n).
-        bias: c(q, v), Coriolis, gravity, elastic and viscous terms, (n, 1).
-        potential_energy: [J]; only for the energy balance.
-        solve: returns M^-1 R for (M, R); replace it where M has structure.
+        bias: c(q, v): Coriolis, gravity, elastic and viscous terms, (n, 1).
+        inputs: m.
+        output: h(q), (p, 1), [m].
+        potential_energy: V(q), [J]; used for the energy only.
+        controlled_output: (p, 1), [m]; None: h.
+        solve: (M, R) -> M⁻¹ R; replace it where M has structure.
 
     Source: eqs. (1)-(3).
     """
@@ -124,14 +130,16 @@ def mechanical_system(
 def lagrange_bias(
     q: ca.SX, v: ca.SX, kinetic_energy: ca.SX, potential_energy: ca.SX, friction: ca.SX
 ) -> ca.SX:
-    """c(q, v) = d/dt (dT/dv) at v' = 0 - dT/dq + dV/dq + friction, by differentiation."""
+    """c(q, v) = d/dt(dT/dv) at v' = 0, minus dT/dq, plus dV/dq, plus friction; (n, 1)."""
     momentum = ca.gradient(kinetic_energy, v)
     turning = ca.jtimes(momentum, q, v) - ca.gradient(kinetic_energy, q)
     return turning + ca.gradient(potential_energy, q) + friction
 
 
 def decoupling_matrix(system: MechanicalSystem) -> ca.Function:
-    """(q, parameters) -> dh/dq g_v(q), shape (p, m), whose rank the test (11) asks for.
+    """The function (q, parameters) -> J g_v with J = dh/dq of the controlled output, shape (p, m).
+
+    The virtual output has a relative degree where this matrix has rank p.
 
     Source: Theorem 2.1, eq. (11).
     """
@@ -141,9 +149,9 @@ def decoupling_matrix(system: MechanicalSystem) -> ca.Function:
 
 
 def conditioning(matrices: Array) -> Array:
-    """The rank test (11) as a number in [0, 1]: 0 where a matrix loses rank.
+    """σ_min / σ_max of matrices, shape (..., p, m) -> (...), in [0, 1]; 0 where rank is lost.
 
-    Smallest over largest singular value, shape (..., p, m) -> (...).
+    Source: the rank test (11) as a number.
     """
     values = np.linalg.svd(matrices, compute_uv=False)
     largest = values[..., 0]

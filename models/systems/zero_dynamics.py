@@ -1,9 +1,9 @@
-"""Zero dynamics: what the modes do while the controlled output is held exactly on its path.
+"""Zero dynamics: the motion of the modes while the controlled output stays exactly on its path.
 
-With n coordinates, m inputs and p = m outputs, holding y = h(q) leaves the n - m coordinates f that
-no motor moves: eta_1 = (f, f') in the normal form (10). Where their linearization has an exponent
-with a positive real part, exact input-output linearization lets the inside blow up, however well
-the output sits on the path.
+With n coordinates, m inputs and p = m outputs, a prescribed y = h(q) leaves the n - m unactuated
+coordinates f: η1 = (f, f') in the normal form (10). Where their linearization has an eigenvalue
+with a positive real part, exact input-output linearization makes the internal motion diverge, while
+the output stays on its path.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from onpath.models.systems.system import MechanicalSystem
 
 Complex = NDArray[np.complex128]
 HIGHEST_ALPHA = 1.5
-_SCAN = 61  # values of alpha looked at before bisection
-_HALVINGS = 16
-_NEUTRAL = 1e-7  # of the largest exponent: rounding, when nothing is damped
+_SCAN = 61  # values of α on a grid, before bisection
+_HALVINGS = 16  # bisections
+_NEUTRAL = 1e-7  # relative to the largest exponent: rounding error of undamped modes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,8 +32,8 @@ class ZeroDynamics:
     """The linearized internal dynamics of a system with as many outputs as inputs.
 
     Attributes:
-        system: whose.
-        function: (q, y', y'', parameters) -> A with eta_1' = A eta_1, (2 (n - m), 2 (n - m)),
+        system: the system.
+        function: (q, y', y'', parameters) -> A in η1' = A η1, (2 (n - m), 2 (n - m)), linearized
             about f' = 0 and the f in q.
     """
 
@@ -47,12 +47,12 @@ class ZeroDynamics:
         y_rate: Array | None = None,
         y_acceleration: Array | None = None,
     ) -> Complex:
-        """Eigenvalues of A, frozen at this instant of the motion; real part falling.
+        """Eigenvalues of A at an instant of the motion, by decreasing real part.
 
         Args:
             q: configurations, shape (k, n) or (n,).
-            parameters: the system's, shape (k, size) or (size,).
-            y_rate, y_acceleration: of the output along its path, (k, p) or (p,); None: at rest.
+            parameters: of the system, shape (k, size) or (size,).
+            y_rate, y_acceleration: y' and y'' along the path, shape (k, p) or (p,); None: at rest.
 
         Returns:
             Shape (k, 2 (n - m)), [1/s].
@@ -68,19 +68,19 @@ class ZeroDynamics:
         return np.take_along_axis(values, np.argsort(-values.real, axis=-1), axis=-1)
 
     def critical_alpha(self, q: Array, parameters: Array, highest: float = HIGHEST_ALPHA) -> float:
-        """The smallest positive alpha at which an exponent crosses to the right, at rest at q.
+        """The smallest α at which the zero dynamics become unstable, at rest at q.
 
-        It depends on how the modes are damped: the flexible five-bar at home, with three modes, has
-        0.7227 with the same damping ratio 0.01 in each and 0.7585 without any. In between it is
-        damping that destabilises.
+        It depends on the damping of the modes. The flexible five-bar at home has, with three modes,
+        0.7227 with the damping ratio 0.01 in each mode, and 0.7585 without damping: between these
+        values it is the damping that destabilises.
 
         Args:
             q: shape (n,).
-            parameters: the system's; their own alpha does not matter.
-            highest: where the search ends.
+            parameters: of the system; their own α is ignored.
+            highest: end of the search interval, which begins at 0.
 
         Returns:
-            alpha, or infinity if all of [0, highest] is stable.
+            α, or infinity if the whole interval is stable.
         """
         scan = np.linspace(0.0, highest, _SCAN)
         unstable = np.flatnonzero(self._grows(q, parameters, scan))
@@ -96,26 +96,28 @@ class ZeroDynamics:
         return float((low + high) / 2)
 
     def _grows(self, q: Array, parameters: Array, alphas: Array) -> NDArray[np.bool_]:
+        """For every α, whether an exponent has a positive real part, shape (k,) -> (k,)."""
         exponents = self.exponents(q, self.with_alpha(parameters, alphas))
         return exponents[:, 0].real > _NEUTRAL * np.abs(exponents).max(-1)
 
     def with_alpha(self, parameters: Array, alphas: Array) -> Array:
-        """The parameters for each alpha, (size,) and (k,) -> (k, size)."""
+        """The parameters with each α, shapes (size,) and (k,) -> (k, size)."""
         rows = np.tile(parameters, (alphas.size, 1))
         rows[:, self.system.parameter_names.index("alpha")] = alphas
         return rows
 
 
 def zero_dynamics(system: MechanicalSystem) -> ZeroDynamics:
-    """Derive them.
+    """Derive the zero dynamics of a system.
 
-    The rows of M v' + c = B u that no input enters, with v' of the actuated joints from
-    y'' = J v' + J' v, leave f'' as a function of f, f', y' and y''; joints follow f by dy = 0.
+    The rows of M v' + c = B u without an input, with the accelerations of the joints eliminated by
+    y'' = J v' + J' v, give f'' as a function of f, f', y' and y''. In the linearization the joints
+    follow f so that dy = 0.
 
     Raises:
-        ValueError: no coordinate without a motor, or more or fewer outputs than inputs.
+        ValueError: all coordinates have inputs, or the numbers of inputs and outputs differ.
 
-    Source: eq. (10) with xi = 0.
+    Source: eq. (10) with ξ = 0.
     """
     n, m = system.n, system.m
     if system.p != m or n == m:
@@ -123,7 +125,7 @@ def zero_dynamics(system: MechanicalSystem) -> ZeroDynamics:
     y_rate, y_acceleration = ca.SX.sym("y_rate", m), ca.SX.sym("y_acceleration", m)
     jacobian = ca.jacobian(system.controlled_output, system.q)
     joints, modes = jacobian[:, :m], jacobian[:, m:]
-    follow = -ca.solve(joints, modes)  # of the joints, per motion of f
+    follow = -ca.solve(joints, modes)  # dq_joints / df at constant y
     turning = ca.jtimes(jacobian @ system.v, system.q, system.v)
     rows = system.mass[m:, :]
     carried = ca.solve(joints, y_acceleration - turning)
@@ -144,15 +146,15 @@ def zero_dynamics(system: MechanicalSystem) -> ZeroDynamics:
 
 @lru_cache(maxsize=16)
 def flexible_zero_dynamics(modes: int = 3, plant: str = "lagrangian") -> ZeroDynamics:
-    """Those of the flexible five-bar, derived once."""
+    """The zero dynamics of the flexible five-bar, derived once."""
     return zero_dynamics(flexible_five_bar(modes, plant))
 
 
 def natural_rate(parameters: dict[str, float], first_root: float) -> float:
-    """sqrt(EI / rho) / l^2 = omega_1 / beta_1^2, the unit in which exponents are compared, [1/s].
+    """sqrt(EI / ρ) / l² = ω_1 / β_1², a unit for comparing the exponents of different beams, [1/s].
 
     Args:
-        parameters: the flexible five-bar's by name.
-        first_root: beta_1.
+        parameters: of the flexible five-bar, by name.
+        first_root: β_1.
     """
     return parameters["omega1"] / first_root**2

@@ -14,7 +14,8 @@ from onpath.assets.messages import identifier, languages
 from onpath.lessons.course import read_course
 from onpath.lessons.formulas import to_html
 from onpath.lessons.links import read_link
-from onpath.lessons.parse import LARGEST, LessonError, read_lesson
+from onpath.lessons.parse import LARGEST, read_lesson
+from onpath.lessons.problems import LessonError
 from onpath.lessons.schema import Action, Sketch, Text
 from onpath.lessons.words import ELSEWHERE, Words
 from tests.support.catalogues import arguments, entries, messages

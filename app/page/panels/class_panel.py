@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable
 
 import viser
 
+from onpath.app.common.templates import render
 from onpath.app.lab.session import Session
 from onpath.app.page.page_context import ClassSeat
-from onpath.app.page.panels.widgets import on_slow_press
+from onpath.app.page.panels.widgets import note, on_slow_press
 
 
 class ClassPanel:
@@ -42,8 +42,8 @@ class ClassPanel:
         if name == self._shown:
             return
         self._shown = name
-        said = self._words("class.member", name=f"<b><bdi>{html.escape(name)}</bdi></b>")
-        self._member.content = _text(said) if name else ""
+        member = render("panel/member.html", name=name, words=self._words)
+        self._member.content = note(member, small=True) if name else ""
         for handle in (self._code, self._name, self._join):
             handle.visible = not name
         self._leave.visible = bool(name)
@@ -54,10 +54,6 @@ class ClassPanel:
             try:
                 act()  # may build the page anew, without this panel
             except (ValueError, OSError) as error:
-                self._said.content = _text(html.escape(self._words.sentence(error)))
+                self._said.content = note(self._words.sentence(error), small=True)
 
         on_slow_press(button, tried)
-
-
-def _text(content: str) -> str:
-    return f'<div role="note" style="padding:0.3em 0.9em;font-size:0.9em">{content}</div>'

@@ -8,8 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 import viser
+from markupsafe import Markup
 
-from onpath.app.common.palette import WARNING
+from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshot import FollowerName
@@ -23,7 +24,6 @@ LEAST, MOST = -1.0, 1.0  # of alpha on its bar
 BEAM = ["plant", "modes", "rho", "frequency", "zeta"]
 COMPOSITE = ["tip_damping", "tip_prediction", "tip_shaping", "tip_yielding"]
 TURNED = 0.03  # [rad], of a joint; less changes the critical alpha too little to see
-STABLE = "#2a8a5b"
 
 
 def critical_alpha(parameters: FlexibleParameters, joints: np.ndarray) -> float:
@@ -68,7 +68,7 @@ class CriticalAlpha:
             self._busy = False
 
 
-def alpha_bar(alpha: float, critical: float, used: bool, words: Words) -> str:
+def alpha_bar(alpha: float, critical: float, used: bool, words: Words) -> Markup:
     """A line from -1 to 1, red where the inside is unstable, with alpha marked.
 
     Args:
@@ -87,16 +87,15 @@ def alpha_bar(alpha: float, critical: float, used: bool, words: Words) -> str:
         said = words("flexible.critical", critical=f"{critical:.2f}")
     if not used:
         said += f"; {words('flexible.unused')}"
-    elif alpha > critical:
-        said += f": <b>{words('flexible.unstable')}</b>"
-    said = words("flexible.alpha", alpha=f"{alpha:.2f}", limit=said)
-    return (
-        f'<div style="padding:0.2em 0.9em;font-size:0.8em;opacity:{1 if used else 0.55}">'
-        f'<div style="position:relative;height:0.7em;border-radius:0.3em;background:'
-        f'linear-gradient(90deg,{STABLE} {limit:.1f}%,{WARNING.hex} {limit:.1f}%)">'
-        f'<div style="position:absolute;left:{percent(alpha):.1f}%;top:-0.2em;width:3px;'
-        f'height:1.1em;background:#111"></div></div>'
-        f'<div style="color:#445">{said}</div></div>'
+    return render(
+        "panel/alpha.html",
+        alpha=f"{alpha:.2f}",
+        place=f"{percent(alpha):.1f}",
+        limit=f"{limit:.1f}",
+        said=said,
+        used=used,
+        beyond=used and alpha > critical,
+        words=words,
     )
 
 
@@ -121,7 +120,7 @@ class FlexiblePanel:
         self._post, self._words = post, session.lessons.words
         words = self._words
         self._critical = CriticalAlpha(submit)
-        self._shown = ""
+        self._shown: tuple[float, float, bool] | None = None
         with gui.add_folder(words("flexible.title")):
             self._widgets = [ParameterWidgets(gui, session, ["law", "alpha"], self._set)]
             self._bar = gui.add_html("")
@@ -156,9 +155,9 @@ class FlexiblePanel:
         if self._larger.value != session.exaggeration:
             self._larger.value = session.exaggeration
         self._critical.follow(own, session.runs[FollowerName].shown()["q"])
-        bar = alpha_bar(own.alpha, self._critical.value, own.law == "redefined", self._words)
-        if bar != self._shown:
-            self._shown = self._bar.content = bar
+        shown = own.alpha, self._critical.value, own.law == "redefined"
+        if shown != self._shown:
+            self._shown, self._bar.content = shown, alpha_bar(*shown, self._words)
         numbers = deflections(session)
         if self._numbers.content != numbers:
             self._numbers.content = numbers

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import html
-
 import viser
+from markupsafe import Markup
 
 from onpath.app.common.access_codes import shown
+from onpath.app.common.templates import render
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.session import Session
@@ -52,12 +52,8 @@ class KeepPanel:
             self._say(self._words.sentence(error))
 
     def _say(self, said: str) -> None:
-        self._said.content = f'<div class="op-text">{html.escape(said)}</div>'
+        self._said.content = render("lesson/text.html", content=said)
 
 
-def _code(label: str, code: str) -> str:
-    return (
-        f'<div style="padding:0.3em 0.9em;font-size:0.85em;color:#445">{label}<br/>'
-        '<code style="user-select:all;font-size:1.15em;color:#111;overflow-wrap:anywhere">'
-        f"{html.escape(code)}</code></div>"
-    )
+def _code(label: str, code: str) -> Markup:
+    return render("panel/code.html", label=label, code=code)

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import html
+from functools import lru_cache, partial
 
 import viser
+from markupsafe import Markup
 
-from onpath.app.common.palette import CONTROLLERS, WARNING
+from onpath.app.common.palette import AMBER, BLUE, CONTROLLERS, WARNING
+from onpath.app.common.templates import render
 from onpath.app.lab.session import Session
-from onpath.app.lab.snapshot import RobotView, Snapshot
+from onpath.app.lab.snapshot import Snapshot
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.words import Words
 
-LEVELS = {"info": "#33506b", "warning": "#8a5a00", "error": WARNING.hex}
+LEVELS = {"info": BLUE.hex, "warning": AMBER.hex, "error": WARNING.hex}
 
 
 class Readout:
@@ -22,31 +24,37 @@ class Readout:
         self._words = session.lessons.words
         self._table = gui.add_html("")
         self._shown = ""
+        self._frame = lru_cache(maxsize=8)(partial(_frame, self._words))
 
     def follow(self, snapshot: Snapshot) -> None:
         """Show the snapshot's numbers."""
-        words = self._words
-        rows = "".join(_row(name, view, words) for name, view in snapshot.robots.items())
-        distance, now, most = (words(f"readout.{key}") for key in ("distance", "now", "most"))
-        content = (
-            '<div style="padding:0.5em 0.9em 0 0.9em;font-size:0.85em">'
-            '<table style="width:100%;border-collapse:collapse">'
-            f'<tr style="color:#667"><td>{distance}</td><td align="right">{now}</td>'
-            f'<td align="right">{most}</td></tr>{rows}</table>'
-            f'<div style="color:#667;margin-top:0.3em">{_clock(snapshot, words)}</div>'
-            f"{_message(snapshot)}</div>"
+        numbers = [
+            f"{distance * 1e3:.1f}"
+            for view in snapshot.robots.values()
+            for distance in (view.distance, view.max_distance)
+        ]
+        names = tuple(snapshot.robots)
+        level = snapshot.message_level if snapshot.message else ""
+        content = self._frame(names, level).format(
+            *numbers, _clock(snapshot, self._words), snapshot.message
         )
         if content != self._shown:
             self._shown = content
             update_gui(self._table, "content", content)
 
 
-def _row(name: str, view: RobotView, words: Words) -> str:
-    colour, title = CONTROLLERS[name].hex, words(f"controller.{name}.title")
-    return (
-        f'<tr style="color:{colour};font-weight:600"><td>{title}</td>'
-        f'<td align="right">{view.distance * 1e3:.1f} mm</td>'
-        f'<td align="right">{view.max_distance * 1e3:.1f} mm</td></tr>'
+def _frame(words: Words, names: tuple[str, ...], level: str) -> Markup:
+    """All but what changes ten times a second, where it has a {}.
+
+    Args:
+        names: of the controllers.
+        level: of the message; empty without one.
+    """
+    return render(
+        "panel/readout.html",
+        rows=[(CONTROLLERS[name].hex, words(f"controller.{name}.title")) for name in names],
+        level=LEVELS.get(level, BLUE.hex) if level else "",
+        words=words,
     )
 
 
@@ -55,13 +63,3 @@ def _clock(snapshot: Snapshot, words: Words) -> str:
         return words("readout.paused", time=f"{snapshot.time:.2f}")
     speed = f"{snapshot.achieved_speed:.2g}"
     return words("readout.running", time=f"{snapshot.time:.1f}", speed=speed)
-
-
-def _message(snapshot: Snapshot) -> str:
-    if not snapshot.message:
-        return ""
-    colour = LEVELS.get(snapshot.message_level, LEVELS["info"])
-    return (
-        f'<div role="status" style="margin-top:0.5em;padding:0.5em;border-left:4px solid {colour};'
-        f'color:{colour};background:#f6f7f9">{html.escape(snapshot.message)}</div>'
-    )

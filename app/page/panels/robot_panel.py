@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import base64
-import html
 from collections.abc import Callable
-from functools import lru_cache
 
 import viser
+from markupsafe import Markup
 
+from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseRobot
 from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import Post, on_press
-from onpath.assets import asset_path
+from onpath.app.page.robot_picture import picture_of
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 
@@ -38,7 +37,7 @@ class RobotPanel:
             for entry in ROBOTS.values():
                 label = label_of(entry, words)
                 text = words.get(f"machine.{entry.name}.text", entry.text)
-                self._gui.add_html(_card(entry.picture, label, text))
+                self._gui.add_html(_card(picture_of(entry), label, text))
                 now = entry is self._chosen
                 choose = self._gui.add_button(
                     words("robots.this", robot=label) if now else label,
@@ -57,12 +56,6 @@ def label_of(entry: RobotEntry, words: Words) -> str:
     return words.get(f"machine.{entry.name}.label", entry.label)
 
 
-@lru_cache
-def _card(asset: str, label: str, text: str) -> str:
+def _card(picture: str, label: str, text: str) -> Markup:
     """Picture and a sentence."""
-    picture = base64.b64encode(asset_path(asset).read_bytes()).decode()
-    return (
-        f'<div style="padding:0.6em 0 0.2em 0"><img alt="{html.escape(label)}" style="width:100%;'
-        f'border:1px solid #dde" src="data:image/png;base64,{picture}"/>'
-        f'<div style="font-size:0.9em;color:#445">{html.escape(text)}</div></div>'
-    )
+    return render("panel/robot.html", label=label, text=text, picture=picture)

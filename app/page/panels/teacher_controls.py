@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable
 
 import viser
 
-from onpath.app.lab.class_commands import TakeSetup
+from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import capture
 from onpath.app.lab.share_code import decode
-from onpath.app.page.panels.widgets import on_press
+from onpath.app.page.panels.widgets import note, on_press
 from onpath.app.page.teacher_context import TeacherContext
 
 
@@ -25,7 +24,7 @@ class TeacherControls:
         self._freezing = _add_freezing(gui, own, teaching)
         send = gui.add_button(words("class.push_setup"), icon=viser.Icon.SEND)
         with gui.add_folder(words("keep.paste"), expand_by_default=False):
-            code = gui.add_text(words("keep.paste"), "", hint=words("keep.paste_hint"))
+            code = gui.addnote(words("keep.paste"), "", hint=words("keep.paste_hint"))
             push = gui.add_button(words("class.push_code"), color="gray", icon=viser.Icon.SEND)
         self._said = gui.add_html("")
         stop = gui.add_button(words("class.stop_teaching"), color="gray", icon=viser.Icon.DOOR_EXIT)
@@ -47,12 +46,12 @@ class TeacherControls:
         try:
             self._class.push(TakeSetup(decode(text)))
         except ValueError as error:
-            self._said.content = _text(self._words.sentence(error))
+            self._said.content = note(self._words.sentence(error))
             return
         self._tell_sent()
 
     def _tell_sent(self) -> None:
-        self._said.content = _text(self._words("class.sent", count=len(self._class.members())))
+        self._said.content = note(self._words("class.sent", count=len(self._class.members())))
 
 
 class FollowedStudent:
@@ -63,7 +62,7 @@ class FollowedStudent:
         self._freezing = _add_freezing(gui, own, teaching)
         member = self._class.member(teaching.chosen.followed)
         name = member.name if member else ""
-        gui.add_html(_text(own.lessons.words("class.following", name=name)))
+        gui.add_html(note(own.lessons.words("class.following", name=name)))
         back = gui.add_button(own.lessons.words("class.own_lab"), icon=viser.Icon.EYE)
 
         def stop() -> None:
@@ -91,7 +90,3 @@ def _show_freezing(button: viser.GuiButtonHandle, own: Session, frozen: bool) ->
     label = own.lessons.words("class.unfreeze" if frozen else "class.freeze")
     if button.label != label:
         button.label = label
-
-
-def _text(said: str) -> str:
-    return f'<div role="note" style="padding:0.3em 0.9em">{html.escape(said)}</div>'

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable
 
 import viser
 
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.results import class_csv, distribution, prediction_at, truth_of
-from onpath.app.lab import lesson_commands as c
-from onpath.app.lab.class_commands import TakeStep
+from onpath.app.lab import commands as c
+from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.session import Session
-from onpath.app.page.panels.widgets import on_press, on_user_update
+from onpath.app.page.panels.widgets import note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
 
 WIDTH, WIDE = 480, 760  # [px]; wide for a projector
@@ -66,7 +65,7 @@ class TeacherPanel:
             _show(self._table, page.table(members.values(), self._course, now, self._words))
             self._show_names()
             still = self._teaching.why_still(self._words)
-            _show(self._still, _text(still) if still else "")
+            _show(self._still, note(still) if still else "")
             self._show_standing()
             if self._course.lessons:
                 _show(self._prediction, self._prediction_view())
@@ -114,7 +113,7 @@ class TeacherPanel:
             said = self._words("class.standing_step", lesson=title, step=push.step + 1)
         else:
             said = self._words("class.standing_setup")
-        _show(self._standing, _text(said) if said else "")
+        _show(self._standing, note(said) if said else "")
 
     def _choose_followed(self, name: str) -> None:
         self._chosen.followed = self._followable().get(name, "")
@@ -185,27 +184,27 @@ class TeacherPanel:
     def _push_step(self) -> None:
         self._class.push(TakeStep(self._chosen.lesson, self._chosen.step))
         said = self._words("class.sent", count=len(self._class.members()))
-        self._sent.content = _text(said)
+        self._sent.content = note(said)
 
     def _prediction_view(self) -> str:
         words, chosen = self._words, self._chosen
         lesson = self._course.lesson(chosen.lesson, words.language)
         found = prediction_at(lesson, min(chosen.step, len(lesson.steps) - 1))
         if found is None:
-            return _text(words("class.no_prediction"))
+            return note(words("class.no_prediction"))
         at, block = found
         ways = [member.progress for member in self._class.members().values()]
         truth = truth_of(chosen.lesson, at, [*ways, self._own.lessons.progress])
         counted = distribution(block, chosen.lesson, at, ways)
         view = page.prediction_view(block, counted, truth, chosen.revealed, words, self._large)
         missing = chosen.revealed and not counted.counts and truth is None
-        return view + (_text(words("class.no_truth")) if missing else "")
+        return view + note(words("class.no_truth")) if missing else view
 
     # What is taken home, and what is forgotten
 
     def _build_record(self) -> None:
         words, gui = self._words, self._gui
-        gui.add_html(_text(words("class.record_text")))
+        gui.add_html(note(words("class.record_text")))
         export = gui.add_button(words("class.export"), icon=viser.Icon.FILE_EXPORT)
         end = gui.add_button(words("class.end"), color="gray", icon=viser.Icon.DOOR_EXIT)
         forget = gui.add_button(words("class.forget"), color="red", icon=viser.Icon.TRASH)
@@ -227,7 +226,7 @@ class TeacherPanel:
             said = self._words("class.ended", count=self._class.end())
         except OSError as error:
             said = str(error)
-        self._told.content = _text(said)
+        self._told.content = note(said)
         self._look_again()
 
     def _forget(self) -> None:
@@ -235,13 +234,13 @@ class TeacherPanel:
             said = self._words("class.forgotten", count=self._teaching.forget())
         except OSError as error:
             said = str(error)
-        self._told.content = _text(said)
+        self._told.content = note(said)
         self._look_again()
 
     def _ask(self, title: str, question: str, act: Callable[[], None]) -> None:
         """Do it only after a yes."""
         with self._gui.add_modal(title) as modal:
-            self._gui.add_html(_text(question))
+            self._gui.add_html(note(question))
             yes = self._gui.add_button(self._words("class.yes"), color="red")
             no = self._gui.add_button(self._words("class.no"), color="gray")
 
@@ -256,7 +255,3 @@ class TeacherPanel:
 def _show(handle: viser.GuiHtmlHandle, content: str) -> None:
     if handle.content != content:
         handle.content = content
-
-
-def _text(said: str) -> str:
-    return f'<div role="note" style="padding:0.4em 0.9em">{html.escape(said)}</div>'

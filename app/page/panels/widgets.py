@@ -9,8 +9,10 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 import viser
+from markupsafe import Markup
 
 from onpath.app.common.error_log import log_error
+from onpath.app.common.templates import render
 from onpath.app.lab.commands import Command, SetParameter
 from onpath.app.lab.session import Session
 from onpath.lessons.words import Words
@@ -60,6 +62,11 @@ def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
             threading.Thread(target=run, args=[under_way], name="press", daemon=True).start()
 
     handle.on_click(pressed)
+
+
+def note(said: str, small: bool = False) -> Markup:
+    """A sentence between widgets."""
+    return render("panel/note.html", said=said, small=small)
 
 
 def label_of(words: Words, name: str, spec: Spec) -> str:

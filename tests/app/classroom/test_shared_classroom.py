@@ -23,7 +23,7 @@ from onpath.app.classroom.watches import GONE, LASTS, NONSENSE, Watches
 from onpath.app.common.access_codes import new_code, shown
 from onpath.app.common.throttle import TRIES
 from onpath.app.lab import commands as c
-from onpath.app.lab.class_commands import TakeSetup, TakeStep
+from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import capture
 from onpath.app.page.teacher_context import TeacherChoices, TeacherContext

@@ -254,3 +254,13 @@ def test_help_is_given_on_standard_output(capsys: pytest.CaptureFixture[str]) ->
         with pytest.raises(SystemExit) as stop:
             run_command(arguments)
         assert stop.value.code == 0 and words in capsys.readouterr().out
+
+
+def test_bench_without_its_extra_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "playwright", None)  # as if it were not installed
+    assert run_command(["bench"]) == 2
+    said = capsys.readouterr()
+    assert 'pip install "onpath[bench]"' in said.err
+    assert said.out == "" and said.err.count("\n") == 1

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import http.client
-import os
 import socket
 import subprocess
 import sys
@@ -16,6 +15,7 @@ from pathlib import Path
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from tests.support import stranger
 from tests.support.checkout import ROOT
 from tests.support.student import Student
 
@@ -29,8 +29,16 @@ c.ServerApp.jpserver_extensions = {"jupyter_server_proxy": True}
 
 
 @pytest.fixture(scope="module")
-def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A student's, with an app.py, models/ and lessons/ that no lab must run."""
     folder = tmp_path_factory.mktemp("jupyter")
+    stranger.fill(folder)
+    (folder / "viser.py").write_text(stranger.CODE)  # nor what is named like a library
+    return folder
+
+
+@pytest.fixture(scope="module")
+def port(folder: Path) -> Iterator[int]:
     (folder / "jupyter_server_config.py").write_text(CONFIGURATION)
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port = probe.getsockname()[1]
@@ -38,8 +46,7 @@ def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
     command += [f"--port={port}", "--ServerApp.port_retries=0", f"--ServerApp.root_dir={folder}"]
     names = ("HOME", "JUPYTER_CONFIG_DIR", "JUPYTER_RUNTIME_DIR", "XDG_DATA_HOME", "XDG_CACHE_HOME")
     places = dict.fromkeys(names, str(folder))
-    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    environment = {**os.environ, **places, "PYTHONPATH": path}
+    environment = stranger.environment(**places)
     said = (folder / "log").open("w")
     server = subprocess.Popen(command, cwd=folder, env=environment, stderr=said)
     end = time.monotonic() + 30
@@ -63,7 +70,7 @@ def get(port: int, path: str, token: str = TOKEN) -> http.client.HTTPResponse:
     return connection.getresponse()
 
 
-def test_a_lab_runs_under_jupyters_sub_path(port: int) -> None:
+def test_a_lab_runs_under_jupyters_sub_path(port: int, folder: Path) -> None:
     reply = get(port, "/onpath/")
     assert (reply.status, reply.getheader("Location")) == (302, "index.html")
     page = get(port, "/onpath/index.html")
@@ -76,6 +83,7 @@ def test_a_lab_runs_under_jupyters_sub_path(port: int) -> None:
         student.set("K2", 44.0)
         student.read(lambda: not student.sees("poles -20, -20") and student.code)
         student.read(lambda: student.moving > 10)
+    assert not stranger.marks(folder)
 
 
 def test_strangers_stay_outside(port: int) -> None:

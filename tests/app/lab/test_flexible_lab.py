@@ -15,12 +15,14 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.session import Session
 from onpath.app.lab.take_snapshot import take_snapshot
 from onpath.app.page.panels.flexible_panel import alpha_bar, critical_alpha
-from onpath.app.scene.stage_catalogue import FLEXIBLE as STAGE
+from onpath.app.scene.stage_catalogue import stage_of
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
 from onpath.models.systems.flexible_robot import UNSTABLE, FlexibleFiveBar, FlexibleParameters
 from tests.support.drawing import drawn
 from tests.support.lab import FOLLOWER, TRACKER, do, run, states, store
+
+STAGE = stage_of(FLEXIBLE.make(FLEXIBLE.lab))
 
 
 def flexible(seconds: float = 0.0, **changes: object) -> Session:
@@ -68,7 +70,7 @@ def test_a_pull_bends_the_link_and_is_survived(plane: str) -> None:
     robot, start = session.robot, session.runs[FOLLOWER].shown()["y"].copy()
     across = np.cross(STAGE.pulls[plane].normal, [0.0, 0.0, 1.0])
     way = np.array([1.0, 0.0, 0.0]) if not across.any() else across / np.linalg.norm(across)
-    do(session, c.Grab(FOLLOWER, robot.place(start) + 0.03 * way))
+    do(session, c.Grab(FOLLOWER, robot.unplace(robot.place(start) + 0.03 * way)))
     run(session, 0.3)
     moved = robot.place(session.runs[FOLLOWER].shown()["y"]) - robot.place(start)
     assert moved @ way > 1e-4

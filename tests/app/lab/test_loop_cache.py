@@ -22,7 +22,7 @@ from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
 from onpath.models.control.laws import NAMES
-from onpath.models.systems.robots import rigid_five_bar
+from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support.lab import FRAME, do, states
 
 PATIENCE = 60.0  # [s]

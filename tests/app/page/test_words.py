@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 
 from onpath.app.lab import commands as c
-from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.session import Session
 from onpath.app.page.panels.keys import KEYS, help_text
 from onpath.app.page.panels.widgets import label_of, option_of
@@ -28,9 +27,10 @@ from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FLEXIBLE, ROBOTS
+from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.flexible_robot import BENT, UNSTABLE
 from onpath.models.systems.parameters import FiveBarParameters, specs
-from onpath.models.systems.robots import first_fault, rigid_five_bar
+from onpath.models.systems.robots import first_fault
 from tests.support.catalogues import arguments, counts, messages
 from tests.support.checkout import ROOT
 from tests.support.lab import do, run, store
@@ -214,7 +214,6 @@ def test_nothing_is_translated_that_there_is_not(language: str) -> None:
         for name, spec in specs(entry.parameters).items():
             parts = ("label", "help", "unit", *(f"option.{option}" for option in spec.options))
             there_are |= {f"parameter.{name}.{part}" for part in parts}
-    there_are |= {code for code, _, english, _ in said_in_code() if english}
     only_here = messages(language).keys() - messages("en").keys()
     assert only_here <= {identifier(key) for key in there_are}
 
@@ -225,47 +224,37 @@ HANDED_ON = {"models/errors.py", "app/classroom/moment.py"}
 """Modules that make messages of codes that others have chosen."""
 
 
-def said_in_code() -> Iterator[tuple[str, set[str], str, str]]:
-    """The code, the arguments, the English and the file of every error and reason in the source.
-
-    English is "" where the catalogue has it.
-    """
+def said_in_code() -> Iterator[tuple[str, set[str], str]]:
+    """The code, the arguments and the file of every error and reason in the source."""
     for file in CODED:
         where = str(file.relative_to(ROOT))
         for name, call in calls(parsed(file)):
             if name in ("CodedError", "Message") and where not in HANDED_ON:
                 first = call.args[0]
                 branches = [first.body, first.orelse] if isinstance(first, ast.IfExp) else [first]
-                named = {keyword.arg or "**": keyword.value for keyword in call.keywords}
-                english = text_of(named.pop("english")) if name == "Message" and named else ""
-                given = set(named)
+                given = {keyword.arg or "**" for keyword in call.keywords}
                 if len(call.args) > 1:
                     assert isinstance(call.args[1], ast.Dict), where
                     given |= {str(key and text_of(key)) for key in call.args[1].keys}
-                for branch in branches:
-                    yield str(text_of(branch)), given, str(english), where
+                yield from ((str(text_of(branch)), given, where) for branch in branches)
 
 
 def test_every_code_has_words_and_exactly_its_arguments() -> None:
     said = list(said_in_code())
     assert len(said) > 50
-    for code, given, english, where in said:
+    for code, given, where in said:
         known = messages("en").get(identifier(code))
-        assert (known is None) is code.startswith(ELSEWHERE) is bool(english), (code, where)
-        fields = set(re.findall(r"\{(\w+)\}", english)) if known is None else arguments(known)
-        assert given == fields, (code, where)
+        assert known is not None, (code, where)
+        assert given == arguments(known), (code, where)
 
 
 @pytest.mark.parametrize("language", OTHERS)
 def test_an_error_is_told_by_its_code_whatever_its_english_is(language: str) -> None:
-    for code, given, english, _ in said_in_code():
-        message = Message(code, dict.fromkeys(given, "7"), english)
-        own = Words(language).sentence(message)
-        assert own == message.told(language) and "{" not in own
-        assert own != str(message) == ENGLISH.sentence(message) == message.told(), code
-        if not english:
-            error = CodedError(code, **message.arguments)
-            assert Words(language).sentence(error) == own and str(error) == str(message)
+    for code, given, _ in said_in_code():
+        error = CodedError(code, **dict.fromkeys(given, "7"))
+        own = Words(language).sentence(error)
+        assert own == error.message.told(language) and "{" not in own
+        assert own != str(error) == ENGLISH.sentence(error) == error.message.told(), code
 
 
 def test_a_changed_english_text_keeps_its_translation(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -378,7 +367,7 @@ def test_numbers_are_written_plainly_in_every_language() -> None:
 
 def test_a_german_lab_speaks_german() -> None:
     session = Session(store(), FLEXIBLE)
-    do(session, lc.SetLanguage("de"), c.ChoosePath("figure of eight"))
+    do(session, c.SetLanguage("de"), c.ChoosePath("figure of eight"))
     assert session.message.startswith("Diese Bahn geht nicht: die Bahn kreuzt sich selbst")
     do(session, c.Undo())
     assert session.message == "es gibt nichts rückgängig zu machen"
@@ -387,7 +376,7 @@ def test_a_german_lab_speaks_german() -> None:
     do(session, c.SetParameter("law", "redefined"), c.SetParameter("alpha", 0.95))
     run(session, 3.0)
     assert "regelung: stehen geblieben" in session.message and "Nulldynamik" in session.message
-    do(session, lc.SetLanguage("en"))
+    do(session, c.SetLanguage("en"))
     assert "stopped at" in session.message and str(UNSTABLE) in session.message
 
 

@@ -13,32 +13,39 @@ import viser
 from scipy.spatial.transform import Rotation
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshot import Counts, FollowerName, PathView, RobotView, Snapshot, TrackerName
-from onpath.app.scene.poses import bar_quaternions, trace_segments, waist_angle
+from onpath.app.lab.part_poses import bar_quaternions, waist_angle
+from onpath.app.lab.robot_geometry import geometry_function
+from onpath.app.lab.snapshot import TIP, FollowerName, PathView, RobotView, Snapshot, TrackerName
+from onpath.app.scene.poses import trace_segments
 from onpath.app.scene.robot_nodes import TRACE_SEGMENTS
 from onpath.app.scene.scene import Scene, SceneCallbacks, meshes
 from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Stage, view_of
-from onpath.app.scene.stage_catalogue import FLEXIBLE, RIGID
+from onpath.app.scene.stage_catalogue import stage_of
+from onpath.models.paths.curves import TABLE_SHAPE, circle
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.drawing import BACK_LAYER, FRONT_LAYER
+from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support.drags import play
 from tests.support.drawing import evaluated
 
 NAMES = (TrackerName, FollowerName)
-
-
-def direction(angle: float) -> np.ndarray:
-    """Unit vector in the robot's plane."""
-    return np.array([np.cos(angle), 0.0, np.sin(angle)])
+FIVE_BAR = rigid_five_bar()
+RIGID = stage_of(FIVE_BAR)
+STAGES = {name: stage_of(entry.make(entry.lab)) for name, entry in ROBOTS.items()}
 
 
 def robot(q1: float, q2: float, force: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> RobotView:
-    """A rigid five-bar with links of 0.2 and 0.1 m."""
-    base, a, b = np.zeros(3), 0.2 * direction(q1), 0.1 * direction(q2)
-    tip = a - 0.2 * direction(q2)
-    bars = np.array([(base, a), (base, b), (b, a + b), (a + b, tip)])
-    trace = np.linspace(base, tip, 50)
-    joints = np.array([base, a, b, a + b])
-    points = np.vstack([bars.reshape(-1, 3), joints, tip, tip, tip, force])
-    return RobotView(points, Counts(4, 4, 0), trace, 0.0, 0.0, 0.0, np.zeros(2))
+    """A rigid five-bar."""
+    q, pull = np.array([q1, q2]), (force[0], force[2])
+    seen = np.concatenate([FIVE_BAR.endpoint(q), pull, [0.0]])
+    function, counts = geometry_function(FIVE_BAR, closed=True)
+    both = np.tile(q[:, None], 2), np.tile(seen[:, None], 2)
+    table = circle(0.05).table().reshape(TABLE_SHAPE, order="F")
+    flat = np.array(function(*both, table, 1.0))[:, 0]
+    points, poses = np.split(flat, [3 * counts.points])
+    points = points.reshape(-1, 3)
+    trace = np.linspace(np.zeros(3), points[TIP], 50)
+    return RobotView(points, poses, counts, trace, 0.0, 0.0, 0.0, np.zeros(2))
 
 
 def path(version: int = 0, n_points: int = 6) -> PathView:
@@ -78,7 +85,7 @@ def lab(server, monkeypatch):
         on_point_selected=lambda *a: heard.append(("selected", *a)),
     )
     client: Any = SimpleNamespace(scene=server.scene, atomic=server.atomic)
-    scene = Scene(client, hooks=hooks)
+    scene = Scene(client, RIGID, hooks)
     scene.build(snapshot())
     sent: list[Any] = []
     queue = server.scene._queue_scene_message
@@ -221,7 +228,7 @@ def test_a_freehand_stroke_is_told_once_in_the_robots_frame(lab):
 
 def test_the_singular_zone_can_be_shown_and_hidden(lab):
     for visible in (True, True, False):
-        lab.scene.show_singular_zone(0.0, 0.4, 0.02, visible)
+        lab.scene.show_singular_zone(visible)
         assert (lab.api.get_handle_by_name("/zone") is not None) == visible
 
 
@@ -252,7 +259,7 @@ def test_traces_are_connected_and_end_at_the_newest_point(length):
 
 @pytest.mark.parametrize("size", [(1400, 800), (390, 844), (2560, 600)])
 @pytest.mark.parametrize("insets", [Insets(), Insets(left=60, right=90, bottom=200)])
-@pytest.mark.parametrize("stage", [RIGID, FLEXIBLE], ids=["rigid", "flexible"])
+@pytest.mark.parametrize("stage", STAGES.values(), ids=STAGES)
 def test_camera_shows_both_robots_clear_of_the_panels(size, insets, stage: Stage):
     pose = view_of(stage, size, insets)
     forward = (pose.look_at - pose.position) / np.linalg.norm(pose.look_at - pose.position)
@@ -281,7 +288,7 @@ def test_parts_are_solids_that_look_outward(part):
 
 
 def test_layers_keep_links_apart():
-    assert meshes.BACK_LAYER - meshes.FRONT_LAYER > meshes.LINK_THICKNESS
+    assert BACK_LAYER - FRONT_LAYER > meshes.LINK_THICKNESS
 
 
 def test_controllers_differ_in_lightness_or_blue_for_every_eye():

@@ -13,12 +13,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.app.common import palette
-from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab import commands as c
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.scene.ink import MOST, Ink
-from onpath.app.scene.stage_catalogue import RIGID
+from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.schema import Sketch
+from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support import waiting
 from tests.support.drags import play
 from tests.support.student import Student
@@ -102,7 +103,7 @@ def around(k: int) -> np.ndarray:
 def test_an_endless_freehand_stroke_is_drawn_ten_times_a_second_of_few_points(page: Page) -> None:
     strokes: list[np.ndarray] = []
     page.view._scene.begin_freehand(strokes.append)
-    base = next(iter(RIGID.bases.values()))
+    base = next(iter(stage_of(rigid_five_bar()).bases.values()))
     page.scribble("/freehand/sheet", lambda k: base + around(k))
     page.assert_bounded()
     page.end()
@@ -122,9 +123,9 @@ def test_an_endless_sketch_too(page: Page) -> None:
         for number, step in enumerate(course.lesson(name, "en").steps)
         if any(isinstance(block, Sketch) for block in step.blocks)
     )
-    page.session.post(lc.OpenLesson(name))
+    page.session.post(c.OpenLesson(name))
     for _ in range(step):
-        page.session.post(lc.GoToStep(step))
+        page.session.post(c.GoToStep(step))
     wait_for(lambda: page.shown("/board/sheet"))
     (board,) = wait_for(lambda: [p._board for p in page.view._parts if hasattr(p, "_board")])
     page.scribble("/board/sheet", lambda k: board._world(0.3 * sideways(k)[None])[0])

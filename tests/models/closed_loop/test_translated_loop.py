@@ -20,8 +20,9 @@ from onpath.models.closed_loop.translated_loop import OPERATIONS, translate, tra
 from onpath.models.control.laws import NAMES
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import TABLE_SHAPE, TERMS, circle
+from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
-from onpath.models.systems.robots import Robot, rigid_five_bar
+from onpath.models.systems.robots import Robot
 
 NUMBERS = [0.0, -0.0, 1.0, -1.0, 0.3, -2.5, 1e3, 5e-324, 1e300, np.inf, -np.inf, np.nan]
 PLANTS = ("unit_modes", "lagrangian")
@@ -35,9 +36,11 @@ def logging_kernel(*rows: ca.SX, x: ca.SX) -> Kernel:
     """Its state x stays as it is and its log is what is asked for."""
     settings, values = ca.SX.sym("settings"), ca.SX.sym("values", TABLE_SHAPE[0])
     still = ca.Function("bases", [x, settings], [ca.DM.ones(TERMS)])
-    turn = ca.Function("turn", [x, settings, values], [x, ca.vertcat(*rows), ca.DM.ones(TERMS)])
+    advance = ca.Function(
+        "advance", [x, settings, values], [x, ca.vertcat(*rows), ca.DM.ones(TERMS)]
+    )
     layouts = Layout((("x", x.numel()),)), Layout((("s", 1),)), Layout((("row", len(rows)),))
-    return Kernel(still, turn, *layouts)
+    return Kernel(still, advance, *layouts)
 
 
 def test_every_operation_is_the_interpreter_s_for_all_kinds_of_numbers() -> None:
@@ -45,7 +48,7 @@ def test_every_operation_is_the_interpreter_s_for_all_kinds_of_numbers() -> None
     results = [ca.SX.binary(code, x[0], x[1]) for code in OPERATIONS if takes_two(code)]
     results += [ca.SX.unary(code, x[0]) for code in OPERATIONS if not takes_two(code)]
     kernel = logging_kernel(*results, x=x)
-    codes = {kernel.turn.instruction_id(i) for i in range(kernel.turn.n_instructions())}
+    codes = {kernel.advance.instruction_id(i) for i in range(kernel.advance.n_instructions())}
     assert codes >= OPERATIONS.keys()
     loops = InterpretedLoop(kernel), translate_loop(kernel)
     for pair in product(NUMBERS, NUMBERS):

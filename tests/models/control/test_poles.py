@@ -19,8 +19,8 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.control.laws import NAMES
 from onpath.models.control.poles import Complex, channels
 from onpath.models.paths.curves import circle
+from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.parameters import FiveBarParameters, time_step
-from onpath.models.systems.robots import rigid_five_bar
 
 RADIUS = 0.05
 

@@ -7,7 +7,7 @@ import pytest
 
 from onpath.models.control.rank_test import rank_map, rank_number
 from onpath.models.systems.catalogue import FIVE_BAR
-from onpath.models.systems.robots import rigid_five_bar
+from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.system import conditioning
 
 ROBOT, DEFAULTS = rigid_five_bar(), FIVE_BAR.parameters()

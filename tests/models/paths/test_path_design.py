@@ -22,7 +22,7 @@ from onpath.models.paths.curves import (
     segment,
 )
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, drawn, presets
-from onpath.models.systems.robots import rigid_five_bar
+from onpath.models.systems.five_bar_robot import rigid_five_bar
 
 ROBOT = rigid_five_bar()
 GOOD = [name for name in presets() if name != "figure of eight"]

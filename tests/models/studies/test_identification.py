@@ -26,7 +26,7 @@ from onpath.models.studies.identification import (
     simplest,
     smooth_velocities,
 )
-from onpath.models.systems.robots import RigidFiveBar
+from onpath.models.systems.five_bar_robot import RigidFiveBar
 from tests.support.lab import FOLLOWER, do, new_session, run
 from tests.support.rig import FOLLOWING, Rig, jacobian
 

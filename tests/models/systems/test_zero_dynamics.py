@@ -16,7 +16,7 @@ from onpath.models.arrays import Array
 from onpath.models.systems.beam import MOST_MODES, beam_modes
 from onpath.models.systems.five_bar import five_bar
 from onpath.models.systems.flexible_five_bar import HOME, load_links
-from onpath.models.systems.flexible_robot import FlexibleParameters
+from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.parameters import changed, specs
 from onpath.models.systems.system import MechanicalSystem
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics, natural_rate, zero_dynamics

@@ -1,0 +1,60 @@
+"""HTML from the templates in assets/templates: every value is escaped unless it is Markup.
+
+Markup is made in three places: here, of a filled-in template; in `phrase`; and in
+`lessons.formulas.render`, of a lesson's markdown.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from types import SimpleNamespace
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup, escape
+
+from onpath.app.common import palette
+from onpath.assets import asset_path
+from onpath.lessons.words import Words
+
+
+@cache
+def environment() -> Environment:
+    """All templates; each is compiled once in a process."""
+    made = Environment(
+        loader=FileSystemLoader(asset_path("templates")),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        auto_reload=False,
+        cache_size=-1,
+    )
+    colours = {n: c.hex for n, c in vars(palette).items() if isinstance(c, palette.Colour)}
+    made.globals = {"palette": SimpleNamespace(**colours), "phrase": phrase}
+    return made
+
+
+def render(template: str, /, **values: object) -> Markup:
+    """A template with its values filled in; from any thread.
+
+    Args:
+        template: path in assets/templates.
+
+    Raises:
+        jinja2.TemplateNotFound: there is no such template.
+        jinja2.UndefinedError: it uses a value that is not given.
+    """
+    return Markup(environment().get_template(template).render(values))
+
+
+def phrase(words: Words, key: str, /, **values: object) -> Markup:
+    """The words for a key with Markup among their values, which stays Markup; all else is escaped.
+
+    Each such value is represented by a mark of private characters until the rest is escaped.
+    """
+    marks = {f"\ue000{name}\ue001": v for name, v in values.items() if isinstance(v, Markup)}
+    plain = {name: v for name, v in values.items() if not isinstance(v, Markup)}
+    said = words(key, **plain, **{mark[1:-1]: mark for mark in marks})
+    pieces = re.split("(" + "|".join(marks) + ")", said) if marks else [said]
+    return Markup().join(marks.get(piece, escape(piece)) for piece in pieces)

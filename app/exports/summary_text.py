@@ -1,0 +1,26 @@
+"""The summary of a run for a reader."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+ROWS: tuple[tuple[str, str, Callable[[float], str]], ...] = (
+    ("max_distance_m", "max distance", lambda v: f"{v * 1e3:.2f} mm"),
+    ("max_distance_while_held_m", "max distance while held", lambda v: f"{v * 1e3:.2f} mm"),
+    ("rms_distance_m", "rms distance", lambda v: f"{v * 1e3:.3f} mm"),
+    ("final_speed_rad_s", "final speed", lambda v: f"{v + 0.0:.3f} rad/s"),
+    ("max_torque_Nm", "max torque", lambda v: f"{v:.3f} N m"),
+    ("diverged_at_s", "diverged at", lambda v: f"{v:.3f} s"),
+)
+
+
+def summary_lines(values: Mapping[str, Any]) -> list[str]:
+    """One line a quantity; those that a run does not have are left out.
+
+    Args:
+        values: of one controller, from `models.studies.experiments.summary`.
+    """
+    return [
+        f"{title:26s} {show(values[key])}" for key, title, show in ROWS if values[key] is not None
+    ]

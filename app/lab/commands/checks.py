@@ -1,0 +1,63 @@
+"""Checks of the numbers and names that commands carry."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.control.laws import NAMES
+from onpath.models.errors import CodedError
+from onpath.models.systems.parameters import out_of_range, unknown_name
+
+
+def finite(value: float) -> float:
+    """A finite number.
+
+    Raises:
+        ValueError: it is none.
+    """
+    try:
+        result = float(value)
+    except (TypeError, ValueError, OverflowError):
+        result = math.nan
+    if not math.isfinite(result):
+        raise CodedError("error.not_a_number")
+    return result
+
+
+def within(what: str, value: float, bounds: Sequence[float]) -> float:
+    """A number between the first and the last of `bounds`.
+
+    Raises:
+        ValueError: it is not there, or no number.
+    """
+    number = finite(value)
+    if not bounds[0] <= number <= bounds[-1]:
+        raise out_of_range(what, f"{number:g}", f"{bounds[0]:g}", f"{bounds[-1]:g}")
+    return number
+
+
+def point(value: Array, size: int) -> Array:
+    """A finite point, shape (size,).
+
+    Raises:
+        ValueError: it is none.
+    """
+    checked = np.asarray(value, dtype=float)
+    if checked.shape != (size,) or not np.isfinite(checked).all():
+        raise CodedError("error.not_a_point")
+    return checked
+
+
+def controller(name: str) -> str:
+    """The name of a controller.
+
+    Raises:
+        ValueError: there is no such one.
+    """
+    if name not in NAMES:
+        raise unknown_name(name, list(NAMES), "robot")
+    return name

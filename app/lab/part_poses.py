@@ -1,0 +1,46 @@
+"""How bars and bearings of a linkage are turned: formulas with CasADi's symbols. Pure geometry."""
+
+from __future__ import annotations
+
+import casadi as ca
+
+MARKER_DEPTHS = (-0.008, -0.0095)
+"""y of a marker's two discs [m]: before the path and its control points."""
+
+
+def waist_angle(bars: ca.SX, away: tuple[float, float] = (0.0, 1.0)) -> ca.SX:
+    """Angle of the linkage's plane, which is vertical, about the vertical, [rad].
+
+    Args:
+        bars: begins and ends of link 1, link 2 and others as columns, shape (3, 2 n), [m].
+        away: to which side of it the plane's normal (-sin, cos) shall look.
+    """
+    if bars.shape[1] < 4:  # a single bar lies in every vertical plane through it
+        x, y = ca.SX(away[0]), ca.SX(away[1])
+        return ca.atan2(-x, y)
+    a, b = bars[:, 1] - bars[:, 0], bars[:, 3] - bars[:, 2]
+    x, y = b[1] * a[2] - b[2] * a[1], b[2] * a[0] - b[0] * a[2]  # normal of the plane
+    stretched = ca.hypot(x, y) < 1e-9
+    x, y = ca.if_else(stretched, away[0], x), ca.if_else(stretched, away[1], y)
+    return ca.if_else(x * away[0] + y * away[1] >= 0, ca.atan2(-x, y), ca.atan2(x, -y))
+
+
+def bar_quaternions(along: ca.SX, waist: ca.SX) -> ca.SX:
+    """Turns the x axis along each bar and keeps the y axis as near as can be to the plane's normal.
+
+    Args:
+        along: vectors, shape (3, n).
+        waist: angle of the linkage's plane, [rad].
+
+    Returns:
+        Unit quaternions, scalar first, shape (4, n).
+    """
+    c, s = ca.cos(waist), ca.sin(waist)
+    outward = along[0, :] * c + along[1, :] * s
+    across = along[1, :] * c - along[0, :] * s
+    pitch = ca.atan2(along[2, :], outward) / 2
+    bend = ca.atan2(across, ca.hypot(outward, along[2, :])) / 2
+    cw, sw, cp, sp = ca.cos(waist / 2), ca.sin(waist / 2), ca.cos(pitch), ca.sin(pitch)
+    cb, sb = ca.cos(bend), ca.sin(bend)
+    w, x, y, z = cw * cp, sw * sp, -cw * sp, sw * cp  # about z by the waist, about -y by the pitch
+    return ca.vertcat(w * cb - z * sb, x * cb + y * sb, y * cb - x * sb, z * cb + w * sb)

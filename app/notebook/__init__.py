@@ -1,0 +1,1 @@
+"""What `import onpath` gives in Python, a notebook for example."""

@@ -1,0 +1,46 @@
+"""A picture of a robot for the menu: an asset, or else a sketch of its bars and joints."""
+
+from __future__ import annotations
+
+import base64
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+
+from onpath.app.common.templates import render
+from onpath.assets import asset_path
+from onpath.models.systems.robots import Robot, RobotEntry
+
+SIZE = (640, 360)  # [px]
+MARGIN = 50  # [px]
+
+
+@lru_cache(maxsize=32)
+def picture_of(entry: RobotEntry) -> str:
+    """A data URI."""
+    if entry.picture:
+        return _data("image/png", asset_path(entry.picture).read_bytes())
+    return _data("image/svg+xml", robot_sketch(entry.make(entry.lab)).encode())
+
+
+def _data(kind: str, content: bytes) -> str:
+    return f"data:{kind};base64,{base64.b64encode(content).decode()}"
+
+
+def robot_sketch(robot: Robot) -> str:
+    """An SVG of the robot from the front, its end-point in the middle of its paths."""
+    q = ca.SX.sym("q", robot.system.n)
+    drawn = ca.Function("drawn", [q], [ca.densify(x) for x in robot.skeleton(q, ca.SX(1))])
+    home = robot.rest(robot.frame.lift(np.zeros(2)))
+    bars, joints = (points.full()[[0, 2]].T for points in drawn.call([ca.DM(home)]))
+    low, high = bars.min(axis=0), bars.max(axis=0)
+    scale = (np.array(SIZE) - 2 * MARGIN).min() / max(float((high - low).max()), 1e-6)
+
+    def seen(points: np.ndarray) -> np.ndarray:
+        return np.array(SIZE) / 2 + scale * (points - (low + high) / 2) * [1, -1]
+
+    lines, circles = seen(bars).reshape(-1, 4), seen(joints)
+    return render(
+        "panel/robot_sketch.svg", size=SIZE, lines=lines.tolist(), circles=circles.tolist()
+    )

@@ -1,0 +1,70 @@
+"""How a robot is drawn, beyond its bars and joints: data that a model may provide.
+
+Points are in the robot's frame (x right, y away from the viewer, z up, base pivot at the origin),
+in metres. The defaults suit a robot whose links move in the vertical plane y = 0.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+Point = tuple[float, float, float]
+
+FRONT_LAYER = 0.022
+"""Depth of the front layer of links behind the robot's plane [m]."""
+BACK_LAYER = 0.038
+"""The same for the back layer [m]."""
+BOSS = (FRONT_LAYER + BACK_LAYER) / 2
+"""Depth of the bearings' middle: they span both layers [m]."""
+PEN_DEPTH = 0.0103
+"""Depth of the pen's centre, such that it touches the robot's plane [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Depths:
+    """Depths along the normal of the links' plane, away from the viewer, [m]."""
+
+    back: float = BACK_LAYER
+    front: float = FRONT_LAYER
+    boss: float = BOSS
+    pen: float = PEN_DEPTH
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """What the scene needs to know about a robot. None: derived from its bars and reach.
+
+    Links lie alternately in the back and the front layer, so that they do not intersect.
+
+    Attributes:
+        strip: number of the last bars that are pieces of one flexible strip; the others are links.
+        motors: joints that are drawn as motors, besides those at the base pivot.
+        base: what carries the robot: two uprights with motors, or a column with a turntable.
+        away: horizontal direction (x, y) across the links, away from the viewer, of unit length.
+        depths: of the layers.
+        elevation, azimuth: angles of the camera, downward and from the right, [rad].
+        box: opposite corners of what the camera shows of one robot.
+        apart: distance between the base pivots of neighbouring robots, [m].
+        title: place of the title.
+        note: place of the note that the drawing is not to scale.
+        force: place of the force's magnitude.
+        force_scale: length of the force's arrow, [m/N].
+        sheet: low and high corner (x, z), and y, of the area for freehand strokes.
+    """
+
+    strip: int = 0
+    motors: tuple[int, ...] = ()
+    base: Literal["uprights", "pedestal"] = "uprights"
+    away: tuple[float, float] = (0.0, 1.0)
+    depths: Depths = Depths()
+    elevation: float = math.radians(9.0)
+    azimuth: float = 0.0
+    box: tuple[Point, Point] | None = None
+    apart: float | None = None
+    title: Point | None = None
+    note: Point | None = None
+    force: Point | None = None
+    force_scale: float = 0.005
+    sheet: tuple[tuple[float, float], tuple[float, float], float] | None = None

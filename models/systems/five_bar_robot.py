@@ -1,0 +1,162 @@
+"""The rigid five-bar for the lab and the experiments: limits, model errors, drawing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from onpath.models.arrays import Array
+from onpath.models.errors import Message
+from onpath.models.systems import five_bar
+from onpath.models.systems.drawing import Drawing
+from onpath.models.systems.parameters import FiveBarParameters, Parameters
+from onpath.models.systems.robots import BalancedLinkage, PlanarRobot, RobotEntry, first_fault
+from onpath.models.systems.system import MechanicalSystem
+
+COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed
+SHORT = 20  # rows, one per tick
+SLOW, FAR = 20.0, 0.5  # [rad/s], |sin(q1 - q2)|: too far from a fault to have had one in SHORT rows
+DRAWING = Drawing(box=((-0.16, -0.03, -0.19), (0.31, 0.03, 0.425)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RigidFiveBar(PlanarRobot):
+    """The planar five-bar linkage of section III of the paper."""
+
+    links: five_bar.FiveBarLinks = field(default_factory=five_bar.load_links)
+    system: MechanicalSystem = field(default_factory=five_bar.five_bar, repr=False)
+    name: str = "five_bar"
+    label: str = "Five-bar linkage"
+    coordinate_names: tuple[str, ...] = ("q1_rad", "q2_rad")
+
+    @property
+    def _lengths(self) -> tuple[float, float]:
+        return self.links.link1.length, self.links.link4.length
+
+    @property
+    def home(self) -> tuple[float, float]:
+        """See `PlanarRobot.home`: link 1 upright, link 4 horizontal."""
+        l1, l4 = self._lengths
+        return l4, l1
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """See `Robot.reach`."""
+        l1, l4 = self._lengths
+        return abs(l1 - l4), l1 + l4
+
+    @property
+    def drawing(self) -> Drawing:
+        """See `Robot.drawing`."""
+        return DRAWING
+
+    @property
+    def linkage(self) -> BalancedLinkage:
+        """See `Robot.linkage`."""
+        return BalancedLinkage(*self._lengths, self.links.lumped())
+
+    def plant(self, parameters: Parameters) -> Array:
+        """See `Robot.plant`."""
+        own = _own(parameters)
+        return _plant(self, own.counterweights_removed / 100, own.payload)
+
+    def model(self, parameters: Parameters) -> Array:
+        """See `Robot.model`: the balanced robot of (12), with the chosen model errors."""
+        own = _own(parameters)
+        return _model(self, own.error_M11, own.error_M22, own.error_b1, own.error_b2)
+
+    def rest(self, y: Array) -> Array:
+        """See `Robot.rest`."""
+        return five_bar.inverse_kinematics(y, *self._lengths)
+
+    def endpoint(self, q: Array) -> Array:
+        """See `Robot.endpoint`."""
+        return five_bar.end_point(q, *self._lengths)
+
+    def margin(self, z: Array) -> Array:
+        """See `Robot.margin`: |sin(q1 - q2)|, eq. (14)."""
+        l1, l4 = self._lengths
+        squared = (z[..., 0] + l4) ** 2 + (z[..., 1] + l1) ** 2
+        cosine = (l1**2 + l4**2 - squared) / (2 * l1 * l4)
+        return np.sqrt(np.maximum(1 - cosine**2, 0.0))
+
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
+        """See `Robot.fault`."""
+        return None if is_calm(q, v) else first_fault(q, v, collapse(q))
+
+    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """See `Robot.skeleton`; rigid links have no deflection to exaggerate."""
+        l1, l4 = self._lengths
+        return five_bar.skeleton(q, l1, self.links.link2.length, l4)
+
+
+@lru_cache(maxsize=64)
+def _plant(robot: RigidFiveBar, removed: float, payload: float) -> Array:
+    links = robot.links.spoiled(removed, payload)
+    return _constant(robot.system.parameter_vector(links.lumped()))
+
+
+@lru_cache(maxsize=64)
+def _model(robot: RigidFiveBar, *percent: float) -> Array:
+    values = robot.links.lumped()
+    for name, error in zip(("M11", "M22", "b1", "b2"), percent, strict=True):
+        values[name] *= 1 + error / 100
+    return _constant(robot.system.parameter_vector(values))
+
+
+def _constant(array: Array) -> Array:
+    """The same array, made read-only because it is shared."""
+    array.flags.writeable = False
+    return array
+
+
+@lru_cache(maxsize=1)
+def rigid_five_bar() -> RigidFiveBar:
+    """The only instance, so that its kernels are built once."""
+    return RigidFiveBar()
+
+
+def collapse(q: Array) -> tuple[NDArray[np.bool_], Message]:
+    """A check for `first_fault`: |sin(q1 - q2)| < COLLAPSED, and the reason.
+
+    Args:
+        q: shape (rows, at least 2), [rad].
+
+    Source: eq. (14).
+    """
+    with np.errstate(invalid="ignore"):  # `first_fault` finds numbers that are not finite
+        collapsed = five_bar.singularity_margin(q) < COLLAPSED
+    return collapsed, Message("stop.collapsed")
+
+
+def is_calm(q: Array, v: Array) -> bool:
+    """Whether the last row is so far from any fault that none of the rows before can have one.
+
+    Args:
+        q, v: shape (rows, 2), at most `SHORT` rows. NaN and infinity persist to the last row.
+    """
+    (first, second), (fast, faster) = q[-1].tolist(), v[-1].tolist()
+    apart = abs(math.sin(first - second))  # comparisons with NaN are false
+    return len(q) <= SHORT and abs(fast) < SLOW and abs(faster) < SLOW and apart > FAR
+
+
+def _own(parameters: Parameters) -> FiveBarParameters:
+    if not isinstance(parameters, FiveBarParameters):
+        raise TypeError(f"the five-bar takes FiveBarParameters, got {type(parameters).__name__}")
+    return parameters
+
+
+ROBOT = RobotEntry(
+    name="five_bar",
+    label="Five-bar linkage",
+    text="Two motors, rigid links, a pen in a vertical plane.",
+    picture="five_bar.png",
+    parameters=FiveBarParameters,
+    lab=FiveBarParameters(),
+    make=lambda _: rigid_five_bar(),
+)

@@ -1,0 +1,162 @@
+"""The parameters of the flexible five-bar: beam, output, composite control, model errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from onpath.models.systems.beam import MOST_MODES
+from onpath.models.systems.flexible_five_bar import FORMER_PLANTS, PLANTS
+from onpath.models.systems.parameters import Parameters, choice, number
+
+
+@dataclass(frozen=True, slots=True)
+class FlexibleParameters(Parameters):
+    """Parameters of the flexible five-bar. `modes` and `plant` select the instance of the robot."""
+
+    K5: float = number(
+        5.0,
+        "1/s",
+        (0, 100, 0.5),
+        "how hard the speed along the path is held",
+        group="gains",
+        label="K5 along",
+    )
+    speed: float = number(
+        2.0,
+        "rad/s",
+        (-10, 10, 0.1),
+        "wanted speed along the path; negative: backwards",
+        group="task",
+        label="Speed",
+    )
+    alpha: float = number(
+        0.5,
+        "",
+        (-1, 1, 0.01),
+        "share of the deflection that the controller sees: 1 the tip, 0 the straight link",
+        group="basic",
+        label="α",
+    )
+    law: str = choice(
+        "redefined",
+        ("redefined", "composite"),
+        "what the controller puts on the path: y with a share of the deflection, or the tip itself",
+        group="basic",
+        label="Output",
+    )
+    tip_damping: float = number(
+        0.3,
+        "",
+        (0.02, 0.7, 0.01),
+        "damping ratio that the waist gives the beam",
+        group="gains",
+        label="Tip damping",
+    )
+    tip_prediction: float = number(
+        1.2,
+        "ω₁",
+        (0.3, 2, 0.1),
+        "how quickly the deflection is foreseen",
+        group="gains",
+        label="Tip prediction",
+    )
+    tip_shaping: float = number(
+        0.25,
+        "ω₁",
+        (0.05, 2, 0.05),
+        "how quickly the wanted speed may change",
+        group="gains",
+        label="Speed shaping",
+    )
+    tip_yielding: float = number(
+        100.0,
+        "1/s²",
+        (0, 200, 5),
+        "how much progress gives way to a tip held back",
+        group="gains",
+        label="Yielding",
+    )
+    plant: str = choice(
+        "lagrangian",
+        PLANTS,
+        "Lagrange's equations, or (20)-(21) read with ∫φ² = 1, whose coupling has odd units",
+        group="robot",
+        label="Plant",
+        former=FORMER_PLANTS,
+    )
+    modes: int = choice(
+        3,
+        tuple(range(1, MOST_MODES + 1)),
+        "how many modes of the beam are simulated",
+        group="robot",
+        label="Modes",
+    )
+    rho: float = number(
+        0.2,
+        "kg/m",
+        (0.05, 1, 0.01),
+        "mass of the beam per metre",
+        group="robot",
+        label="ρ",
+    )
+    frequency: float = number(
+        4.0,
+        "Hz",
+        (1, 10, 0.1),
+        "first frequency of the clamped beam",
+        group="robot",
+        label="First frequency",
+    )
+    zeta: float = number(
+        0.01,
+        "",
+        (0, 0.2, 0.005),
+        "damping ratio of every mode",
+        group="robot",
+        label="Damping ζ",
+    )
+    error_M11: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's M11 is off by this",
+        group="realism",
+        label="M11 wrong",
+        on=30.0,
+    )
+    error_M22: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's M22 is off by this",
+        group="realism",
+        label="M22 wrong",
+        on=30.0,
+    )
+    error_J0: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's waist inertia J0 is off by this",
+        group="realism",
+        label="J0 wrong",
+        on=30.0,
+    )
+    error_rho: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's ρ is off by this",
+        group="realism",
+        label="ρ wrong",
+        on=30.0,
+    )
+    error_omega1: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's first frequency is off by this",
+        group="realism",
+        label="Frequency wrong",
+        on=10.0,
+    )

@@ -1,0 +1,247 @@
+"""The planar two-link arm in a vertical plane, with a motor at each joint.
+
+Coordinates q = (q1, q2), [rad]: q1 is the angle of link 1 from the horizontal, q2 that of link 2
+relative to link 1. The motor of joint 2 sits on link 1 at the elbow and acts between the links, so
+that B = I and the motors' power is u1 q1' + u2 q2'. Links have length l, mass m, centre of mass at
+r from their joint, and inertia I about it; mR is the mass of the elbow motor. With
+
+    a1 = I1 + m1 r1² + mR l1² + I2 + m2 (l1² + r2²),  a2 = m2 l1 r2,  a3 = I2 + m2 r2²,
+    g1 = g (m1 r1 + mR l1 + m2 l1),  g2 = g m2 r2,  s = a2 sin q2,
+
+    M(q)    = [[a1 + 2 a2 cos q2, a3 + a2 cos q2], [a3 + a2 cos q2, a3]],
+    c(q, v) = (-s (2 v1 v2 + v2²) + g1 cos q1 + g2 cos(q1 + q2) + b1 v1,
+               s v1² + g2 cos(q1 + q2) + b2 v2),
+    h(q)    = (l1 cos q1 + l2 cos(q1 + q2) - l2, l1 sin q1 + l2 sin(q1 + q2) - l1), [m].
+
+At y = 0 link 1 is upright and link 2 horizontal, q = (π/2, -π/2). The determinant of the Jacobian
+is l1 l2 sin q2: the arm is singular when stretched (q2 = 0, at the distance l1 + l2 from its base)
+and when folded (q2 = ±π, at |l1 - l2|). Every other point in reach has two poses. The one with the
+elbow up is taken, -π < q2 < 0; no path leads continuously from one to the other.
+
+Source: Spong and Vidyasagar, Robot Dynamics and Control, 6.4, the planar elbow manipulator.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.errors import Message
+from onpath.models.systems.drawing import Drawing
+from onpath.models.systems.parameters import Parameters, number
+from onpath.models.systems.robots import PlanarRobot, RobotEntry, first_fault
+from onpath.models.systems.system import MechanicalSystem, mechanical_system
+
+GRAVITY = 9.81  # [m/s^2]
+NAMES = ("a1", "a2", "a3", "g1", "g2", "b1", "b2", "l1", "l2")
+STRETCHED = 0.02  # -sin q2 below which the arm counts as stretched or folded
+SINGULAR = Message("stop.singular")
+
+
+@dataclass(frozen=True, slots=True)
+class ArmLinks:
+    """Illustrative values. Units: m, kg, kg m², N m s."""
+
+    l1: float = 0.22
+    l2: float = 0.20
+    r1: float = 0.09
+    r2: float = 0.08
+    m1: float = 0.5
+    m2: float = 0.25
+    motor: float = 0.3  # of the elbow, [kg]
+    I1: float = 0.003
+    I2: float = 0.0012
+    b1: float = 0.05
+    b2: float = 0.03
+
+    def lumped(self, payload: float = 0.0) -> dict[str, float]:
+        """The parameters of the equations of motion by name (SI), with a mass at the end-point.
+
+        Args:
+            payload: [kg].
+        """
+        moment = self.m2 * self.r2 + payload * self.l2
+        a3 = self.I2 + self.m2 * self.r2**2 + payload * self.l2**2
+        beyond = self.motor + self.m2 + payload  # what link 1 carries at the elbow
+        return {
+            "a1": self.I1 + self.m1 * self.r1**2 + beyond * self.l1**2 + a3,
+            "a2": self.l1 * moment,
+            "a3": a3,
+            "g1": GRAVITY * (self.m1 * self.r1 + beyond * self.l1),
+            "g2": GRAVITY * moment,
+            "b1": self.b1,
+            "b2": self.b2,
+            "l1": self.l1,
+            "l2": self.l2,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class TwoLinkParameters(Parameters):
+    """Additional parameters of the arm: model errors and payload."""
+
+    error_inertia: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's inertias a1, a2 and a3 are off by this",
+        group="realism",
+        label="Inertia wrong",
+        on=30.0,
+    )
+    error_gravity: float = number(
+        0.0,
+        "%",
+        (-50, 50, 1),
+        "the controller's weights g1 and g2 are off by this",
+        group="realism",
+        label="Gravity wrong",
+        on=10.0,
+    )
+    payload: float = number(
+        0.0,
+        "kg",
+        (0, 0.3, 0.01),
+        "mass at the end-point; the controller does not know",
+        group="realism",
+        label="Payload",
+        on=0.1,
+    )
+
+
+def two_link_arm() -> MechanicalSystem:
+    """The arm's equations of motion, given in this module's docstring."""
+    parameters = ca.SX.sym("parameters", len(NAMES))
+    p = dict(zip(NAMES, ca.vertsplit(parameters), strict=True))
+    q, v = ca.SX.sym("q", 2), ca.SX.sym("v", 2)
+    both, coupling = q[0] + q[1], p["a2"] * ca.cos(q[1])
+    turning, weight = p["a2"] * ca.sin(q[1]), p["g2"] * ca.cos(both)
+    across = p["a3"] + coupling
+    bias = ca.vertcat(
+        p["g1"] * ca.cos(q[0]) + weight + p["b1"] * v[0] - turning * (2 * v[0] + v[1]) * v[1],
+        weight + p["b2"] * v[1] + turning * v[0] ** 2,
+    )
+    x = p["l1"] * ca.cos(q[0]) + p["l2"] * ca.cos(both)
+    z = p["l1"] * ca.sin(q[0]) + p["l2"] * ca.sin(both)
+    return mechanical_system(
+        name="two_link_arm",
+        q=q,
+        v=v,
+        parameters=parameters,
+        parameter_names=NAMES,
+        mass=ca.blockcat([[p["a1"] + 2 * coupling, across], [across, p["a3"]]]),
+        bias=bias,
+        inputs=2,
+        output=ca.vertcat(x - p["l2"], z - p["l1"]),
+        potential_energy=p["g1"] * ca.sin(q[0]) + p["g2"] * ca.sin(both),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TwoLinkArm(PlanarRobot):
+    """The arm for the lab and the experiments."""
+
+    links: ArmLinks = field(default_factory=ArmLinks)
+    system: MechanicalSystem = field(default_factory=two_link_arm, repr=False)
+    name: str = "two_link_arm"
+    label: str = "Two-link arm"
+    coordinate_names: tuple[str, ...] = ("q1_rad", "q2_rad")
+
+    @property
+    def home(self) -> tuple[float, float]:
+        """See `PlanarRobot.home`: link 1 upright, link 2 horizontal."""
+        return self.links.l2, self.links.l1
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """See `Robot.reach`: folded and stretched."""
+        return abs(self.links.l1 - self.links.l2), self.links.l1 + self.links.l2
+
+    @property
+    def drawing(self) -> Drawing:
+        """See `Robot.drawing`: one more motor, at the elbow."""
+        return Drawing(motors=(1,))
+
+    def plant(self, parameters: Parameters) -> Array:
+        """See `Robot.plant`."""
+        return self.system.parameter_vector(self.links.lumped(_own(parameters).payload))
+
+    def model(self, parameters: Parameters) -> Array:
+        """See `Robot.model`: without payload, with the chosen model errors."""
+        own, values = _own(parameters), self.links.lumped()
+        for name in ("a1", "a2", "a3"):
+            values[name] *= 1 + own.error_inertia / 100
+        for name in ("g1", "g2"):
+            values[name] *= 1 + own.error_gravity / 100
+        return self.system.parameter_vector(values)
+
+    def rest(self, y: Array) -> Array:
+        """See `Robot.rest`: the pose with the elbow up, (..., 2) -> (..., 2)."""
+        l1, l2 = self.links.l1, self.links.l2
+        x, z = y[..., 0] + l2, y[..., 1] + l1
+        cosine = (x**2 + z**2 - l1**2 - l2**2) / (2 * l1 * l2)
+        if not np.all(np.abs(cosine) <= 1):
+            least, most = self.reach
+            raise ValueError(
+                f"end-point out of reach: it must stay between {least:.3f} m and {most:.3f} m"
+                " of the base"
+            )
+        q2 = -np.arccos(cosine)
+        q1 = np.arctan2(z, x) - np.arctan2(l2 * np.sin(q2), l1 + l2 * np.cos(q2))
+        return np.stack([q1, q2], axis=-1)
+
+    def endpoint(self, q: Array) -> Array:
+        """See `Robot.endpoint`."""
+        l1, l2 = self.links.l1, self.links.l2
+        q1, both = q[..., 0], q[..., 0] + q[..., 1]
+        x, z = l1 * np.cos(q1) + l2 * np.cos(both), l1 * np.sin(q1) + l2 * np.sin(both)
+        return np.stack([x - l2, z - l1], axis=-1)
+
+    def margin(self, z: Array) -> Array:
+        """See `Robot.margin`: |sin q2| = |det J| / (l1 l2)."""
+        l1, l2 = self.links.l1, self.links.l2
+        squared = (z[..., 0] + l2) ** 2 + (z[..., 1] + l1) ** 2
+        cosine = (squared - l1**2 - l2**2) / (2 * l1 * l2)
+        return np.sqrt(np.maximum(1 - cosine**2, 0.0))
+
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
+        """See `Robot.fault`: too near a singular configuration, or beyond it, the elbow down."""
+        with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
+            singular = np.sin(q[:, 1]) > -STRETCHED
+        return first_fault(q, v, (singular, SINGULAR))
+
+    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """See `Robot.skeleton`: bars of links 1 and 2; joints at base and elbow."""
+        one, two = (
+            length * ca.vertcat(ca.cos(angle), 0, ca.sin(angle))
+            for length, angle in ((self.links.l1, q[0]), (self.links.l2, q[0] + q[1]))
+        )
+        base = 0 * one
+        return ca.horzcat(base, one, one, one + two), ca.horzcat(base, one)
+
+
+@lru_cache(maxsize=1)
+def two_link_arm_robot() -> TwoLinkArm:
+    """The only instance, so that its kernels are built once."""
+    return TwoLinkArm()
+
+
+def _own(parameters: Parameters) -> TwoLinkParameters:
+    if not isinstance(parameters, TwoLinkParameters):
+        kind = type(parameters).__name__
+        raise TypeError(f"the two-link arm takes TwoLinkParameters, got {kind}")
+    return parameters
+
+
+ROBOT = RobotEntry(
+    name="two_link_arm",
+    label="Two-link arm",
+    text="Two motors, one at the shoulder and one at the elbow, against gravity.",
+    parameters=TwoLinkParameters,
+    lab=TwoLinkParameters(),
+    make=lambda _: two_link_arm_robot(),
+)

@@ -1,0 +1,250 @@
+"""What holds for every robot of the catalogue, and for one that is a single new file."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from onpath.app.cli.main import run_command
+from onpath.app.exports.exporter import csv_bytes, png_bytes
+from onpath.app.lab import commands as c
+from onpath.app.lab.robot_geometry import geometry_function, robot_views
+from onpath.app.lab.session import Session
+from onpath.app.lab.setup import capture, restore
+from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.take_snapshot import take_snapshot
+from onpath.app.page.robot_picture import picture_of
+from onpath.app.scene.poses import poses_of
+from onpath.app.scene.stage_catalogue import stage_of
+from onpath.models import systems
+from onpath.models.control.laws import NAMES
+from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.path_design import presets
+from onpath.models.studies.experiments import experiments, run
+from onpath.models.systems import catalogue
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import specs
+from onpath.models.systems.robots import RobotEntry
+from tests.support.lab import FOLLOWER, TRACKER, assert_drawable, assert_sound, do, store, y
+from tests.support.lab import run as run_lab
+
+GANTRY = '''
+"""A Cartesian gantry: two sliding axes, M = diag(m1 + m2, m2), c = (b v1, b v2 + m2 g), h = q."""
+from dataclasses import dataclass, field
+from functools import lru_cache
+import casadi as ca
+import numpy as np
+from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import PlanarRobot, RobotEntry, first_fault
+from onpath.models.systems.system import mechanical_system
+
+def equations():
+    q, v, p = (ca.SX.sym(name, 2) for name in ("q", "v", "p"))
+    return mechanical_system(
+        name="gantry", q=q, v=v, parameters=p, parameter_names=("m1", "m2"),
+        mass=ca.diag(ca.vertcat(p[0] + p[1], p[1])),
+        bias=ca.vertcat(0.5 * v[0], 0.5 * v[1] + 9.81 * p[1]),
+        inputs=2, output=q, potential_energy=9.81 * p[1] * q[1])
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Gantry(PlanarRobot):
+    system: object = field(default_factory=equations)
+    name: str = "gantry"
+    label: str = "Gantry"
+    coordinate_names: tuple[str, ...] = ("q1_m", "q2_m")
+    home = (0.2, 0.15)
+    reach = (0.0, 0.3)
+    def plant(self, parameters): return np.array([1.0, 0.5])
+    def model(self, parameters): return np.array([1.0, 0.5])
+    def rest(self, y): return np.array(y, dtype=float)
+    def endpoint(self, q): return np.array(q)
+    def margin(self, z): return (np.abs(z).max(axis=-1) < 0.15).astype(float)
+    def fault(self, q, v, parameters): return first_fault(q, v)
+    def skeleton(self, q, exaggeration):
+        x, z = q[0] + 0.2, q[1] + 0.15
+        base, foot, tip = ca.SX.zeros(3), ca.vertcat(x, 0, 0), ca.vertcat(x, 0, z)
+        return ca.horzcat(base, foot, foot, tip), ca.horzcat(base, foot)
+
+ROBOT = RobotEntry(
+    name="gantry", label="Gantry", text="Two sliding axes.",
+    parameters=Parameters, lab=Parameters(), make=lru_cache(lambda _: Gantry()))
+'''
+NAMES_OF_ALL = [*ROBOTS, "gantry"]
+
+
+@pytest.fixture
+def gantry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A robot that is one more file in the folder of the robots, and nothing else."""
+    (tmp_path / "gantry.py").write_text(GANTRY)
+    monkeypatch.setattr(systems, "__path__", [*systems.__path__, str(tmp_path)])
+    for name, entry in catalogue.found_robots().items():
+        monkeypatch.setitem(ROBOTS, name, entry)
+    yield
+    sys.modules.pop("onpath.models.systems.gantry", None)
+
+
+@pytest.fixture(params=NAMES_OF_ALL)
+def entry(request: pytest.FixtureRequest, gantry: None) -> RobotEntry:
+    return ROBOTS[request.param]
+
+
+def lab(entry: RobotEntry, seconds: float = 0.0) -> Session:
+    """As a user comes to it: from the first robot, by the menu."""
+    session = Session(store())
+    do(session, c.ChooseRobot(entry.name))
+    run_lab(session, seconds)
+    return session
+
+
+def test_the_catalogue_finds_it_by_its_name(entry: RobotEntry) -> None:
+    robot = entry.make(entry.lab)
+    assert ROBOTS[robot.name] is entry and robot.system.n == len(robot.coordinate_names)
+    assert robot.system.m >= robot.system.p == robot.frame.p
+    assert entry.make(entry.parameters()) is entry.make(entry.parameters())
+
+
+def test_two_robots_of_one_name_are_refused(gantry: None, tmp_path: Path) -> None:
+    (tmp_path / "other.py").write_text(GANTRY)
+    try:
+        with pytest.raises(ValueError, match="another robot named 'gantry'"):
+            catalogue.found_robots()
+    finally:
+        sys.modules.pop("onpath.models.systems.other", None)
+
+
+def test_it_follows_the_circle_in_the_lab_and_waits_when_held(entry: RobotEntry) -> None:
+    session = lab(entry, 2.0)
+    for name in NAMES:
+        assert session.runs[name].diverged is None
+        assert session.runs[name].max_distance < 2e-3
+    do(session, c.Hold(True))
+    run_lab(session, 1.0)
+    do(session, c.Hold(False))
+    follower, tracker = (session.runs[name].max_distance for name in (FOLLOWER, TRACKER))
+    assert follower < tracker / 3
+    run_lab(session, 0.5)
+    assert_sound(session)
+
+
+def test_a_pull_moves_it_and_it_comes_back(entry: RobotEntry) -> None:
+    session = lab(entry, 0.5)
+    target = session.robot.place(y(session, FOLLOWER) + 0.01)
+    do(session, c.Grab(FOLLOWER, target))
+    run_lab(session, 0.5)
+    assert_sound(session)
+    do(session, c.Release(FOLLOWER))
+    run_lab(session, 1.5)
+    assert session.runs[FOLLOWER].diverged is None
+    assert session.runs[FOLLOWER].distance < 2e-3
+
+
+def test_bars_join_joints_and_end_at_the_end_point_also_in_the_scene(entry: RobotEntry) -> None:
+    session = lab(entry, 0.3)
+    robot, stage = session.robot, stage_of(session.robot)
+    snapshot = take_snapshot(session, 1.0)
+    assert_drawable(snapshot)
+    views = [snapshot.robots[name] for name in stage.bases]
+    poses = poses_of(stage, views)
+    q = [session.runs[name].fields()["q"] for name in stage.bases]
+    for i, (view, configuration) in enumerate(zip(views, q, strict=True)):
+        ends, last = view.bars.reshape(-1, 3), robot.place(robot.endpoint(configuration))
+        np.testing.assert_allclose(view.tip, last, atol=1e-9)
+        logged = session.runs[list(stage.bases)[i]].shown()["y"]
+        np.testing.assert_allclose(view.end, robot.place(logged), atol=1e-12)
+        for joint in view.joints:
+            assert np.linalg.norm(ends - joint, axis=1).min() < 1e-9
+        one = slice(i * view.counts.bars, (i + 1) * view.counts.bars)
+        bars = view.bars
+        lengths = np.linalg.norm(bars[:, 1] - bars[:, 0], axis=1)
+        np.testing.assert_allclose(poses.lengths[one], lengths, atol=1e-6)
+        np.testing.assert_allclose(np.linalg.norm(poses.quaternions[one], axis=1), 1, atol=1e-6)
+        begins = poses.bars[one] - stage.origins[i]
+        depths = robot.drawing.depths
+        layers = [depths.back if back else depths.front for back in view.counts.behind]
+        off = np.linalg.norm(begins - bars[:, 0], axis=1)
+        np.testing.assert_allclose(off, layers, atol=1e-6)
+        np.testing.assert_allclose(poses.tips[i], stage.origins[i] + view.tip, atol=1e-6)
+
+
+def test_one_function_gives_points_and_poses(entry: RobotEntry) -> None:
+    robot = entry.make(entry.lab)
+    function, counts = geometry_function(robot, closed=True)
+    assert function.n_out() == 1
+    sizes = [int(np.prod(shape)) for shape in counts.pose_shapes]
+    assert function.size_out(0) == (3 * counts.points + sum(sizes), len(NAMES))
+
+
+def test_bars_and_path_lie_in_what_the_camera_shows(entry: RobotEntry) -> None:
+    session = lab(entry)
+    stage = stage_of(session.robot)
+    for design in presets().values():
+        if curve_faults(session.robot.margin, design.curve):
+            continue
+        z = design.curve.at(np.linspace(-np.pi, np.pi, 60))
+        places = session.robot.place(session.robot.frame.lift(z))
+        low, high = (np.array(corner) for corner in (stage.low, stage.high))
+        assert (places >= low - 1e-9)[:, [0, 2]].all() and (places <= high + 1e-9)[:, [0, 2]].all()
+    view = robot_views(session.robot, session.editor.curve, session.instant())[FOLLOWER]
+    assert view.bars[..., 2].min() > stage.floor
+    assert stage.title[2] > view.bars[..., 2].max()
+
+
+def test_neighbours_do_not_reach_into_each_other(entry: RobotEntry) -> None:
+    stage = stage_of(entry.make(entry.lab))
+    left, right = stage.origins
+    assert np.linalg.norm(right - left) >= stage.high[0] - stage.low[0]
+
+
+def test_it_has_a_picture(entry: RobotEntry) -> None:
+    assert picture_of(entry).startswith("data:image/")
+
+
+def test_what_it_did_can_be_taken_home(entry: RobotEntry) -> None:
+    session = lab(entry, 0.3)
+    history = session.history.all()
+    head = csv_bytes(session.robot, history).decode().splitlines()[0]
+    assert all(name in head for name in session.robot.coordinate_names)
+    assert png_bytes(session.robot, history, session.lessons.words).startswith(b"\x89PNG")
+
+
+def test_its_share_code_brings_back_the_same_lab(entry: RobotEntry) -> None:
+    session = lab(entry, 0.1)
+    do(session, c.SetParameter("K1", 350.0), c.ChoosePath("ellipse"))
+    own = next(n for n, spec in specs(entry.parameters).items() if spec.group == "realism")
+    do(session, c.SetParameter(own, specs(entry.parameters)[own].on or 100))
+    session.editor.advance(1.0)
+    setup = capture(session)
+    again = Session(store())
+    restore(again, decode(encode(setup)))
+    assert again.entry is entry and again.parameters == session.parameters
+    assert again.editor.design.name == "ellipse" and capture(again) == setup
+
+
+@pytest.mark.parametrize("name", ["position", "obstruction"])
+def test_the_experiments_can_be_done_with_it(entry: RobotEntry, name: str) -> None:
+    chosen = experiments(entry.name)[name].with_values({"duration": "0.4", "r": "0.04"})
+    for controller in NAMES:
+        log = run(chosen, controller)
+        assert log.t[-1] > 0.3 and np.isfinite(log.distance).all()
+
+
+def test_the_command_line_does_an_experiment_with_it(
+    entry: RobotEntry, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "log.csv"
+    words = ["experiment", "position", "--robot", entry.name, "--set", "duration=0.2"]
+    run_command([*words, "--csv", str(file), "--json"])
+    assert json.loads(capsys.readouterr().out)["experiment"] == "position"
+    assert entry.make(entry.lab).coordinate_names[0] in file.read_text()
+
+
+def test_an_unknown_robot_is_told_its_nearest_names() -> None:
+    with pytest.raises(ValueError, match="did you mean two_link_arm"):
+        experiments("two_link")
+    with pytest.raises(KeyError):
+        _ = experiments("five_bar")["flexible"]

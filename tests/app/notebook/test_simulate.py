@@ -1,0 +1,219 @@
+"""`onpath` in Python: the numbers of the command line, arrays with units, clear complaints."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import onpath
+from onpath.app.cli.main import run_command
+from onpath.models.studies.experiments import experiments
+from onpath.models.systems.catalogue import FLEXIBLE
+from onpath.models.systems.parameters import specs
+from tests.support import stranger
+from tests.support.checkout import ROOT
+
+LAWS = tuple(onpath.laws())
+
+
+ARGUMENTS: dict[str, dict[str, Any]] = {
+    "obstruction": {"duration": 1.0, "hold": (0.3, 0.6)},
+    "position": {"duration": 0.5, "task": "position"},
+    "flexible": {"robot": "flexible", "duration": 0.5, "reverse_at": 0.3},
+}
+SET = {
+    "obstruction": {"duration": 1.0, "hold_from": 0.3, "hold_to": 0.6},
+    "position": {"duration": 0.5},
+    "flexible": {"duration": 0.5, "reverse_at": 0.3},
+}
+PUSH = {"push_from": 0.1, "push_to": 0.2, "push_z1": 0.06, "push_z2": 0.01}
+
+
+@pytest.mark.parametrize("name", ARGUMENTS)
+def test_bytes_are_those_of_the_command_line(name: str, tmp_path: Path) -> None:
+    assignments = {**SET[name], **PUSH, "K1": 500, "control_rate": 500}
+    told = [f"--set={key}={value}" for key, value in assignments.items()]
+    expected, file = tmp_path / "expected.csv", tmp_path / "run.csv"
+    assert run_command(["experiment", name, *told, "--csv", str(expected)]) == 0
+    values = {**ARGUMENTS[name], "push": (0.1, 0.2, (0.06, 0.01)), "K1": 500, "control_rate": 500}
+    start = experiments()[name].start(0.05)
+    first, *others = [onpath.simulate(law=law, start=start, **values) for law in LAWS]
+    first.to_csv(file, *others)
+    assert file.read_bytes() == expected.read_bytes()
+
+
+def test_a_run_has_a_row_per_millisecond_of_everything() -> None:
+    run = onpath.simulate("flexible", duration=0.1, modes=2)
+    shapes = {
+        **dict.fromkeys(("t", "theta", "theta_rate", "theta_ref"), ()),
+        **dict.fromkeys(("distance", "speed", "held"), ()),
+        **dict.fromkeys(("q", "v"), (5,)),
+        **dict.fromkeys(("y", "torque", "force"), (3,)),
+        **dict.fromkeys(("xi", "xi_rate"), (2,)),
+    }
+    for name, shape in shapes.items():
+        assert getattr(run, name).shape == (100, *shape), name
+        assert "shape (n" in getattr(onpath.Run, name).__doc__
+    assert run.t == pytest.approx(np.arange(100) * 1e-3)
+
+
+def test_arrays_agree_with_each_other() -> None:
+    run = onpath.simulate(path=onpath.ellipse(0.06, 0.04), duration=1.5, start=(0.05, 0.0))
+    away = np.linalg.norm(run.y - run.experiment.curve().at(run.theta), axis=1)
+    assert away[5:] == pytest.approx(run.distance[5:], abs=1e-5)
+    assert np.abs(run.xi[:, 0]) == pytest.approx(run.distance, abs=1e-5)
+    assert run.distance[0] == pytest.approx(0.01) and run.distance[-1] < 1e-3
+    for values, rate in ((run.q, run.v), (run.xi, run.xi_rate)):
+        middle = (values[2:] - values[:-2]) / 2e-3
+        half_a_tick = 0.5e-3 * np.abs(np.diff(rate, axis=0)).max() / 1e-3  # the law looks ahead
+        assert middle == pytest.approx(rate[1:-1], abs=1.1 * half_a_tick)
+
+
+def test_a_hand_pulls_towards_its_place_while_it_does() -> None:
+    place = np.array([0.0, 0.07])
+    run = onpath.simulate(duration=0.5, push=(0.2, 0.4, place), speed=0)
+    pulls = (run.t > 0.1995) & (run.t < 0.3995)
+    assert np.array_equal(np.any(run.force != 0, axis=1), pulls) and not run.held.any()
+    begun = int(pulls.argmax())
+    towards = place - run.y[begun]
+    assert run.force[begun] / np.linalg.norm(run.force[begun]) == pytest.approx(
+        towards / np.linalg.norm(towards), abs=1e-3
+    )
+    assert np.linalg.norm(run.force, axis=1).max() <= 15 + 1e-9
+
+
+def test_output_of_the_flexible_robot_can_be_chosen() -> None:
+    run = onpath.simulate("flexible", output="composite", duration=0.05)
+    assert getattr(run.experiment.parameters, "law", None) == "composite"
+
+
+@pytest.mark.parametrize("robot", onpath.robots())
+def test_every_parameter_is_listed_with_its_range_and_can_be_set(robot: str) -> None:
+    listed = onpath.parameters(robot)
+    assert listed["K1"].startswith("400, 0 to 2500 1/s²: ")
+    assert len(listed) == len(
+        specs(type(onpath.simulate(robot, duration=0.01).experiment.parameters))
+    )
+    for name, text in listed.items():
+        with pytest.raises(ValueError, match=re.escape(name.replace("output", "law"))):
+            onpath.simulate(robot, **{name: "no such value"})
+        assert re.match(r"\S+, (one of|\S+ to \S+)", text)
+    assert "output" in onpath.parameters(FLEXIBLE.name)
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"robot": "fivebar"}, "did you mean five_bar"),
+        ({"robot": ["five_bar"]}, "did you mean five_bar"),
+        ({"path": "elipse"}, "did you mean ellipse"),
+        ({"path": "figure of eight"}, "crosses itself"),
+        ({"path": onpath.circle(0.3)}, "leaves the workspace"),
+        ({"path": onpath.circle(0.005)}, "bends too sharply"),
+        ({"law": "folowing"}, "path_following"),
+        ({"law": LAWS}, "did you mean trajectory_tracking, path_following"),
+        ({"k1": 3}, "did you mean K1"),
+        ({"durations": 3}, "did you mean duration"),
+        ({"r": 0.03}, "unknown parameter 'r'"),
+        ({"K1": 9999}, "between 0 and 2500 1/s²"),
+        ({"K1": "much"}, "'much' is not a number"),
+        ({"task": "dance"}, "speed, position"),
+        ({"duration": -1}, "between 0.01 and 600 s"),
+        ({"reverse_at": None}, "None is not a number"),
+        ({"hold": 3}, "hold: expected (from, to), [s]"),
+        ({"hold": (5, 3)}, "hold_to (3 s) lies before hold_from (5 s)"),
+        ({"hold": (0, float("nan"))}, "hold: expected (from, to), [s]"),
+        ({"push": (1, 2)}, "push: expected (from, to, (z1, z2)), [s] and [m]"),
+        ({"push": (1, 2, 3)}, "push: expected (from, to, (z1, z2)), [s] and [m]"),
+        ({"push": (1, 2, (3, 3))}, "push_z1: 3.0 is not between -0.4 and 0.4 m"),
+        ({"start": "here"}, "start: expected a point, shape (2,), [m]"),
+        ({"start": (1, 1)}, "out of reach"),
+        ({"robot": "flexible", "start": 0.1}, "shape (2,) or (3,), [m]"),
+    ],
+)
+def test_complaint_names_what_was_expected(values: dict[str, Any], words: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(words)):
+        onpath.simulate(**values)
+
+
+def test_a_path_that_is_none_is_refused() -> None:
+    for make, words in (
+        (lambda: onpath.ellipse(0, 1), "half axes: expected positive"),
+        (lambda: onpath.circle(float("nan")), "radius: expected positive"),
+        (lambda: onpath.circle(0.05, (1,)), "centre: expected a point"),  # type: ignore[arg-type]
+        (lambda: onpath.segment((0, 0), (0, 0)), "at least 2 points"),
+        (lambda: onpath.through([[0, 0], [1]]), "points: expected"),  # type: ignore[list-item]
+    ):
+        with pytest.raises(ValueError, match=re.escape(words)):
+            make()
+
+
+def test_a_path_goes_through_its_points() -> None:
+    points = np.array([[0.05, 0.0], [0.0, 0.04], [-0.05, 0.0], [0.0, -0.04]])
+    for closed in (True, False):
+        curve = onpath.through(points, closed)
+        assert curve.nearest(points)[1].max() < 1e-3 and curve.closed is closed
+    assert onpath.segment((0.0, 0.01), (0.03, 0.02)).at(np.pi) == pytest.approx([0.03, 0.02])
+
+
+def test_pictures_and_files_are_whole_or_refused(tmp_path: Path) -> None:
+    run, other = (onpath.simulate(law=law, duration=0.05) for law in LAWS)
+    figure: Any = run.plot(other, file=tmp_path / "run.svg")
+    assert (tmp_path / "run.svg").read_text().startswith("<?xml")
+    assert figure._repr_png_().startswith(b"\x89PNG")
+    elsewhere = onpath.simulate(path="ellipse", duration=0.05)
+    for fail, words in (
+        (lambda: run.plot(file=tmp_path / "run.doc"), "expected a name ending in .png"),
+        (lambda: run.to_csv(tmp_path / "no" / "run.csv"), "no folder"),
+        (lambda: run.plot(elsewhere), "one robot on one path"),
+        (lambda: run.to_csv(tmp_path / "two.csv", elsewhere), "one robot on one path"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            fail()
+    assert [file.name for file in tmp_path.iterdir()] == ["run.svg"]
+
+
+def test_a_run_tells_what_happened() -> None:
+    run = onpath.simulate(duration=0.3, K1=2500, K2=0, control_rate=50, start=(0.03, 0))
+    assert run.diverged_at is not None and run.t[-1] < run.diverged_at
+    assert run.reason in repr(run) and "max distance" in repr(run) and "path following" in repr(run)
+    assert run.summary()["diverged"] is True
+
+
+@pytest.mark.parametrize("module", ["onpath", "onpath.app.notebook.simulate"])
+def test_examples_in_docstrings_do_what_they_show(module: str) -> None:
+    failed, tried = doctest.testmod(importlib.import_module(module))
+    assert tried > 2 and failed == 0
+
+
+def test_the_example_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = (ROOT / "README.md").read_text("utf-8")
+    (example,) = re.findall(r"## From Python\n.*?```python\n(.*?)```", text, re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    exec(compile(example, "README.md", "exec"), {})
+    assert {file.suffix for file in tmp_path.iterdir()} == {".csv", ".png"}
+
+
+def test_the_package_alone_imports_next_to_nothing(tmp_path: Path) -> None:
+    code = "import sys, onpath; print(*sys.modules, *dir(onpath), sep='\\n')"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        env=stranger.environment(),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    names = done.stdout.split()
+    assert not {"numpy", "casadi", "viser", "onpath.app"} & set(names)
+    assert set(onpath.__all__) <= set(names)
+    with pytest.raises(AttributeError, match="no attribute 'simulat'"):
+        _ = onpath.simulat  # type: ignore[attr-defined]
