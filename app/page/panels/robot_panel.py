@@ -7,7 +7,6 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import viser
-from markupsafe import Markup
 
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseRobot
@@ -59,7 +58,7 @@ def label_of(entry: RobotEntry, words: Words) -> str:
 
 
 @lru_cache
-def _card(asset: str, label: str, text: str) -> Markup:
+def _card(asset: str, label: str, text: str) -> str:
     """Picture and a sentence."""
     picture = base64.b64encode(asset_path(asset).read_bytes()).decode()
     return render("panel/robot.html", label=label, text=text, picture=picture)
