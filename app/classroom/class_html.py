@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from markupsafe import Markup
 
 from onpath.app.classroom.classroom import Member
 from onpath.app.classroom.results import LETTERS, Distribution, tasks_passed
@@ -27,7 +26,7 @@ FLOOR = HEIGHT - BELOW - 10  # where its lowest value is drawn, [px]
 MOST_POINTS = 40  # of a sketch on it
 
 
-def class_code(code: str, count: int, words: Words) -> Markup:
+def class_code(code: str, count: int, words: Words) -> str:
     """Large, for the projector."""
     return render("class/code.html", code=code, count=count, words=words)
 
@@ -44,7 +43,7 @@ class MemberRow:
     state: str
 
 
-def table(members: Iterable[Member], course: Course, now: float, words: Words) -> Markup:
+def table(members: Iterable[Member], course: Course, now: float, words: Words) -> str:
     """Who is where.
 
     Args:
@@ -86,7 +85,7 @@ def prediction_view(
     revealed: bool,
     words: Words,
     large: bool = False,
-) -> Markup:
+) -> str:
     """How the class has answered, without names; the truth too, when it is revealed.
 
     Args:

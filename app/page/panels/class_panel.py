@@ -42,8 +42,8 @@ class ClassPanel:
         if name == self._shown:
             return
         self._shown = name
-        member = render("panel/member.html", name=name, words=self._words)
-        self._member.content = note(member, small=True) if name else ""
+        member = render("panel/member.html", name=name, words=self._words, small=True)
+        self._member.content = member if name else ""
         for handle in (self._code, self._name, self._join):
             handle.visible = not name
         self._leave.visible = bool(name)

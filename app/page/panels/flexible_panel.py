@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import viser
-from markupsafe import Markup
 
 from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
@@ -68,7 +67,7 @@ class CriticalAlpha:
             self._busy = False
 
 
-def alpha_bar(alpha: float, critical: float, used: bool, words: Words) -> Markup:
+def alpha_bar(alpha: float, critical: float, used: bool, words: Words) -> str:
     """A line from -1 to 1, red where the inside is unstable, with alpha marked.
 
     Args:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import viser
-from markupsafe import Markup
 
 from onpath.app.common.access_codes import shown
 from onpath.app.common.templates import render
@@ -55,5 +54,5 @@ class KeepPanel:
         self._said.content = render("lesson/text.html", content=said)
 
 
-def _code(label: str, code: str) -> Markup:
+def _code(label: str, code: str) -> str:
     return render("panel/code.html", label=label, code=code)

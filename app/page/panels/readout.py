@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache, partial
 
 import viser
-from markupsafe import Markup
+from markupsafe import escape
 
 from onpath.app.common.palette import AMBER, BLUE, CONTROLLERS, WARNING
 from onpath.app.common.templates import render
@@ -36,14 +36,14 @@ class Readout:
         names = tuple(snapshot.robots)
         level = snapshot.message_level if snapshot.message else ""
         content = self._frame(names, level).format(
-            *numbers, _clock(snapshot, self._words), snapshot.message
+            *numbers, escape(_clock(snapshot, self._words)), escape(snapshot.message)
         )
         if content != self._shown:
             self._shown = content
             update_gui(self._table, "content", content)
 
 
-def _frame(words: Words, names: tuple[str, ...], level: str) -> Markup:
+def _frame(words: Words, names: tuple[str, ...], level: str) -> str:
     """All but what changes ten times a second, where it has a {}.
 
     Args:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import viser
-from markupsafe import Markup
 
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseRobot
@@ -56,6 +55,6 @@ def label_of(entry: RobotEntry, words: Words) -> str:
     return words.get(f"machine.{entry.name}.label", entry.label)
 
 
-def _card(picture: str, label: str, text: str) -> Markup:
+def _card(picture: str, label: str, text: str) -> str:
     """Picture and a sentence."""
     return render("panel/robot.html", label=label, text=text, picture=picture)

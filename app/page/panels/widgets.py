@@ -9,7 +9,6 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 import viser
-from markupsafe import Markup
 
 from onpath.app.common.error_log import log_error
 from onpath.app.common.templates import render
@@ -64,7 +63,7 @@ def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
     handle.on_click(pressed)
 
 
-def note(said: str, small: bool = False) -> Markup:
+def note(said: str, small: bool = False) -> str:
     """A sentence between widgets."""
     return render("panel/note.html", said=said, small=small)
 
