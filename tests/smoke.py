@@ -12,7 +12,11 @@ import urllib.request
 
 
 def main() -> None:
-    """An experiment, then the lab's page, then a clean stop."""
+    """A simulation, an experiment, then the lab's page, then a clean stop."""
+    code = "import onpath; print(len(onpath.simulate(duration=0.1).t))"
+    output = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert output.stdout == "100\n", output.stdout
+
     onpath = sys.argv[1]
     command = [onpath, "experiment", "obstruction", "--json"]
     output = subprocess.run(command, capture_output=True, text=True, check=True).stdout
