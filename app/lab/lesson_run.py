@@ -16,9 +16,10 @@ from onpath.app.lab.setup import Setup, capture, restore
 from onpath.app.lab.sketches import sketched
 from onpath.lessons.checks import Verdict, judge, statistic
 from onpath.lessons.course import Course
-from onpath.lessons.progress import Answer, Notes, Progress, Truth
+from onpath.lessons.place import CoursePlace
+from onpath.lessons.progress import Answer, Progress, Truth
 from onpath.lessons.record import Record
-from onpath.lessons.schema import Action, Lesson, Prediction, Quiz, Sketch, Step, Task, Window
+from onpath.lessons.schema import Action, Prediction, Quiz, Sketch, Task, Window
 from onpath.lessons.words import Words
 
 if TYPE_CHECKING:
@@ -27,22 +28,18 @@ if TYPE_CHECKING:
 CHECK_INTERVAL = 30  # frames between looks at the tasks
 
 
-class LessonRun:
+class LessonRun(CoursePlace):
     """The lessons as one student goes through them.
 
     Attributes:
-        course: all lessons there are.
-        progress: what is kept.
-        words: of the student's language.
         version: changes whenever the page must be drawn anew.
         verdicts: on the checks of the open step's tasks, by task.
         before: the lab as it was before any lesson was open.
     """
 
     def __init__(self, course: Course, progress: Progress | None = None) -> None:
-        self.course = course
-        self.progress = progress or Progress()
-        self.words = Words(self.progress.language)
+        progress = progress or Progress()
+        super().__init__(course, progress, Words(progress.language))
         self.version = 0
         self.verdicts: dict[str, list[Verdict]] = {}
         self._begin = Beginning(0, 0.0)
@@ -52,73 +49,10 @@ class LessonRun:
         self._passed: dict[str, int] = {}  # the run in which a task was passed
         self.before: Setup | None = None
 
-    # Where we are
-
-    @property
-    def lesson(self) -> Lesson | None:
-        """The open one."""
-        name = self.progress.lesson
-        if name not in self.course.lessons:
-            return None
-        return self.course.lesson(name, self.progress.language)
-
-    @property
-    def notes(self) -> Notes:
-        """On the open lesson."""
-        return self.progress.notes.get(self.progress.lesson, Notes())
-
-    @property
-    def index(self) -> int:
-        """Of the open step."""
-        return self._left_at(self.progress.lesson)
-
-    def _left_at(self, name: str) -> int:
-        """The step of a lesson that was last open; 0 if there is no such lesson."""
-        if name not in self.course.lessons:
-            return 0
-        last = len(self.course.lesson(name, self.progress.language).steps) - 1
-        return min(self.progress.notes.get(name, Notes()).step, last)
-
-    @property
-    def step(self) -> Step | None:
-        """The open one."""
-        lesson = self.lesson
-        return lesson.steps[self.index] if lesson else None
-
-    def prediction(self) -> tuple[str, Prediction] | None:
-        """The one that belongs to the open step, here or in the step before, and its key."""
-        lesson = self.lesson
-        if lesson is None:
-            return None
-        for index in (self.index, self.index - 1):
-            step = lesson.steps[index] if index >= 0 else None
-            if step is not None and (step is self.step or self.step_is("run")):
-                for prediction in step.predictions():
-                    return str(index), prediction
-        return None
-
-    def step_is(self, kind: str) -> bool:
-        """Whether the open step is of a kind."""
-        return self.step is not None and self.step.kind == kind
-
-    def answer(self) -> Answer | None:
-        """To the open step's prediction; None while there is none."""
-        found = self.prediction()
-        return None if found is None else self.notes.answers.get(found[0])
-
-    @property
-    def waits(self) -> bool:
-        """Whether a prediction is still to be made, or skipped."""
-        return self.prediction() is not None and self.answer() is None
-
     @property
     def playing(self) -> bool:
         """Whether the lab does by itself what the step shows."""
         return self._player is not None
-
-    def has_played(self) -> bool:
-        """Whether the lab has done what the open step shows, now or earlier."""
-        return str(self.index) in self.notes.played
 
     # What is asked
 
@@ -128,7 +62,7 @@ class LessonRun:
         Raises:
             ValueError: there is no such lesson.
         """
-        self.open_at(name, self._left_at(name), session)
+        self.open_at(name, self.left_at(name), session)
 
     def open_at(self, name: str, index: int, session: Session) -> None:
         """Open a step of a lesson, from anywhere, with the lab as that step expects to find it.
