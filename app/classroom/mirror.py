@@ -64,8 +64,8 @@ class Mirror(Lab):
         """See `Lab.achieved`."""
         return self._now.achieved
 
-    def keep_up(self) -> None:
-        """One frame; on the simulation thread, by the page that shows it."""
+    def advance(self, seconds: float) -> None:
+        """One frame; see `Lab.advance`."""
         self._take_over_due()
         self._owed += self._step()
         while self._coming and self._runs():

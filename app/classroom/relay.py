@@ -14,7 +14,7 @@ from onpath.app.common.error_log import log_warning
 from onpath.app.common.periodic import Periodic
 from onpath.app.lab.class_commands import ShowMessage
 from onpath.app.lab.session import Session
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.simulation.simulation_thread import Lab, SimulationThread
 from onpath.app.storage.records import NotKept
 
 SEND_INTERVAL = 0.125  # [s]
@@ -28,6 +28,7 @@ class Relay:
         find: the lab of a session code, if it lives in this process.
         wanted: which labs that live elsewhere the teachers look at: session codes by client.
         make: a new session, for a mirror.
+        simulation: advances the mirrors.
 
     Attributes:
         rounds: looks, from their start to their stop.
@@ -39,7 +40,9 @@ class Relay:
         find: Callable[[str], Lab | None],
         wanted: Callable[[], dict[int, str]],
         make: Callable[[], Session],
+        simulation: SimulationThread,
     ) -> None:
+        self._simulation = simulation
         self._watches, self._find, self._wanted, self._make = watches, find, wanted, make
         self._asked: set[str] = set()
         self._heard: dict[str, Moment] = {}
@@ -99,4 +102,13 @@ class Relay:
                 mirrors[client] = code, Mirror(self._make(), told[code])
             except ValueError as error:
                 log_warning("a student's lab cannot be shown: %s", error)
+        self._run({mirror for _, mirror in mirrors.values()})
         self._mirrors = mirrors
+
+    def _run(self, wanted: set[Mirror]) -> None:
+        """Have these advanced, and no others."""
+        running = {mirror for _, mirror in self._mirrors.values()}
+        for mirror in running - wanted:
+            self._simulation.remove(mirror)
+        for mirror in wanted - running:
+            self._simulation.add(mirror)

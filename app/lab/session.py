@@ -28,7 +28,6 @@ from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout, samples_of
 from onpath.app.lab.script_player import ScriptPlayer
-from onpath.app.lab.snapshot import PathView
 from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.record import ROLES, Happening
 from onpath.lessons.schema import RobotName
@@ -83,7 +82,6 @@ class Session:
         self.rate = 1.0
         self.copy = True
         self.exaggeration = 1.0  # of a deflection, in the drawing alone
-        self.path_view: PathView | None = None  # the last one drawn, while it is still right
         self.message, self.message_level = "", "info"
         self.happenings: deque[Happening] = deque(maxlen=MOST_HAPPENINGS)
         self.run_number = 0
@@ -122,7 +120,6 @@ class Session:
         self.parameters: Parameters = parameters
         self.robot: Robot = entry.make(parameters)
         self.editor = editor or PathEditor(self.robot, self.presets["circle"])
-        self.path_view = None
         self._restart()
 
     # Commands

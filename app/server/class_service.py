@@ -12,10 +12,13 @@ from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.relay import Relay
 from onpath.app.classroom.shared_classroom import SharedClassroom
 from onpath.app.classroom.watches import Watches
-from onpath.app.lab.class_commands import ShowMessage
+from onpath.app.lab.class_commands import ShowMessage, TakeSetup
+from onpath.app.lab.lesson_commands import CloseLesson
 from onpath.app.lab.session import Session
+from onpath.app.lab.setup import capture
 from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
+from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.simulation.simulation_thread import Lab
 from onpath.app.storage.lab_state import keep
@@ -47,7 +50,8 @@ class ClassService:
         self._relay: Relay | None = None
         if isinstance(classroom, SharedClassroom) and records is not None:
             watches = Watches(records, classroom.id)
-            self._relay = Relay(watches, self._here, self._wanted, sessions.make)
+            simulation = sessions.simulation
+            self._relay = Relay(watches, self._here, self._wanted, sessions.make, simulation)
             self._relay.rounds.start()
 
     def stop(self) -> None:
@@ -72,6 +76,11 @@ class ClassService:
         """A browser has left."""
         self._teachers.pop(client, None)
 
+    def nickname(self, code: str) -> str:
+        """Of the student of a lab; empty while the student has not joined."""
+        member = self._class.member(code)
+        return member.name if member else ""
+
     def seat(self, client: viser.ClientHandle, code: str, reopen: Callable[[], None]) -> ClassSeat:
         """A lab's place in the class.
 
@@ -79,10 +88,6 @@ class ClassService:
             code: of its session.
             reopen: build the client's page anew.
         """
-
-        def name() -> str:
-            member = self._class.member(code)
-            return member.name if member else ""
 
         def teach(key: str) -> None:
             shown = self._class.admit(key, code)
@@ -99,20 +104,40 @@ class ClassService:
                 entry.lab.session.post(ShowMessage(lambda session: keep(session, submit)))
 
         return ClassSeat(
-            name=name,
             join=join,
             leave=lambda: self._class.leave(code),
             teach=teach,
         )
 
-    def teaching(
-        self, client: viser.ClientHandle, reopen: Callable[[], None]
-    ) -> TeacherContext | None:
-        """For a teacher's page; None for everybody else."""
-        teacher = self._teachers.get(client.client_id)
+    def teaches(self, client: int) -> bool:
+        """Whether a client is a teacher's."""
+        return client in self._teachers
+
+    def followed(self, client: int) -> FollowedLab | None:
+        """What a teacher looks at instead of the lab of one's own; None for everybody else."""
+        teacher = self._teachers.get(client)
         if teacher is None:
             return None
+        return FollowedLab(self._class, teacher[1], partial(self._lab, client))
+
+    def teaching(
+        self, client: viser.ClientHandle, lab: Lab, reopen: Callable[[], None]
+    ) -> TeacherContext | None:
+        """For a teacher's page; None for everybody else.
+
+        Args:
+            lab: the teacher's own, where no lesson is open from now on.
+            reopen: build the client's page anew.
+        """
+        teacher, followed = self._teachers.get(client.client_id), self.followed(client.client_id)
+        if teacher is None or followed is None:
+            return None
         shown, chosen = teacher
+        lab.session.post(CloseLesson())
+
+        def send_setup() -> None:
+            push = self._class.push
+            lab.session.post(ShowMessage(lambda session: push(TakeSetup(capture(session)))))
 
         def stop() -> None:
             self._teachers.pop(client.client_id, None)
@@ -120,8 +145,15 @@ class ClassService:
             reopen()
             self._class.revoke(shown)
 
-        lab = partial(self._lab, client.client_id)
-        return TeacherContext(self._class, chosen, lab, self._forget, stop)
+        return TeacherContext(
+            classroom=self._class,
+            chosen=chosen,
+            progress=lambda: lab.session.lessons.progress,
+            why_still=followed.why_still,
+            send_setup=send_setup,
+            forget=self._forget,
+            stop=stop,
+        )
 
     def _student(self, code: str) -> tuple[Session, bool] | None:
         entry = self._sessions.find(code)
