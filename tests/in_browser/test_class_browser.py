@@ -18,6 +18,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.teacher_view import TeacherView
+from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
 
@@ -135,9 +136,11 @@ def test_the_teacher_looks_on_and_touches_nothing(tabs: Class) -> None:
     teacher.field("Follow").click()
     teacher.page.get_by_role("option", name="1. Ada").click()
     teacher.page.get_by_text("This is the lab of Ada").wait_for()
-    view = teacher.lab.view
+    feed = teacher.lab.view
+    assert isinstance(feed, LabFeed)
+    view, (ada, _) = feed.page, tabs.room.members().values()
     assert isinstance(view, TeacherView)
-    wait_for(lambda: view._built[0] == id(first.session))
+    wait_for(lambda: view._built[0] == ada.number)
     assert first.session.lessons.lesson is not None
     assert teacher.button("Hold both back").count() == 0
     teacher.page.keyboard.press("h")

@@ -72,7 +72,7 @@ class Followed:
             while self._under_way and self._under_way[0][0] <= self.frames:
                 self.mirror.tell(self._under_way.pop(0)[1])
             before = self.mirror.session.time
-            self.mirror.keep_up()
+            self.mirror.advance(FRAME)
             self.jumps.append(self.mirror.session.time - before)
             self.frames += 1
 
@@ -220,10 +220,10 @@ TEXT = told(Lab(new_session(0.2)))
 @given(st.one_of(st.text(), spoilt(TEXT)))
 def test_what_comes_is_a_lab_or_is_left_out(text: str) -> None:
     mirror = Mirror(Session(store()), TEXT)
-    mirror.keep_up()
+    mirror.advance(FRAME)
     mirror.tell(text)
     for _ in range(3):
-        mirror.keep_up()
+        mirror.advance(FRAME)
     assert_drawable(take_snapshot(mirror.session, 1.0))
     try:
         assert isinstance(read_moment(text), Moment)

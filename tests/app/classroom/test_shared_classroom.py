@@ -26,15 +26,16 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.class_commands import TakeSetup, TakeStep
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import capture
-from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.page.teacher_context import TeacherChoices
+from onpath.app.server.followed_lab import FollowedLab
+from onpath.app.simulation.simulation_thread import Lab, SimulationThread
 from onpath.app.storage.forget import forget
 from onpath.app.storage.leases import TERM, Leases
 from onpath.app.storage.records import NotKept, Records, file_url
 from onpath.app.storage.schema import OF_A_CLASS, classes
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.words import ENGLISH
-from tests.support.lab import FOLLOWER, do, new_session, run, store, y
+from tests.support.lab import FOLLOWER, FRAME, do, new_session, run, store, y
 from tests.support.waiting import wait_for
 
 CODE = "k7mf2xqa9tzr"
@@ -468,8 +469,9 @@ def test_a_lab_elsewhere_is_mirrored_as_long_as_a_teacher_looks(two: Two) -> Non
     one, other = two.both
     student = one.student("a", "Ada")
     wanted: dict[int, str] = {}
-    there = Relay(one.watches, one.here, dict, lambda: Session(store()))
-    here = Relay(other.watches, other.here, lambda: wanted, lambda: Session(store()))
+    simulation, elsewhere = SimulationThread(), SimulationThread()
+    there = Relay(one.watches, one.here, dict, lambda: Session(store()), elsewhere)
+    here = Relay(other.watches, other.here, lambda: wanted, lambda: Session(store()), simulation)
 
     def pass_time(looks: int) -> Mirror | None:
         for _ in range(looks):
@@ -479,7 +481,7 @@ def test_a_lab_elsewhere_is_mirrored_as_long_as_a_teacher_looks(two: Two) -> Non
             mirror = here.mirror(7, "a")
             if mirror is not None:
                 for _ in range(8):
-                    mirror.keep_up()
+                    mirror.advance(FRAME)
             two.clock.now += 0.125
         return here.mirror(7, "a")
 
@@ -487,6 +489,7 @@ def test_a_lab_elsewhere_is_mirrored_as_long_as_a_teacher_looks(two: Two) -> Non
     assert pass_time(8) is None
     wanted[7] = "a"
     mirror = pass_time(24)
+    assert simulation.labs == [mirror] and elsewhere.labs == []
     assert mirror is not None and here.mirror(8, "a") is None and here.mirror(7, "b") is None
     behind = student.time - mirror.session.time
     assert 0 < behind < 1.5
@@ -497,7 +500,7 @@ def test_a_lab_elsewhere_is_mirrored_as_long_as_a_teacher_looks(two: Two) -> Non
     pass_time(8)
     assert mirror.is_seen
     wanted[7] = "b"
-    assert pass_time(1) is None and here._mirrors == {}
+    assert pass_time(1) is None and here._mirrors == {} and simulation.labs == []
     wanted.clear()
     pass_time(int(LASTS / 0.125) + 8)
     assert there._asked == set() and there._told == {}
@@ -513,9 +516,7 @@ def test_the_teacher_reads_why_a_lab_stands_still(two: Two) -> None:
     two.look()
     lab = Lab(new_session())
     shown_lab: list[Lab | None] = [lab]
-    teaching = TeacherContext(
-        one.room, TeacherChoices(), lambda _: shown_lab[0], forget=lambda: 0, stop=lambda: None
-    )
+    teaching = FollowedLab(one.room, TeacherChoices(), lambda _: shown_lab[0])
     assert teaching.why_still(ENGLISH) == ""
     for code in ("a", "b"):
         teaching.chosen.followed = code
@@ -523,6 +524,7 @@ def test_the_teacher_reads_why_a_lab_stands_still(two: Two) -> None:
         assert teaching.why_still(ENGLISH) == ENGLISH("class.hidden")
         lab.view = object()  # type: ignore[assignment]
         assert teaching.why_still(ENGLISH) == ""
+        assert teaching.find() == (lab, one.room.members()[code].number)
     shown_lab[0] = None
     assert teaching.why_still(ENGLISH) == ENGLISH("class.fetching")
     other.clients.clear()
@@ -531,12 +533,12 @@ def test_the_teacher_reads_why_a_lab_stands_still(two: Two) -> None:
     assert teaching.why_still(ENGLISH) == ENGLISH("class.absent")
     other.room.leave("b")
     two.look()
-    assert teaching.why_still(ENGLISH) == "" and teaching.followed() is None
+    assert teaching.why_still(ENGLISH) == "" and teaching.find() is None
 
 
 def test_a_relay_that_is_told_nonsense_shows_nothing(two: Two) -> None:
     one, other = two.both
-    here = Relay(other.watches, other.here, lambda: {7: "a"}, lambda: Session(store()))
+    here = Relay(other.watches, other.here, lambda: {7: "a"}, lambda: Session(store()), SimulationThread())
     here.look()
     one.watches.tell({"a": "nonsense"})
     here.look()

@@ -11,7 +11,7 @@ import pytest
 
 from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.session import Session
+from onpath.app.lab.page_snapshot import PageSnapshot
 from onpath.app.page.build_queue import FEW
 from onpath.app.page.page import Page
 from onpath.app.server.lab_server import LabServer
@@ -32,11 +32,11 @@ class Builds:
     def watch(self, monkeypatch: pytest.MonkeyPatch) -> None:
         genuine = Page._build
 
-        def build(view: Page, session: Session) -> None:
+        def build(view: Page, first: PageSnapshot) -> None:
             self._now += 1
             self.most = max(self.most, self._now)
             time.sleep(LONG)
-            genuine(view, session)
+            genuine(view, first)
             self._now -= 1
             self.done += 1
 

@@ -101,7 +101,7 @@ def around(k: int) -> np.ndarray:
 
 def test_an_endless_freehand_stroke_is_drawn_ten_times_a_second_of_few_points(page: Page) -> None:
     strokes: list[np.ndarray] = []
-    page.view._scene.begin_freehand(strokes.append)
+    page.view.page._scene.begin_freehand(strokes.append)
     base = next(iter(RIGID.bases.values()))
     page.scribble("/freehand/sheet", lambda k: base + around(k))
     page.assert_bounded()
@@ -126,7 +126,7 @@ def test_an_endless_sketch_too(page: Page) -> None:
     for _ in range(step):
         page.session.post(lc.GoToStep(step))
     wait_for(lambda: page.shown("/board/sheet"))
-    (board,) = wait_for(lambda: [p._board for p in page.view._parts if hasattr(p, "_board")])
+    (board,) = wait_for(lambda: [p._board for p in page.view.page._parts if hasattr(p, "_board")])
     page.scribble("/board/sheet", lambda k: board._world(0.3 * sideways(k)[None])[0])
     page.assert_bounded()
     page.end()
