@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.robot_geometry import robot_views
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshot import PathView, Snapshot
+from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.paths.curves import Curve
 
@@ -15,8 +17,9 @@ TRACE_POINTS = 120
 CURVE_POINTS = 160
 
 
-def take_snapshot(session: Session, achieved_speed: float, traces: bool = True) -> Snapshot:
-    """The session now, or at the past instant it looks at."""
+def take_snapshot(lab: Lab, achieved_speed: float, traces: bool = True) -> Snapshot:
+    """The lab now, or at the past instant it looks at."""
+    session = lab.session
     past = None if session.viewing is None else session.history.at(session.viewing)
     curve = session.editor.curve if past is None else past.curve
     time = session.time if session.viewing is None else session.viewing
@@ -34,17 +37,17 @@ def take_snapshot(session: Session, achieved_speed: float, traces: bool = True) 
         path=_path_view(session, curve),
         held=bool(session.grips.held),
         grabbed=session.grips.grabbed,
-        message=session.message,
-        message_level=session.message_level,
-        note=scale_note(session),
+        message=lab.message,
+        message_level=lab.message_level,
+        note=scale_note(session, lab.words),
     )
 
 
-def scale_note(session: Session) -> str:
+def scale_note(session: Session, words: Words) -> str:
     """A drawing that is not true to scale says so."""
     if session.exaggeration == 1.0 or not session.robot.extra_fields:
         return ""
-    return session.lessons.words("scene.larger", factor=f"{session.exaggeration:g}")
+    return words("scene.larger", factor=f"{session.exaggeration:g}")
 
 
 def _traces(session: Session, time: float) -> Array:
