@@ -9,8 +9,8 @@ import numpy as np
 import viser
 
 from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_run import LessonRun
-from onpath.app.lab.session import Session
 from onpath.app.page import lesson_html as page
 from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
@@ -36,7 +36,7 @@ class LessonPanel:
     def __init__(
         self,
         client: viser.ClientHandle,
-        session: Session,
+        lab: Lab,
         post: Post,
         scene: Scene,
         submit: Callable[[Callable[[], None]], None],
@@ -50,7 +50,7 @@ class LessonPanel:
         self._board: SketchBoard | None = None
         self._draft = c.Predict()
         self._busy, self._version, self._reading = False, -1, -1
-        words = session.lessons.words
+        words = lab.words
         self._panel = None
         if tab is None:
             self._panel = self._gui.add_panel(order=0)
@@ -62,32 +62,32 @@ class LessonPanel:
         on.on_trigger(_turns(post, 1))
         back = self._gui.add_command(words("lesson.back"), hotkey="pageup")
         back.on_trigger(_turns(post, -1))
-        self._build(session)
+        self._build(lab)
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Draw anew what has changed; what is measured, always."""
         if self._busy:
             return
-        run = session.lessons
+        run = lab.lessons
         if run.version != self._version:
             self._busy = True
-            self._submit(lambda: self._rebuild(session))
+            self._submit(lambda: self._rebuild(lab))
             return
         for task, handle in self._tasks:
             content = page.task(task, run.verdicts.get(task.id, []), run)
             if handle.content != content:
                 handle.content = content
         if self._chart is not None and run.playing:
-            self._chart.show(run.truth(session))
+            self._chart.show(run.truth(lab.session))
         board = self._board  # another thread may take it away
         if board is not None:
             board.draw()
 
-    def _rebuild(self, session: Session) -> None:
+    def _rebuild(self, lab: Lab) -> None:
         try:
-            if session.lessons.lesson is not None:
+            if lab.lessons.lesson is not None:
                 self._clear()
-                self._build(session)
+                self._build(lab)
         finally:
             self._busy = False
 
@@ -100,8 +100,8 @@ class LessonPanel:
             self._board = None
             self._scene.show_titles(True)
 
-    def _build(self, session: Session) -> None:
-        run = session.lessons
+    def _build(self, lab: Lab) -> None:
+        run = lab.lessons
         self._version = run.version
         lesson, step = run.lesson, run.step
         assert lesson is not None and step is not None
@@ -112,10 +112,10 @@ class LessonPanel:
         with self._tab:
             self._html(page.heading(lesson, step, run))
             if step.kind == "run":
-                self._add_run(session)
+                self._add_run(lab)
             if step.kind != "run" or run.has_played() or self._reading == run.index:
                 for number, block in enumerate(step.blocks):
-                    self._add(number, block, session)
+                    self._add(number, block, lab)
             else:
                 self._add_reading(run)
             self._add_ways(step, run)
@@ -130,8 +130,8 @@ class LessonPanel:
         on_press(button, read)
         self._handles.append(button)
 
-    def _add(self, number: int, block: object, session: Session) -> None:
-        run = session.lessons
+    def _add(self, number: int, block: object, lab: Lab) -> None:
+        run = lab.lessons
         if isinstance(block, Text):
             self._html(page.text(block.html))
             for link in block.links:
@@ -143,7 +143,7 @@ class LessonPanel:
             self._html(page.question(block, chosen, chosen is not None, run.words))
             self._add_letters(block, lambda option: self._post(c.AnswerQuiz(number, option)))
         elif isinstance(block, Choice | Sketch):
-            self._add_prediction(block, session)
+            self._add_prediction(block, lab)
 
     def _add_task(self, task: Task, run: LessonRun) -> None:
         verdicts = run.verdicts.get(task.id, [])
@@ -153,14 +153,14 @@ class LessonPanel:
             label = run.words("lesson.hint", left=left)
             self._button(label, c.ShowHint(task.id), "gray", viser.Icon.BULB)
 
-    def _add_prediction(self, block: Prediction, session: Session) -> None:
-        run, answer = session.lessons, session.lessons.answer()
+    def _add_prediction(self, block: Prediction, lab: Lab) -> None:
+        run, answer = lab.lessons, lab.lessons.answer()
         if isinstance(block, Sketch):
             self._html(page.box(f"<p><b>{block.question}</b></p>"))
             if answer is None:
-                self._add_sketching(block, session)
+                self._add_sketching(block, lab)
             else:
-                self._add_chart(block, session)
+                self._add_chart(block, lab)
             return
         chosen = answer.option if answer else None
         self._html(page.question(block, chosen, False, run.words))
@@ -189,13 +189,13 @@ class LessonPanel:
         self._handles.append(group)
         return group
 
-    def _add_sketching(self, block: Sketch, session: Session) -> None:
+    def _add_sketching(self, block: Sketch, lab: Lab) -> None:
         """The board, its keyboard twin, and the button that commits."""
-        words = session.lessons.words
+        words = lab.words
         said = self._html(page.text(f"<p>{words('lesson.draw_first')}</p>"))
         from onpath.app.scene.sketch_board import SketchBoard  # see app/server/lazy_imports.py
 
-        commit = self._commit_button(session.lessons)
+        commit = self._commit_button(lab.lessons)
 
         def drawn(times: np.ndarray, values: np.ndarray) -> None:
             self._draft = c.Predict(None, tuple(times.tolist()), tuple(values.tolist()))
@@ -203,10 +203,10 @@ class LessonPanel:
             said.content = page.text(f"<p>{words('lesson.drawn')}</p>")
 
         title = f"{words(f'robot.{block.robot}')}: {words(f'quantity.{block.quantity}')}"
-        stage = stage_of(session.robot)
+        stage = stage_of(lab.session.robot)
         self._scene.show_titles(False)
         self._board = SketchBoard(self._client.scene, stage, block, title, drawn)
-        self._add_numbers(block, session.lessons, self._board, drawn)
+        self._add_numbers(block, lab.lessons, self._board, drawn)
 
     def _add_numbers(
         self,
@@ -234,11 +234,11 @@ class LessonPanel:
                 on_user_update(slider, moved)
                 sliders.append(slider)
 
-    def _add_run(self, session: Session) -> None:
+    def _add_run(self, lab: Lab) -> None:
         """What was predicted beside what happens, and the button that lets it happen."""
-        run, step, found = session.lessons, session.lessons.step, session.lessons.prediction()
+        run, step, found = lab.lessons, lab.lessons.step, lab.lessons.prediction()
         assert step is not None
-        truth = run.truth(session)
+        truth = run.truth(lab.session)
         if run.playing:
             self._html(page.text(f"<p><i>{run.words('lesson.playing')}</i></p>"))
         else:
@@ -253,16 +253,16 @@ class LessonPanel:
         if answer is not None and answer.skipped:
             self._html(page.text(f"<p><i>{run.words('lesson.skipped')}</i></p>"))
         if isinstance(block, Sketch):
-            self._add_chart(block, session)
+            self._add_chart(block, lab)
         elif truth is not None and not run.playing:
             chosen = answer.option if answer else None
             self._html(page.question(block, chosen, True, run.words))
 
-    def _add_chart(self, block: Sketch, session: Session) -> None:
-        run = session.lessons
+    def _add_chart(self, block: Sketch, lab: Lab) -> None:
+        run = lab.lessons
         self._chart = PredictionChart(self._gui, block, run.answer(), run.words)
         self._handles.append(self._chart)
-        self._chart.show(run.truth(session))
+        self._chart.show(run.truth(lab.session))
 
     def _add_ways(self, step: Step, run: LessonRun) -> None:
         """Back, on, set up again, away."""

@@ -8,7 +8,7 @@ import viser
 
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.take_snapshot import take_snapshot
 from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.lesson_menu import LessonMenu
@@ -42,7 +42,7 @@ CONTROL_WIDTH = 330  # [px]
 class Page:
     """What one client sees. Built in a thread of its own, then used by the simulation thread."""
 
-    def __init__(self, client: viser.ClientHandle, session: Session, desk: PageContext) -> None:
+    def __init__(self, client: viser.ClientHandle, lab: Lab, desk: PageContext) -> None:
         self._client = client
         self._desk = desk
         self._channel = FrameChannel(client)
@@ -58,26 +58,26 @@ class Page:
             client.gui.main_panel.dock_right()
             client.gui.main_panel.set_width(CONTROL_WIDTH)
         with one_at_a_time:
-            self._build(session)
+            self._build(lab)
 
     def close(self) -> None:
         """The tab is gone."""
         self._exporter.close()
 
-    def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
+    def show(self, lab: Lab, achieved: float, frame: int, stride: float) -> None:
         """See `app.simulation.simulation_thread.Display`."""
         count = frame + self._offset
-        if session.grips.grabbed and stride == AT_EASE:
+        if lab.session.grips.grabbed and stride == AT_EASE:
             stride = 1.0  # the hand feels every frame of delay
         if not is_turn(count, stride) or self._robot is None or self._channel.closed:
             return
-        if self._page(session) != self._built:
+        if self._page(lab) != self._built:
             self._robot = None  # nothing is shown until the new one stands
-            self._exporter.submit(lambda: self._rebuild(session))
+            self._exporter.submit(lambda: self._rebuild(lab))
             return
         with self._channel:
             every = stride * round((SLOW if stride <= AT_EASE else SLOWER) / stride)
-            self._show(session, achieved, slow=is_turn(count, every))
+            self._show(lab, achieved, slow=is_turn(count, every))
 
     def reset_view(self) -> None:
         """Put the camera back where it was at first, soon; from any thread."""
@@ -92,55 +92,56 @@ class Page:
         """See `app.server.tab_visibility.CountingDisplay`."""
         return self._channel.frames
 
-    def _show(self, session: Session, achieved: float, slow: bool) -> None:
+    def _show(self, lab: Lab, achieved: float, slow: bool) -> None:
+        session = lab.session
         shown = session.instant(), session.viewing, session.editor.version, session.exaggeration
         if shown == self._shown and not slow:
             return
         self._shown = shown
-        snapshot = take_snapshot(session, achieved, traces=slow)
+        snapshot = take_snapshot(lab, achieved, traces=slow)
         self._scene.update(snapshot)
         self._scene.update_path(snapshot)
         if slow:
             self._scene.update_traces(snapshot)
             self._frame_camera()
             for part in self._parts:
-                part.follow(session)
+                part.follow(lab)
             self._readout.follow(snapshot)
-            self._exporter.serve(session)
+            self._exporter.serve(lab)
 
-    def _rebuild(self, session: Session) -> None:
+    def _rebuild(self, lab: Lab) -> None:
         with one_at_a_time:
             self._client.scene.reset()
             self._client.gui.reset()
             self._framed, self._settling = 0.0, SETTLING
-            self._build(session)
+            self._build(lab)
 
-    def _page(self, session: Session) -> tuple[object, ...]:
+    def _page(self, lab: Lab) -> tuple[object, ...]:
         """What the whole page depends on: when it is another, all is built anew."""
-        run = session.lessons
-        return session.robot, run.lesson is not None, run.words.language, run.progress.presenting
+        run, robot = lab.lessons, lab.session.robot
+        return robot, run.lesson is not None, run.words.language, run.progress.presenting
 
-    def _poster(self, session: Session) -> Callable[[c.Command], None]:
+    def _poster(self, lab: Lab) -> Callable[[c.Command], None]:
         """What takes the commands of this page."""
-        return session.post
+        return lab.post
 
-    def _build(self, session: Session) -> None:
-        robot, post = session.robot, self._poster(session)
-        self._built = self._page(session)
-        words = session.lessons.words
+    def _build(self, lab: Lab) -> None:
+        robot, post = lab.session.robot, self._poster(lab)
+        self._built = self._page(lab)
+        words = lab.words
         self._scene = Scene(self._client, _hooks(post, robot), stage_of(robot), words)
-        self._scene.build(take_snapshot(session, 1.0))
-        self._build_panels(session, post)
+        self._scene.build(take_snapshot(lab, 1.0))
+        self._build_panels(lab, post)
         add_keys(self._client.gui, words, post, self.reset_view)
         self._robot = robot
 
-    def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
-        gui, run = self._client.gui, session.lessons
+    def _build_panels(self, lab: Lab, post: Callable[[c.Command], None]) -> None:
+        gui, run = self._client.gui, lab.lessons
         self._client.gui.add_html(WIDE_SHEET)
         self._parts: list[Part] = []
-        controls = self._controls(session, post)
+        controls = self._controls(lab, post)
         if run.lesson is None:
-            self._build_head(session, post)
+            self._build_head(lab, post)
             self._parts += controls.everything()
             return
         submit, words = self._exporter.submit, run.words
@@ -150,37 +151,37 @@ class Page:
             tab = tabs.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
             own = tabs.add_tab(words("lesson.lab"), viser.Icon.ROBOT)
             with own:
-                self._build_head(session, post)
+                self._build_head(lab, post)
         else:
-            self._build_head(session, post)
+            self._build_head(lab, post)
             tabs = gui.add_tab_group()
             own = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
-        self._parts.append(StepControls(gui, own, session, controls, submit))
+        self._parts.append(StepControls(gui, own, lab, controls, submit))
         if not run.progress.presenting:
             with tabs.add_tab(words("lesson.all_controls"), viser.Icon.ADJUSTMENTS_HORIZONTAL):
                 self._parts += controls.everything()
-        self._parts.append(LessonPanel(self._client, session, post, self._scene, submit, tab))
+        self._parts.append(LessonPanel(self._client, lab, post, self._scene, submit, tab))
 
-    def _controls(self, session: Session, post: Callable[[c.Command], None]) -> PanelFactory:
+    def _controls(self, lab: Lab, post: Callable[[c.Command], None]) -> PanelFactory:
         gui, exporter, scene = self._client.gui, self._exporter, self._scene
-        return PanelFactory(gui, session, post, exporter, scene, self._desk, self.reset_view)
+        return PanelFactory(gui, lab, post, exporter, scene, self._desk, self.reset_view)
 
-    def _build_head(self, session: Session, post: Callable[[c.Command], None]) -> None:
+    def _build_head(self, lab: Lab, post: Callable[[c.Command], None]) -> None:
         """What is always there: numbers, the way to the lessons, the distance."""
         gui = self._client.gui
-        self._build_numbers(session)
-        if session.lessons.course.lessons:
-            LessonMenu(gui, session, post)
+        self._build_numbers(lab)
+        if lab.lessons.course.lessons:
+            LessonMenu(gui, lab, post)
         if self._desk.seat is not None:
-            self._parts.append(ClassPanel(gui, session, self._desk.seat))
-        self._build_distance(session)
+            self._parts.append(ClassPanel(gui, lab, self._desk.seat))
+        self._build_distance(lab)
 
-    def _build_numbers(self, session: Session) -> None:
-        self._readout = Readout(self._client.gui, session)
+    def _build_numbers(self, lab: Lab) -> None:
+        self._readout = Readout(self._client.gui, lab)
 
-    def _build_distance(self, session: Session) -> None:
+    def _build_distance(self, lab: Lab) -> None:
         """The plot that tells the story."""
-        self._parts.append(LivePlot(self._client.gui, session, DISTANCE, height=190))
+        self._parts.append(LivePlot(self._client.gui, lab, DISTANCE, height=190))
 
     def _is_narrow(self) -> bool:
         camera = self._client.camera

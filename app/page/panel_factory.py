@@ -9,7 +9,7 @@ import viser
 
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.flexible_panel import FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
@@ -37,7 +37,7 @@ ALL = (
 class Part(Protocol):
     """Something on the page that follows the session."""
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Show what is."""
         ...
 
@@ -53,7 +53,7 @@ class PanelFactory:
     def __init__(
         self,
         gui: viser.GuiApi,
-        session: Session,
+        lab: Lab,
         post: Post,
         exporter: Exporter,
         scene: Scene,
@@ -61,8 +61,8 @@ class PanelFactory:
         reset_view: Callable[[], None],
     ) -> None:
         self._reset_view = reset_view
-        self._gui, self._session, self._post = gui, session, post
-        self._words = session.lessons.words
+        self._gui, self._lab, self._post = gui, lab, post
+        self._words = lab.words
         self._exporter, self._scene, self._desk = exporter, scene, desk
 
     def everything(self) -> list[Part]:
@@ -76,39 +76,39 @@ class PanelFactory:
         """Run and hold, and what a lesson's scene names."""
         self._scene.path_first = "editor" in scene.controls
         parts = list(self._add("hold"))
-        known = specs(self._session.parameters)
+        known = specs(self._lab.session.parameters)
         parameters = [name for name in scene.controls if name in known]
         if parameters:
-            parts.append(_Numbers(self._gui, self._session, parameters, self._post))
+            parts.append(_Numbers(self._gui, self._lab, parameters, self._post))
         for name in scene.controls:
             if name not in known and name != "hold":
                 parts += self._add(name)
         if scene.plot:
             plot = MORE[scene.plot]
-            if plot.field in dict(self._session.sample_layout.fields):
-                parts.append(LivePlot(self._gui, self._session, plot, height=200))
+            if plot.field in dict(self._lab.session.sample_layout.fields):
+                parts.append(LivePlot(self._gui, self._lab, plot, height=200))
         return parts
 
     def _add(self, name: str) -> list[Part]:
-        gui, session, post = self._gui, self._session, self._post
+        gui, lab, post = self._gui, self._lab, self._post
         make: dict[str, Callable[[], Part | None]] = {
-            "hold": lambda: RunPanel(gui, session, post, self._reset_view),
-            "path": lambda: PathChoice(gui, session, post),
+            "hold": lambda: RunPanel(gui, lab, post, self._reset_view),
+            "path": lambda: PathChoice(gui, lab, post),
             "editor": self._editor,
-            "gains": lambda: GainsPanel(gui, session, post),
-            "plots": lambda: MorePlots(gui, session),
-            "past": lambda: PastPanel(gui, session, post, self._exporter),
-            "keep": lambda: KeepPanel(gui, session, post, self._exporter, self._desk),
-            "robot": lambda: _silent(RobotPanel(gui, session, post)),
+            "gains": lambda: GainsPanel(gui, lab, post),
+            "plots": lambda: MorePlots(gui, lab),
+            "past": lambda: PastPanel(gui, lab, post, self._exporter),
+            "keep": lambda: KeepPanel(gui, lab, post, self._exporter, self._desk),
+            "robot": lambda: _silent(RobotPanel(gui, lab, post)),
             "copy": self._copy,
             "flexible": self._flexible,
-            "identify": lambda: _silent(add_identify(gui, session, post)),
+            "identify": lambda: _silent(add_identify(gui, lab, post)),
         }
         part = make[name]()
         return [] if part is None else [part]
 
     def _editor(self) -> Part:
-        robot = self._session.robot
+        robot = self._lab.session.robot
 
         def draw() -> None:
             self._scene.begin_freehand(
@@ -119,23 +119,23 @@ class PanelFactory:
             self._scene.show_singular_zone(0.0, 0.4, 0.02, visible)
 
         with self._gui.add_folder(self._words("controls.editor"), expand_by_default=False):
-            return PathPanel(self._gui, self._session, self._post, draw, shade)
+            return PathPanel(self._gui, self._lab, self._post, draw, shade)
 
     def _flexible(self) -> Part | None:
-        if not isinstance(self._session.parameters, FlexibleParameters):
+        if not isinstance(self._lab.session.parameters, FlexibleParameters):
             return None
 
         def choose(name: str) -> None:
             self._scene.pull = name
 
-        pulls = list(stage_of(self._session.robot).pulls)
+        pulls = list(stage_of(self._lab.session.robot).pulls)
         submit = self._exporter.submit
-        return FlexiblePanel(self._gui, self._session, self._post, pulls, choose, submit)
+        return FlexiblePanel(self._gui, self._lab, self._post, pulls, choose, submit)
 
     def _copy(self) -> None:
         copy = self._gui.add_checkbox(
             self._words("controls.copy"),
-            self._session.copy,
+            self._lab.session.copy,
             hint=self._words("controls.copy_hint"),
         )
         on_user_update(copy, lambda on: self._post(c.SetCopy(on)))
@@ -158,9 +158,9 @@ class PanelFactory:
 class _Numbers(ParameterWidgets):
     """Some parameters, as a part of the page."""
 
-    def follow(self, session: Session) -> None:  # type: ignore[override]
+    def follow(self, lab: Lab) -> None:  # type: ignore[override]
         """Show the session's values."""
-        super().follow(session.parameters)
+        super().follow(lab.session.parameters)
 
 
 def _silent(_: object) -> None:

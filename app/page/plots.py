@@ -10,7 +10,7 @@ import viser
 from viser import uplot
 
 from onpath.app.common.palette import CONTROLLERS
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.words import Words
 
@@ -35,19 +35,19 @@ class Plot:
     name: str
     field: str
     scale: float
-    lines: Callable[[Session], list[str]]
+    lines: Callable[[Lab], list[str]]
     least: tuple[float, float] | None = None
 
 
-def _numbered(symbol: str, field: str) -> Callable[[Session], list[str]]:
-    def names(session: Session) -> list[str]:
-        size = dict(session.sample_layout.fields)[field]
+def _numbered(symbol: str, field: str) -> Callable[[Lab], list[str]]:
+    def names(lab: Lab) -> list[str]:
+        size = dict(lab.session.sample_layout.fields)[field]
         return [f"{symbol}{i + 1}" for i in range(size)] if size > 1 else [""]
 
     return names
 
 
-def _alone(_: Session) -> list[str]:
+def _alone(_: Lab) -> list[str]:
     """A single line is named after its robot."""
     return [""]
 
@@ -81,13 +81,13 @@ def _at_least(limits: tuple[float, float] | None) -> uplot.Scale:
 class LivePlot:
     """One uPlot chart."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, plot: Plot, height: int) -> None:
+    def __init__(self, gui: viser.GuiApi, lab: Lab, plot: Plot, height: int) -> None:
         self._plot = plot
         self._shown = -1.0
-        words = session.lessons.words
+        words = lab.words
         series = [uplot.Series(label=words("plots.time"))]
-        names = plot.lines(session)
-        for robot in session.runs:
+        names = plot.lines(lab)
+        for robot in lab.session.runs:
             for name, dash in zip(names, LINES, strict=False):
                 label = f"{words(f'controller.{robot}.short')} {name}".rstrip()
                 line = uplot.Series(label=label, stroke=CONTROLLERS[robot].hex, width=2)
@@ -104,15 +104,15 @@ class LivePlot:
             height=height,
         )
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Draw the last seconds, up to the instant that is shown."""
-        now = session.time if session.viewing is None else session.viewing
+        now = lab.session.time if lab.session.viewing is None else lab.session.viewing
         if now == self._shown:
             return
         self._shown = now
-        begin = session.sample_layout.slices[self._plot.field].start
+        begin = lab.session.sample_layout.slices[self._plot.field].start
         fields = slice(begin, begin + self._lines)
-        times, samples = session.history.samples(now - WINDOW, now, POINTS, fields)
+        times, samples = lab.session.history.samples(now - WINDOW, now, POINTS, fields)
         if len(times) < 2:
             return
         values = samples.astype(float) * self._plot.scale
@@ -125,9 +125,9 @@ class LivePlot:
         self._handle.remove()
 
 
-def _shown(session: Session, words: Words) -> dict[str, Plot | None]:
+def _shown(lab: Lab, words: Words) -> dict[str, Plot | None]:
     """What this robot has something for, by name as shown; first of all none."""
-    fields = dict(session.sample_layout.fields)
+    fields = dict(lab.session.sample_layout.fields)
     some = {words(f"plot.{p.name}"): p for p in MORE.values() if p.field in fields}
     return {words("plots.none"): None, **some}
 
@@ -135,11 +135,11 @@ def _shown(session: Session, words: Words) -> dict[str, Plot | None]:
 class MorePlots:
     """A plot to choose."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session) -> None:
+    def __init__(self, gui: viser.GuiApi, lab: Lab) -> None:
         self._gui = gui
         self._plot: LivePlot | None = None
-        words = session.lessons.words
-        self._plots = _shown(session, words)
+        words = lab.words
+        self._plots = _shown(lab, words)
         self._folder = gui.add_folder(words("plots.more"), expand_by_default=False)
         with self._folder:
             self._choice = gui.add_dropdown(
@@ -147,7 +147,7 @@ class MorePlots:
             )
         self._drawn: Plot | None = None
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Draw the chosen plot."""
         chosen = self._plots[self._choice.value]
         if chosen is not self._drawn:
@@ -157,6 +157,6 @@ class MorePlots:
                 self._plot = None
             if chosen is not None:
                 with self._folder:
-                    self._plot = LivePlot(self._gui, session, chosen, height=200)
+                    self._plot = LivePlot(self._gui, lab, chosen, height=200)
         if self._plot is not None:
-            self._plot.follow(session)
+            self._plot.follow(lab)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import viser
 
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.lessons.schema import StepSetup
 
@@ -22,25 +22,25 @@ class StepControls:
         self,
         gui: viser.GuiApi,
         tab: viser.GuiTabHandle,
-        session: Session,
+        lab: Lab,
         controls: PanelFactory,
         submit: Callable[[Callable[[], None]], None],
     ) -> None:
         self._gui, self._controls, self._submit = gui, controls, submit
-        self._tab, self._title = tab, session.lessons.words("lesson.controls")
+        self._tab, self._title = tab, lab.words("lesson.controls")
         self._folder: viser.GuiFolderHandle | None = None
         self._scene: StepSetup | None = None
         self._parts: list[Part] = []
-        self._fill(_scene_of(session))
+        self._fill(_scene_of(lab))
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Show the open step's controls, and what they stand at."""
-        scene = _scene_of(session)
+        scene = _scene_of(lab)
         if scene != self._scene:
             self._scene, self._parts = scene, []
             self._submit(lambda: self._fill(scene))
         for part in self._parts:
-            part.follow(session)
+            part.follow(lab)
 
     def _fill(self, scene: StepSetup) -> None:
         if self._folder is not None:
@@ -55,7 +55,7 @@ class StepControls:
 EMPTY = StepSetup()
 
 
-def _scene_of(session: Session) -> StepSetup:
+def _scene_of(lab: Lab) -> StepSetup:
     """Of the open step."""
-    run = session.lessons
+    run = lab.lessons
     return EMPTY if run.lesson is None else run.lesson.scene_at(run.index)

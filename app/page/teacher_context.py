@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from onpath.app.classroom.classroom import Classroom
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.lessons.words import Words
 
 
@@ -38,11 +38,11 @@ class TeacherContext:
 
     classroom: Classroom
     chosen: TeacherChoices
-    lab: Callable[[str], Lab | None]
+    lab: Callable[[str], ScheduledLab | None]
     forget: Callable[[], int]
     stop: Callable[[], None]
 
-    def followed(self) -> Lab | None:
+    def followed(self) -> ScheduledLab | None:
         """The lab that the teacher looks at, if the student is still in the class."""
         code = self.chosen.followed
         if not code or self.classroom.member(code) is None:

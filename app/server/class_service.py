@@ -13,11 +13,11 @@ from onpath.app.classroom.relay import Relay
 from onpath.app.classroom.shared_classroom import SharedClassroom
 from onpath.app.classroom.watches import Watches
 from onpath.app.lab.commands import ReportState
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
 from onpath.app.server.lab_registry import LabRegistry
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import Records
 from onpath.app.storage.write_behind import WriteBehind
@@ -96,7 +96,7 @@ class ClassService:
             entry, keeper = self._sessions.find(code), self._keeper
             if entry is not None and keeper is not None:  # to be found again by another process
                 submit = partial(keeper.submit, code)
-                entry.lab.session.post(ReportState(lambda session: keep(session, submit)))
+                entry.scheduled.lab.post(ReportState(lambda lab: keep(lab, submit)))
 
         return ClassSeat(
             name=name,
@@ -123,21 +123,21 @@ class ClassService:
         lab = partial(self._lab, client.client_id)
         return TeacherContext(self._class, chosen, lab, self._forget, stop)
 
-    def _student(self, code: str) -> tuple[Session, bool] | None:
+    def _student(self, code: str) -> tuple[Lab, bool] | None:
         entry = self._sessions.find(code)
-        return None if entry is None else (entry.lab.session, entry.client is not None)
+        return None if entry is None else (entry.scheduled.lab, entry.client is not None)
 
-    def _lab(self, client: int, code: str) -> Lab | None:
+    def _lab(self, client: int, code: str) -> ScheduledLab | None:
         """For a teacher's page."""
         here = self._here(code)
         if here is None and self._relay is not None:
             return self._relay.mirror(client, code)
         return here
 
-    def _here(self, code: str) -> Lab | None:
+    def _here(self, code: str) -> ScheduledLab | None:
         """A lab that lives in this process."""
         entry = self._sessions.find(code)
-        return None if entry is None or self._class.is_elsewhere(code) else entry.lab
+        return None if entry is None or self._class.is_elsewhere(code) else entry.scheduled
 
     def _wanted(self) -> dict[int, str]:
         """The labs of others that the teachers in this process look at, by client."""

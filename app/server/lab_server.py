@@ -16,8 +16,8 @@ import viser
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import normalised
 from onpath.app.common.error_log import log_error
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.session import Session
 from onpath.app.page.build_queue import BuildQueue
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
@@ -81,7 +81,7 @@ class LabServer:
         self._records = records
         self._leases = Leases(records) if records else None
         self._keeper = WriteBehind(self._leases) if self._leases else None
-        self.sessions = LabRegistry(self.simulation, lambda: Session(store, FIVE_BAR, lessons))
+        self.sessions = LabRegistry(self.simulation, lambda: Lab(store, FIVE_BAR, lessons))
         if records is not None:
             self.sessions.load, self.sessions.keeper = records.load, self._keeper
             self.sessions.leases = self._leases
@@ -148,7 +148,7 @@ class LabServer:
             self.sessions.leave(client.client_id)
             return
         self._views[client.client_id] = view
-        self._onlookers.watch(client, entry.lab, view)
+        self._onlookers.watch(client, entry.scheduled, view)
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
 
@@ -160,10 +160,10 @@ class LabServer:
         desk = PageContext(
             entry.code, self._records is not None, partial(self._enter, client), seat
         )
-        session = entry.lab.session
+        lab = entry.scheduled.lab
         if taught:
-            return TeacherView(client, session, desk, taught)
-        return Page(client, session, desk)
+            return TeacherView(client, lab, desk, taught)
+        return Page(client, lab, desk)
 
     def _enter(self, client: viser.ClientHandle, text: str) -> None:
         """Another session for a client, by a code that was typed.

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import viser
 
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.panels.widgets import on_slow_press
 
@@ -15,8 +15,8 @@ from onpath.app.page.panels.widgets import on_slow_press
 class ClassPanel:
     """A folder: class code and nickname, or who one is in the class."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, seat: ClassSeat) -> None:
-        self._seat, self._words = seat, session.lessons.words
+    def __init__(self, gui: viser.GuiApi, lab: Lab, seat: ClassSeat) -> None:
+        self._seat, self._words = seat, lab.words
         words = self._words
         with gui.add_folder(words("class.title"), expand_by_default=not seat.name()):
             self._member = gui.add_html("")
@@ -34,9 +34,9 @@ class ClassPanel:
         self._try(self._leave, seat.leave)
         self._try(teach, lambda: seat.teach(key.value))
         self._shown: str | None = None
-        self.follow(session)
+        self.follow(lab)
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Show whether the student is in the class."""
         name = self._seat.name()
         if name == self._shown:

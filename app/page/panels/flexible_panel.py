@@ -11,7 +11,7 @@ import viser
 
 from onpath.app.common.palette import WARNING
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshot import FollowerName
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_user_update
 from onpath.lessons.words import Words
@@ -112,18 +112,18 @@ class FlexiblePanel:
     def __init__(
         self,
         gui: viser.GuiApi,
-        session: Session,
+        lab: Lab,
         post: Post,
         pulls: list[str],
         choose_pull: Callable[[str], None],
         submit: Callable[[Callable[[], None]], None],
     ) -> None:
-        self._post, self._words = post, session.lessons.words
+        self._post, self._words = post, lab.words
         words = self._words
         self._critical = CriticalAlpha(submit)
         self._shown = ""
         with gui.add_folder(words("flexible.title")):
-            self._widgets = [ParameterWidgets(gui, session, ["law", "alpha"], self._set)]
+            self._widgets = [ParameterWidgets(gui, lab, ["law", "alpha"], self._set)]
             self._bar = gui.add_html("")
             self._numbers = gui.add_markdown("")
             planes = {words(f"pull.{plane}"): plane for plane in pulls}
@@ -135,31 +135,31 @@ class FlexiblePanel:
                 min=c.EXAGGERATIONS[0],
                 max=c.EXAGGERATIONS[-1],
                 step=1.0,
-                initial_value=session.exaggeration,
+                initial_value=lab.session.exaggeration,
                 hint=words("flexible.larger_hint"),
             )
             with gui.add_folder(words("flexible.beam"), expand_by_default=False):
                 gui.add_markdown(words("flexible.anew"))
-                self._widgets.append(ParameterWidgets(gui, session, BEAM, post))
+                self._widgets.append(ParameterWidgets(gui, lab, BEAM, post))
             with gui.add_folder(words("flexible.composite"), expand_by_default=False):
-                self._widgets.append(ParameterWidgets(gui, session, COMPOSITE, post))
+                self._widgets.append(ParameterWidgets(gui, lab, COMPOSITE, post))
         on_user_update(pull, lambda shown: choose_pull(planes[shown]))
         on_user_update(self._larger, lambda factor: post(c.SetExaggeration(factor)))
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Show the session's values and where the limit lies now."""
-        own = session.parameters
+        own = lab.session.parameters
         if not isinstance(own, FlexibleParameters):
             return  # another robot: the page is about to be rebuilt
         for widgets in self._widgets:
             widgets.follow(own)
-        if self._larger.value != session.exaggeration:
-            self._larger.value = session.exaggeration
-        self._critical.follow(own, session.runs[FollowerName].shown()["q"])
+        if self._larger.value != lab.session.exaggeration:
+            self._larger.value = lab.session.exaggeration
+        self._critical.follow(own, lab.session.runs[FollowerName].shown()["q"])
         bar = alpha_bar(own.alpha, self._critical.value, own.law == "redefined", self._words)
         if bar != self._shown:
             self._shown = self._bar.content = bar
-        numbers = deflections(session)
+        numbers = deflections(lab)
         if self._numbers.content != numbers:
             self._numbers.content = numbers
 
@@ -170,13 +170,13 @@ class FlexiblePanel:
             self._post(c.SetParameter("law", "redefined"))
 
 
-def deflections(session: Session) -> str:
+def deflections(lab: Lab) -> str:
     """How far each tip is bent aside, in words."""
-    layout = session.sample_layout
-    past = None if session.viewing is None else session.history.at(session.viewing)
-    samples = session.sample() if past is None else past.sample
+    layout = lab.session.sample_layout
+    past = None if lab.session.viewing is None else lab.session.history.at(lab.session.viewing)
+    samples = lab.session.sample() if past is None else past.sample
     tracking, following = (f"{mm:.1f}" for mm in layout.unpack(samples)["deflection"][:, 0] * 1e3)
-    words, factor = session.lessons.words, session.exaggeration
+    words, factor = lab.words, lab.session.exaggeration
     scale = words("flexible.drawn", factor=f"{factor:g}") if factor != 1 else None
     return words(
         "flexible.deflections",

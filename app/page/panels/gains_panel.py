@@ -5,7 +5,7 @@ from __future__ import annotations
 import viser
 
 from onpath.app.lab.commands import Identify, ResetParameters
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, SwitchedParameter, on_press
 from onpath.lessons.words import Words
 from onpath.models.control.poles import Channel, channels
@@ -20,41 +20,41 @@ LAST_OF_MODEL = "error_b2"
 class GainsPanel:
     """The controls that a first-time user sees, and the rest in folders."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
-        self._words = words = session.lessons.words
+    def __init__(self, gui: viser.GuiApi, lab: Lab, post: Post) -> None:
+        self._words = words = lab.words
         self._shown: Parameters | None = None
-        self._widgets = [ParameterWidgets(gui, session, BASIC, post)]
+        self._widgets = [ParameterWidgets(gui, lab, BASIC, post)]
         self._settling = gui.add_markdown("")
         with gui.add_folder(words("gains.advanced"), expand_by_default=False):
-            self._widgets.append(ParameterWidgets(gui, session, ADVANCED, post))
+            self._widgets.append(ParameterWidgets(gui, lab, ADVANCED, post))
             reset = gui.add_button(words("gains.defaults"), icon=viser.Icon.RESTORE)
             on_press(reset, lambda: post(ResetParameters()))
         with gui.add_folder(words("gains.realism"), expand_by_default=False):
             gui.add_markdown(words("gains.ideal"))
-            for name, spec in specs(session.parameters).items():
+            for name, spec in specs(lab.session.parameters).items():
                 if spec.group != "realism":
                     continue
                 if spec.on is None:
-                    self._widgets.append(ParameterWidgets(gui, session, [name], post))
+                    self._widgets.append(ParameterWidgets(gui, lab, [name], post))
                 else:
-                    self._widgets.append(SwitchedParameter(gui, session, name, post))
+                    self._widgets.append(SwitchedParameter(gui, lab, name, post))
                 if name == LAST_OF_MODEL:
-                    add_identify(gui, session, post)
+                    add_identify(gui, lab, post)
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Show the session's values and what follows from them."""
-        if session.parameters is self._shown:
+        if lab.session.parameters is self._shown:
             return
-        self._shown = session.parameters
+        self._shown = lab.session.parameters
         for widgets in self._widgets:
-            widgets.follow(session.parameters)
-        lines = [_line(channel, self._words) for channel in channels(session.parameters)]
+            widgets.follow(lab.session.parameters)
+        lines = [_line(channel, self._words) for channel in channels(lab.session.parameters)]
         self._settling.content = "\n\n".join(lines)
 
 
-def add_identify(gui: viser.GuiApi, session: Session, post: Post) -> None:
+def add_identify(gui: viser.GuiApi, lab: Lab, post: Post) -> None:
     """The button that fits the controllers' model to what was measured."""
-    words = session.lessons.words
+    words = lab.words
     label, hint = words("gains.identify"), words("gains.identify_hint")
     button = gui.add_button(label, icon=viser.Icon.RULER_MEASURE, hint=hint)
     on_press(button, lambda: post(Identify()))

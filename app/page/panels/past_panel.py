@@ -6,7 +6,7 @@ import viser
 
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
 
 REACH = 60.0
@@ -15,8 +15,8 @@ REACH = 60.0
 class PastPanel:
     """Rewind and export."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter) -> None:
-        words = session.lessons.words
+    def __init__(self, gui: viser.GuiApi, lab: Lab, post: Post, exporter: Exporter) -> None:
+        words = lab.words
         with gui.add_folder(words("past.title"), expand_by_default=False):
             self._ago = gui.add_slider(
                 words("past.ago"),
@@ -50,15 +50,15 @@ class PastPanel:
         on_press(picture, exporter.picture)
         on_press(film, exporter.recording)
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """The slider stands at the instant that is shown, however one has come there."""
-        viewing = session.viewing
+        viewing = lab.session.viewing
         for button, useless in (
             (self._go_on, viewing is None),
-            (self._undo, session.put_aside is None),
+            (self._undo, lab.session.put_aside is None),
         ):
             if button.disabled != useless:
                 button.disabled = useless
-        ago = 0.0 if viewing is None else round(session.time - viewing, 1)
+        ago = 0.0 if viewing is None else round(lab.session.time - viewing, 1)
         if self._ago.value != ago:
             self._ago.value = ago

@@ -8,7 +8,7 @@ import numpy as np
 import viser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
 from onpath.models.control.rank_test import rank_map
 
@@ -16,24 +16,24 @@ from onpath.models.control.rank_test import rank_map
 class PathChoice:
     """The preset in use; one of the first controls a user sees."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
-        words = session.lessons.words
-        self._shown = {name: words.get(f"path.{name}", name) for name in session.presets}
+    def __init__(self, gui: viser.GuiApi, lab: Lab, post: Post) -> None:
+        words = lab.words
+        self._shown = {name: words.get(f"path.{name}", name) for name in lab.session.presets}
         self._own = words("design.own")
         names = {shown: name for name, shown in self._shown.items()}
         self._choice = gui.add_dropdown(
             words("design.path"),
             [*names, self._own],
-            initial_value=self._shown.get(session.editor.design.name, self._own),
+            initial_value=self._shown.get(lab.session.editor.design.name, self._own),
             hint=words("design.path_hint"),
         )
         on_user_update(
             self._choice, lambda shown: post(c.ChoosePath(names[shown])) if shown in names else None
         )
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Show which one it is."""
-        shown = self._shown.get(session.editor.design.name, self._own)
+        shown = self._shown.get(lab.session.editor.design.name, self._own)
         if self._choice.value != shown:
             self._choice.value = shown
 
@@ -44,13 +44,13 @@ class PathPanel:
     def __init__(
         self,
         gui: viser.GuiApi,
-        session: Session,
+        lab: Lab,
         post: Post,
         draw: Callable[[], None],
         show_zone: Callable[[bool], None],
     ) -> None:
-        self._version, self._words = -1, session.lessons.words
-        words, planar = self._words, session.robot.frame.p == 2
+        self._version, self._words = -1, lab.words
+        words, planar = self._words, lab.session.robot.frame.p == 2
         drawing = gui.add_button(
             words("design.draw"), icon=viser.Icon.PENCIL, hint=words("design.draw_hint")
         )
@@ -85,16 +85,16 @@ class PathPanel:
         on_user_update(self._first, lambda mm: post(c.PlacePoint(first=mm / 1e3)))
         on_user_update(self._second, lambda mm: post(c.PlacePoint(second=mm / 1e3)))
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Show the selected point's coordinates."""
-        editor = session.editor
+        editor = lab.session.editor
         if editor.version == self._version:
             return
         self._version = editor.version
         if editor.design is not self._design:
             self._design = editor.design
             z = editor.design.curve.at(editor.design.curve.sample(32))
-            number = float(np.min(rank_map(session.robot, session.parameters, z)))
+            number = float(np.min(rank_map(lab.session.robot, lab.session.parameters, z)))
             self._rank.content = self._words("design.rank", number=f"{number:.2f}")
         selected = editor.selected
         self._set(self._which, 0 if selected is None else selected + 1)

@@ -7,7 +7,7 @@ import html
 import viser
 
 from onpath.app.common.palette import CONTROLLERS, WARNING
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshot import RobotView, Snapshot
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.words import Words
@@ -18,8 +18,8 @@ LEVELS = {"info": "#33506b", "warning": "#8a5a00", "error": WARNING.hex}
 class Readout:
     """Two lines of numbers, a clock, and the message."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session) -> None:
-        self._words = session.lessons.words
+    def __init__(self, gui: viser.GuiApi, lab: Lab) -> None:
+        self._words = lab.words
         self._table = gui.add_html("")
         self._shown = ""
 

@@ -10,7 +10,7 @@ from functools import lru_cache
 import viser
 
 from onpath.app.lab.commands import ChooseRobot
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.page.panels.widgets import Post, on_press
 from onpath.assets import asset_path
 from onpath.lessons.words import Words
@@ -20,15 +20,15 @@ from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 class RobotPanel:
     """The button near the top, and its menu."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
-        self._gui, self._words = gui, session.lessons.words
+    def __init__(self, gui: viser.GuiApi, lab: Lab, post: Post) -> None:
+        self._gui, self._words = gui, lab.words
         self._post = post
-        self._chosen = session.entry
+        self._chosen = lab.session.entry
         button = gui.add_button(
             self._words("robots.button"),
             icon=viser.Icon.ROBOT,
             color="gray",
-            hint=self._words("robots.hint", robot=label_of(session.entry, self._words)),
+            hint=self._words("robots.hint", robot=label_of(lab.session.entry, self._words)),
         )
         on_press(button, self._open)
 

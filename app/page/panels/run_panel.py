@@ -8,7 +8,7 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
 
 PRESS_ENDS = 0.35  # [s] without a hold message: the button was let go
@@ -19,9 +19,9 @@ class RunPanel:
     """Transport and hold."""
 
     def __init__(
-        self, gui: viser.GuiApi, session: Session, post: Post, reset_view: Callable[[], None]
+        self, gui: viser.GuiApi, lab: Lab, post: Post, reset_view: Callable[[], None]
     ) -> None:
-        self._post, self._words = post, session.lessons.words
+        self._post, self._words = post, lab.words
         self._pressed_at: float | None = None
         words = self._words
         self._hold = gui.add_button(
@@ -54,20 +54,21 @@ class RunPanel:
         on_user_update(self._rate, lambda label: post(c.SetRate(RATE_LABELS[label])))
         self._press.on_hold(self._held_down)
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Show what is; ends a press that has been let go."""
-        held = bool(session.grips.held)
+        held = bool(lab.session.grips.held)
         label = self._words("run.let_both_go" if held else "run.hold_both")
-        if not session.copy:
+        if not lab.session.copy:
             label = self._words("run.let_go" if held else "run.hold")
         if self._hold.label != label:
             self._hold.label = label
             self._hold.color = "red" if held else "orange"
-        label = self._words("run.pause" if session.running else "run.run")
+        label = self._words("run.pause" if lab.session.running else "run.run")
         if self._run.label != label:
             self._run.label = label
-            self._run.icon = viser.Icon.PLAYER_PAUSE if session.running else viser.Icon.PLAYER_PLAY
-        rate = f"{session.rate:g}×"
+            runs = lab.session.running
+            self._run.icon = viser.Icon.PLAYER_PAUSE if runs else viser.Icon.PLAYER_PLAY
+        rate = f"{lab.session.rate:g}×"
         if self._rate.value != rate:
             self._rate.value = rate
         if self._pressed_at is not None and time.monotonic() - self._pressed_at > PRESS_ENDS:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.lab.commands import TakeSetup
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.setup import capture
 from onpath.app.lab.share_code import decode
 from onpath.app.page.panels.widgets import on_press
@@ -18,7 +18,7 @@ from onpath.app.page.teacher_context import TeacherContext
 class TeacherControls:
     """Above the teacher's own lab."""
 
-    def __init__(self, gui: viser.GuiApi, own: Session, teaching: TeacherContext) -> None:
+    def __init__(self, gui: viser.GuiApi, own: Lab, teaching: TeacherContext) -> None:
         self._class, self._words, self._own = teaching.classroom, own.lessons.words, own
         self._wanted: list[Callable[[], None]] = []
         words = self._words
@@ -33,14 +33,14 @@ class TeacherControls:
         on_press(push, lambda: self._send_code(code.value))
         stop.on_click(lambda _: teaching.stop())
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """On the simulation thread, where one's own lab may be looked at."""
         _show_freezing(self._freezing, self._own, self._class.orders.frozen)
         while self._wanted:
             self._wanted.pop(0)()
 
     def _send_own(self) -> None:
-        self._class.push(TakeSetup(capture(self._own)))
+        self._class.push(TakeSetup(capture(self._own.session)))
         self._tell_sent()
 
     def _send_code(self, text: str) -> None:
@@ -58,7 +58,7 @@ class TeacherControls:
 class FollowedStudent:
     """Above a student's lab."""
 
-    def __init__(self, gui: viser.GuiApi, own: Session, teaching: TeacherContext) -> None:
+    def __init__(self, gui: viser.GuiApi, own: Lab, teaching: TeacherContext) -> None:
         self._own, self._class = own, teaching.classroom
         self._freezing = _add_freezing(gui, own, teaching)
         member = self._class.member(teaching.chosen.followed)
@@ -71,14 +71,12 @@ class FollowedStudent:
 
         on_press(back, stop)
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Show whether all labs stand still."""
         _show_freezing(self._freezing, self._own, self._class.orders.frozen)
 
 
-def _add_freezing(
-    gui: viser.GuiApi, own: Session, teaching: TeacherContext
-) -> viser.GuiButtonHandle:
+def _add_freezing(gui: viser.GuiApi, own: Lab, teaching: TeacherContext) -> viser.GuiButtonHandle:
     classroom = teaching.classroom
     button = gui.add_button(
         own.lessons.words("class.freeze"), color="red", icon=viser.Icon.HAND_STOP
@@ -87,7 +85,7 @@ def _add_freezing(
     return button
 
 
-def _show_freezing(button: viser.GuiButtonHandle, own: Session, frozen: bool) -> None:
+def _show_freezing(button: viser.GuiButtonHandle, own: Lab, frozen: bool) -> None:
     label = own.lessons.words("class.unfreeze" if frozen else "class.freeze")
     if button.label != label:
         button.label = label

@@ -11,7 +11,7 @@ from onpath.app.classroom import class_html as page
 from onpath.app.classroom.results import class_csv, distribution, prediction_at, truth_of
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.page.panels.widgets import on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
 
@@ -30,7 +30,7 @@ class TeacherPanel:
     """
 
     def __init__(
-        self, client: viser.ClientHandle, own: Session, teaching: TeacherContext, submit: Submit
+        self, client: viser.ClientHandle, own: Lab, teaching: TeacherContext, submit: Submit
     ) -> None:
         self._client, self._gui, self._submit = client, client.gui, submit
         self._teaching, self._class, self._chosen = teaching, teaching.classroom, teaching.chosen
@@ -50,7 +50,7 @@ class TeacherPanel:
         panel.set_width(WIDE if self._large else WIDTH)
         self._panel = panel
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: Lab) -> None:
         """Once a second, in another thread: the class may be large."""
         now = self._class.clock()
         if now >= self._next and not self._busy:

@@ -12,7 +12,7 @@ import viser
 
 from onpath.app.common.error_log import log_error
 from onpath.app.lab.commands import Command, SetParameter
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words
 from onpath.models.systems.parameters import Parameters, Spec, specs
 
@@ -86,12 +86,12 @@ class ParameterWidgets:
         post: takes the commands.
     """
 
-    def __init__(self, gui: viser.GuiApi, session: Session, names: list[str], post: Post) -> None:
+    def __init__(self, gui: viser.GuiApi, lab: Lab, names: list[str], post: Post) -> None:
         self._handles: dict[str, Any] = {}
-        self._post, self._words = post, session.lessons.words
-        self._specs = specs(session.parameters)
+        self._post, self._words = post, lab.words
+        self._specs = specs(lab.session.parameters)
         for name in names:
-            shown = self._shown(name, session.parameters)
+            shown = self._shown(name, lab.session.parameters)
             make = self._add_choice if self._specs[name].options else self._add_slider
             self._handles[name] = make(gui, name, shown)
 
@@ -140,14 +140,14 @@ class ParameterWidgets:
 class SwitchedParameter(ParameterWidgets):
     """A parameter that is off at 0: a checkbox that shows its slider while on."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, name: str, post: Post) -> None:
-        words, spec = session.lessons.words, specs(session.parameters)[name]
+    def __init__(self, gui: viser.GuiApi, lab: Lab, name: str, post: Post) -> None:
+        words, spec = lab.words, specs(lab.session.parameters)[name]
         self._name, self._on = name, spec.on
-        on = getattr(session.parameters, name) != 0
+        on = getattr(lab.session.parameters, name) != 0
         self._switch = gui.add_checkbox(
             label_of(words, name, spec), initial_value=on, hint=help_of(words, name, spec)
         )
-        super().__init__(gui, session, [name], post)
+        super().__init__(gui, lab, [name], post)
         self._slider = self._handles[name]
         self._slider.visible = on
         on_user_update(self._switch, self._turn)
