@@ -10,7 +10,7 @@ import sqlalchemy as sa
 from onpath.app.classroom.admission import cleaned
 from onpath.app.classroom.classroom import NOTHING_DONE, Member, Push
 from onpath.app.common.error_log import log_warning
-from onpath.app.lab.class_commands import TakeSetup, TakeStep
+from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.setup import from_data, to_data
 from onpath.lessons.progress import Progress, read_progress
 

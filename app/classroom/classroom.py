@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from onpath.app.classroom.admission import cleaned, not_among
-from onpath.app.lab.class_commands import TakeSetup, TakeStep
+from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.lessons.progress import Progress
 
 MOST_MEMBERS = 300

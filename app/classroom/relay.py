@@ -12,9 +12,9 @@ from onpath.app.classroom.moment import Moment, tell
 from onpath.app.classroom.watches import Watches
 from onpath.app.common.error_log import log_warning
 from onpath.app.common.periodic import Periodic
-from onpath.app.lab.class_commands import ShowMessage
-from onpath.app.lab.session import Session
-from onpath.app.simulation.simulation_thread import Lab, SimulationThread
+from onpath.app.lab.commands import ReportState
+from onpath.app.lab.lab import Lab
+from onpath.app.simulation.simulation_thread import ScheduledLab, SimulationThread
 from onpath.app.storage.records import NotKept
 
 SEND_INTERVAL = 0.125  # [s]
@@ -27,7 +27,7 @@ class Relay:
     Args:
         find: the lab of a session code, if it lives in this process.
         wanted: which labs that live elsewhere the teachers look at: session codes by client.
-        make: a new session, for a mirror.
+        make: a new lab, for a mirror.
         simulation: advances the mirrors.
 
     Attributes:
@@ -37,9 +37,9 @@ class Relay:
     def __init__(
         self,
         watches: Watches,
-        find: Callable[[str], Lab | None],
+        find: Callable[[str], ScheduledLab | None],
         wanted: Callable[[], dict[int, str]],
-        make: Callable[[], Session],
+        make: Callable[[], Lab],
         simulation: SimulationThread,
     ) -> None:
         self._simulation = simulation
@@ -80,9 +80,9 @@ class Relay:
         self._told = {c: now for c, now in {**self._told, **new}.items() if c in self._asked}
         for code in self._asked:
             if (lab := self._find(code)) is not None:
-                lab.session.post(ShowMessage(partial(self._hear, code, lab)))
+                lab.lab.post(ReportState(partial(self._hear, code, lab)))
 
-    def _hear(self, code: str, lab: Lab, _: Session) -> None:
+    def _hear(self, code: str, lab: ScheduledLab, _: Lab) -> None:
         self._heard[code] = tell(lab)
 
     def _be_told(self) -> None:

@@ -15,7 +15,7 @@ from onpath.app.common.access_codes import shown
 from onpath.app.common.palette import AMBER, FOLLOWER, GREEN, GREY, INK
 from onpath.app.exports.report_facts import Chapter, chapters, predictions, quizzes
 from onpath.app.exports.report_plot import draw_prediction, number
-from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Option, Prediction, Quiz, Sketch, Task
@@ -60,7 +60,7 @@ code {{ font-size: 1.05em; }}
 """
 
 
-def report(run: LessonRun, code: str, made: datetime) -> bytes:
+def report(run: LessonState, code: str, made: datetime) -> bytes:
     """The record as a page that stands alone; the same record gives the same bytes.
 
     Args:
@@ -119,7 +119,7 @@ def _row(chapter: Chapter, words: Words) -> str:
     return f"<tr><td>{chapter.number}. {escape(lesson.front.title)}</td>{cells}</tr>\n"
 
 
-def _gone(run: LessonRun, words: Words) -> str:
+def _gone(run: LessonState, words: Words) -> str:
     """What was begun and is not in the course."""
     return "".join(
         _soft(words("report.gone", name=escape(name)))

@@ -12,6 +12,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.simulation import FREE, Push, brake_at
 from onpath.models.control.laws import NAMES
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.frames import Frame
 from onpath.models.systems.robots import Robot
 
 REACH = 0.4  # [m], a hand's target stays within this of the middle
@@ -21,6 +22,12 @@ class Note(Protocol):
     """Told what has begun or ended, and who it concerns."""
 
     def __call__(self, name: str, /, *, controllers: tuple[str, ...]) -> None: ...
+
+
+def displaced(frame: Frame, y: Array, by: Array) -> Array:
+    """A point of the output space, (p,), moved along the path's plane by `by`, (2,), [m]."""
+    z = frame.planar(y)
+    return y + frame.lift(z + by) - frame.lift(z)
 
 
 class ExternalForces:

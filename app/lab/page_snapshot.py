@@ -58,7 +58,7 @@ class PathEdit:
 
 
 @dataclass(frozen=True, slots=True)
-class LessonState:
+class LessonSnapshot:
     """The way through the lessons; texts are in the course, which whoever draws has.
 
     Attributes:
@@ -105,7 +105,7 @@ class PageSnapshot(Snapshot):
     joints: np.ndarray
     run: RunState
     edit: PathEdit
-    lesson: LessonState
+    lesson: LessonSnapshot
     plots: PlotSamples
     shared: str
     nickname: str

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import msgspec
 import numpy as np
 
-from onpath.app.lab.commands import EXAGGERATIONS, RATES
 from onpath.app.lab.path_editor import BLEND
+from onpath.app.lab.session import Session
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through
 from onpath.models.paths.curves import TERMS, from_terms, terms_of
@@ -22,9 +22,8 @@ from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, pres
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, RobotEntry
 from onpath.models.systems.parameters import NOTHING, Parameters, Spec, changed, specs, unknown_name
 
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
-
+EXAGGERATIONS = (1.0, 20.0)  # the least and the most
+RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)  # simulated seconds per second
 UNIT = 1e-6  # [m]
 DIGITS = 6
 EDITED, DRAWN = "edited", "drawn"  # the names of paths that are no presets

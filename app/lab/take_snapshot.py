@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.page_snapshot import (
-    LessonState,
+    LessonSnapshot,
     PageSnapshot,
     ParameterValues,
     PathEdit,
@@ -21,6 +21,7 @@ from onpath.app.lab.session import Session
 from onpath.app.lab.snapshot import FollowerName, PageKey, PathView, Snapshot
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Sketch
+from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign
@@ -35,35 +36,35 @@ DESIGN_POINTS = 32
 
 
 def take_snapshot(
-    session: Session,
+    lab: Lab,
     achieved_speed: float,
     traces: bool = True,
     before: Snapshot | None = None,
     student: int = 0,
 ) -> Snapshot:
-    """What the scene shows of a session, now or at the past instant it looks at.
+    """What the scene shows of a lab, now or at the past instant it looks at.
 
     Args:
         traces: whether the end-points' traces are wanted.
-        before: the last one of the same session; what has not changed since is shared with it.
+        before: the last one of the same lab; what has not changed since is shared with it.
         student: see `PageKey`.
     """
-    return Snapshot(**_scene(session, achieved_speed, traces, before, student))
+    return Snapshot(**_scene(lab, achieved_speed, traces, before, student))
 
 
 def take_page_snapshot(
-    session: Session,
+    lab: Lab,
     achieved_speed: float,
     before: Snapshot | None = None,
     student: int = 0,
     nickname: str = "",
 ) -> PageSnapshot:
-    """What the whole page shows of a session; see `take_snapshot`.
+    """What the whole page shows of a lab; see `take_snapshot`.
 
     Args:
         nickname: the student's in the class; empty for none.
     """
-    scene = _scene(session, achieved_speed, True, before, student)
+    scene, session = _scene(lab, achieved_speed, True, before, student), lab.session
     follower = session.runs[FollowerName]
     return PageSnapshot(
         **scene,
@@ -78,21 +79,21 @@ def take_page_snapshot(
             exaggeration=session.exaggeration,
         ),
         edit=_path_edit(session),
-        lesson=_lesson_state(session.lessons, session),
+        lesson=_lesson(lab),
         plots=_plots(session, scene["time"], scene["key"], before),
-        shared=session.shared,
+        shared=lab.shared,
         nickname=nickname,
     )
 
 
 def _scene(
-    session: Session, achieved: float, traces: bool, before: Snapshot | None, student: int
+    lab: Lab, achieved: float, traces: bool, before: Snapshot | None, student: int
 ) -> dict[str, Any]:
     """The fields of `Snapshot`."""
+    session, run = lab.session, lab.lessons
     past = None if session.viewing is None else session.history.at(session.viewing)
     curve = session.editor.curve if past is None else past.curve
     time = session.time if session.viewing is None else session.viewing
-    run = session.lessons
     key = PageKey(
         robot=session.entry.name,
         fields=session.sample_layout.fields,
@@ -115,18 +116,18 @@ def _scene(
         "path": _path_view(session, curve, key, before),
         "held": bool(session.grips.held),
         "grabbed": session.grips.grabbed,
-        "message": session.message,
-        "message_level": session.message_level,
-        "note": scale_note(session),
+        "message": lab.message,
+        "message_level": lab.message_level,
+        "note": scale_note(session, lab.words),
         "key": key,
     }
 
 
-def scale_note(session: Session) -> str:
+def scale_note(session: Session, words: Words) -> str:
     """A drawing that is not true to scale says so."""
     if session.exaggeration == 1.0 or not session.robot.extra_fields:
         return ""
-    return session.lessons.words("scene.larger", factor=f"{session.exaggeration:g}")
+    return words("scene.larger", factor=f"{session.exaggeration:g}")
 
 
 def _traces(session: Session, time: float) -> Array:
@@ -179,22 +180,23 @@ def _values(parameters: Parameters) -> ParameterValues:
     return {name: getattr(parameters, name) for name in specs(parameters)}
 
 
-def _lesson_state(run: LessonRun, session: Session) -> LessonState:
-    return LessonState(
+def _lesson(lab: Lab) -> LessonSnapshot:
+    run = lab.lessons
+    return LessonSnapshot(
         version=run.version,
         progress=run.progress,
         playing=run.playing,
         verdicts=dict(run.verdicts),
-        truth=_truth(run, session),
+        truth=_truth(lab),
     )
 
 
-def _truth(run: LessonRun, session: Session) -> Truth | None:
+def _truth(lab: Lab) -> Truth | None:
     """While it still happens, only what is drawn meanwhile: a curve."""
-    found = run.prediction()
+    run, found = lab.lessons, lab.lessons.prediction()
     if found is None or (run.playing and not isinstance(found[1], Sketch)):
         return None
-    return run.truth(session)
+    return run.truth(lab.session)
 
 
 def _plots(session: Session, time: float, key: PageKey, before: Snapshot | None) -> PlotSamples:

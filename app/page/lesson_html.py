@@ -5,8 +5,8 @@ from __future__ import annotations
 import html
 
 from onpath.app.common.palette import AMBER, FOLLOWER, GREEN, GREY
+from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.checks import Verdict
-from onpath.lessons.place import CoursePlace
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Choice, Lesson, Option, Quiz, Step, Task
 from onpath.lessons.words import Words
@@ -30,7 +30,7 @@ background:#f7f9fb;line-height:1.45;color:#1f2937}
 LARGE = "<style>html{font-size:20px}.op-text{font-size:1.15rem;line-height:1.5}</style>"
 
 
-def heading(lesson: Lesson, step: Step, run: CoursePlace) -> str:
+def heading(lesson: Lesson, step: Step, run: LessonState) -> str:
     """Where one is: lesson, progress bar, kind and title of the step.
 
     By data-step, assets/page/steps.js sees that another step is open.
@@ -81,7 +81,7 @@ def question(block: Choice | Quiz, chosen: int | None, revealed: bool, words: Wo
     return box(content, FOLLOWER.hex)
 
 
-def task(block: Task, verdicts: list[Verdict], run: CoursePlace) -> str:
+def task(block: Task, verdicts: list[Verdict], run: LessonState) -> str:
     """What to do, how far it is done, and the hints shown so far."""
     words, best = run.words, run.notes.tasks.get(block.id)
     rows = "".join(
@@ -103,7 +103,7 @@ def task(block: Task, verdicts: list[Verdict], run: CoursePlace) -> str:
     )
 
 
-def entry(lesson: Lesson, run: CoursePlace, number: int) -> str:
+def entry(lesson: Lesson, run: LessonState, number: int) -> str:
     """A line of the overview."""
     notes = run.progress.notes.get(lesson.name)
     tasks = lesson.tasks()

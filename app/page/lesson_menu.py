@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import viser
 
-from onpath.app.lab import lesson_commands as c
+from onpath.app.lab import commands as c
 from onpath.app.lab.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
+from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
 from onpath.lessons.course import Course
-from onpath.lessons.place import CoursePlace
 from onpath.lessons.words import Words, languages
 
 
@@ -28,10 +28,10 @@ class LessonMenu:
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Remember how far the student is, for the window."""
-        self._progress = snapshot.lesson.progress
+        self._run = LessonView(self._course, self._words, snapshot.lesson)
 
     def _open(self) -> None:
-        run, gui = CoursePlace(self._course, self._progress, self._words), self._gui
+        run, gui = self._run, self._gui
         with gui.add_modal(run.words("lesson.choose")) as modal:
             for number, name in enumerate(run.course.lessons, start=1):
                 lesson = run.course.lesson(name, run.words.language)
@@ -43,10 +43,10 @@ class LessonMenu:
                     hint=lesson.front.title,
                 )
                 on_press(open_it, self._then(modal.close, c.OpenLesson(name)))
-            self._add_choices(run, modal.close)
+            self._add_choices(modal.close)
 
-    def _add_choices(self, run: CoursePlace, close: Callable[[], None]) -> None:
-        gui = self._gui
+    def _add_choices(self, close: Callable[[], None]) -> None:
+        run, gui = self._run, self._gui
         names = {run.words(f"language.{code}"): code for code in languages()}
         language = gui.add_dropdown(
             run.words("lesson.language"),
@@ -57,9 +57,9 @@ class LessonMenu:
         large = gui.add_checkbox(run.words("lesson.presenting"), run.progress.presenting)
         on_user_update(large, lambda on: self._chosen(close, c.SetPresenting(on)))
 
-    def _chosen(self, close: Callable[[], None], command: c.LessonCommand) -> None:
+    def _chosen(self, close: Callable[[], None], command: c.Command) -> None:
         close()
         self._post(command)
 
-    def _then(self, close: Callable[[], None], command: c.LessonCommand) -> Callable[[], None]:
+    def _then(self, close: Callable[[], None], command: c.Command) -> Callable[[], None]:
         return lambda: self._chosen(close, command)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import viser
 
-from onpath.app.lab import lesson_commands as c
+from onpath.app.lab import commands as c
 from onpath.app.lab.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
 from onpath.app.page.lesson_chart import PredictionChart
@@ -289,7 +289,7 @@ class LessonPanel:
         return handle
 
     def _button(
-        self, label: str, command: c.LessonCommand, colour: Any, icon: viser.IconName | None
+        self, label: str, command: c.Command, colour: Any, icon: viser.IconName | None
     ) -> viser.GuiButtonHandle:
         button = self._gui.add_button(label, color=colour, icon=icon)
         on_press(button, lambda: self._post(command))

@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
-from onpath.app.lab.page_snapshot import LessonState
+from onpath.app.lab.lesson_state import LessonState
+from onpath.app.lab.page_snapshot import LessonSnapshot
 from onpath.lessons.course import Course
-from onpath.lessons.place import CoursePlace
+from onpath.lessons.schema import StepSetup
 from onpath.lessons.words import Words
 
+NO_SETUP = StepSetup()
 
-class LessonView(CoursePlace):
-    """A place in the course, and what the lab says of the open step.
+
+class LessonView(LessonState):
+    """Where a student stands in the lessons, and what the lab says of the open step.
 
     Attributes:
-        version, playing, verdicts, truth: see `LessonState`.
+        playing, verdicts, truth: see `LessonSnapshot`.
     """
 
-    def __init__(self, course: Course, words: Words, state: LessonState) -> None:
-        super().__init__(course, state.progress, words)
-        self.version, self.playing = state.version, state.playing
-        self.verdicts, self.truth = state.verdicts, state.truth
+    def __init__(self, course: Course, words: Words, shown: LessonSnapshot) -> None:
+        super().__init__(course, shown.progress, words)
+        self.version, self.playing = shown.version, shown.playing
+        self.verdicts, self.truth = shown.verdicts, shown.truth
+
+    @property
+    def setup(self) -> StepSetup:
+        """Of the open step."""
+        lesson = self.lesson
+        return NO_SETUP if lesson is None else lesson.scene_at(self.index)

@@ -19,11 +19,14 @@ from onpath.app.page.panels.readout import Readout
 from onpath.app.page.panels.widgets import Post
 from onpath.app.page.plots import DISTANCE, LivePlot
 from onpath.app.page.step_controls import StepControls
+from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene, SceneCallbacks
 from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.viser_adapter.frame_channel import FrameChannel
 from onpath.lessons.words import Words
+from onpath.models.arrays import Array
+from onpath.models.systems.robots import Robot
 
 WIDE_SHEET = """<style>@media (max-width:36em){
 .mantine-Paper-root[style*="bottom: 0"],
@@ -120,9 +123,9 @@ class Page:
         return self._desk.post
 
     def _build(self, first: PageSnapshot) -> None:
-        post, words = self._post_for(first), Words(first.key.language)
+        post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
         self._built = self._key(first)
-        self._scene = Scene(self._client, _hooks(post), stage_of(robot_of(first)), words)
+        self._scene = Scene(self._client, _hooks(post, robot), stage_of(robot), words)
         self._scene.build(first)
         self._parts: list[Part] = []
         self._build_panels(first, words, post)
@@ -202,11 +205,14 @@ class Page:
             self._scene.frame_camera(Insets(bottom=below))
 
 
-def _hooks(post: Post) -> SceneCallbacks:
+def _hooks(post: Post, robot: Robot) -> SceneCallbacks:
+    def move(index: int, at: Array) -> None:
+        post(c.MovePoint(index, plane_coordinates(robot, at), finished=False))
+
     return SceneCallbacks(
-        on_grab=lambda name, target: post(c.Grab(name, target)),
+        on_grab=lambda name, at: post(c.Grab(name, robot.unplace(at))),
         on_release=lambda name: post(c.Release(name)),
-        on_point_dragged=lambda index, at: post(c.MovePoint(index, at, finished=False)),
+        on_point_dragged=move,
         on_point_drag_end=lambda _: post(c.EndMove()),
         on_point_selected=lambda index: post(c.SelectPoint(index)),
     )

@@ -9,7 +9,7 @@ import viser
 
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.page_snapshot import PageSnapshot, parameters_of
+from onpath.app.lab.page_snapshot import PageSnapshot, parameters_of, robot_of
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.flexible_panel import FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
@@ -21,6 +21,7 @@ from onpath.app.page.panels.robot_panel import RobotPanel
 from onpath.app.page.panels.run_panel import RunPanel
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press, on_user_update
 from onpath.app.page.plots import MORE, LivePlot, MorePlots
+from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
 from onpath.lessons.schema import StepSetup
 from onpath.lessons.words import Words
@@ -105,8 +106,12 @@ class PanelFactory:
         return [] if part is None else [part]
 
     def _editor(self, first: PageSnapshot) -> Part:
+        robot = robot_of(first)
+
         def draw() -> None:
-            self._scene.begin_freehand(lambda stroke: self._post(c.DrawPath(stroke)))
+            self._scene.begin_freehand(
+                lambda stroke: self._post(c.DrawPath(plane_coordinates(robot, stroke)))
+            )
 
         def shade(visible: bool) -> None:
             self._scene.show_singular_zone(0.0, 0.4, 0.02, visible)

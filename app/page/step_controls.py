@@ -7,9 +7,9 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.lab.page_snapshot import PageSnapshot
+from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.lessons.course import Course
-from onpath.lessons.place import CoursePlace
 from onpath.lessons.schema import StepSetup
 from onpath.lessons.words import Words
 
@@ -58,4 +58,4 @@ class StepControls:
 
     def _setup_of(self, snapshot: PageSnapshot) -> StepSetup:
         """Of the open step."""
-        return CoursePlace(self._course, snapshot.lesson.progress, self._words).setup
+        return LessonView(self._course, self._words, snapshot.lesson).setup

@@ -9,6 +9,9 @@ from operator import mul, sub
 
 import numpy as np
 
+from onpath.models.arrays import Array
+from onpath.models.systems.robots import Robot
+
 PARALLEL_COSINE = 1e-3
 """Rays that meet the plane at a flatter angle than this [rad] are taken as parallel to it."""
 
@@ -24,6 +27,11 @@ class DragPlane:
 
     point: np.ndarray
     normal: np.ndarray
+
+
+def plane_coordinates(robot: Robot, points: Array) -> Array:
+    """Coordinates of the path's plane, (..., 2), of points of the robot's frame, (..., 3), [m]."""
+    return robot.frame.planar(robot.unplace(points))
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,15 +12,14 @@ from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.relay import Relay
 from onpath.app.classroom.shared_classroom import SharedClassroom
 from onpath.app.classroom.watches import Watches
-from onpath.app.lab.class_commands import ShowMessage, TakeSetup
-from onpath.app.lab.lesson_commands import CloseLesson
-from onpath.app.lab.session import Session
+from onpath.app.lab.commands import CloseLesson, ReportState, TakeSetup
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.setup import capture
 from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import Records
 from onpath.app.storage.write_behind import WriteBehind
@@ -101,7 +100,7 @@ class ClassService:
             entry, keeper = self._sessions.find(code), self._keeper
             if entry is not None and keeper is not None:  # to be found again by another process
                 submit = partial(keeper.submit, code)
-                entry.lab.session.post(ShowMessage(lambda session: keep(session, submit)))
+                entry.scheduled.lab.post(ReportState(lambda lab: keep(lab, submit)))
 
         return ClassSeat(
             join=join,
@@ -133,11 +132,11 @@ class ClassService:
         if teacher is None or followed is None:
             return None
         shown, chosen = teacher
-        lab.session.post(CloseLesson())
+        lab.post(CloseLesson())
 
         def send_setup() -> None:
             push = self._class.push
-            lab.session.post(ShowMessage(lambda session: push(TakeSetup(capture(session)))))
+            lab.post(ReportState(lambda own: push(TakeSetup(capture(own.session)))))
 
         def stop() -> None:
             self._teachers.pop(client.client_id, None)
@@ -148,28 +147,28 @@ class ClassService:
         return TeacherContext(
             classroom=self._class,
             chosen=chosen,
-            progress=lambda: lab.session.lessons.progress,
+            progress=lambda: lab.lessons.progress,
             why_still=followed.why_still,
             send_setup=send_setup,
             forget=self._forget,
             stop=stop,
         )
 
-    def _student(self, code: str) -> tuple[Session, bool] | None:
+    def _student(self, code: str) -> tuple[Lab, bool] | None:
         entry = self._sessions.find(code)
-        return None if entry is None else (entry.lab.session, entry.client is not None)
+        return None if entry is None else (entry.scheduled.lab, entry.client is not None)
 
-    def _lab(self, client: int, code: str) -> Lab | None:
+    def _lab(self, client: int, code: str) -> ScheduledLab | None:
         """For a teacher's page."""
         here = self._here(code)
         if here is None and self._relay is not None:
             return self._relay.mirror(client, code)
         return here
 
-    def _here(self, code: str) -> Lab | None:
+    def _here(self, code: str) -> ScheduledLab | None:
         """A lab that lives in this process."""
         entry = self._sessions.find(code)
-        return None if entry is None or self._class.is_elsewhere(code) else entry.lab
+        return None if entry is None or self._class.is_elsewhere(code) else entry.scheduled
 
     def _wanted(self) -> dict[int, str]:
         """The labs of others that the teachers in this process look at, by client."""

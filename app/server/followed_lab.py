@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.page.teacher_context import TeacherChoices
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.lessons.words import Words
 
 
@@ -21,9 +21,9 @@ class FollowedLab:
 
     classroom: Classroom
     chosen: TeacherChoices
-    lab: Callable[[str], Lab | None]
+    lab: Callable[[str], ScheduledLab | None]
 
-    def find(self) -> tuple[Lab, int] | None:
+    def find(self) -> tuple[ScheduledLab, int] | None:
         """The lab and its student's number, if the student is still in the class."""
         code = self.chosen.followed
         member = self.classroom.member(code) if code else None

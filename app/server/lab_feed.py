@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.page_snapshot import PageSnapshot
-from onpath.app.lab.session import Session
 from onpath.app.lab.snapshot import Snapshot
 from onpath.app.lab.take_snapshot import take_page_snapshot, take_snapshot
 from onpath.app.page.page import Page
@@ -37,46 +37,46 @@ class LabFeed:
     ) -> None:
         self.page = page
         self._offset, self._nickname, self._followed = offset, nickname, followed
-        self._session: Session | None = None
+        self._lab: Lab | None = None
         self._shown: tuple[object, ...] = ()
         self._last: Snapshot | None = None
 
-    def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
+    def show(self, lab: Lab, achieved: float, frame: int, stride: float) -> None:
         """See `app.simulation.simulation_thread.Display`."""
         student, other = 0, self._followed.find() if self._followed is not None else None
         if other is not None:
-            session, achieved, student = other[0].session, other[0].achieved, other[1]
-        if session.grips.grabbed and stride == AT_EASE:
+            lab, achieved, student = other[0].lab, other[0].achieved, other[1]
+        if lab.session.grips.grabbed and stride == AT_EASE:
             stride = 1.0  # the hand feels every frame of delay
         count = frame + self._offset
         if not is_turn(count, stride) or not self.page.is_ready:
             return
         every = stride * round((SLOW if stride <= AT_EASE else SLOWER) / stride)
         whole = is_turn(count, every) or self.page.is_outdated
-        if self._has_news(session) or whole:
-            self._show(session, achieved, student, whole)
+        if self._has_news(lab) or whole:
+            self._show(lab, achieved, student, whole)
 
-    def _has_news(self, session: Session) -> bool:
+    def _has_news(self, lab: Lab) -> bool:
         """Whether anything is otherwise in the scene than it was shown last."""
-        shown = self._shown
+        session, shown = lab.session, self._shown
         self._shown = (
             *(session.instant(), session.viewing, session.editor.version),
-            *(session.exaggeration, session.lessons.progress),
+            *(session.exaggeration, lab.lessons.progress),
         )
         return self._shown != shown
 
-    def _show(self, session: Session, achieved: float, student: int, whole: bool) -> None:
-        before = self._last if session is self._session else None
-        self._session = session
+    def _show(self, lab: Lab, achieved: float, student: int, whole: bool) -> None:
+        before = self._last if lab is self._lab else None
+        self._lab = lab
         if whole:
             name = self._nickname()
-            snapshot = take_page_snapshot(session, achieved, before, student, name)
+            snapshot = take_page_snapshot(lab, achieved, before, student, name)
         else:
-            snapshot = take_snapshot(session, achieved, False, before, student)
+            snapshot = take_snapshot(lab, achieved, False, before, student)
         self._last = snapshot
         self.page.show(snapshot)
         if isinstance(snapshot, PageSnapshot):
-            self.page.exporter.serve(session)
+            self.page.exporter.serve(lab)
 
     def send(self) -> None:
         """See `app.simulation.simulation_thread.Display`."""

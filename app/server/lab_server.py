@@ -16,8 +16,8 @@ import viser
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import normalised
 from onpath.app.common.error_log import log_error
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.session import Session
 from onpath.app.lab.take_snapshot import take_page_snapshot
 from onpath.app.page.build_queue import BuildQueue
 from onpath.app.page.page import Page
@@ -83,7 +83,7 @@ class LabServer:
         self._records = records
         self._leases = Leases(records) if records else None
         self._keeper = WriteBehind(self._leases) if self._leases else None
-        self.sessions = LabRegistry(self.simulation, lambda: Session(store, FIVE_BAR, lessons))
+        self.sessions = LabRegistry(self.simulation, lambda: Lab(store, FIVE_BAR, lessons))
         if records is not None:
             self.sessions.load, self.sessions.keeper = records.load, self._keeper
             self.sessions.leases = self._leases
@@ -150,20 +150,21 @@ class LabServer:
             self.sessions.leave(client.client_id)
             return
         self._views[client.client_id] = view
-        self._onlookers.watch(client, entry.lab, view)
+        self._onlookers.watch(client, entry.scheduled, view)
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
 
     def _view(self, client: viser.ClientHandle, entry: RegisteredLab) -> LabFeed:
         """The page of a lab, or the teacher's, and what feeds it."""
         number, code, service = client.client_id, entry.code, self._class
+        lab = entry.scheduled.lab
         reopen, enter = partial(self._reopen, client, entry), partial(self._enter, client)
         seat = service.seat(client, code, reopen) if service else None
-        teaching = service.teaching(client, entry.lab, reopen) if service else None
-        post, keeps = entry.lab.session.post, self._records is not None
+        teaching = service.teaching(client, lab, reopen) if service else None
+        post, keeps = lab.post, self._records is not None
         desk = PageContext(code, post, self._course, keeps, enter, seat)
         nickname = partial(service.nickname, code) if service else str
-        first = take_page_snapshot(entry.lab.session, 1.0, nickname=nickname())
+        first = take_page_snapshot(lab, 1.0, nickname=nickname())
         if teaching is None:
             return LabFeed(Page(client, first, desk), number, nickname)
         followed = service.followed(number) if service else None

@@ -15,7 +15,6 @@ from playwright.sync_api import Browser, sync_playwright
 from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.common.access_codes import shown
 from onpath.app.lab import commands as c
-from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.server.lab_feed import LabFeed
@@ -107,7 +106,7 @@ def test_a_pushed_step_opens_and_predictions_show_without_names(tabs: Class) -> 
     for student in (first, second):
         student.page.get_by_role("heading", name="Draw what the tracker does").wait_for()
     for student, height in ((first, 40.0), (second, 10.0)):
-        student.ask(lc.Predict(times=(0.0, 4.0, 8.0), values=(0.0, height, 0.0)))
+        student.ask(c.Predict(times=(0.0, 4.0, 8.0), values=(0.0, height, 0.0)))
     picture = teacher.page.locator(".op-class")
     wait_for(lambda: picture.locator("polyline").count() == 2)
     assert "2 predicted" in picture.inner_text() and "Ada" not in picture.inner_text()

@@ -14,7 +14,6 @@ from playwright.sync_api import Browser, sync_playwright
 from viser import _messages
 
 from onpath.app.lab import commands as c
-from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.panels.keys import KEYS
 from onpath.app.server.lab_server import LabServer
@@ -49,7 +48,7 @@ def opened(browser: Browser, server: LabServer, place: str, **options: object) -
     context = browser.new_context(**{"viewport": {"width": 1280, "height": 800}, **options})  # type: ignore[arg-type]
     tab = Tab(server, context, draws=False)
     if place == "lesson":
-        tab.ask(lc.OpenLesson(LESSON))
+        tab.ask(c.OpenLesson(LESSON))
         tab.page.get_by_role("heading", name="Two robots, one circle").wait_for()
         if not options:
             tab.page.get_by_role("tab", name="All controls").click()

@@ -10,8 +10,8 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser, sync_playwright
 
-from onpath.app.lab import lesson_commands as lc
-from onpath.app.lab.class_commands import TakeStep
+from onpath.app.lab import commands as c
+from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
@@ -50,7 +50,7 @@ def tab(request: pytest.FixtureRequest, server: LabServer, browser: Browser) -> 
     width, height = request.param
     context = browser.new_context(viewport={"width": width, "height": height})
     tab = Tab(server, context, draws=False)
-    tab.ask(lc.OpenLesson(LESSON))
+    tab.ask(c.OpenLesson(LESSON))
     yield tab
     assert tab.errors == []
     context.close()

@@ -14,7 +14,6 @@ pytest.importorskip("playwright")
 from playwright.sync_api import Browser, sync_playwright
 
 from onpath.app.lab import commands as c
-from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.course import BUILT_IN, read_course
@@ -169,9 +168,9 @@ def go_to(tab: Tab, lesson: str, index: int) -> None:
     """To a step, unless it is open; time stands still there."""
     run = tab.session.lessons
     if run.lesson is None or run.lesson.name != lesson:
-        tab.ask(lc.OpenLesson(lesson))
+        tab.ask(c.OpenLesson(lesson))
     if run.index != index:
-        step = lc.GoToStep(1 if index > run.index else -1)
+        step = c.GoToStep(1 if index > run.index else -1)
         tab.ask(*[step] * abs(index - run.index))
     tab.ask(c.SetRunning(False))
     title = COURSE.lesson(lesson, "en").steps[index].title

@@ -14,8 +14,6 @@ from playwright.sync_api import BrowserContext, Locator, Page
 from viser import ClientHandle
 
 from onpath.app.bench.mouse_latency import ARGUMENTS, NO_TRIANGLES
-from onpath.app.lab.apply import apply
-from onpath.app.lab.class_commands import ClassCommand
 from onpath.app.lab.commands import Command
 from onpath.app.lab.session import Session
 from onpath.app.scene.stage_catalogue import stage_of
@@ -41,32 +39,28 @@ THREE_FRAMES = """() => new Promise(done => {
 })"""
 
 
-class Note:
+class Note(Command):
     """A command that only notes that it has been reached."""
 
     def __init__(self, done: list[bool]) -> None:
         self.done = done
 
-
-@apply.register(Note)
-def _(note: Note, _: Session) -> None:
-    note.done.append(True)
+    def apply(self, session: Session) -> None:
+        self.done.append(True)
 
 
-class Elapse:
+class Elapse(Command):
     """A command that lets simulated time pass, frame by frame, as quickly as can be computed."""
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
 
-
-@apply.register(Elapse)
-def _(elapse: Elapse, session: Session) -> None:
-    dt = time_step(session.parameters)
-    left, each = round(elapse.seconds / dt), round(FRAME / dt)
-    while left > 0:
-        session.simulate(min(each, left))
-        left -= each
+    def apply(self, session: Session) -> None:
+        dt = time_step(session.parameters)
+        left, each = round(self.seconds / dt), round(FRAME / dt)
+        while left > 0:
+            session.simulate(min(each, left))
+            left -= each
 
 
 class Tab:
@@ -132,17 +126,17 @@ class Tab:
         """What the tab shows."""
         return self.lab.session
 
-    def ask(self, *commands: Command | ClassCommand) -> None:
+    def ask(self, *commands: Command) -> None:
         """Commands behind the mouse's back; returns when they have been applied."""
         done: list[bool] = []
         for command in commands:
             self.session.post(command)
-        self.session.post(Note(done))  # type: ignore[arg-type]
+        self.session.post(Note(done))
         wait_for(lambda: done)
 
     def elapse(self, seconds: float) -> None:
         """Let simulated time pass in a paused lab, to the tick."""
-        self.ask(Elapse(seconds))  # type: ignore[arg-type]
+        self.ask(Elapse(seconds))
 
     # Where things are.
 

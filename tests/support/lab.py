@@ -6,7 +6,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from onpath.app.lab.class_commands import ClassCommand
 from onpath.app.lab.commands import Command
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
@@ -40,7 +39,7 @@ def run(session: Session, seconds: float) -> None:
         session.advance(session.rate * FRAME)
 
 
-def do(session: Session, *commands: Command | ClassCommand) -> None:
+def do(session: Session, *commands: Command) -> None:
     """Apply commands at once."""
     for command in commands:
         session.post(command)

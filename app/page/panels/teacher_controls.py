@@ -6,7 +6,7 @@ import html
 
 import viser
 
-from onpath.app.lab.class_commands import TakeSetup
+from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.page_snapshot import PageSnapshot
 from onpath.app.lab.share_code import decode
 from onpath.app.page.panels.widgets import on_press

@@ -24,8 +24,7 @@ from onpath.app.classroom.shared_classroom import SharedClassroom
 from onpath.app.common.access_codes import ALPHABET, new_code, shown
 from onpath.app.common.throttle import TRIES, WITHIN, Throttle
 from onpath.app.lab import commands as c
-from onpath.app.lab import lesson_commands as lc
-from onpath.app.lab.class_commands import Freeze, TakeSetup, TakeStep
+from onpath.app.lab.commands import Freeze, TakeSetup, TakeStep
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import Setup, capture
 from onpath.app.storage.forget import forget
@@ -271,14 +270,14 @@ def test_who_joins_is_frozen_too_and_who_leaves_is_let_go(klass: Watched) -> Non
 
 def test_a_step_is_opened_for_all_as_if_they_had_come_there(klass: Watched) -> None:
     first, second = klass.student("Ada"), klass.student("Bob")
-    do(second, lc.OpenLesson(LESSON), c.SetParameter("K1", 7.0))
+    do(second, c.OpenLesson(LESSON), c.SetParameter("K1", 7.0))
     klass.room.push(TakeStep(LESSON, 1))
     klass.look()
     for session in (first, second):
         assert session.lessons.lesson is not None and session.lessons.index == 1
         assert session.parameters.K1 == 300 and session.locked  # of the scene before
         assert session.lessons.answer() is None
-        do(session, lc.CloseLesson())
+        do(session, c.CloseLesson())
     klass.look()
     assert first.lessons.lesson is None  # once, not again and again
     for wrong in (TakeStep("nope", 0), TakeStep(LESSON, 99), TakeStep(LESSON, -1)):
@@ -309,8 +308,8 @@ def sent_setup(course: Course) -> Setup:
 @pytest.mark.parametrize("step", range(8))
 def test_a_setup_leaves_a_student_in_the_open_step(klass: Watched, step: int) -> None:
     session, setup = klass.student("Ada"), sent_setup(klass.course)
-    do(session, c.SetParameter("K1", 7.0), lc.OpenLesson(LESSON))
-    do(session, *[lc.GoToStep(1)] * step)
+    do(session, c.SetParameter("K1", 7.0), c.OpenLesson(LESSON))
+    do(session, *[c.GoToStep(1)] * step)
     run(session, 0.2)
     waits, before = session.locked, session.lessons.progress
     klass.room.push(TakeSetup(setup))
@@ -318,26 +317,26 @@ def test_a_setup_leaves_a_student_in_the_open_step(klass: Watched, step: int) ->
     assert capture(session) == setup and session.message == ENGLISH("class.setup_in_step")
     assert session.lessons.progress == before and session.lessons.index == step
     assert session.locked == waits and session.running == (not waits)
-    do(session, lc.GoToStep(1))
+    do(session, c.GoToStep(1))
     assert session.lessons.index == min(step + 1, 7)
-    do(session, lc.CloseLesson())
+    do(session, c.CloseLesson())
     assert session.parameters.K1 == 7.0  # the free lab as it was
 
 
 def test_set_up_again_brings_the_steps_own_setup_back(klass: Watched) -> None:
     session = klass.student("Ada")
-    do(session, lc.OpenLesson(LESSON))
+    do(session, c.OpenLesson(LESSON))
     own = capture(session)
     klass.room.push(TakeSetup(sent_setup(klass.course)))
     klass.look()
     assert capture(session) != own
-    do(session, lc.BeginStepAnew())
+    do(session, c.BeginStepAnew())
     assert capture(session) == own and session.lessons.index == 0
 
 
 def test_a_setup_ends_what_plays_and_nothing_is_noted_of_it(klass: Watched) -> None:
     session = klass.student("Ada")
-    do(session, lc.OpenLesson(LESSON), *[lc.GoToStep(1)] * 2, lc.PlayStep())
+    do(session, c.OpenLesson(LESSON), *[c.GoToStep(1)] * 2, c.PlayStep())
     run(session, 0.5)
     assert session.lessons.playing
     klass.room.push(TakeSetup(sent_setup(klass.course)))
@@ -349,18 +348,18 @@ def test_a_setup_ends_what_plays_and_nothing_is_noted_of_it(klass: Watched) -> N
 
 def test_a_step_that_is_opened_is_a_step_of_a_lesson(klass: Watched) -> None:
     session, free = klass.student("Ada"), klass.student("Bob")
-    do(session, c.SetParameter("K1", 7.0), lc.OpenLesson(OTHER), *[lc.GoToStep(1)] * 6)
+    do(session, c.SetParameter("K1", 7.0), c.OpenLesson(OTHER), *[c.GoToStep(1)] * 6)
     klass.room.push(TakeStep(LESSON, 5))
     klass.look()
     assert session.message == ENGLISH("class.step_elsewhere")
     assert free.message == ENGLISH("class.step")
     for by, index in ((0, 5), (1, 6), (1, 7), (-1, 6), (-1, 5), (-1, 4)):
-        do(session, lc.GoToStep(by))
+        do(session, c.GoToStep(by))
         assert session.lessons.progress.lesson == LESSON and session.lessons.index == index
-    do(session, lc.OpenLesson(OTHER))
+    do(session, c.OpenLesson(OTHER))
     assert session.lessons.index == 6 and session.editor.design.name == "ellipse"
     assert set(session.lessons.notes.answers) == {"1", "3"}
-    do(session, lc.CloseLesson())
+    do(session, c.CloseLesson())
     assert session.parameters.K1 == 7.0
 
 
@@ -370,7 +369,7 @@ def test_who_joins_later_gets_what_was_sent_last(klass: Watched) -> None:
     for name in ("Ada", "Bob"):
         late = klass.student(name)
         assert late.lessons.progress.lesson == LESSON and late.lessons.index == 1
-        do(late, lc.CloseLesson())
+        do(late, c.CloseLesson())
         klass.look()
         assert late.lessons.lesson is None  # once
     klass.room.push(TakeSetup(sent_setup(klass.course)))
@@ -402,7 +401,7 @@ def test_who_reloads_has_what_was_sent_and_goes_on_from_there(klass: Watched) ->
     klass.labs["lab 0"] = session, True
     klass.look()
     assert session.lessons.index == 1
-    do(session, lc.GoToStep(1))
+    do(session, c.GoToStep(1))
     klass.labs["lab 0"] = session, False
     klass.look()
     klass.labs["lab 0"] = session, True
@@ -413,7 +412,7 @@ def test_who_reloads_has_what_was_sent_and_goes_on_from_there(klass: Watched) ->
 def test_only_a_teacher_thaws(klass: Watched) -> None:
     session = klass.student("Ada")
     do(session, Freeze(True))  # type: ignore[arg-type]
-    do(session, lc.SetLanguage("de"), c.Reset())
+    do(session, c.SetLanguage("de"), c.Reset())
     assert session.frozen and session.lessons.words.language == "en"
 
 
@@ -507,8 +506,8 @@ def rows_of(data: bytes) -> list[dict[str, str]]:
 def test_the_record_has_a_row_for_each_prediction_and_task(klass: Watched) -> None:
     session = klass.student("Ada")
     klass.student("Bob")
-    do(session, lc.OpenLesson(LESSON), lc.GoToStep(1))
-    do(session, lc.Predict(times=(0.0, 1.0), values=(1.0, 2.5)))
+    do(session, c.OpenLesson(LESSON), c.GoToStep(1))
+    do(session, c.Predict(times=(0.0, 1.0), values=(1.0, 2.5)))
     klass.look()
     rows = rows_of(class_csv(klass.room.members().values(), klass.course, "en"))
     assert {row["nickname"] for row in rows} == {"Ada"} and tuple(rows[0]) == HEADER
@@ -526,7 +525,7 @@ def test_the_record_has_a_row_for_each_prediction_and_task(klass: Watched) -> No
 )
 def test_no_cell_is_a_formula(klass: Watched, name: str) -> None:
     session = klass.student(name)
-    do(session, lc.OpenLesson(LESSON))
+    do(session, c.OpenLesson(LESSON))
     klass.look()
     rows = rows_of(class_csv(klass.room.members().values(), klass.course, "en"))
     assert rows

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from onpath.app.classroom.mirror import BEHIND, Mirror
 from onpath.app.classroom.moment import Moment, read_moment, tell
 from onpath.app.lab import commands as c
-from onpath.app.lab.class_commands import Freeze
+from onpath.app.lab.commands import Freeze
 from onpath.app.lab.session import Session
 from onpath.app.lab.take_snapshot import take_snapshot
 from onpath.app.simulation.simulation_thread import Lab
@@ -121,9 +121,7 @@ def test_a_path_that_is_dragged_and_let_go_is_the_same_path() -> None:
     index, (x, up) = 2, both.session.editor.design.points[2]
 
     def drag(time: float) -> c.Command | None:
-        at = both.session.robot.place(
-            both.session.robot.frame.lift(np.array([x + 0.02 * time, up + 0.01 * time]))
-        )
+        at = np.array([x + 0.02 * time, up + 0.01 * time])
         return c.MovePoint(index, at, finished=False) if round(time / FRAME) % 3 == 0 else None
 
     both.run(1.0)

@@ -23,7 +23,7 @@ from onpath.app.classroom.watches import GONE, LASTS, NONSENSE, Watches
 from onpath.app.common.access_codes import new_code, shown
 from onpath.app.common.throttle import TRIES
 from onpath.app.lab import commands as c
-from onpath.app.lab.class_commands import TakeSetup, TakeStep
+from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import capture
 from onpath.app.page.teacher_context import TeacherChoices
@@ -538,7 +538,9 @@ def test_the_teacher_reads_why_a_lab_stands_still(two: Two) -> None:
 
 def test_a_relay_that_is_told_nonsense_shows_nothing(two: Two) -> None:
     one, other = two.both
-    here = Relay(other.watches, other.here, lambda: {7: "a"}, lambda: Session(store()), SimulationThread())
+    here = Relay(
+        other.watches, other.here, lambda: {7: "a"}, lambda: Session(store()), SimulationThread()
+    )
     here.look()
     one.watches.tell({"a": "nonsense"})
     here.look()

@@ -35,7 +35,7 @@ def eventful() -> tuple[Session, list]:
     do(session, c.Hold(False), c.SetParameter("K3", 300), c.SetParameter("payload", 0.1))
     do(
         session,
-        c.Grab(FOLLOWER, session.robot.place(y(session, FOLLOWER)) + np.array([0.0, 0.0, 0.03])),
+        c.Grab(FOLLOWER, y(session, FOLLOWER) + np.array([0.0, 0.03])),
     )
     seen += watched(session, 15)
     do(session, c.Release(), c.ChoosePath("ellipse"), c.SetParameter("encoder_counts", 4000))

@@ -17,7 +17,7 @@ from msgspec.structs import replace
 from onpath.app.common.palette import FOLLOWER, SELECTED, TRACKER
 from onpath.app.exports.exporter import Exporter
 from onpath.app.exports.report import report
-from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab import commands as c
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.session import Session
 from onpath.lessons.course import BUILT_IN, Course, read_course
@@ -264,8 +264,8 @@ class Client:
 
 def test_it_is_sent_as_it_was_when_it_was_asked_for(course: Course) -> None:
     session, client = Session(store(), FIVE_BAR, course), Client()
-    do(session, lc.OpenLesson(NAME), lc.GoToStep(1))
-    do(session, lc.Predict(times=(0.0, 2.0), values=(5.0, 30.0)), lc.GoToStep(1), lc.PlayStep())
+    do(session, c.OpenLesson(NAME), c.GoToStep(1))
+    do(session, c.Predict(times=(0.0, 2.0), values=(5.0, 30.0)), c.GoToStep(1), c.PlayStep())
     run(session, 2.3)
     exporter = Exporter(client)  # type: ignore[arg-type]
     exporter.report(CODE)

@@ -68,7 +68,7 @@ def test_a_pull_bends_the_link_and_is_survived(plane: str) -> None:
     robot, start = session.robot, session.runs[FOLLOWER].shown()["y"].copy()
     across = np.cross(STAGE.pulls[plane].normal, [0.0, 0.0, 1.0])
     way = np.array([1.0, 0.0, 0.0]) if not across.any() else across / np.linalg.norm(across)
-    do(session, c.Grab(FOLLOWER, robot.place(start) + 0.03 * way))
+    do(session, c.Grab(FOLLOWER, robot.unplace(robot.place(start) + 0.03 * way)))
     run(session, 0.3)
     moved = robot.place(session.runs[FOLLOWER].shown()["y"]) - robot.place(start)
     assert moved @ way > 1e-4

@@ -13,8 +13,7 @@ import pytest
 from onpath.app.classroom.moment import parameters_of, read_moment, tell
 from onpath.app.cli.main import run_command
 from onpath.app.lab import commands as c
-from onpath.app.lab import lesson_commands as lc
-from onpath.app.lab.class_commands import TakeSetup
+from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
@@ -90,7 +89,7 @@ def course(tmp_path: Path) -> Course:
 def test_a_lesson_of_then_sets_and_checks_it(course: Course) -> None:
     assert LESSON_OF_THEN.count(OLD) == 3
     session = Session(store(), course=course)
-    do(session, lc.OpenLesson("01-a"), lc.GoToStep(0))
+    do(session, c.OpenLesson("01-a"), c.GoToStep(0))
     assert plant(session) == NEW
     lesson = course.lessons["01-a"]["en"]
     (task,) = lesson.tasks()

@@ -227,7 +227,7 @@ def busy(seconds: float = 1.0) -> Session:
     do(session, c.Hold(False), c.SetParameter("K3", 200))
     do(
         session,
-        c.Grab(TRACKER, session.robot.place(y(session, TRACKER)) + np.array([0.02, 0.0, 0.0])),
+        c.Grab(TRACKER, y(session, TRACKER) + np.array([0.02, 0.0])),
     )
     run(session, seconds / 3)
     do(session, c.Release(), c.ChoosePath("ellipse"))

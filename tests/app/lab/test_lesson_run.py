@@ -11,8 +11,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
-from onpath.app.lab import lesson_commands as lc
-from onpath.app.lab.class_commands import TakeStep
+from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.history import RECENT
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.lesson_run import LessonRun
@@ -45,29 +44,29 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Course:
 def session(course: Course) -> Session:
     """A lab with that lesson open."""
     session = Session(store(), FIVE_BAR, course)
-    do(session, lc.OpenLesson(NAME))
+    do(session, c.OpenLesson(NAME))
     return session
 
 
 def test_a_scene_sets_the_lab_up_and_the_free_lab_comes_back(course: Course) -> None:
     session = Session(store(), FIVE_BAR, course)
     do(session, c.SetParameter("K2", 33), c.ChoosePath("clover"))
-    do(session, lc.OpenLesson(NAME))
+    do(session, c.OpenLesson(NAME))
     assert session.parameters.K1 == 300 and session.parameters.K2 == FIVE_BAR.lab.K2
     assert session.editor.design.name == "circle" and session.running
-    do(session, lc.CloseLesson())
+    do(session, c.CloseLesson())
     assert session.parameters.K2 == 33 and session.editor.design.name == "clover"
     assert session.lessons.lesson is None and session.locked == ""
 
 
 def test_nothing_happens_before_a_prediction(session: Session) -> None:
-    do(session, lc.GoToStep(1))
-    for command in (c.SetRunning(True), c.StepOnce(), c.GoOn(), lc.PlayStep()):
+    do(session, c.GoToStep(1))
+    for command in (c.SetRunning(True), c.StepOnce(), c.GoOn(), c.PlayStep()):
         do(session, command)
         run(session, 0.2)
         assert session.time == 0.0 and not session.running
     assert session.message == session.locked != ""
-    do(session, lc.Predict(times=(0.0, 1.0, 2.0), values=(0.0, 40.0, 0.0)))
+    do(session, c.Predict(times=(0.0, 1.0, 2.0), values=(0.0, 40.0, 0.0)))
     assert session.locked == ""
     do(session, c.SetRunning(True))
     run(session, 0.2)
@@ -75,7 +74,7 @@ def test_nothing_happens_before_a_prediction(session: Session) -> None:
 
 
 def test_skipping_is_one_step_and_locks_nothing(session: Session) -> None:
-    do(session, lc.GoToStep(1), lc.GoToStep(1))
+    do(session, c.GoToStep(1), c.GoToStep(1))
     assert session.lessons.index == 2 and session.locked == ""
     answer = session.lessons.answer()
     assert answer is not None and answer.skipped
@@ -87,12 +86,12 @@ def test_skipping_the_prediction_of_a_pushed_step_does_not_skip_what_happens(
     do(session, TakeStep(NAME, 2))
     run_ = session.lessons
     assert run_.waits and session.locked
-    do(session, lc.GoToStep(1))
+    do(session, c.GoToStep(1))
     assert run_.index == 2 and not run_.waits and not session.locked
     assert run_.notes.answers["1"].skipped
-    do(session, lc.PlayStep())
+    do(session, c.PlayStep())
     assert run_.playing
-    do(session, lc.GoToStep(1))
+    do(session, c.GoToStep(1))
     assert run_.index == 3
 
 
@@ -111,8 +110,8 @@ def test_who_did_not_answer_is_told_the_answer_and_not_that_it_was_right(languag
 
 
 def test_prediction_and_truth_are_kept_side_by_side(session: Session) -> None:
-    do(session, lc.GoToStep(1), lc.Predict(times=(0.0, 2.0), values=(5.0, 99.0)), lc.GoToStep(1))
-    do(session, lc.PlayStep())
+    do(session, c.GoToStep(1), c.Predict(times=(0.0, 2.0), values=(5.0, 99.0)), c.GoToStep(1))
+    do(session, c.PlayStep())
     run(session, 0.3)
     assert session.lessons.playing and session.lessons.truth(session) is not None
     run(session, 2.0)
@@ -126,7 +125,7 @@ def test_prediction_and_truth_are_kept_side_by_side(session: Session) -> None:
 
 
 def test_a_task_fails_then_passes_and_stays_passed(session: Session) -> None:
-    do(session, lc.GoToStep(3), lc.GoToStep(3))
+    do(session, c.GoToStep(3), c.GoToStep(3))
     assert session.lessons.step_is("task") and session.editor.design.name == "ellipse"
     do(session, c.Hold(True))
     run(session, 0.5)
@@ -160,7 +159,7 @@ def test_pulled_off_let_go_and_back_again(frame: float) -> None:
 
 
 def test_the_marks_of_a_passed_task_stay_until_the_next_attempt(session: Session) -> None:
-    do(session, lc.GoToStep(3), lc.GoToStep(3), c.Hold(True))
+    do(session, c.GoToStep(3), c.GoToStep(3), c.Hold(True))
     run(session, 2.0)
     assert all(verdict.passed for verdict in session.lessons.verdicts["hold"])
     do(session, c.SetParameter("K1", 20), c.SetParameter("K2", 1), c.MoveHand(0.1, 0.1))
@@ -190,7 +189,7 @@ def test_what_is_undone_by_rewinding_passes_no_task(session: Session) -> None:
 def test_the_truth_has_every_peak_however_long_ago() -> None:
     """Lesson 3 plays for longer than the lab's past is kept at every frame."""
     session = Session(store(), FIVE_BAR, read_course([BUILT_IN])[0])
-    do(session, TakeStep("03-the-five-bar", 3), lc.Predict(), lc.PlayStep())
+    do(session, TakeStep("03-the-five-bar", 3), c.Predict(), c.PlayStep())
     seen: dict[str, list[float]] = {name: [] for name in session.runs}
     while session.lessons.playing:
         for name, one in session.runs.items():
@@ -210,20 +209,20 @@ def test_the_truth_has_every_peak_however_long_ago() -> None:
 
 
 def test_hints_come_one_at_a_time(session: Session) -> None:
-    do(session, lc.ShowHint("hold"))
+    do(session, c.ShowHint("hold"))
     assert session.lessons.notes.hints == {"hold": 1}
 
 
 def test_links_act_on_the_lab(session: Session) -> None:
-    do(session, lc.Act((Action(set={"K3": 100.0}), Action(path="clover"), Action(hold=True))))
+    do(session, c.Act((Action(set={"K3": 100.0}), Action(path="clover"), Action(hold=True))))
     assert session.parameters.K3 == 100.0 and session.editor.design.name == "clover"
     assert session.grips.held
-    do(session, lc.Act((Action(set={"K3": 1e9}),)))
+    do(session, c.Act((Action(set={"K3": 1e9}),)))
     assert session.parameters.K3 == 100.0 and "K3" in session.message
 
 
 def test_resetting_by_hand_ends_what_is_shown(session: Session) -> None:
-    do(session, lc.GoToStep(2), lc.Predict(), lc.PlayStep())
+    do(session, c.GoToStep(2), c.Predict(), c.PlayStep())
     run(session, 0.5)
     do(session, c.Reset())
     run(session, 0.2)
@@ -233,8 +232,8 @@ def test_resetting_by_hand_ends_what_is_shown(session: Session) -> None:
 @pytest.mark.parametrize("command", [c.Reset(), c.ChoosePath("clover"), c.GoOn()])
 def test_what_is_given_up_half_way_has_not_been_seen(session: Session, command: object) -> None:
     """Resetting, another robot's run, going on from the past: no truth, and not played."""
-    do(session, lc.GoToStep(1), lc.Predict(times=(0.0, 1.0), values=(0.0, 1.0)), lc.GoToStep(1))
-    do(session, lc.PlayStep())
+    do(session, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(0.0, 1.0)), c.GoToStep(1))
+    do(session, c.PlayStep())
     run(session, 1.0)
     if isinstance(command, c.GoOn):
         do(session, c.LookAt(0.5))
@@ -247,8 +246,8 @@ def test_what_is_given_up_half_way_has_not_been_seen(session: Session, command: 
 
 
 def test_progress_comes_back_from_json(session: Session, course: Course) -> None:
-    do(session, lc.GoToStep(1), lc.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), lc.GoToStep(1))
-    do(session, lc.SetPresenting(True), lc.ShowHint("hold"))
+    do(session, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), c.GoToStep(1))
+    do(session, c.SetPresenting(True), c.ShowHint("hold"))
     kept = msgspec.json.encode(session.lessons.progress)
     again = LessonRun(course, read_progress(msgspec.json.decode(kept)))
     assert again.progress == session.lessons.progress

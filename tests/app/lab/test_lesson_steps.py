@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from onpath.app.lab import commands as c
-from onpath.app.lab import lesson_commands as lc
-from onpath.app.lab.class_commands import TakeSetup, TakeStep
+from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import Setup, capture
 from onpath.app.storage.lab_state import LabState, keep, put_back
@@ -90,7 +89,7 @@ def turned(by: int) -> Callable[[Session], Session]:
 
     def turn(session: Session) -> Session:
         stays = by > 0 and session.lessons.waits and session.lessons.step_is("run")
-        do(session, lc.GoToStep(by))
+        do(session, c.GoToStep(by))
         return session if stays else arrived(session)
 
     return turn
@@ -108,13 +107,13 @@ def asked(*commands: c.Command) -> Callable[[Session], Session]:
 
 
 def set_up_again(session: Session) -> Session:
-    do(session, lc.BeginStepAnew())
+    do(session, c.BeginStepAnew())
     return arrived(session)
 
 
 def played(session: Session) -> Session:
     """The script, from its beginning, seen at any speed."""
-    do(session, lc.Predict())
+    do(session, c.Predict())
     rate = session.rate
     session.lessons.play(session)  # and nothing of the script yet
     if session.script is not None:
@@ -127,7 +126,7 @@ def played(session: Session) -> Session:
 
 def left_and_opened(session: Session) -> Session:
     name = session.lessons.progress.lesson
-    do(session, lc.CloseLesson(), lc.OpenLesson(name))
+    do(session, c.CloseLesson(), c.OpenLesson(name))
     return arrived(session)
 
 
@@ -155,7 +154,7 @@ def pushed(step: tuple[str, int]) -> Callable[[Session], Session]:
 def pushed_setup(session: Session) -> Session:
     """The teacher sends a set-up; then the student comes back."""
     name = session.lessons.progress.lesson
-    do(session, TakeSetup(Setup(robot="flexible", rate=2.0)), lc.OpenLesson(name))
+    do(session, TakeSetup(Setup(robot="flexible", rate=2.0)), c.OpenLesson(name))
     return arrived(session)
 
 
@@ -213,9 +212,9 @@ def test_what_a_step_keeps_is_what_the_step_before_has(
     assert problems == []
     for ways in (
         [TakeStep("01-a", 2)],
-        [lc.OpenLesson("01-a"), *3 * [lc.GoToStep(1)], lc.GoToStep(-1)],
+        [c.OpenLesson("01-a"), *3 * [c.GoToStep(1)], c.GoToStep(-1)],
     ):
         session = Session(store(), course=Course(course.lessons))
-        do(session, *ways, c.SetParameter("K1", 50.0), lc.BeginStepAnew())
+        do(session, *ways, c.SetParameter("K1", 50.0), c.BeginStepAnew())
         assert session.lessons.index == 2
         assert (session.parameters.K1, session.parameters.K2) == (300.0, 30.0)

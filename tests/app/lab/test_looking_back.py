@@ -11,7 +11,6 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
-from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.session import Session
 from onpath.lessons.course import read_course
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -168,11 +167,11 @@ def test_a_step_of_a_lesson_cannot_be_passed_by_bringing_back_what_came_before(
 ) -> None:
     write_lesson(tmp_path)
     session = Session(store(), FIVE_BAR, read_course([tmp_path])[0])
-    do(session, lc.OpenLesson("01-a"), c.SetRunning(True))
+    do(session, c.OpenLesson("01-a"), c.SetRunning(True))
     run(session, 0.5)
     do(session, c.LookAt(0.3), c.GoOn())
     assert session.put_aside is not None
-    do(session, lc.GoToStep(1))
+    do(session, c.GoToStep(1))
     assert session.put_aside is None
 
 

@@ -30,7 +30,7 @@ SENT = "ONPATH1-OVJGQYADAC4AYAFKWEWN4IBA-"  # only its form
 def drawn_lab() -> Setup:
     session = new_session()
     points = wave(0.7, 1.0, closed=True).curve.at(wave(0.0, 0.0, True).curve.sample(80))
-    do(session, DrawPath(session.robot.place(session.robot.frame.lift(points))))
+    do(session, DrawPath(points))
     do(session, SetParameter("K3", 150.0))
     assert session.editor.design.name == "drawn"
     return capture(session)

@@ -65,7 +65,7 @@ def test_points_are_drawn_where_robot_and_curve_have_them(robot: str, path: str)
     run(session, 2.0)
     own, curve = session.robot, session.editor.curve
     tip = own.place(session.runs[FOLLOWER].shown()["y"])
-    do(session, c.Grab(FOLLOWER, tip + [0.02, 0.0, 0.01]))
+    do(session, c.Grab(FOLLOWER, own.unplace(tip + [0.02, 0.0, 0.01])))
     run(session, 0.1)
     for name, view in take_snapshot(session, 1.0).robots.items():
         row = {field: value.copy() for field, value in session.runs[name].shown().items()}

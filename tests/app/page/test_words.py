@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from onpath.app.lab import commands as c
-from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.session import Session
 from onpath.app.page.panels.keys import KEYS, help_text
 from onpath.app.page.panels.widgets import label_of, option_of
@@ -270,7 +269,7 @@ def test_fields_of_translated_sentences_are_the_same() -> None:
 
 def test_a_german_lab_speaks_german() -> None:
     session = Session(store(), FLEXIBLE)
-    do(session, lc.SetLanguage("de"), c.ChoosePath("figure of eight"))
+    do(session, c.SetLanguage("de"), c.ChoosePath("figure of eight"))
     assert session.message.startswith("Diese Bahn geht nicht: die Bahn kreuzt sich selbst")
     do(session, c.Undo())
     assert session.message == "es gibt nichts rückgängig zu machen"
@@ -279,7 +278,7 @@ def test_a_german_lab_speaks_german() -> None:
     do(session, c.SetParameter("law", "redefined"), c.SetParameter("alpha", 0.95))
     run(session, 3.0)
     assert "regelung: stehen geblieben" in session.message and "Nulldynamik" in session.message
-    do(session, lc.SetLanguage("en"))
+    do(session, c.SetLanguage("en"))
     assert "stopped at" in session.message and UNSTABLE in session.message
 
 

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.app.common import palette
-from onpath.app.lab import lesson_commands as lc
+from onpath.app.lab import commands as c
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.scene.ink import MOST, Ink
 from onpath.app.scene.stage_catalogue import RIGID
@@ -122,9 +122,9 @@ def test_an_endless_sketch_too(page: Page) -> None:
         for number, step in enumerate(course.lesson(name, "en").steps)
         if any(isinstance(block, Sketch) for block in step.blocks)
     )
-    page.session.post(lc.OpenLesson(name))
+    page.session.post(c.OpenLesson(name))
     for _ in range(step):
-        page.session.post(lc.GoToStep(step))
+        page.session.post(c.GoToStep(step))
     wait_for(lambda: page.shown("/board/sheet"))
     (board,) = wait_for(lambda: [p._board for p in page.view.page._parts if hasattr(p, "_board")])
     page.scribble("/board/sheet", lambda k: board._world(0.3 * sideways(k)[None])[0])

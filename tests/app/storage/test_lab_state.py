@@ -9,7 +9,6 @@ import pytest
 
 from onpath.app.common.access_codes import normalised, shown
 from onpath.app.lab import commands as c
-from onpath.app.lab import lesson_commands as lc
 from onpath.app.lab.session import Session
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.simulation.simulation_thread import SimulationThread
@@ -63,8 +62,8 @@ def test_path_gains_and_lesson_survive_a_restart(
 ) -> None:
     entry = servers[0].sessions.join(1, None)
     session = entry.lab.session
-    do(session, c.SetParameter("K2", 33), c.ChoosePath("clover"), lc.OpenLesson("01-a"))
-    do(session, lc.GoToStep(1), lc.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), lc.GoToStep(1))
+    do(session, c.SetParameter("K2", 33), c.ChoosePath("clover"), c.OpenLesson("01-a"))
+    do(session, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), c.GoToStep(1))
     do(session, c.SetParameter("K1", 444))
     run(session, 2.5)
     again = restart(servers, tmp_path, course).sessions.join(1, entry.code)
@@ -72,7 +71,7 @@ def test_path_gains_and_lesson_survive_a_restart(
     assert again.code == entry.code and other is not session
     assert other.lessons.progress == session.lessons.progress
     assert other.parameters == session.parameters and other.parameters.K1 == 444
-    do(other, lc.CloseLesson())
+    do(other, c.CloseLesson())
     assert other.parameters.K2 == 33 and other.editor.design.name == "clover"
 
 

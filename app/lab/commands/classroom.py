@@ -1,0 +1,82 @@
+"""What a teacher asks of a student's lab. No widget of a student's page makes these."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+from onpath.app.lab.commands.path import finish
+from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.setup import Setup
+
+
+@dataclass(frozen=True, slots=True)
+class Freeze(Command):
+    """Stop time and refuse the student's commands; or let all go on."""
+
+    from_teacher: ClassVar[bool] = True
+    on: bool
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        if self.on == lab.frozen:
+            return
+        if self.on:
+            lab.session.grips.release()
+            if lab.session.editor.proposed is not None:  # a point is being dragged
+                finish(lab)
+        lab.frozen = self.on
+        lab.clear_message()
+        _tell(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class TakeSetup(Command):
+    """Set the lab up so, in the free lab or in the step that is open."""
+
+    from_teacher: ClassVar[bool] = True
+    setup: Setup
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        run = lab.lessons
+        run.take(self.setup, lab)
+        text = run.words("class.setup" if run.lesson is None else "class.setup_in_step")
+        lab.show_message(text)
+        _tell(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class TakeStep(Command):
+    """Open a step of a lesson, from wherever the student is."""
+
+    from_teacher: ClassVar[bool] = True
+    lesson: str
+    step: int
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        run = lab.lessons
+        elsewhere = run.lesson is not None and run.progress.lesson != self.lesson
+        run.open_at(self.lesson, self.step, lab)
+        lab.show_message(run.words("class.step_elsewhere" if elsewhere else "class.step"))
+        _tell(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class ReportState(Command):
+    """Tell how the lab is now to somebody who must not keep it waiting."""
+
+    from_teacher: ClassVar[bool] = True
+    to: Callable[[Lab], None]
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        self.to(lab)
+
+
+def _tell(lab: Lab) -> None:
+    """Whoever finds the lab standing still reads why."""
+    if lab.frozen:
+        lab.show_message(lab.words("class.frozen"), "warning")

@@ -1,0 +1,94 @@
+"""Commands that hold the robots back or pull at their end-points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from onpath.app.lab.commands import checks
+from onpath.app.lab.external_forces import displaced
+from onpath.app.lab.lab import Command, Lab
+from onpath.models.arrays import Array
+from onpath.models.control.laws import NAMES
+
+
+@dataclass(frozen=True, slots=True)
+class Hold(Command):
+    """Hold end-points back, or let them go; None toggles.
+
+    Attributes:
+        controller: whose; None means both robots. See `SetCopy`.
+    """
+
+    on: bool | None = None
+    controller: str | None = None
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.return_to_present()
+        session, names = lab.session, list[str](NAMES)
+        if self.controller is not None:
+            names = session.targets(checks.controller(self.controller))
+        on = not session.grips.held.intersection(names) if self.on is None else self.on
+        session.grips.hold(names, on, session.editor.curve)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grab(Command):
+    """Pull a robot's end-point towards a target.
+
+    Attributes:
+        target: in the robot's output space, shape (p,), [m]. It is not in coordinates of the
+            path's plane, because the flexible arm is pulled in a horizontal plane, too.
+    """
+
+    controller: str
+    target: Array
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        name = checks.controller(self.controller)
+        target = checks.point(self.target, lab.session.robot.system.p)
+        lab.return_to_present()
+        lab.session.grips.grab(name, target, lab.session.targets(name))
+
+
+@dataclass(frozen=True, slots=True)
+class Release(Command):
+    """Let the end-points go; with a name, only if that robot's is the one being pulled."""
+
+    controller: str | None = None
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        if self.controller in (None, lab.session.grips.grabbed):
+            lab.session.grips.release()
+
+
+@dataclass(frozen=True, slots=True)
+class MoveHand(Command):
+    """Move the hand by a little in the path's plane, [m]; it takes hold first if need be."""
+
+    right: float
+    up: float
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        by = np.array([checks.finite(self.right), checks.finite(self.up)])
+        lab.return_to_present()
+        session, grips = lab.session, lab.session.grips
+        name = grips.grabbed or NAMES[-1]
+        target = grips.hands.get(name, session.runs[name].shown()["y"])
+        grips.grab(name, displaced(session.robot.frame, target, by), session.targets(name))
+
+
+@dataclass(frozen=True, slots=True)
+class SetCopy(Command):
+    """Set whether hand and hold act on both robots."""
+
+    on: bool
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.session.copy = bool(self.on)

@@ -1,0 +1,135 @@
+"""Commands of a student who goes through the lessons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from onpath.app.lab.commands.scripts import commands_of, player_of
+from onpath.app.lab.lab import Command, Lab
+from onpath.lessons.progress import Answer
+from onpath.lessons.schema import Action
+
+
+@dataclass(frozen=True, slots=True)
+class OpenLesson(Command):
+    """Open a lesson where it was left."""
+
+    name: str
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.open(self.name, lab)
+
+
+@dataclass(frozen=True, slots=True)
+class CloseLesson(Command):
+    """Go back to the lab as it was before the lesson."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.close(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class GoToStep(Command):
+    """Go to another step of the open lesson, `by` so many from the present one."""
+
+    by: int
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.go(int(self.by), lab)
+
+
+@dataclass(frozen=True, slots=True)
+class Predict(Command):
+    """Commit to a prediction: an option, or a curve; with neither, skip it."""
+
+    option: int | None = None
+    times: tuple[float, ...] = ()
+    values: tuple[float, ...] = ()
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.predict(Answer(self.option, self.times, self.values), lab.session)
+
+
+@dataclass(frozen=True, slots=True)
+class PlayStep(Command):
+    """Let the lab do what the step shows."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        step = lab.lessons.step
+        if step is not None and step.script is not None:
+            lab.lessons.play(player_of(step.script), lab)
+
+
+@dataclass(frozen=True, slots=True)
+class BeginStepAnew(Command):
+    """Set the lab up again as the step wants it."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.begin_anew(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class ShowHint(Command):
+    """Show one hint more."""
+
+    task: str
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.hint(self.task)
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerQuiz(Command):
+    """Choose an option of a question; `block` is its place in the step."""
+
+    block: int
+    option: int
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.answer_quiz(self.block, self.option)
+
+
+@dataclass(frozen=True, slots=True)
+class Act(Command):
+    """Do what a link in the text says."""
+
+    actions: tuple[Action, ...]
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        for action in self.actions:
+            if lab.locked and action.run:
+                raise ValueError(lab.locked)
+            for command in commands_of(action):
+                command.apply(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class SetLanguage(Command):
+    """Set the language of texts and interface."""
+
+    language: str
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.set_language(self.language)
+        lab.clear_message()
+
+
+@dataclass(frozen=True, slots=True)
+class SetPresenting(Command):
+    """Set large type for a projector, or not."""
+
+    on: bool
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.set_presenting(bool(self.on))

@@ -1,0 +1,207 @@
+"""Commands that choose, edit and draw the path. Points are coordinates of its plane, [m]."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from onpath.app.lab.commands.checks import finite, point
+from onpath.app.lab.commands.time import StepOnce
+from onpath.app.lab.lab import Command, Lab
+from onpath.models.arrays import Array
+from onpath.models.paths.path_design import PathDesign, drawn
+
+MOST_STROKE_POINTS = 5000
+
+
+@dataclass(frozen=True, slots=True)
+class ChoosePath(Command):
+    """Follow a preset."""
+
+    name: str
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        if self.name not in lab.session.presets:
+            raise ValueError(f"no path {self.name!r}: there are {', '.join(lab.session.presets)}")
+        commit(lab, lab.session.presets[self.name])
+
+
+@dataclass(frozen=True, slots=True)
+class SelectPoint(Command):
+    """Select a control point; None selects none."""
+
+    index: int | None
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.session.editor.select(self.index)
+
+
+@dataclass(frozen=True, slots=True)
+class SelectNext(Command):
+    """Select the control point after the selected one, or the first."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        editor = lab.session.editor
+        editor.select((-1 if editor.selected is None else editor.selected) + 1)
+        if editor.selected is None:
+            editor.select(0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MovePoint(Command):
+    """Move a control point.
+
+    Attributes:
+        index: which one.
+        target: where to, shape (2,), [m].
+        finished: whether the drag ends here; only then can it be undone as one edit.
+    """
+
+    index: int
+    target: Array
+    finished: bool = True
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        editor, target = lab.session.editor, point(self.target, 2)
+        if editor.proposed is None or editor.selected != self.index:
+            editor.select(self.index)
+        editor.propose((editor.proposed or editor.design).moved(self.index, target))
+        if self.finished:
+            finish(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class EndMove(Command):
+    """Let the control point that is being dragged go where it is."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        finish(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class Arrow(Command):
+    """Move the selected control point by a little, [m]; to the right with none: one step."""
+
+    right: float
+    up: float
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        index = lab.session.editor.selected
+        if index is None:
+            if self.right > 0:
+                StepOnce().apply(lab)
+            return
+        design = lab.session.editor.design
+        step = np.array([finite(self.right), finite(self.up)])
+        commit(lab, design.moved(index, design.points[index] + step))
+
+
+@dataclass(frozen=True, slots=True)
+class PlacePoint(Command):
+    """Put the selected control point at coordinates, [m]; None keeps one."""
+
+    first: float | None = None
+    second: float | None = None
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        index, design = _selected(lab), lab.session.editor.design
+        old = design.points[index]
+        wanted = zip(old, (self.first, self.second), strict=True)
+        new = [o if n is None else finite(n) for o, n in wanted]
+        if not np.allclose(old, new, atol=1e-6):
+            commit(lab, design.moved(index, np.array(new)))
+
+
+@dataclass(frozen=True, slots=True)
+class AddPoint(Command):
+    """Add a control point after the selected one."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        editor = lab.session.editor
+        index = 0 if editor.selected is None else editor.selected
+        commit(lab, editor.design.added(index))
+        editor.select(min(index + 1, len(editor.design.points) - 1))
+
+
+@dataclass(frozen=True, slots=True)
+class RemovePoint(Command):
+    """Remove the selected control point."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        commit(lab, lab.session.editor.design.removed(_selected(lab)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DrawPath(Command):
+    """Follow a freehand stroke.
+
+    Attributes:
+        stroke: shape (n, 2), [m].
+    """
+
+    stroke: Array
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        stroke = np.asarray(self.stroke, dtype=float)
+        if stroke.ndim != 2 or stroke.shape[1] != 2 or len(stroke) > MOST_STROKE_POINTS:
+            raise ValueError("a stroke needs points")
+        commit(lab, drawn(stroke, lab.session.editor.design.curve))
+
+
+@dataclass(frozen=True, slots=True)
+class Undo(Command):
+    """The path as before the last edit."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        words = lab.words
+        lab.show_message("" if lab.session.editor.undo() else words("say.nothing_to_undo"))
+
+
+@dataclass(frozen=True, slots=True)
+class Redo(Command):
+    """The path as before the last undo."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        words = lab.words
+        lab.show_message("" if lab.session.editor.redo() else words("say.nothing_to_redo"))
+
+
+def commit(lab: Lab, design: PathDesign) -> None:
+    """Make a whole edit at once."""
+    lab.session.editor.propose(design)
+    finish(lab)
+
+
+def finish(lab: Lab) -> None:
+    """End an edit of the path and say why if it is refused."""
+    editor = lab.session.editor
+    before = editor.design
+    if editor.finish():
+        if editor.design is not before:
+            lab.session.note("path", editor.design.name)
+        lab.clear_message()
+        lab.return_to_present()
+    elif editor.faults:
+        words = lab.words
+        reasons = "; ".join(words.sentence(fault.reason) for fault in editor.faults)
+        lab.return_to_present()
+        lab.show_message(words("say.refused", reasons=reasons), "warning")
+
+
+def _selected(lab: Lab) -> int:
+    if lab.session.editor.selected is None:
+        raise ValueError(lab.words("say.select_first"))
+    return lab.session.editor.selected

@@ -1,0 +1,29 @@
+"""Commands that make and use share codes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.setup import capture
+from onpath.app.lab.share_code import decode, encode
+
+
+@dataclass(frozen=True, slots=True)
+class Share(Command):
+    """Make a share code of the lab as it is."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.shared = encode(capture(lab.session))
+
+
+@dataclass(frozen=True, slots=True)
+class UseShared(Command):
+    """Set the lab up as a share code says."""
+
+    text: str
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.set_up(decode(self.text))

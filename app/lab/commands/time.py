@@ -1,0 +1,136 @@
+"""Commands that run, pause, reset and rewind simulated time, and that say how it is drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from onpath.app.lab.commands.checks import finite, within
+from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.looking_back import go_on, look_back, undo_going_on
+from onpath.app.lab.setup import EXAGGERATIONS, RATES
+
+
+@dataclass(frozen=True, slots=True)
+class SetRunning(Command):
+    """Run or pause; None toggles."""
+
+    lets_time_run: ClassVar[bool] = True
+    running: bool | None = None
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        running = not lab.session.running if self.running is None else self.running
+        if running:
+            lab.return_to_present()
+        lab.session.running = running
+
+
+@dataclass(frozen=True, slots=True)
+class StepOnce(Command):
+    """Make one step of simulated time while paused."""
+
+    lets_time_run: ClassVar[bool] = True
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.return_to_present()
+        if lab.locked:
+            raise ValueError(lab.locked)
+        lab.session.step_once()
+
+
+@dataclass(frozen=True, slots=True)
+class Reset(Command):
+    """Put both robots at the start, at rest; path and parameters stay."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.session.reset()
+        lab.show_message("")
+
+
+@dataclass(frozen=True, slots=True)
+class SetRate(Command):
+    """Set the simulated seconds per second, one of `RATES` or between them."""
+
+    rate: float
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.session.rate = within("speed", self.rate, RATES)
+
+
+@dataclass(frozen=True, slots=True)
+class LookAt(Command):
+    """Pause and look at how it was, [s] before now; 0 is now."""
+
+    ago: float
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        _look_back(lab, finite(self.ago))
+
+
+@dataclass(frozen=True, slots=True)
+class LookBack(Command):
+    """Look further back, or forward if negative, [s]."""
+
+    by: float
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        now, viewing = lab.session.time, lab.session.viewing
+        _look_back(lab, now - (now if viewing is None else viewing) + finite(self.by))
+
+
+@dataclass(frozen=True, slots=True)
+class GoOn(Command):
+    """Go on from the instant being looked at; what came after it is put aside."""
+
+    lets_time_run: ClassVar[bool] = True
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        put_aside = go_on(lab.session)
+        if put_aside is None:
+            lab.clear_message()
+            return
+        lab.script = None
+        time, seconds = (f"{number:.1f}" for number in put_aside)
+        lab.remark(lab.words("say.went_on", time=time, seconds=seconds))
+
+
+@dataclass(frozen=True, slots=True)
+class UndoGoOn(Command):
+    """Bring back what was put aside last, and put aside what was done instead."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        if undo_going_on(lab.session):
+            lab.remark(lab.words("say.brought_back", time=f"{lab.session.time:.1f}"))
+        else:
+            lab.show_message(lab.words("say.nothing_to_undo"))
+
+
+@dataclass(frozen=True, slots=True)
+class SetExaggeration(Command):
+    """Set how many times larger a deflection is drawn; the simulation does not depend on it."""
+
+    factor: float
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.session.exaggeration = within("exaggeration", self.factor, EXAGGERATIONS)
+
+
+def _look_back(lab: Lab, ago: float) -> None:
+    session, words = lab.session, lab.words
+    if ago <= 0 or not len(session.history):
+        lab.return_to_present()
+        return
+    if session.viewing is None:
+        lab.show_message(words("say.looking_back"))
+    if session.grips.hands:
+        lab.show_message(words("say.looking_back") + " " + words("say.let_go"))
+    look_back(session, ago)
