@@ -115,7 +115,7 @@ def played(lab: Lab) -> Lab:
     """The script, from its beginning, seen at any speed."""
     do(lab, c.Predict())
     rate = lab.session.rate
-    lab.lessons.play(lab)  # and nothing of the script yet
+    c.PlayStep().apply(lab)  # and nothing of the script yet
     if lab.script is not None:
         assert lab.session.rate == rate and lab.session.running
         lab.session.rate = 1.0
