@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import Any, get_args
 
 import msgspec
 from markdown_it.token import Token
@@ -32,13 +31,13 @@ from onpath.lessons.schema import (
     Task,
     Text,
 )
+from onpath.lessons.toml_blocks import read_checked, read_toml
 
 LARGEST = 1_000_000
 """Of a lesson's file [B]."""
 KINDS: tuple[str, ...] = get_args(StepKind)
 FENCES = ("scene", "script", "predict", "task", "quiz")
 HEADING = re.compile(r"(\w+):\s*(.+)")
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -126,7 +125,7 @@ class _Reader:
         if len(ends) < 2 or ends[0] != 0:
             self._complain(1, "a lesson begins with facts between two lines +++")
             return None, 0
-        front = self._toml("\n".join(lines[1 : ends[1]]), 2, Front)
+        front = read_toml("\n".join(lines[1 : ends[1]]), 2, Front, self._complain)
         if front is not None:
             self._complain_all(
                 1, vocabulary.scene_faults(StepSetup(robot=front.robot), front.robot)
@@ -253,27 +252,7 @@ class _Reader:
     def _checked(
         self, content: str, line: int, kind: Any, faults: Callable[[Any], Iterable[str]]
     ) -> Any:
-        read = self._toml(content, line, kind)
-        if read is not None:
-            found = list(faults(read))
-            for fault in found:
-                self._complain(_line_of(fault, content, line), fault)
-            if found:
-                return None
-        return read
-
-    def _toml(self, content: str, line: int, kind: type[T]) -> T | None:
-        """TOML that begins at a line, as a value of some type; None after a complaint."""
-        try:
-            return msgspec.convert(tomllib.loads(content), kind)
-        except tomllib.TOMLDecodeError as error:
-            place = re.search(r"at line (\d+)", str(error))
-            self._complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}")
-        except msgspec.ValidationError as error:
-            self._complain(_line_of(str(error), content, line), str(error))
-        except RecursionError:
-            self._complain(line, "nested too deeply")
-        return None
+        return read_checked(content, line, kind, faults, self._complain)
 
     def _complain(self, line: int, text: str) -> None:
         self._problems.append(Problem(str(self._path), line, text))
@@ -299,35 +278,6 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
         if depth == 0:
             yield section
             section = []
-
-
-def _line_of(fault: str, content: str, first: int) -> int:
-    """Where in a block of TOML a fault is.
-
-    It names a place such as `$.check[1].below`, or a word: a field, a value, a parameter.
-    """
-    lines = content.split("\n")
-    _, _, place = fault.partition("`$")
-    here = 0
-    for name, index in re.findall(r"\.(\w+)(?:\[(\d+)\])?", place):
-        found = _lines_with(name, lines, here)
-        if found:
-            here = found[min(int(index or 0), len(found) - 1)]
-    for word in re.findall(r"field `(\w+)`|'([^']+)'|^(\w+)", fault):
-        found = _lines_with("".join(word), lines, here)
-        if found:
-            return first + found[0]
-    return first + here
-
-
-def _lines_with(word: str, lines: list[str], begin: int) -> list[int]:
-    """Which lines from `begin` on give a name a value; if none does, which have the word."""
-    name = rf"(?<!\w){re.escape(word)}(?!\w)"
-    for pattern in (name + r"\s*=", name):
-        found = [i for i in range(begin, len(lines)) if re.search(pattern, lines[i])]
-        if found:
-            return found
-    return []
 
 
 def _quiz_faults(quiz: Quiz) -> Iterator[str]:

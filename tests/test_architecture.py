@@ -115,6 +115,10 @@ def modules_in_circles() -> set[str]:
     return set(edges)
 
 
+def test_no_module_imports_itself_by_way_of_others() -> None:
+    assert modules_in_circles() == set()
+
+
 @FILES
 def test_mathematics_knows_no_viewer_thread_or_clock(file: Path) -> None:
     if file.relative_to(ROOT).parts[0] in MATHEMATICS:

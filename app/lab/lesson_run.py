@@ -50,8 +50,8 @@ class LessonRun(LessonState):
         before: the lab as it was before any lesson was open.
     """
 
-    def __init__(self, course: Course) -> None:
-        super().__init__(course)
+    def __init__(self, course: Course, progress: Progress | None = None) -> None:
+        super().__init__(course, progress)
         self.verdicts: dict[str, list[Verdict]] = {}
         self._begin = Beginning(0, 0.0)
         self._frames = 0

@@ -114,9 +114,9 @@ class Page:
             self._framed, self._settling = 0.0, SETTLING
             self._build(first)
 
-    def _key(self, snapshot: Snapshot) -> object:
+    def _key(self, snapshot: Snapshot) -> tuple[object, ...]:
         """What the whole page depends on: when it is another, all is built anew."""
-        return snapshot.key
+        return (snapshot.key,)
 
     def _post_for(self, snapshot: PageSnapshot) -> Post:
         """What takes the commands of this page."""

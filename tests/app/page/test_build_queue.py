@@ -100,7 +100,7 @@ def test_pages_are_built_one_at_a_time_and_who_waits_is_told(
         assert not any(comer.student.sees(MOMENT) for comer in crowd)
         assert after[-1] - after[0] > 2 * (CROWD - 2) * LONG  # with a rest after each
         for lab in server.simulation.labs:  # a teacher opens a lesson for all
-            lab.session.post(c.OpenLesson(next(iter(lab.session.lessons.course.lessons))))
+            lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
         wait_for(lambda: builds.done >= 2 * CROWD, 20)
         assert builds.most == 1
 
