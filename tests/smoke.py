@@ -14,7 +14,9 @@ import urllib.request
 def main() -> None:
     """A simulation, an experiment, then the lab's page, then a clean stop."""
     code = "import onpath; print(len(onpath.simulate(duration=0.1).t))"
-    output = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    output = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
     assert output.stdout == "100\n", output.stdout
 
     onpath = sys.argv[1]

@@ -38,6 +38,9 @@ ORDER = [
 MATHEMATICS = ("models", "lessons")
 FOREIGN = {"viser", "threading", "time", "asyncio", "datetime", "random"}
 PRINTING = ("app/cli/", "app/bench/tables.py")
+DRAWING = ("app.page", "app.scene")
+LIVE = ("lab", "session", "history", "lesson_run", "take_snapshot")
+"""Modules of app.lab that know a lab as it lives: what draws is given snapshots of it."""
 LONGEST = 40
 
 
@@ -114,6 +117,22 @@ def modules_in_circles() -> set[str]:
         for module in free:
             del edges[module]
     return set(edges)
+
+
+def test_no_module_imports_itself_by_way_of_others() -> None:
+    assert modules_in_circles() == set()
+
+
+@FILES
+def test_what_draws_knows_no_lab_but_snapshots(file: Path) -> None:
+    if folder_of(module_of(file)) in DRAWING:
+        tree = parse(file)
+        known = [name.removeprefix("onpath.") for name in imports(tree)]
+        assert not {name for name in known if name.startswith("app.simulation.simulation_thread")}
+        for module in LIVE:
+            assert not {name for name in known if f"{name}.".startswith(f"app.lab.{module}.")}
+        attributes = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+        assert not attributes & {"lab", "session"}
 
 
 @FILES

@@ -17,8 +17,8 @@ import viser
 from onpath.app.common.error_log import log_error
 from onpath.app.exports.recording import record_scene
 from onpath.app.lab.history import Segment
-from onpath.app.lab.lesson_run import LessonRun
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loops import InterpretedLoop
@@ -40,7 +40,7 @@ class Exporter:
 
     def __init__(self, client: viser.ClientHandle) -> None:
         self._client = client
-        self._wanted: list[Callable[[Session], None]] = []
+        self._wanted: list[Callable[[Lab], None]] = []
         self._under_way: set[str] = set()
         self._film: Future[None] | None = None
         self._pool = ThreadPoolExecutor(1, "export")
@@ -69,8 +69,8 @@ class Exporter:
             code: of the session, for the page to bear; empty for none.
         """
 
-        def start(session: Session) -> None:
-            run = LessonRun(session.lessons.course, session.lessons.progress)  # as it is now
+        def start(lab: Lab) -> None:
+            run = LessonState(lab.lessons.course, lab.lessons.progress)  # as it is now
             made = datetime.now()
             self._pool.submit(
                 self._deliver,
@@ -92,10 +92,10 @@ class Exporter:
 
         self._pool.submit(guarded)
 
-    def serve(self, session: Session) -> None:
+    def serve(self, lab: Lab) -> None:
         """Start what was asked for; from the simulation thread."""
         while self._wanted:
-            self._wanted.pop(0)(session)
+            self._wanted.pop(0)(lab)
 
     def close(self) -> None:
         """Finish nothing more."""
@@ -106,10 +106,10 @@ class Exporter:
     def _ask(
         self, name: str, make: Callable[[Robot, list[Segment], Words], bytes], film: bool = False
     ) -> None:
-        def start(session: Session) -> None:
-            robot, history, words = session.robot, session.history.all(), session.lessons.words
+        def start(lab: Lab) -> None:
+            robot, history, words = lab.session.robot, lab.session.history.all(), lab.words
             if not history:
-                session.show_message(words("export.nothing"), "warning")
+                lab.show_message(words("export.nothing"), "warning")
                 self._under_way.discard(name)
                 return
             work = partial(make, robot, history, words)
@@ -117,7 +117,7 @@ class Exporter:
 
         self._want(name, start)
 
-    def _want(self, name: str, start: Callable[[Session], None]) -> None:
+    def _want(self, name: str, start: Callable[[Lab], None]) -> None:
         if name not in self._under_way:
             self._under_way.add(name)
             self._wanted.append(start)
@@ -165,7 +165,7 @@ def png_bytes(robot: Robot, history: list[Segment], words: Words) -> bytes:
     return draw_history(replay(robot, history), words)
 
 
-def report_bytes(run: LessonRun, code: str, made: datetime) -> bytes:
+def report_bytes(run: LessonState, code: str, made: datetime) -> bytes:
     """The record of the lessons as a page."""
     from onpath.app.exports.report import report  # see app/server/lazy_imports.py
 

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 from onpath.app.common.palette import BORDER, FOLLOWER, GREEN
 from onpath.app.common.templates import render
-from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.checks import Verdict
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Choice, Lesson, Quiz, Sketch, Step, Task
@@ -15,7 +15,7 @@ from onpath.lessons.words import Words
 LETTERS = "ABCDEFGH"
 
 
-def heading(lesson: Lesson, step: Step, run: LessonRun) -> str:
+def heading(lesson: Lesson, step: Step, run: LessonState) -> str:
     """Where one is: lesson, progress bar, kind and title of the step."""
     return render(
         "lesson/heading.html",
@@ -60,7 +60,7 @@ def question(block: Choice | Quiz, chosen: int | None, revealed: bool, words: Wo
     )
 
 
-def task(block: Task, verdicts: list[Verdict], run: LessonRun) -> str:
+def task(block: Task, verdicts: list[Verdict], run: LessonState) -> str:
     """What to do, how far it is done, and the hints shown so far."""
     words, best = run.words, run.notes.tasks.get(block.id)
     passed = ""
@@ -84,7 +84,7 @@ def _task(title: str, verdicts: tuple[Verdict, ...], hints: tuple[str, ...], pas
     )
 
 
-def entry(lesson: Lesson, run: LessonRun, number: int) -> str:
+def entry(lesson: Lesson, run: LessonState, number: int) -> str:
     """A line of the overview."""
     notes = run.progress.notes.get(lesson.name)
     tasks = lesson.tasks()

@@ -17,6 +17,7 @@ from onpath.app.common.access_codes import shown
 from onpath.app.lab import commands as c
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.teacher_view import TeacherView
+from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
 
@@ -116,10 +117,10 @@ def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None
     teacher.ask(c.SetParameter("K2", 33.0))
     teacher.press("Send my set-up to all")
     wait_for(lambda: "“Set up again” brings" in first.said())
-    assert first.session.parameters.K2 == 33.0 and first.session.lessons.index == 1
+    assert first.session.parameters.K2 == 33.0 and first.lab.lessons.index == 1
     assert first.page.get_by_role("heading", name="Draw what the tracker does").is_visible()
     first.press("Next")
-    wait_for(lambda: first.session.lessons.index == 2)
+    wait_for(lambda: first.lab.lessons.index == 2)
     wait_for(lambda: teacher.page.get_by_text("Sent to 2 students").count() == 2)
     teacher.page.get_by_role("tab", name="Class").click()
     teacher.page.get_by_text("Students who join receive the set-up").wait_for()
@@ -134,10 +135,12 @@ def test_the_teacher_looks_on_and_touches_nothing(tabs: Class) -> None:
     teacher.field("Follow").click()
     teacher.page.get_by_role("option", name="1. Ada").click()
     teacher.page.get_by_text("This is the lab of Ada").wait_for()
-    view = teacher.lab.view
+    feed = teacher.scheduled.view
+    assert isinstance(feed, LabFeed)
+    view, (ada, _) = feed.page, tabs.room.members().values()
     assert isinstance(view, TeacherView)
-    wait_for(lambda: view._built[0] == id(first.session))
-    assert first.session.lessons.lesson is not None
+    wait_for(lambda: view._built[0] == ada.number)
+    assert first.lab.lessons.lesson is not None
     assert teacher.button("Hold both back").count() == 0
     teacher.page.keyboard.press("h")
     teacher.page.wait_for_timeout(300)

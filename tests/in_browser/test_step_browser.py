@@ -58,7 +58,7 @@ def tab(request: pytest.FixtureRequest, server: LabServer, browser: Browser) -> 
 
 def is_seen(tab: Tab, index: int) -> bool:
     """Whether the title of a step of the lesson is on the screen."""
-    run = tab.session.lessons
+    run = tab.lab.lessons
     assert run.lesson is not None
     heading = tab.page.get_by_role("heading", name=run.lesson.steps[index].title)
     return heading.count() == 1 and heading.evaluate(SEEN)
@@ -98,6 +98,6 @@ def test_what_happens_can_be_seen_without_a_prediction(tab: Tab) -> None:
     assert tab.button("Let it happen").is_disabled()
     tab.press("Skip the prediction")
     tab.page.get_by_text("You skipped the prediction.").wait_for()
-    assert tab.session.lessons.index == 2
+    assert tab.lab.lessons.index == 2
     tab.press("Let it happen")
-    wait_for(lambda: tab.session.lessons.playing)
+    wait_for(lambda: tab.lab.lessons.playing)

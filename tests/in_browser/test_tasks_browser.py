@@ -166,7 +166,7 @@ def finger(browser: Browser, server: LabServer) -> Iterator[Hands]:
 
 def go_to(tab: Tab, lesson: str, index: int) -> None:
     """To a step, unless it is open; time stands still there."""
-    run = tab.session.lessons
+    run = tab.lab.lessons
     if run.lesson is None or run.lesson.name != lesson:
         tab.ask(c.OpenLesson(lesson))
     if run.index != index:
@@ -198,7 +198,7 @@ def passed(tab: Tab, task: Task) -> bool:
 
 def verdicts(tab: Tab, task: Task) -> list[str]:
     """What the lab has measured."""
-    return [verdict.words for verdict in tab.session.lessons.verdicts.get(task.id, [])]
+    return [verdict.words for verdict in tab.lab.lessons.verdicts.get(task.id, [])]
 
 
 def beginning(task: Task) -> str:
@@ -236,9 +236,9 @@ def test_a_task_is_passed_by_touch(finger: Hands, lesson: str, task: str) -> Non
 def test_the_ball_under_the_end_point_is_dragged(by: str, request: pytest.FixtureRequest) -> None:
     """As the five-bar's first step asks: the end-point rests on the ball at the right end."""
     hands: Hands = request.getfixturevalue(by)
-    tab, session = hands.tab, hands.session
+    tab, lab = hands.tab, hands.lab
     go_to(tab, "03-the-five-bar", 0)
     tab.elapse(2)  # both come to rest there
-    end = session.editor.design.points[-1] * 1e3
+    end = lab.session.editor.design.points[-1] * 1e3
     assert np.linalg.norm(tab.tip(ROBOT) * 1e3 - end) < 1
     DragBall((end[0], end[1]), (end[0] - 10, end[1] + 25))(hands)

@@ -9,7 +9,6 @@ from markupsafe import escape
 
 from onpath.app.common.palette import AMBER, BLUE, CONTROLLERS, WARNING
 from onpath.app.common.templates import render
-from onpath.app.lab.session import Session
 from onpath.app.lab.snapshot import Snapshot
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.words import Words
@@ -20,8 +19,8 @@ LEVELS = {"info": BLUE.hex, "warning": AMBER.hex, "error": WARNING.hex}
 class Readout:
     """Two lines of numbers, a clock, and the message."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session) -> None:
-        self._words = session.lessons.words
+    def __init__(self, gui: viser.GuiApi, words: Words) -> None:
+        self._words = words
         self._table = gui.add_html("")
         self._shown = ""
         self._frame = lru_cache(maxsize=8)(partial(_frame, self._words))

@@ -14,10 +14,10 @@ from viser.infra import WebsockServer
 
 from onpath.app.exports import exporter as exports
 from onpath.app.exports.exporter import Exporter
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.viser_adapter import secure_server as hardening
 from tests.support import waiting
-from tests.support.lab import new_session
+from tests.support.lab import new_lab
 
 WAIT = 60.0  # [s]; only ends a test that would hang
 CROWD = 12
@@ -60,8 +60,8 @@ def tab() -> Iterator[tuple[Client, Exporter]]:
 
 
 @pytest.fixture(scope="module")
-def session() -> Session:
-    return new_session(0.4)
+def lab() -> Lab:
+    return new_lab(0.4)
 
 
 def open_sockets() -> int:
@@ -70,14 +70,14 @@ def open_sockets() -> int:
     return sum(os.readlink(each).startswith("socket:") for each in ours if each.is_symlink())
 
 
-def press_at_once(session: Session, exporters: list[Exporter]) -> None:
+def press_at_once(lab: Lab, exporters: list[Exporter]) -> None:
     """The button of each, all in the same moment."""
     ready = threading.Barrier(len(exporters))
 
     def press(exporter: Exporter) -> None:
         exporter.recording()
         ready.wait()
-        exporter.serve(session)
+        exporter.serve(lab)
 
     threads = [threading.Thread(target=press, args=(each,)) for each in exporters]
     for thread in threads:
@@ -87,20 +87,20 @@ def press_at_once(session: Session, exporters: list[Exporter]) -> None:
 
 
 def test_twelve_pressed_together_are_twelve_films_and_leave_nothing_behind(
-    session: Session, monkeypatch: pytest.MonkeyPatch
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     started: list[WebsockServer] = []
     genuine = WebsockServer.start
     monkeypatch.setattr(WebsockServer, "start", lambda s: (started.append(s), genuine(s)))
     with tab() as (client, exporter):  # a first one, which loads what all share
-        press_at_once(session, [exporter])
+        press_at_once(lab, [exporter])
         wait_for(lambda: client.answered)
     wait_for(lambda: not exporters_threads())
     threads, sockets = threading.active_count(), open_sockets()
     clients, exporters = [Client() for _ in range(CROWD)], list[Exporter]()
     for each in clients:
         exporters.append(Exporter(each))  # type: ignore[arg-type]
-    press_at_once(session, exporters)
+    press_at_once(lab, exporters)
     wait_for(lambda: all(client.answered for client in clients))
     for exporter in exporters:
         exporter.close()
@@ -116,15 +116,15 @@ def exporters_threads() -> list[threading.Thread]:
 
 
 def test_a_film_that_takes_too_long_is_given_up_and_the_user_is_told(
-    session: Session, monkeypatch: pytest.MonkeyPatch
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with tab() as (client, exporter):
         monkeypatch.setattr(exports, "PATIENCE", -1.0)
-        press_at_once(session, [exporter])
+        press_at_once(lab, [exporter])
         wait_for(lambda: client.answered)
-        assert session.lessons.words("export.failed", name="onpath.html") == client.notes[0].body
+        assert lab.words("export.failed", name="onpath.html") == client.notes[0].body
         monkeypatch.undo()
-        press_at_once(session, [exporter])  # the next one is made
+        press_at_once(lab, [exporter])  # the next one is made
         wait_for(lambda: client.files)
 
 
@@ -143,12 +143,12 @@ class Occupied:
         exports._films.submit(lambda: None).result(WAIT)
 
 
-def test_pressed_a_hundred_times_it_makes_one_film(session: Session) -> None:
+def test_pressed_a_hundred_times_it_makes_one_film(lab: Lab) -> None:
     others = Occupied()
     with tab() as (client, exporter):
         for _ in range(100):
             exporter.recording()
-            exporter.serve(session)
+            exporter.serve(lab)
         wait_for(lambda: client.notes)
         wait_for(lambda: exporter._film)
         others.end()
@@ -157,14 +157,14 @@ def test_pressed_a_hundred_times_it_makes_one_film(session: Session) -> None:
 
 
 def test_nothing_is_made_for_who_has_left_the_queue(
-    session: Session, monkeypatch: pytest.MonkeyPatch
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made: list[str] = []
     genuine: Callable[..., bytes] = exports.record_scene
     monkeypatch.setattr(exports, "record_scene", lambda *a: (made.append("film"), genuine(*a))[1])
     others = Occupied()
     with tab() as (client, exporter):
-        press_at_once(session, [exporter])
+        press_at_once(lab, [exporter])
         wait_for(lambda: exporter._film)
     others.end()
     assert not made and not client.files

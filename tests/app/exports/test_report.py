@@ -18,8 +18,8 @@ from onpath.app.common.palette import FOLLOWER, SELECTED, TRACKER
 from onpath.app.exports.exporter import Exporter
 from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_run import LessonRun
-from onpath.app.lab.session import Session
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.progress import Answer, Notes, Progress, Truth
 from onpath.lessons.words import Words
@@ -269,13 +269,13 @@ class Client:
 
 
 def test_it_is_sent_as_it_was_when_it_was_asked_for(course: Course) -> None:
-    session, client = Session(store(), FIVE_BAR, course), Client()
-    do(session, c.OpenLesson(NAME), c.GoToStep(1))
-    do(session, c.Predict(times=(0.0, 2.0), values=(5.0, 30.0)), c.GoToStep(1), c.PlayStep())
-    run(session, 2.3)
+    lab, client = Lab(store(), FIVE_BAR, course), Client()
+    do(lab, c.OpenLesson(NAME), c.GoToStep(1))
+    do(lab, c.Predict(times=(0.0, 2.0), values=(5.0, 30.0)), c.GoToStep(1), c.PlayStep())
+    run(lab, 2.3)
     exporter = Exporter(client)  # type: ignore[arg-type]
     exporter.report(CODE)
-    exporter.serve(session)
+    exporter.serve(lab)
     exporter._pool.shutdown(wait=True)
     page = Page(client.sent["onpath-report.html"])
     assert "k7mf-2xqa-9tzr" in page.text and "30 mm at 2 s" in page.text

@@ -11,7 +11,7 @@ import pytest
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.session import Session
+from onpath.app.lab.page_snapshot import PageSnapshot
 from onpath.app.page.build_queue import FEW
 from onpath.app.page.page import Page
 from onpath.app.server.lab_server import LabServer
@@ -32,11 +32,11 @@ class Builds:
     def watch(self, monkeypatch: pytest.MonkeyPatch) -> None:
         genuine = Page._build
 
-        def build(view: Page, session: Session) -> None:
+        def build(view: Page, first: PageSnapshot) -> None:
             self._now += 1
             self.most = max(self.most, self._now)
             time.sleep(LONG)
-            genuine(view, session)
+            genuine(view, first)
             self._now -= 1
             self.done += 1
 
@@ -100,7 +100,7 @@ def test_pages_are_built_one_at_a_time_and_who_waits_is_told(
         assert not any(comer.student.sees(MOMENT) for comer in crowd)
         assert after[-1] - after[0] > 2 * (CROWD - 2) * LONG  # with a rest after each
         for lab in server.simulation.labs:  # a teacher opens a lesson for all
-            lab.session.post(c.OpenLesson(next(iter(lab.session.lessons.course.lessons))))
+            lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
         wait_for(lambda: builds.done >= 2 * CROWD, 20)
         assert builds.most == 1
 

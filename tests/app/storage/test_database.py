@@ -31,7 +31,7 @@ from onpath.app.storage.schema import labs, metadata
 from onpath.app.storage.write_behind import WriteBehind
 from tests.support import waiting
 from tests.support.checkout import ROOT
-from tests.support.lab import new_session
+from tests.support.lab import new_lab
 
 NOON = 1_800_000_000.0
 
@@ -116,7 +116,7 @@ def test_any_states_under_any_codes(labs: dict[str, dict[str, Any]]) -> None:
 
 
 def test_a_lab_comes_back(file: Path) -> None:
-    session, other = new_session(), new_session()
+    session, other = new_lab().session, new_lab().session
     session.editor.commit(session.presets["clover"])
     with opened(file) as records:
         records.save("a", {"setup": to_data(capture(session))})
