@@ -20,7 +20,7 @@ class TeacherControls:
         self._freezing = _add_freezing(gui, words, teaching)
         send = gui.add_button(words("class.push_setup"), icon=viser.Icon.SEND)
         with gui.add_folder(words("keep.paste"), expand_by_default=False):
-            code = gui.addnote(words("keep.paste"), "", hint=words("keep.paste_hint"))
+            code = gui.add_text(words("keep.paste"), "", hint=words("keep.paste_hint"))
             push = gui.add_button(words("class.push_code"), color="gray", icon=viser.Icon.SEND)
         self._said = gui.add_html("")
         stop = gui.add_button(words("class.stop_teaching"), color="gray", icon=viser.Icon.DOOR_EXIT)
