@@ -67,20 +67,15 @@ def shared(request: pytest.FixtureRequest, browser: Browser, server: LabServer) 
 @pytest.fixture
 def tab(shared: Tab) -> Iterator[Tab]:
     """Running, with nothing selected and nothing focused."""
-    leave(shared)
+    shared.blur()
     shared.ask(c.ResetParameters(), c.SelectPoint(None), c.Reset(), c.SetRunning(True))
     yield shared
     shared.ask(c.SetRunning(False))
 
 
-def leave(tab: Tab) -> None:
-    """Take the focus away from whatever has it."""
-    tab.page.evaluate("document.activeElement?.blur()")
-
-
 def asked_since(tab: Tab, before: int) -> int:
     """How many commands the keys have given, one more that is the last not counted."""
-    leave(tab)
+    tab.blur()
     tab.ask(c.SelectPoint(None))
     tab.page.keyboard.press("n")
     wait_for(lambda: tab.session.editor.selected == 0)
@@ -168,7 +163,7 @@ def test_arrows_on_a_slider_move_that_alone(tab: Tab) -> None:
     session, before = tab.session, tab.session.asked
     value, spec = session.parameters.K1, specs(session.parameters)["K1"]
     steps = [("ArrowRight", value + spec.step), ("ArrowLeft", value), ("Home", spec.low)]
-    tab.slider("K1").focus()
+    tab.focus(tab.slider("K1"))
     for key, wanted in steps:
         tab.page.keyboard.press(key)
         wait_for(lambda wanted=wanted: wanted == session.parameters.K1)
@@ -179,7 +174,7 @@ def test_arrows_move_the_slider_of_the_past(tab: Tab) -> None:
     session = tab.session
     wait_for(lambda: session.time > 1.0)
     tab.open("Look back")
-    tab.slider("Seconds ago").focus()
+    tab.focus(tab.slider("Seconds ago"))
     for tenths in (1, 2, 3):
         tab.page.keyboard.press("ArrowRight")
         wait_for(
@@ -194,7 +189,7 @@ def test_arrows_move_the_slider_of_the_past(tab: Tab) -> None:
 @pytest.mark.parametrize("key", ["Space", "Enter"])
 def test_a_focused_button_is_pressed_and_nothing_else(tab: Tab, key: str) -> None:
     before = tab.session.asked
-    tab.button("Hold both back").first.focus()
+    tab.focus(tab.button("Hold both back").first)
     tab.page.keyboard.press(key)
     wait_for(lambda: len(tab.session.grips.held) == 2)
     assert asked_since(tab, before) == 1 and tab.session.running
@@ -206,7 +201,7 @@ def test_letters_still_work_on_buttons_sliders_and_boxes_to_tick(tab: Tab) -> No
     wait_for(lambda: session.grips.held)
     for control in (None, tab.slider("K1"), tab.page.get_by_label("Copy to both")):
         if control is not None:
-            control.focus()
+            tab.focus(control)
         held = bool(session.grips.held)
         tab.page.keyboard.press("h")
         wait_for(lambda held=held: bool(session.grips.held) is not held)
@@ -221,7 +216,7 @@ def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
     tab.open("Keep and share")
     before, step = session.asked, session.lessons.index
     for field in (tab.field("Share code"), tab.number("K1")):
-        field.focus()
+        tab.focus(field)
         for key in ("d", "x", "h", "w", "r", "g", "u", "PageDown", "PageUp", "Home"):
             tab.page.keyboard.press(key)
     assert tab.field("Share code").input_value() == "dxhwrgu"
