@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.external_forces import ExternalForces
-from onpath.app.lab.history import History, Segment
+from onpath.app.lab.history import History
+from onpath.app.lab.segments import Segment
 from onpath.lessons.record import Happening
 from onpath.models.paths.curves import Curve
 

@@ -21,13 +21,14 @@ from onpath.app.lab.apply_class import apply
 from onpath.app.lab.class_commands import ClassCommand
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.external_forces import ExternalForces
-from onpath.app.lab.history import History, HistoryFrame, Inputs, Instant
+from onpath.app.lab.history import History
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.looking_back import Timeline
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout, samples_of
 from onpath.app.lab.script_player import ScriptPlayer
+from onpath.app.lab.segments import HistoryFrame, Inputs, Instant
 from onpath.app.lab.snapshot import PathView
 from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.record import ROLES, Happening

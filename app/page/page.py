@@ -19,6 +19,7 @@ from onpath.app.page.panels.class_panel import ClassPanel
 from onpath.app.page.panels.keys import add_keys
 from onpath.app.page.panels.readout import Readout
 from onpath.app.page.plots import DISTANCE, LivePlot
+from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.page.step_controls import StepControls
 from onpath.app.scene.scene import Scene, SceneCallbacks
 from onpath.app.scene.stage import NARROW, Insets
@@ -44,7 +45,7 @@ class Page:
         self._desk = desk
         self._channel = FrameChannel(client)
         self._offset = client.client_id  # spreads the clients' slow updates over the frames
-        self._exporter = Exporter(client)
+        self._exporter, self._rebuilds = Exporter(client), RebuildThread()
         self._framed, self._settling = 0.0, SETTLING
         self._shown: tuple[object, ...] = ()
         client.gui.configure_theme(
@@ -60,6 +61,7 @@ class Page:
     def close(self) -> None:
         """The tab is gone."""
         self._exporter.close()
+        self._rebuilds.close()
 
     def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
         """See `app.simulation.simulation_thread.Display`."""
@@ -70,7 +72,7 @@ class Page:
             return
         if self._page(session) != self._built:
             self._robot = None  # nothing is shown until the new one stands
-            self._exporter.submit(lambda: self._rebuild(session))
+            self._rebuilds.submit(lambda: self._rebuild(session))
             return
         with self._channel:
             every = stride * round((SLOW if stride <= AT_EASE else SLOWER) / stride)
@@ -140,7 +142,7 @@ class Page:
             self._build_head(session, post)
             self._parts += controls.everything()
             return
-        submit, words = self._exporter.submit, run.words
+        submit, words = self._rebuilds.submit, run.words
         tab = None
         if self._is_narrow():  # one panel for all: the lesson first, the lab behind its tab
             tabs = gui.add_tab_group()
@@ -159,8 +161,16 @@ class Page:
         self._parts.append(LessonPanel(self._client, session, post, self._scene, submit, tab))
 
     def _controls(self, session: Session, post: Callable[[c.Command], None]) -> PanelFactory:
-        gui, exporter, scene = self._client.gui, self._exporter, self._scene
-        return PanelFactory(gui, session, post, exporter, scene, self._desk, self.reset_view)
+        return PanelFactory(
+            self._client.gui,
+            session,
+            post,
+            self._exporter,
+            self._rebuilds.submit,
+            self._scene,
+            self._desk,
+            self.reset_view,
+        )
 
     def _build_head(self, session: Session, post: Callable[[c.Command], None]) -> None:
         """What is always there: numbers, the way to the lessons, the distance."""

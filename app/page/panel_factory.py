@@ -45,6 +45,7 @@ class PanelFactory:
     """Makes panels for one client.
 
     Args:
+        submit: runs something in another thread.
         scene: what drawing, pulling and shading act on.
         reset_view: puts the camera back.
     """
@@ -55,6 +56,7 @@ class PanelFactory:
         session: Session,
         post: Post,
         exporter: Exporter,
+        submit: Callable[[Callable[[], None]], None],
         scene: Scene,
         desk: PageContext,
         reset_view: Callable[[], None],
@@ -62,7 +64,8 @@ class PanelFactory:
         self._reset_view = reset_view
         self._gui, self._session, self._post = gui, session, post
         self._words = session.lessons.words
-        self._exporter, self._scene, self._desk = exporter, scene, desk
+        self._exporter, self._submit = exporter, submit
+        self._scene, self._desk = scene, desk
 
     def everything(self) -> list[Part]:
         """All there is."""
@@ -124,8 +127,7 @@ class PanelFactory:
             self._scene.pull = name
 
         pulls = list(stage_of(self._session.robot).pulls)
-        submit = self._exporter.submit
-        return FlexiblePanel(self._gui, self._session, self._post, pulls, choose, submit)
+        return FlexiblePanel(self._gui, self._session, self._post, pulls, choose, self._submit)
 
     def _copy(self) -> None:
         copy = self._gui.add_checkbox(

@@ -60,7 +60,7 @@ class TeacherView(Page):
             self._parts.append(FollowedStudent(gui, own, self._teaching))
             self._build_numbers(session)
             self._build_distance(session)
-        submit = self._exporter.submit
+        submit = self._rebuilds.submit
         self._parts.append(TeacherPanel(self._client, own, self._teaching, submit))
 
 

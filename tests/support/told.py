@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from onpath.app.exports.exporter import replay
+from onpath.app.exports.replay import replay
 from onpath.app.lab.lesson_scene import set_up
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
