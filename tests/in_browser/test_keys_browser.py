@@ -10,37 +10,21 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 from viser import _messages
 
 from onpath.app.lab import commands as c
 from onpath.app.lab import lesson_commands as lc
-from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.panels.keys import KEYS
 from onpath.app.server.lab_server import LabServer
 from onpath.models.systems.parameters import specs
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 
 NAMES = {"space": "Space", "escape": "Escape", "insert": "Insert", "delete": "Delete"}
 NAMES |= {f"arrow{way.lower()}": f"Arrow{way}" for way in ("Left", "Right", "Up", "Down")}
 NAMES |= {"home": "Home"}
 LESSON = "01-path-or-timetable"
 TOUCH = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache())
-    yield server
-    server.stop()
 
 
 @contextmanager
