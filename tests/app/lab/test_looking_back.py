@@ -189,3 +189,19 @@ def test_whoever_acts_on_the_lab_while_looking_back_is_told_that_it_is_the_prese
     session = new_session(0.5)
     do(session, c.LookAt(0.3), c.ChoosePath("figure of eight"))
     assert "refused" in session.message
+
+
+def test_going_on_forgets_what_was_done_later_and_undo_brings_it_back() -> None:
+    """Else a lesson's task could be passed by what never happened."""
+    session = new_session(0.5)
+    do(session, c.Hold(True))
+    run(session, 0.5)
+    do(session, c.Hold(False))
+    run(session, 0.5)
+    all_of_it = tuple(session.happenings)
+    do(session, c.LookBack(1.2), c.GoOn())
+    later = [h for h in all_of_it if h.time > session.time]
+    assert {h.name for h in later} >= {"hold", "release"}
+    assert all(h.time <= session.time for h in session.happenings)
+    do(session, c.UndoGoOn())
+    assert tuple(session.happenings) == all_of_it
