@@ -9,7 +9,7 @@ from itertools import groupby
 
 import numpy as np
 
-from onpath.app.lab.history import Drive, Segment
+from onpath.app.lab.segments import Drive, Segment
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind

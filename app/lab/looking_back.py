@@ -10,7 +10,7 @@ from collections import deque
 from copy import copy
 
 from onpath.app.lab.external_forces import ExternalForces
-from onpath.app.lab.history import Segment
+from onpath.app.lab.segments import Segment
 from onpath.app.lab.session import Session
 from onpath.app.lab.timeline import Timeline
 

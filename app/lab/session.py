@@ -13,10 +13,11 @@ import numpy as np
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.external_forces import ExternalForces
-from onpath.app.lab.history import History, HistoryFrame, Inputs, Instant
+from onpath.app.lab.history import History
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout, samples_of
+from onpath.app.lab.segments import HistoryFrame, Inputs, Instant
 from onpath.app.lab.timeline import LabEvent, Timeline
 from onpath.models.arrays import Array
 from onpath.models.control.laws import NAMES

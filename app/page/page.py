@@ -20,6 +20,7 @@ from onpath.app.page.panels.keys import add_keys
 from onpath.app.page.panels.readout import Readout
 from onpath.app.page.panels.widgets import Post
 from onpath.app.page.plots import DISTANCE, LivePlot
+from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.page.step_controls import StepControls
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene, SceneCallbacks
@@ -49,7 +50,7 @@ class Page:
         self._client = client
         self._desk = desk
         self._channel = FrameChannel(client)
-        self.exporter = Exporter(client)
+        self.exporter, self._rebuilds = Exporter(client), RebuildThread()
         self._framed, self._settling = 0.0, SETTLING
         self._building, self.is_outdated = True, False
         client.gui.configure_theme(
@@ -65,6 +66,7 @@ class Page:
     def close(self) -> None:
         """The tab is gone."""
         self.exporter.close()
+        self._rebuilds.close()
 
     @property
     def is_ready(self) -> bool:
@@ -103,7 +105,7 @@ class Page:
         self.is_outdated = True
         if isinstance(snapshot, PageSnapshot):
             self._building = True
-            self.exporter.submit(lambda: self._rebuild(snapshot))
+            self._rebuilds.submit(lambda: self._rebuild(snapshot))
 
     def _rebuild(self, first: PageSnapshot) -> None:
         with one_at_a_time:
@@ -138,7 +140,7 @@ class Page:
             self._build_head(first, words, post)
             self._parts += controls.everything(first)
             return
-        submit = self.exporter.submit
+        submit = self._rebuilds.submit
         tab = None
         if self._is_narrow():  # one panel for all: the lesson first, the lab behind its tab
             tabs = gui.add_tab_group()
@@ -159,8 +161,16 @@ class Page:
         self._parts.append(lesson)
 
     def _controls(self, words: Words, post: Post) -> PanelFactory:
-        gui, exporter, scene = self._client.gui, self.exporter, self._scene
-        return PanelFactory(gui, words, post, exporter, scene, self._desk, self.reset_view)
+        return PanelFactory(
+            self._client.gui,
+            words,
+            post,
+            self.exporter,
+            self._rebuilds.submit,
+            self._scene,
+            self._desk,
+            self.reset_view,
+        )
 
     def _build_head(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """What is always there: numbers, the way to the lessons, the distance."""

@@ -45,6 +45,7 @@ class PanelFactory:
     """Makes panels for one client.
 
     Args:
+        submit: runs something in another thread.
         scene: what drawing, pulling and shading act on.
         reset_view: puts the camera back.
     """
@@ -55,13 +56,15 @@ class PanelFactory:
         words: Words,
         post: Post,
         exporter: Exporter,
+        submit: Callable[[Callable[[], None]], None],
         scene: Scene,
         desk: PageContext,
         reset_view: Callable[[], None],
     ) -> None:
         self._reset_view = reset_view
         self._gui, self._words, self._post = gui, words, post
-        self._exporter, self._scene, self._desk = exporter, scene, desk
+        self._exporter, self._submit = exporter, submit
+        self._scene, self._desk = scene, desk
 
     def everything(self, first: PageSnapshot) -> list[Part]:
         """All there is."""
@@ -126,9 +129,8 @@ class PanelFactory:
         def choose(name: str) -> None:
             self._scene.pull = name
 
-        gui, words, pulls = self._gui, self._words, list(self._scene.stage.pulls)
-        submit = self._exporter.submit
-        return FlexiblePanel(gui, words, self._post, first, pulls, choose, submit)
+        pulls = list(self._scene.stage.pulls)
+        return FlexiblePanel(self._gui, self._words, self._post, first, pulls, choose, self._submit)
 
     def _copy(self, first: PageSnapshot) -> None:
         copy = self._gui.add_checkbox(

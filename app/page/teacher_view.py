@@ -51,7 +51,7 @@ class TeacherView(Page):
             self._build_numbers(words)
             self._build_distance(first, words)
             self._parts += self._controls(own, post).everything(first)
-        submit, course = self.exporter.submit, self._desk.course
+        submit, course = self._rebuilds.submit, self._desk.course
         panel = TeacherPanel(self._client, own, self._desk.post, course, teaching, submit)
         self._parts.append(panel)
 

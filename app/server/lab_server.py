@@ -16,6 +16,7 @@ import viser
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import normalised
 from onpath.app.common.error_log import log_error
+from onpath.app.exports import exporter as exports
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.take_snapshot import take_page_snapshot
@@ -113,6 +114,7 @@ class LabServer:
             self._class.stop()
         self.simulation.stop()
         self._store.close()
+        exports.process.stop()
         self.server.stop()
         if self._keeper is not None and self._records is not None:
             self._keeper.close()

@@ -16,33 +16,17 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, BrowserContext, Download, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Download, Page
 
 from onpath.app.bench.mouse_latency import NO_TRIANGLES
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.trajectory import read_csv
-from tests.support.browser import CHROMIUM, PLAIN, SELDOM, Tab, wait_for
+from tests.support.browser import SELDOM, Tab, wait_for
 
 TRACKER, FOLLOWER = "trajectory_tracking", "path_following"
 WINDOW = {"width": 1000, "height": 700}
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache())
-    yield server
-    server.stop()
 
 
 def fresh(browser: Browser, **options: Any) -> BrowserContext:

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 
 from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.common.access_codes import shown
@@ -19,7 +19,7 @@ from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 
 HOSTILE = "<img src=x onerror=1>"
 WINDOWS = ((1100, 600), (800, 400), (800, 400))
@@ -35,20 +35,19 @@ class Class:
 
 
 @pytest.fixture(scope="module")
-def tabs() -> Iterator[Class]:
+def tabs(browser: Browser) -> Iterator[Class]:
     room = LocalClassroom()
     store = LoopCache()
     server = LabServer("127.0.0.1", 0, store, classroom=room)
-    with sync_playwright() as playwright:
-        browser: Browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        made: list[Tab] = []
-        for width, height in WINDOWS:
-            context = browser.new_context(viewport={"width": width, "height": height})
-            made.append(Tab(server, context, draws=False))
-            made[-1].ask(c.SetRunning(False))
-        yield Class(room, made[0], made[1:])
-        assert [tab.errors for tab in made] == [[], [], []]
-        browser.close()
+    made: list[Tab] = []
+    for width, height in WINDOWS:
+        context = browser.new_context(viewport={"width": width, "height": height})
+        made.append(Tab(server, context, draws=False))
+        made[-1].ask(c.SetRunning(False))
+    yield Class(room, made[0], made[1:])
+    assert [tab.errors for tab in made] == [[], [], []]
+    for tab in made:
+        tab.page.context.close()
     server.stop()
 
 
@@ -86,8 +85,9 @@ def test_frozen_labs_stand_still_and_say_so(tabs: Class) -> None:
     for student in tabs.students:
         wait_for(lambda student=student: "look to the front" in student.said())
         before = student.session.time
+        asked = student.session.asked
         student.press("Pause")
-        student.page.wait_for_timeout(300)
+        wait_for(lambda student=student, asked=asked: student.session.asked > asked)
         assert student.session.running and student.session.time == before
     tabs.teacher.press("Let all labs go on")
     for student in tabs.students:

@@ -9,38 +9,33 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import Browser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.scene.stage_catalogue import HORIZONTAL, IN_PATH_PLANE
 from onpath.app.server.lab_server import LabServer
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
 from onpath.models.systems.flexible_robot import UNSTABLE, FlexibleFiveBar
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 
 FOLLOWER = "path_following"
 
 
 @pytest.fixture(scope="module")
-def tab() -> Iterator[Tab]:
+def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     """A tab in which the flexible link has been chosen from the menu."""
-    store = LoopCache()
-    server = LabServer("127.0.0.1", 0, store)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        tab = Tab(server, browser.new_context(viewport={"width": 1000, "height": 700}), draws=False)
-        tab.press("Robot…")
-        for entry in (FIVE_BAR, FLEXIBLE):
-            tab.page.get_by_alt_text(entry.label).wait_for()
-        tab.press(FLEXIBLE.label)
-        wait_for(lambda: tab.session.entry is FLEXIBLE and tab.session.time > 0.3)
-        tab.page.get_by_text("Flexible link", exact=True).wait_for()
-        tab.settle()
-        yield tab
-        assert tab.errors == []
-        browser.close()
-    server.stop()
+    context = browser.new_context(viewport={"width": 1000, "height": 700})
+    tab = Tab(server, context, draws=False)
+    tab.press("Robot…")
+    for entry in (FIVE_BAR, FLEXIBLE):
+        tab.page.get_by_alt_text(entry.label).wait_for()
+    tab.press(FLEXIBLE.label)
+    wait_for(lambda: tab.session.entry is FLEXIBLE and tab.session.time > 0.3)
+    tab.page.get_by_text("Flexible link", exact=True).wait_for()
+    tab.settle()
+    yield tab
+    assert tab.errors == []
+    context.close()
 
 
 def deflection(tab: Tab) -> float:

@@ -10,36 +10,20 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 from viser import _messages
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.panels.keys import KEYS
 from onpath.app.server.lab_server import LabServer
 from onpath.models.systems.parameters import specs
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 
 NAMES = {"space": "Space", "escape": "Escape", "insert": "Insert", "delete": "Delete"}
 NAMES |= {f"arrow{way.lower()}": f"Arrow{way}" for way in ("Left", "Right", "Up", "Down")}
 NAMES |= {"home": "Home"}
 LESSON = "01-path-or-timetable"
 TOUCH = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache())
-    yield server
-    server.stop()
 
 
 @contextmanager
@@ -66,20 +50,15 @@ def shared(request: pytest.FixtureRequest, browser: Browser, server: LabServer) 
 @pytest.fixture
 def tab(shared: Tab) -> Iterator[Tab]:
     """Running, with nothing selected and nothing focused."""
-    leave(shared)
+    shared.blur()
     shared.ask(c.ResetParameters(), c.SelectPoint(None), c.Reset(), c.SetRunning(True))
     yield shared
     shared.ask(c.SetRunning(False))
 
 
-def leave(tab: Tab) -> None:
-    """Take the focus away from whatever has it."""
-    tab.page.evaluate("document.activeElement?.blur()")
-
-
 def asked_since(tab: Tab, before: int) -> int:
     """How many commands the keys have given, one more that is the last not counted."""
-    leave(tab)
+    tab.blur()
     tab.ask(c.SelectPoint(None))
     tab.page.keyboard.press("n")
     wait_for(lambda: tab.session.editor.selected == 0)
@@ -167,7 +146,7 @@ def test_arrows_on_a_slider_move_that_alone(tab: Tab) -> None:
     lab, before = tab.lab, tab.lab.asked
     value, spec = lab.session.parameters.K1, specs(lab.session.parameters)["K1"]
     steps = [("ArrowRight", value + spec.step), ("ArrowLeft", value), ("Home", spec.low)]
-    tab.slider("K1").focus()
+    tab.focus(tab.slider("K1"))
     for key, wanted in steps:
         tab.page.keyboard.press(key)
         wait_for(lambda wanted=wanted: wanted == lab.session.parameters.K1)
@@ -178,7 +157,7 @@ def test_arrows_move_the_slider_of_the_past(tab: Tab) -> None:
     lab = tab.lab
     wait_for(lambda: lab.session.time > 1.0)
     tab.open("Look back")
-    tab.slider("Seconds ago").focus()
+    tab.focus(tab.slider("Seconds ago"))
     for tenths in (1, 2, 3):
         tab.page.keyboard.press("ArrowRight")
         wait_for(
@@ -197,7 +176,7 @@ def test_arrows_move_the_slider_of_the_past(tab: Tab) -> None:
 @pytest.mark.parametrize("key", ["Space", "Enter"])
 def test_a_focused_button_is_pressed_and_nothing_else(tab: Tab, key: str) -> None:
     before = tab.lab.asked
-    tab.button("Hold both back").first.focus()
+    tab.focus(tab.button("Hold both back").first)
     tab.page.keyboard.press(key)
     wait_for(lambda: len(tab.session.grips.held) == 2)
     assert asked_since(tab, before) == 1 and tab.session.running
@@ -209,7 +188,7 @@ def test_letters_still_work_on_buttons_sliders_and_boxes_to_tick(tab: Tab) -> No
     wait_for(lambda: lab.session.grips.held)
     for control in (None, tab.slider("K1"), tab.page.get_by_label("Copy to both")):
         if control is not None:
-            control.focus()
+            tab.focus(control)
         held = bool(lab.session.grips.held)
         tab.page.keyboard.press("h")
         wait_for(lambda held=held: bool(lab.session.grips.held) is not held)
@@ -224,7 +203,7 @@ def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
     tab.open("Keep and share")
     before, step = lab.asked, lab.lessons.index
     for field in (tab.field("Share code"), tab.number("K1")):
-        field.focus()
+        tab.focus(field)
         for key in ("d", "x", "h", "w", "r", "g", "u", "PageDown", "PageUp", "Home"):
             tab.page.keyboard.press(key)
     assert tab.field("Share code").input_value() == "dxhwrgu"

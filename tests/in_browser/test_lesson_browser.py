@@ -9,31 +9,26 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Browser, Page
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 
 LESSON = "01-path-or-timetable"
 
 
 @pytest.fixture(scope="module")
-def tab() -> Iterator[Tab]:
+def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     """A tab in which lesson 1 has been opened from the overview."""
-    store = LoopCache()
-    server = LabServer("127.0.0.1", 0, store)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        tab = Tab(server, browser.new_context(viewport={"width": 1280, "height": 800}), draws=False)
-        tab.press("Lessons")
-        tab.page.get_by_role("button", name="Open", exact=True).first.click()
-        heading(tab, "Two robots, one circle")
-        yield tab
-        assert tab.errors == []
-        browser.close()
-    server.stop()
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    tab = Tab(server, context, draws=False)
+    tab.press("Lessons")
+    tab.page.get_by_role("button", name="Open", exact=True).first.click()
+    heading(tab, "Two robots, one circle")
+    yield tab
+    assert tab.errors == []
+    context.close()
 
 
 def heading(tab: Tab, title: str) -> None:
@@ -102,9 +97,9 @@ def test_a_reload_in_the_middle_comes_back_to_the_step(tab: Tab) -> None:
 
 
 def test_a_task_is_failed_then_passed(tab: Tab) -> None:
-    for _ in range(4):
+    for step in range(tab.session.lessons.index + 1, tab.session.lessons.index + 5):
         tab.page.keyboard.press("PageDown")
-        tab.page.wait_for_timeout(300)
+        wait_for(lambda step=step: tab.session.lessons.index == step)
     heading(tab, "Hold it yourself")
     tab.ask(c.SetRate(2.0), c.SetParameter("K1", 40), c.SetParameter("K2", 12))
     tab.ask(c.SetRunning(False), c.Reset())  # how far it gives way depends on where it is held

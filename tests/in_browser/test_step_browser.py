@@ -8,13 +8,12 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
-from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 
 LESSON, LONG = "01-path-or-timetable", "03-the-five-bar"
 LINE = 24  # [px]; the browser itself may scroll so far, to keep what is read in its place
@@ -30,19 +29,6 @@ SEEN = """(heading) => {
     const { x, y, height } = heading.getBoundingClientRect()
     return heading.contains(document.elementFromPoint(x + 5, y + height / 2))
 }"""
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache())
-    yield server
-    server.stop()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        yield playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
 
 
 @pytest.fixture(params=[(1280, 800), (390, 844)], ids=["desk", "telephone"])

@@ -11,14 +11,13 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.schema import Task
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 from tests.support.hands import (
     ROBOT,
     Choose,
@@ -128,21 +127,6 @@ BY_TOUCH: dict[str, dict[str, tuple[Gesture, ...]]] = {
 def cases(walks: dict[str, dict[str, tuple[Gesture, ...]]]) -> list[tuple[str, str]]:
     """Lesson and task of each walk, in order."""
     return [(lesson, task) for lesson, tasks in walks.items() for task in tasks]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache())
-    yield server
-    server.stop()
 
 
 def opened(browser: Browser, server: LabServer, touch: bool) -> Iterator[Hands]:

@@ -238,11 +238,23 @@ class Tab:
         if content.get_attribute("aria-hidden") == "true":
             title.click()
             wait_for(lambda: content.get_attribute("aria-hidden") != "true")
+        content.locator("visible=true").first.wait_for()  # it unfolds some frames later
 
     def choose(self, label: str, option: str) -> None:
         """Take an option of a drop-down list."""
         self.page.get_by_label(label, exact=True).filter(visible=True).first.click()
         self.page.get_by_role("option", name=option, exact=True).click()
+
+    def focus(self, control: Locator) -> None:
+        """Give a control the focus, which one that is not shown yet would not take."""
+        control.wait_for(state="visible")
+        control.focus()
+        wait_for(lambda: control.evaluate("control => control === document.activeElement"))
+
+    def blur(self) -> None:
+        """Take the focus away from whatever has it."""
+        self.page.evaluate("document.activeElement?.blur()")
+        self.page.wait_for_function("document.activeElement === document.body")
 
     def slider(self, label: str) -> Locator:
         """The handle of a slider."""

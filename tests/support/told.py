@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from onpath.app.exports.exporter import replay
+from onpath.app.exports.replay import replay
 from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_run import setup_of

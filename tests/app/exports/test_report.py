@@ -26,6 +26,7 @@ from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.lab import do, run, store
 from tests.support.lesson_texts import LESSON, write_lesson
+from tests.support.waiting import wait_for
 
 NAME, CODE, MADE = "01-a", "k7mf2xqa9tzr", datetime(2025, 3, 2, 14, 5)
 VOID = {"meta", "img", "br", "hr", "link", "input"}
@@ -276,7 +277,7 @@ def test_it_is_sent_as_it_was_when_it_was_asked_for(course: Course) -> None:
     exporter = Exporter(client)  # type: ignore[arg-type]
     exporter.report(CODE)
     exporter.serve(lab)
-    exporter._pool.shutdown(wait=True)
+    wait_for(lambda: client.sent, 240.0)
     page = Page(client.sent["onpath-report.html"])
     assert "k7mf-2xqa-9tzr" in page.text and "30 mm at 2 s" in page.text
     (picture,) = page.pictures()

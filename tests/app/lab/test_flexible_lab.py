@@ -8,9 +8,10 @@ import io
 import numpy as np
 import pytest
 
-from onpath.app.exports.exporter import csv_bytes, replay
 from onpath.app.exports.figures import draw_history
+from onpath.app.exports.files import csv_bytes
 from onpath.app.exports.recording import record_scene
+from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.take_snapshot import take_snapshot

@@ -14,19 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.history import (
-    COARSE,
-    LONGEST,
-    MOST,
-    RECENT,
-    SECONDS,
-    History,
-    HistoryFrame,
-    Input,
-    Inputs,
-    Segment,
-)
+from onpath.app.lab.history import COARSE, LONGEST, MOST, RECENT, SECONDS, History
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.segments import HistoryFrame, Input, Inputs, Segment
 from onpath.app.lab.take_snapshot import take_snapshot
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.control.laws import NAMES

@@ -188,3 +188,20 @@ def test_whoever_acts_on_the_lab_while_looking_back_is_told_that_it_is_the_prese
     lab = new_lab(0.5)
     do(lab, c.LookAt(0.3), c.ChoosePath("figure of eight"))
     assert "refused" in lab.message
+
+
+def test_going_on_forgets_what_was_done_later_and_undo_brings_it_back() -> None:
+    """Else a lesson's task could be passed by what never happened."""
+    lab = new_lab(0.5)
+    session = lab.session
+    do(lab, c.Hold(True))
+    run(lab, 0.5)
+    do(lab, c.Hold(False))
+    run(lab, 0.5)
+    all_of_it = tuple(session.events)
+    do(lab, c.LookBack(1.2), c.GoOn())
+    later = [event for event in all_of_it if event.time > session.time]
+    assert {event.name for event in later} >= {"hold", "release"}
+    assert all(event.time <= session.time for event in session.events)
+    do(lab, c.UndoGoOn())
+    assert tuple(session.events) == all_of_it

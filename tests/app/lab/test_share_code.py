@@ -197,10 +197,10 @@ def test_a_bomb_is_not_inflated() -> None:
     bomb = forged(b'{"robot":"' + b" " * 25_000_000 + b'"}')
     assert len(bomb) < share_code.LONGEST_TEXT
     tracemalloc.start()
-    began = time.perf_counter()
+    began = time.thread_time()
     with pytest.raises(ValueError, match="contains no set-up"):
         decode(bomb)
-    passed, peak = time.perf_counter() - began, tracemalloc.get_traced_memory()[1]
+    passed, peak = time.thread_time() - began, tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert passed < 1.0 and peak < 2_000_000
 

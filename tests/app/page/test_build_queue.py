@@ -9,6 +9,7 @@ from contextlib import ExitStack
 
 import pytest
 
+from onpath.app.exports import exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.page_snapshot import PageSnapshot
@@ -103,6 +104,23 @@ def test_pages_are_built_one_at_a_time_and_who_waits_is_told(
             lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
         wait_for(lambda: builds.done >= 2 * CROWD, 20)
         assert builds.most == 1
+
+
+def test_a_file_that_is_being_made_does_not_delay_the_page(
+    server: LabServer, builds: Builds, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun, over = threading.Event(), threading.Event()
+    monkeypatch.setattr(exporter.process, "call", lambda *_: (begun.set(), over.wait(), b"")[2])
+    comer = Comer(f"ws://127.0.0.1:{server.server.get_port()}")
+    with comer.student:
+        comer.run()
+        wait_for_views(server, 1)
+        (view,), (lab,) = server._views.values(), server.simulation.labs
+        view.page.exporter.csv()
+        assert begun.wait(60)
+        lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
+        wait_for(lambda: builds.done == 2, 60)
+        over.set()
 
 
 def test_who_leaves_while_waiting_is_built_nothing(server: LabServer, builds: Builds) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from onpath.app.exports.exporter import replay
+from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.identify import MOST_TICKS, last_record
 from onpath.app.lab.lab import Lab
