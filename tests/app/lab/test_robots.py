@@ -121,7 +121,7 @@ def test_it_follows_the_circle_in_the_lab_and_waits_when_held(entry: RobotEntry)
     session = lab(entry, 2.0)
     for name in NAMES:
         assert session.runs[name].diverged is None
-        assert session.runs[name].max_distance < 2e-3
+        assert session.runs[name].distance < 2e-4
     do(session, c.Hold(True))
     run_lab(session, 1.0)
     do(session, c.Hold(False))
