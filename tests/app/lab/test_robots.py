@@ -123,7 +123,7 @@ def test_it_follows_the_circle_in_the_lab_and_waits_when_held(entry: RobotEntry)
     session = lab.session
     for name in NAMES:
         assert session.runs[name].diverged is None
-        assert session.runs[name].max_distance < 2e-3
+        assert session.runs[name].distance < 2e-4
     do(lab, c.Hold(True))
     run_lab(lab, 1.0)
     do(lab, c.Hold(False))
