@@ -14,10 +14,7 @@ import urllib.request
 def main() -> None:
     """A simulation, an experiment, then the lab's page, then a clean stop."""
     code = "import onpath; print(len(onpath.simulate(duration=0.1).t))"
-    output = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    assert output.stdout == "100\n", output.stdout
+    assert subprocess.check_output([sys.executable, "-c", code], text=True) == "100\n"
 
     onpath = sys.argv[1]
     command = [onpath, "experiment", "obstruction", "--json"]

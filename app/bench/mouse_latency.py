@@ -13,7 +13,7 @@ import viser
 
 from onpath.app.bench.client_protocol import unpacked
 from onpath.app.lab import commands as c
-from onpath.app.lab.snapshot import FollowerName, TrackerName
+from onpath.app.lab.snapshots.snapshot import FollowerName, TrackerName
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import ScheduledLab

@@ -32,7 +32,7 @@ def class_code(code: str, count: int, words: Words) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class MemberRow:
+class MemberLine:
     """A student's line in the table."""
 
     name: str
@@ -53,14 +53,14 @@ def table(members: Iterable[Member], course: Course, now: float, words: Words) -
     return render("class/table.html", rows=rows, words=words)
 
 
-def _row(member: Member, course: Course, now: float, words: Words) -> MemberRow:
+def _row(member: Member, course: Course, now: float, words: Words) -> MemberLine:
     colour, state = GREEN.hex, words("class.here")
     if not member.connected:
         colour, state = GREY.hex, words("class.away")
     elif now - member.active > IDLE:
         minutes = int((now - member.active) / 60)
         colour, state = AMBER.hex, words("class.idle", minutes=minutes)
-    return MemberRow(member.name, *_place(member.progress, course, words), colour, state)
+    return MemberLine(member.name, *_place(member.progress, course, words), colour, state)
 
 
 def _place(way: Progress, course: Course, words: Words) -> tuple[str, str, str]:

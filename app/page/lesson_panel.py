@@ -9,7 +9,7 @@ import numpy as np
 import viser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
 from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.lesson_view import LessonView

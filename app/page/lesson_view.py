@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from onpath.app.lab.lesson_state import LessonState
-from onpath.app.lab.page_snapshot import LessonSnapshot
+from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
 from onpath.lessons.course import Course
 from onpath.lessons.schema import StepSetup
 from onpath.lessons.words import Words

@@ -8,8 +8,8 @@ from onpath.app.common.palette import FOLLOWER
 from onpath.app.common.templates import render
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.page_snapshot import PageSnapshot, robot_of
-from onpath.app.lab.snapshot import Snapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel

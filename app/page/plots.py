@@ -10,7 +10,7 @@ import viser
 from viser import uplot
 
 from onpath.app.common.palette import CONTROLLERS
-from onpath.app.lab.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.words import Words
 from onpath.models.control.laws import NAMES

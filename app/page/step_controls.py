@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import viser
 
-from onpath.app.lab.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.lessons.course import Course

@@ -5,8 +5,8 @@ from __future__ import annotations
 import viser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshot import Snapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.teacher_controls import FollowedStudent, TeacherControls

@@ -9,7 +9,7 @@ from math import prod, sqrt
 
 import numpy as np
 
-from onpath.app.lab.snapshot import Counts, RobotView
+from onpath.app.lab.snapshots.snapshot import Counts, RobotView
 from onpath.app.scene.stage import Stage
 
 UNSEEN = 1e-5

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshot import PathView, RobotView, Snapshot
+from onpath.app.lab.snapshots.snapshot import PathView, RobotView, Snapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.freehand import Freehand
 from onpath.app.scene.path_nodes import PathNodes

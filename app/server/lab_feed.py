@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshot import Snapshot
-from onpath.app.lab.take_snapshot import take_page_snapshot, take_snapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot, take_snapshot
 from onpath.app.page.page import Page
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.simulation.display_rate import STRIDES, is_turn

@@ -19,7 +19,7 @@ from onpath.app.common.error_log import log_error
 from onpath.app.exports import exporter as exports
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.take_snapshot import take_page_snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.build_queue import BuildQueue
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext

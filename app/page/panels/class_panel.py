@@ -7,7 +7,7 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.common.templates import render
-from onpath.app.lab.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.panels.widgets import note, on_slow_press
 from onpath.lessons.words import Words

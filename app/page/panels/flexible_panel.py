@@ -11,8 +11,8 @@ import viser
 
 from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
-from onpath.app.lab.page_snapshot import PageSnapshot, parameters_of
-from onpath.app.lab.snapshot import FollowerName, TrackerName
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
+from onpath.app.lab.snapshots.snapshot import FollowerName, TrackerName
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_user_update
 from onpath.lessons.words import Words
 from onpath.models.systems.flexible_five_bar import RIGID

@@ -5,7 +5,7 @@ from __future__ import annotations
 import viser
 
 from onpath.app.lab.commands import Identify, ResetParameters
-from onpath.app.lab.page_snapshot import PageSnapshot, ParameterValues, parameters_of
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues, parameters_of
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, SwitchedParameter, on_press
 from onpath.lessons.words import Words
 from onpath.models.control.poles import Channel, channels

@@ -8,7 +8,7 @@ from onpath.app.common.access_codes import shown
 from onpath.app.common.templates import render
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.widgets import Post, on_press, on_slow_press
 from onpath.lessons.words import Words

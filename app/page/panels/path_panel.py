@@ -8,7 +8,7 @@ import numpy as np
 import viser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.page_snapshot import PageSnapshot, parameters_of, robot_of
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
 from onpath.lessons.words import Words
 from onpath.models.control.rank_test import rank_map

@@ -9,7 +9,7 @@ from markupsafe import escape
 
 from onpath.app.common.palette import AMBER, BLUE, CONTROLLERS, WARNING
 from onpath.app.common.templates import render
-from onpath.app.lab.snapshot import Snapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.words import Words
 

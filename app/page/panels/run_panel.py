@@ -7,7 +7,7 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.widgets import Post, on_hold, on_press, on_user_update
 from onpath.lessons.words import Words
 

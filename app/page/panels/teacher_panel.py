@@ -10,7 +10,7 @@ from onpath.app.classroom import class_html as page
 from onpath.app.classroom.results import class_csv, distribution, prediction_at, truth_of
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
-from onpath.app.lab.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.course import Course

@@ -14,7 +14,7 @@ import viser
 from onpath.app.common.error_log import log_error
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import Command, SetParameter
-from onpath.app.lab.page_snapshot import PageSnapshot, ParameterValues
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Spec, specs

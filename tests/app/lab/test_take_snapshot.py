@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.snapshot import Snapshot
-from onpath.app.lab.take_snapshot import take_snapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_snapshot
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.drawing import drawn as drawn_skeleton
 from tests.support.lab import FOLLOWER, do, new_lab, run

@@ -12,7 +12,7 @@ import pytest
 from onpath.app.exports import exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.build_queue import FEW
 from onpath.app.page.page import Page
 from onpath.app.server.lab_server import LabServer

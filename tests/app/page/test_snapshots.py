@@ -19,10 +19,10 @@ from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshot import Snapshot
-from onpath.app.lab.snapshot_codec import from_bytes, to_bytes
-from onpath.app.lab.take_snapshot import take_page_snapshot, take_snapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot, take_snapshot
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import ClassSeat, PageContext
 from onpath.app.server.lab_server import LabServer

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from onpath.app.lab.snapshot import Snapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.lessons.checks import Verdict
 from onpath.lessons.progress import Progress, Truth
 from onpath.models.systems.catalogue import ROBOTS

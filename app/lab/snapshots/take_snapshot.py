@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.page_snapshot import (
+from onpath.app.lab.snapshots.page_snapshot import (
     LessonSnapshot,
     PageSnapshot,
     ParameterValues,
@@ -16,9 +16,9 @@ from onpath.app.lab.page_snapshot import (
     PlotSamples,
     RunState,
 )
-from onpath.app.lab.robot_geometry import robot_views
+from onpath.app.lab.snapshots.robot_geometry import robot_views
 from onpath.app.lab.session import Session
-from onpath.app.lab.snapshot import FollowerName, PageKey, PathView, Snapshot
+from onpath.app.lab.snapshots.snapshot import FollowerName, PageKey, PathView, Snapshot
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Sketch
 from onpath.lessons.words import Words

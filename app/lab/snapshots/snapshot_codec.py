@@ -7,8 +7,8 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from onpath.app.lab.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshot import Snapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
 
 
 def to_bytes(snapshot: Snapshot) -> bytes:
