@@ -14,9 +14,9 @@ import casadi as ca
 import numpy as np
 
 from onpath.app.common.per_thread import per_thread
-from onpath.app.lab.snapshots.part_poses import MARKER_DEPTHS, bar_quaternions, waist_angle
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Instant
+from onpath.app.lab.snapshots.part_poses import MARKER_DEPTHS, bar_quaternions, waist_angle
 from onpath.app.lab.snapshots.snapshot import END, Counts, FollowerName, RobotView, TrackerName
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered

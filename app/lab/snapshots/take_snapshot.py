@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.page_snapshot import (
     LessonSnapshot,
     PageSnapshot,
@@ -17,7 +18,6 @@ from onpath.app.lab.snapshots.page_snapshot import (
     RunState,
 )
 from onpath.app.lab.snapshots.robot_geometry import robot_views
-from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.snapshot import FollowerName, PageKey, PathView, Snapshot
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Sketch

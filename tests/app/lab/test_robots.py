@@ -14,10 +14,10 @@ from onpath.app.cli.main import run_command
 from onpath.app.exports.files import csv_bytes, picture_file
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.snapshots.robot_geometry import geometry_function, robot_views
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import capture, restore
 from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.snapshots.robot_geometry import geometry_function, robot_views
 from onpath.app.lab.snapshots.take_snapshot import take_snapshot
 from onpath.app.page.robot_picture import picture_of
 from onpath.app.scene.poses import poses_of
