@@ -101,14 +101,20 @@ def test_the_project_is_imported_as_one_package(file: Path) -> None:
     assert not packages(parse(file)) & {*TOPS, "tests"}
 
 
-def modules_in_circles() -> set[str]:
-    """Modules that import each other, directly or by way of others."""
+def graph() -> dict[str, set[str]]:
+    """The project's modules that each of them imports."""
     files = {module_of(file).removesuffix(".__init__"): file for file in sources()}
     edges: dict[str, set[str]] = {}
     for module, file in files.items():
         wanted = [name.removeprefix("onpath.") for name in imports(parse(file))]
         inner = {name if name in files else name.rpartition(".")[0] for name in wanted}
         edges[module] = inner & set(files) - {module}
+    return edges
+
+
+def modules_in_circles() -> set[str]:
+    """Modules that import each other, directly or by way of others."""
+    edges = graph()
     while free := [module for module, inner in edges.items() if not inner & set(edges)]:
         for module in free:
             del edges[module]
@@ -120,6 +126,15 @@ def modules_in_circles() -> set[str]:
 
 def test_no_module_imports_itself_by_way_of_others() -> None:
     assert modules_in_circles() == set()
+
+
+def test_the_simulated_lab_knows_nothing_of_its_user() -> None:
+    edges, needed, new = graph(), set[str](), {"app.lab.session"}
+    while new:
+        needed |= new
+        new = {module for each in new for module in edges[each]} - needed
+    assert {folder_of(module).partition(".")[0] for module in needed} <= {"app", "models", "assets"}
+    assert not needed & {"app.lab.lab", "app.lab.commands", "app.lab.lesson_run"}
 
 
 @FILES

@@ -113,6 +113,7 @@ class Mirror(ScheduledLab):
         self._owed = min(self._owed - ticks * dt, FRAME * session.rate)
         self._move_hands(new, session.time + ticks * dt)
         session.simulate(ticks)
+        self.lab.show_faults()
         if ticks == there:
             session.time = new.time
         return ticks == there

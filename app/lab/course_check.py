@@ -8,7 +8,7 @@ from pathlib import Path
 from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.lesson_scene import setup_of
+from onpath.app.lab.lesson_run import setup_of
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.lessons.checks import Verdict, judge
 from onpath.lessons.course import REFERENCE, Course, read_references

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from onpath.app.lab.events import LabEvent
 from onpath.app.lab.session import Session
+from onpath.app.lab.timeline import LabEvent
 from onpath.lessons.progress import MOST_POINTS, Truth
 from onpath.lessons.record import ROBOTS, ROLES, Happening, Record
 from onpath.lessons.schema import RobotName

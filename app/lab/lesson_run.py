@@ -10,11 +10,10 @@ from typing import Any, Protocol
 from msgspec.structs import replace
 
 from onpath.app.lab.lesson_record import Beginning, Trace, record_of
-from onpath.app.lab.lesson_scene import setup_of
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
-from onpath.app.lab.setup import Setup, capture
+from onpath.app.lab.setup import Path, RobotSetup, Setup, capture
 from onpath.app.lab.sketches import sketched
 from onpath.lessons.checks import Verdict, judge, statistic
 from onpath.lessons.course import Course
@@ -260,6 +259,19 @@ class LessonRun(LessonState):
             truths = {**truths, found[0]: self._trace.truth()}
         played = tuple(dict.fromkeys((*self.notes.played, str(self.index))))
         self.note(truths=truths, played=played)
+
+
+def setup_of(lesson: Lesson, index: int, exaggeration: float = 1.0) -> Setup:
+    """A step's set-up: of the lesson alone, not of what was done in the lab before.
+
+    Args:
+        index: of the step.
+        exaggeration: how many times larger a deflection is drawn, as in the lab before.
+    """
+    scene = lesson.scene_at(index)
+    robot, path = scene.robot or lesson.front.robot, Path(scene.path or Path().name)
+    own = {robot: RobotSetup(dict(scene.set), path)}
+    return Setup(robot, own, exaggeration=exaggeration)
 
 
 def _set_up(lab: LessonLab, lesson: Lesson, index: int) -> None:

@@ -12,13 +12,12 @@ from operator import is_
 import numpy as np
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
-from onpath.app.lab.events import LabEvent
 from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.history import History, HistoryFrame, Inputs, Instant
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout, samples_of
-from onpath.app.lab.timeline import Timeline
+from onpath.app.lab.timeline import LabEvent, Timeline
 from onpath.models.arrays import Array
 from onpath.models.control.laws import NAMES
 from onpath.models.layout import Layout

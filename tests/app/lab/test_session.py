@@ -18,7 +18,7 @@ from onpath.lessons.course import Course, read_course
 from onpath.lessons.schema import Action
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.control.laws import NAMES
-from onpath.models.systems.catalogue import FIVE_BAR
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from onpath.models.systems.parameters import specs
 from tests.support.lab import (
     FOLLOWER,
@@ -473,6 +473,19 @@ def test_drag_that_ends_in_a_refused_place_goes_all_the_way_back() -> None:
     assert "refused" in lab.message
     run(lab, 0.4)
     assert lab.session.editor.design is first and lab.session.editor.curve is first.curve
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_command_carries_coordinates_of_the_path_s_plane_to_the_bit(robot: str) -> None:
+    lab = new_lab()
+    do(lab, c.ChooseRobot(robot))
+    there = lab.session.editor.design.points[1] + np.array([0.001, -0.002])
+    do(lab, c.MovePoint(1, there))
+    assert np.array_equal(lab.session.editor.design.points[1], there)
+    for wrong in (there[:1], np.append(there, 0.0)):
+        do(lab, c.MovePoint(1, wrong))
+        assert "not a point" in lab.message
+    assert np.array_equal(lab.session.editor.design.points[1], there)
 
 
 def test_undo_in_the_middle_of_a_drag_takes_the_drag_back() -> None:
