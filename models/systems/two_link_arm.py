@@ -244,6 +244,7 @@ ROBOT = RobotEntry(
     name="two_link_arm",
     label="Two-link arm",
     text="Two motors, one at the shoulder and one at the elbow, against gravity.",
+    picture="two_link_arm.png",
     parameters=TwoLinkParameters,
     lab=TwoLinkParameters(),
     make=lambda _: two_link_arm_robot(),

@@ -45,8 +45,8 @@ def robot_views(
         exaggeration: of a deflection, in the bars and the drawn end-point.
     """
     geometry = _geometry_of(robot, curve.closed)
-    drawn, size = geometry(instant, curve, exaggeration), 3 * geometry.counts.points
-    points = [each[:size].reshape(-1, 3) for each in drawn]
+    drawn = geometry(instant, curve, exaggeration)
+    points = [drawn[own].reshape(-1, 3) for own in geometry.points]
     trails = UNTRACED
     if traces is not None:
         ends = np.stack([each[END] for each in points])
@@ -57,7 +57,7 @@ def robot_views(
     return {
         name: RobotView(
             points=points[i],
-            poses=drawn[i][size:],
+            poses=drawn[geometry.poses[i]],
             counts=geometry.counts,
             trace=trails[:, i],
             distance=distances[i],
@@ -71,20 +71,29 @@ def robot_views(
 
 
 class RobotGeometry:
-    """The drawing of one kind of robot on open or on closed paths. One thread at a time."""
+    """The drawing of one kind of robot on open or on closed paths. One thread at a time.
+
+    Attributes:
+        counts: of the parts.
+        points, poses: where each robot's `RobotView.points` and `RobotView.poses` lie.
+    """
 
     def __init__(self, robot: Robot, closed: bool) -> None:
         function, self.counts = geometry_function(robot, closed)
         self._draw = Buffered(function)
+        size, middle = function.size1_out(0), 3 * self.counts.points
+        begins = range(0, size * len(NAMES), size)
+        self.points = [slice(begin, begin + middle) for begin in begins]
+        self.poses = [slice(begin + middle, begin + size) for begin in begins]
         self._joints = robot.system.n
         self._seen = np.array(_seen(robot))
 
-    def __call__(self, instant: Instant, curve: Curve, exaggeration: float) -> list[Array]:
-        """For each robot `RobotView.points`, flat, and then `RobotView.poses`."""
+    def __call__(self, instant: Instant, curve: Curve, exaggeration: float) -> Array:
+        """All robots' points and poses, flat."""
         q = [state[: self._joints] for state in instant.states]
         seen = instant.sample.take(self._seen)
         flat = self._draw(np.concatenate(q), seen, curve.table(), exaggeration)[0]
-        return list(flat.copy().reshape(len(NAMES), -1))
+        return flat.copy()
 
 
 @per_thread
