@@ -106,7 +106,7 @@ def _(check: Compare, record: Record, words: Words) -> Verdict:
 
 @verdict.register
 def _(check: Event, record: Record, words: Words) -> Verdict:
-    have = sum(_is(event.name, event.detail, check) for event in record.happenings)
+    have = sum(_matches(event.name, event.detail, check) for event in record.happenings)
     said = words(
         "check.event",
         event=_event_words(check, words),
@@ -121,7 +121,7 @@ def _(check: Order, record: Record, words: Words) -> Verdict:
     wanted = [_event(event) for event in check.events]
     found = 0
     for event in record.happenings:
-        if found < len(wanted) and _is(event.name, event.detail, wanted[found]):
+        if found < len(wanted) and _matches(event.name, event.detail, wanted[found]):
             found += 1
     marked = [
         ("✓ " if i < found else "") + _event_words(event, words) for i, event in enumerate(wanted)
@@ -197,7 +197,7 @@ def _event(text: str) -> Event:
     return msgspec.convert({"kind": "event", "event": event, "name": name}, Event)
 
 
-def _is(name: str, detail: str, wanted: Event) -> bool:
+def _matches(name: str, detail: str, wanted: Event) -> bool:
     """Whether an event with this name and detail counts as the wanted one."""
     return name == wanted.event and wanted.name in ("", detail)
 

@@ -119,12 +119,12 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
         text = f"{len(other.steps)} steps, {len(first.steps)} in {first.language}.md"
         yield Problem(str(file), 1, text)
     for own, theirs in zip(first.steps, other.steps, strict=False):
-        if _bones(own) != _bones(theirs):
+        if _structure(own) != _structure(theirs):
             text = f"step {theirs.title!r} is not as in {first.language}.md, line {own.line}"
             yield Problem(str(file), theirs.line, f"{text}: same kind, scene, script and tasks")
 
 
-def _bones(step: Step) -> tuple[object, ...]:
+def _structure(step: Step) -> tuple[object, ...]:
     """The parts of a step that are the same in all languages."""
     tasks = [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()]
     return step.kind, step.scene, step.script, tasks, [type(block) for block in step.predictions()]

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import Any, get_args
 
 import msgspec
 from markdown_it.token import Token
@@ -16,7 +15,7 @@ from markupsafe import Markup
 from onpath.lessons import vocabulary
 from onpath.lessons.formulas import FormulaError, embedded, reader, render, to_html
 from onpath.lessons.links import read_link
-from onpath.lessons.problems import LessonError, Problem, line_of
+from onpath.lessons.problems import LessonError, Problem
 from onpath.lessons.schema import (
     Block,
     Choice,
@@ -34,13 +33,13 @@ from onpath.lessons.schema import (
     Task,
     Text,
 )
+from onpath.lessons.toml_blocks import read_checked, read_toml
 
 LARGEST = 1_000_000
 """Largest size of a lesson file, [B]."""
 KINDS: tuple[str, ...] = get_args(StepKind)
 FENCES = ("scene", "script", "predict", "task", "quiz")
 HEADING = re.compile(r"(\w+):\s*(.+)")
-T = TypeVar("T")
 
 
 @dataclass(slots=True)
@@ -110,7 +109,7 @@ class _Reader:
         if len(ends) < 2 or ends[0] != 0:
             self._complain(1, "a lesson begins with facts between two lines +++")
             return None, 0
-        front = self._toml("\n".join(lines[1 : ends[1]]), 2, Front)
+        front = read_toml("\n".join(lines[1 : ends[1]]), 2, Front, self._complain)
         if front is not None:
             self._complain_all(
                 1, vocabulary.scene_faults(StepSetup(robot=front.robot), front.robot)
@@ -237,31 +236,7 @@ class _Reader:
     def _checked(
         self, content: str, line: int, kind: Any, faults: Callable[[Any], Iterable[str]]
     ) -> Any:
-        read = self._toml(content, line, kind)
-        if read is not None:
-            found = list(faults(read))
-            for fault in found:
-                self._complain(line_of(fault, content, line), fault)
-            if found:
-                return None
-        return read
-
-    def _toml(self, content: str, line: int, kind: type[T]) -> T | None:
-        """TOML as a value of some type; None after reporting a problem.
-
-        Args:
-            line: of the file at which the TOML begins.
-        """
-        try:
-            return msgspec.convert(tomllib.loads(content), kind)
-        except tomllib.TOMLDecodeError as error:
-            place = re.search(r"at line (\d+)", str(error))
-            self._complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}")
-        except msgspec.ValidationError as error:
-            self._complain(line_of(str(error), content, line), str(error))
-        except RecursionError:
-            self._complain(line, "nested too deeply")
-        return None
+        return read_checked(content, line, kind, faults, self._complain)
 
     def _complain(self, line: int, text: str) -> None:
         self._problems.append(Problem(str(self._path), line, text))

@@ -24,14 +24,14 @@ def peaks(curves: Sequence[Array], most: int) -> NDArray[np.intp]:
     if count <= most:
         return np.arange(count)
     kept = [0, count - 1]
-    for stretch in stretches(count, len(curves), most):
+    for interval in intervals(count, len(curves), most):
         for curve in curves:
-            part = curve[stretch]
-            kept += [stretch.start + int(part.argmin()), stretch.start + int(part.argmax())]
+            part = curve[interval]
+            kept += [interval.start + int(part.argmin()), interval.start + int(part.argmax())]
     return np.unique(kept)
 
 
-def stretches(count: int, curves: int, most: int) -> list[slice]:
+def intervals(count: int, curves: int, most: int) -> list[slice]:
     """The intervals of points of which `peaks` keeps the extremes."""
     ends = np.linspace(0, count, max(1, (most - 2) // (2 * curves)) + 1).astype(int)
     return [slice(a, b) for a, b in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)]

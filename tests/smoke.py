@@ -12,7 +12,10 @@ import urllib.request
 
 
 def main() -> None:
-    """An experiment, then the lab's page, then a clean stop."""
+    """A simulation, an experiment, then the lab's page, then a clean stop."""
+    code = "import onpath; print(len(onpath.simulate(duration=0.1).t))"
+    assert subprocess.check_output([sys.executable, "-c", code], text=True) == "100\n"
+
     onpath = sys.argv[1]
     command = [onpath, "experiment", "obstruction", "--json"]
     output = subprocess.run(command, capture_output=True, text=True, check=True).stdout

@@ -38,6 +38,9 @@ ORDER = [
 MATHEMATICS = ("models", "lessons")
 FOREIGN = {"viser", "threading", "time", "asyncio", "datetime", "random"}
 PRINTING = ("app/cli/", "app/bench/tables.py")
+DRAWING = ("app.page", "app.scene")
+LIVE = ("lab", "session", "history", "lesson_run", "take_snapshot")
+"""Modules of app.lab that know a lab as it lives: what draws is given snapshots of it."""
 LONGEST = 40
 
 
@@ -99,14 +102,20 @@ def test_the_project_is_imported_as_one_package(file: Path) -> None:
     assert not packages(parse(file)) & {*TOPS, "tests"}
 
 
-def modules_in_circles() -> set[str]:
-    """Modules that import each other, directly or by way of others."""
+def graph() -> dict[str, set[str]]:
+    """The project's modules that each of them imports."""
     files = {module_of(file).removesuffix(".__init__"): file for file in sources()}
     edges: dict[str, set[str]] = {}
     for module, file in files.items():
         wanted = [name.removeprefix("onpath.") for name in imports(parse(file))]
         inner = {name if name in files else name.rpartition(".")[0] for name in wanted}
         edges[module] = inner & set(files) - {module}
+    return edges
+
+
+def modules_in_circles() -> set[str]:
+    """Modules that import each other, directly or by way of others."""
+    edges = graph()
     while free := [module for module, inner in edges.items() if not inner & set(edges)]:
         for module in free:
             del edges[module]
@@ -114,6 +123,31 @@ def modules_in_circles() -> set[str]:
         for module in free:
             del edges[module]
     return set(edges)
+
+
+def test_no_module_imports_itself_by_way_of_others() -> None:
+    assert modules_in_circles() == set()
+
+
+def test_the_simulated_lab_knows_nothing_of_its_user() -> None:
+    edges, needed, new = graph(), set[str](), {"app.lab.session"}
+    while new:
+        needed |= new
+        new = {module for each in new for module in edges[each]} - needed
+    assert {folder_of(module).partition(".")[0] for module in needed} <= {"app", "models", "assets"}
+    assert not needed & {"app.lab.lab", "app.lab.commands", "app.lab.lesson_run"}
+
+
+@FILES
+def test_what_draws_knows_no_lab_but_snapshots(file: Path) -> None:
+    if folder_of(module_of(file)) in DRAWING:
+        tree = parse(file)
+        known = [name.removeprefix("onpath.") for name in imports(tree)]
+        assert not {name for name in known if name.startswith("app.simulation.simulation_thread")}
+        for module in LIVE:
+            assert not {name for name in known if f"{name}.".startswith(f"app.lab.{module}.")}
+        attributes = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+        assert not attributes & {"lab", "session"}
 
 
 @FILES

@@ -13,10 +13,10 @@ import viser
 
 from onpath.app.bench.client_protocol import unpacked
 from onpath.app.lab import commands as c
-from onpath.app.lab.snapshot import FollowerName, TrackerName
+from onpath.app.lab.snapshots.snapshot import FollowerName, TrackerName
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.simulation.simulation_thread import ScheduledLab
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 ARGUMENTS = (
@@ -106,8 +106,8 @@ def mouse_latency(server: LabServer, browser: str, times: int, draws: bool = Tru
 
         until(lambda: watch.tip is not None and any(lab.view for lab in server.simulation.labs))
         lab = next(lab for lab in server.simulation.labs if lab.view is not None)
-        lab.session.post(c.SetParameter("task", "position"))
-        lab.session.post(c.SetParameter("target", 0.4))  # between two control points
+        lab.lab.post(c.SetParameter("task", "position"))
+        lab.lab.post(c.SetParameter("target", 0.4))  # between two control points
         page.wait_for_timeout(3000)
         page.get_by_role("alert").get_by_role("button").click()  # "software rendering"
         box = page.locator("canvas").first.bounding_box()
@@ -158,7 +158,7 @@ class _Watch:
                     self.moved_at = self.moved_at or now
 
 
-def _tip(lab: Lab) -> np.ndarray:
+def _tip(lab: ScheduledLab) -> np.ndarray:
     """The end-point in the world, shape (3,), [m]."""
     session = lab.session
     base = stage_of(session.robot).bases[ROBOT]

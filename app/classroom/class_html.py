@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from markupsafe import Markup
 
 from onpath.app.classroom.classroom import Member
 from onpath.app.classroom.results import LETTERS, Distribution, tasks_passed
@@ -27,13 +26,13 @@ FLOOR = HEIGHT - BELOW - 10  # where its lowest value is drawn, [px]
 MOST_POINTS = 40  # of a sketch on it
 
 
-def class_code(code: str, count: int, words: Words) -> Markup:
+def class_code(code: str, count: int, words: Words) -> str:
     """Large, for the projector."""
     return render("class/code.html", code=code, count=count, words=words)
 
 
 @dataclass(frozen=True, slots=True)
-class MemberRow:
+class MemberLine:
     """A student's line in the table."""
 
     name: str
@@ -44,7 +43,7 @@ class MemberRow:
     state: str
 
 
-def table(members: Iterable[Member], course: Course, now: float, words: Words) -> Markup:
+def table(members: Iterable[Member], course: Course, now: float, words: Words) -> str:
     """Who is where.
 
     Args:
@@ -54,14 +53,14 @@ def table(members: Iterable[Member], course: Course, now: float, words: Words) -
     return render("class/table.html", rows=rows, words=words)
 
 
-def _row(member: Member, course: Course, now: float, words: Words) -> MemberRow:
+def _row(member: Member, course: Course, now: float, words: Words) -> MemberLine:
     colour, state = GREEN.hex, words("class.here")
     if not member.connected:
         colour, state = GREY.hex, words("class.away")
     elif now - member.active > IDLE:
         minutes = int((now - member.active) / 60)
         colour, state = AMBER.hex, words("class.idle", minutes=minutes)
-    return MemberRow(member.name, *_place(member.progress, course, words), colour, state)
+    return MemberLine(member.name, *_place(member.progress, course, words), colour, state)
 
 
 def _place(way: Progress, course: Course, words: Words) -> tuple[str, str, str]:
@@ -86,7 +85,7 @@ def prediction_view(
     revealed: bool,
     words: Words,
     large: bool = False,
-) -> Markup:
+) -> str:
     """How the class has answered, without names; the truth too, when it is revealed.
 
     Args:

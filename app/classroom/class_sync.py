@@ -11,12 +11,12 @@ from collections.abc import Callable
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.periodic import Periodic
 from onpath.app.lab.commands import Freeze
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 
 SYNC_INTERVAL = 0.25  # [s]
 
 
-Find = Callable[[str], tuple[Session, bool] | None]
+Find = Callable[[str], tuple[Lab, bool] | None]
 """The lab of a session code, and whether somebody looks at it; None when it is not here."""
 
 
@@ -33,7 +33,7 @@ class ClassSync:
     def __init__(self, classroom: Classroom, find: Find) -> None:
         self._class, self._find = classroom, find
         self._asked: dict[str, int] = {}
-        self._bound: dict[str, Session] = {}
+        self._bound: dict[str, Lab] = {}
         self.rounds = Periodic("class", SYNC_INTERVAL, self.look)
 
     def look(self) -> None:

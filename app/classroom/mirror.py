@@ -12,8 +12,9 @@ import numpy as np
 
 from onpath.app.classroom.moment import Moment, read_moment, take_over
 from onpath.app.common.error_log import log_warning
-from onpath.app.lab.session import MOST_TICKS, Session
-from onpath.app.simulation.simulation_thread import FRAME, Lab
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.session import MOST_TICKS
+from onpath.app.simulation.simulation_thread import FRAME, ScheduledLab
 from onpath.models.closed_loop.simulation import Push
 from onpath.models.control.laws import NAMES
 from onpath.models.systems.parameters import time_step
@@ -24,19 +25,19 @@ GAIN = 0.5  # relative increase of the rate for each multiple of BEHIND in exces
 MOST = 50  # pending states
 
 
-class Mirror(Lab):
+class Mirror(ScheduledLab):
     """A read-only replica of one lab: commands of a page do not reach the student's lab.
 
     Args:
-        session: a new one, used by nothing else.
+        lab: a new one, used by nothing else.
         text: the first state, see `app.classroom.moment`.
 
     Raises:
         ValueError: the state is invalid.
     """
 
-    def __init__(self, session: Session, text: str) -> None:
-        super().__init__(session)
+    def __init__(self, lab: Lab, text: str) -> None:
+        super().__init__(lab)
         self._now, self._text = read_moment(text), text
         self._coming: deque[Moment] = deque([self._now], MOST)
         self._taken: Moment | None = None
@@ -61,11 +62,11 @@ class Mirror(Lab):
 
     @property
     def achieved(self) -> float:
-        """See `Lab.achieved`."""
+        """See `ScheduledLab.achieved`."""
         return self._now.achieved
 
-    def keep_up(self) -> None:
-        """Advance by one frame. The page that shows it calls this on the simulation thread."""
+    def advance(self, seconds: float) -> None:
+        """Advance by one frame; see `Lab.advance`."""
         self._take_over_due()
         self._owed += self._step()
         while self._coming and self._runs():
@@ -80,7 +81,7 @@ class Mirror(Lab):
     def _take_over_due(self) -> None:
         while self._coming and self._is_due(self._coming[0]):
             new = self._coming.popleft()
-            take_over(self.session, new, self._taken)
+            take_over(self.lab, new, self._taken)
             self._taken = new
 
     def _step(self) -> float:
@@ -112,6 +113,7 @@ class Mirror(Lab):
         self._owed = min(self._owed - ticks * dt, FRAME * session.rate)
         self._move_hands(new, session.time + ticks * dt)
         session.simulate(ticks)
+        self.lab.show_faults()
         if ticks == there:
             session.time = new.time
         return ticks == there

@@ -12,11 +12,12 @@ import msgspec
 import numpy as np
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun, Diverged
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.path_editor import Blend, PathEditor
 from onpath.app.lab.plot_samples import places
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import EXAGGERATIONS, RATES, Word
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import log_layout, state_layout
 from onpath.models.closed_loop.simulation import Push
@@ -116,9 +117,9 @@ class Moment(msgspec.Struct, frozen=True):
     achieved: float
 
 
-def tell(lab: Lab) -> Moment:
+def tell(scheduled: ScheduledLab) -> Moment:
     """The state of a lab. Fast; call it on the simulation thread."""
-    session = lab.session
+    lab, session = scheduled.lab, scheduled.session
     past = None if session.viewing is None else session.history.at(session.viewing)
     instant = session.instant() if past is None else past.instant()
     own, base = session.parameters, session.entry.lab
@@ -139,18 +140,18 @@ def tell(lab: Lab) -> Moment:
         run=session.run_number,
         time=instant.time if session.viewing is None else session.viewing,
         running=session.running,
-        moves=session.running and not session.frozen,
+        moves=session.running and not lab.frozen,
         rate=session.rate,
         exaggeration=session.exaggeration,
         held=tuple(session.grips.held),
         grabbed=session.grips.grabbed,
-        message=session.message[:2000],
-        level=session.message_level,
-        language=session.lessons.words.language,
+        message=lab.message[:2000],
+        level=lab.message_level,
+        language=lab.words.language,
         path=_path(session.editor, past and past.curve),
         robots=robots,
-        is_seen=lab.is_seen,
-        achieved=lab.achieved,
+        is_seen=scheduled.is_seen,
+        achieved=scheduled.achieved,
     )
 
 
@@ -249,14 +250,15 @@ def _sayable(message: Message) -> None:
         raise ValueError(f"no message {message.code!r} with these arguments") from None
 
 
-def take_over(session: Session, new: Moment, old: Moment | None) -> None:
-    """Put a session into a received state. Call it on the simulation thread.
+def take_over(lab: Lab, new: Moment, old: Moment | None) -> None:
+    """Put a lab into a received state. Call it on the simulation thread.
 
     Args:
-        session: whose state is replaced.
+        lab: whose state is replaced.
         new: the received state, from `read_moment`.
         old: the one adopted before; only differences are applied.
     """
+    session = lab.session
     entry: RobotEntry = ROBOTS[new.robot]
     session.choose_robot(entry)
     if old is None or (new.robot, new.parameters) != (old.robot, old.parameters):
@@ -265,12 +267,12 @@ def take_over(session: Session, new: Moment, old: Moment | None) -> None:
         _take_path(session.editor, new.path)
     if old is None or new.run != old.run or new.time < session.time - INSTANT:
         session.history.clear()
-    if new.language != session.lessons.words.language:
-        session.lessons.set_language(new.language)
+    if new.language != lab.words.language:
+        lab.lessons.set_language(new.language)
     session.time, session.running, session.rate = new.time, new.running, new.rate
     session.exaggeration, grips = new.exaggeration, session.grips
     grips.grabbed, grips.held = new.grabbed, {*new.held}
-    session.show_message(new.message, new.level)
+    lab.show_message(new.message, new.level)
     for name, robot in zip(NAMES, new.robots, strict=True):
         grips.pushes[name] = _push(robot)
         _take_robot(session, session.runs[name], robot)

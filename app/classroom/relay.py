@@ -16,8 +16,8 @@ from onpath.app.classroom.watches import Watches
 from onpath.app.common.error_log import log_warning
 from onpath.app.common.periodic import Periodic
 from onpath.app.lab.commands import ReportState
-from onpath.app.lab.session import Session
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.lab.lab import Lab
+from onpath.app.simulation.simulation_thread import ScheduledLab, SimulationThread
 from onpath.app.storage.records import NotKept
 
 SEND_INTERVAL = 0.125  # [s]
@@ -31,7 +31,8 @@ class Relay:
         watches: the requests and states in the database.
         find: session code -> the lab, if it lives in this process.
         wanted: returns which labs of other processes teachers look at: client -> session code.
-        make: creates a session for a mirror.
+        make: creates a lab for a mirror.
+        simulation: advances the mirrors.
 
     Attributes:
         rounds: runs the exchange periodically.
@@ -40,10 +41,12 @@ class Relay:
     def __init__(
         self,
         watches: Watches,
-        find: Callable[[str], Lab | None],
+        find: Callable[[str], ScheduledLab | None],
         wanted: Callable[[], dict[int, str]],
-        make: Callable[[], Session],
+        make: Callable[[], Lab],
+        simulation: SimulationThread,
     ) -> None:
+        self._simulation = simulation
         self._watches, self._find, self._wanted, self._make = watches, find, wanted, make
         self._asked: set[str] = set()
         self._heard: dict[str, Moment] = {}
@@ -81,9 +84,9 @@ class Relay:
         self._told = {c: now for c, now in {**self._told, **new}.items() if c in self._asked}
         for code in self._asked:
             if (lab := self._find(code)) is not None:
-                lab.session.post(ReportState(partial(self._hear, code, lab)))
+                lab.lab.post(ReportState(partial(self._hear, code, lab)))
 
-    def _hear(self, code: str, lab: Lab, _: Session) -> None:
+    def _hear(self, code: str, lab: ScheduledLab, _: Lab) -> None:
         self._heard[code] = tell(lab)
 
     def _be_told(self) -> None:
@@ -103,4 +106,13 @@ class Relay:
                 mirrors[client] = code, Mirror(self._make(), told[code])
             except ValueError as error:
                 log_warning("a student's lab cannot be shown: %s", error)
+        self._run({mirror for _, mirror in mirrors.values()})
         self._mirrors = mirrors
+
+    def _run(self, wanted: set[Mirror]) -> None:
+        """Have these advanced, and no others."""
+        running = {mirror for _, mirror in self._mirrors.values()}
+        for mirror in running - wanted:
+            self._simulation.remove(mirror)
+        for mirror in wanted - running:
+            self._simulation.add(mirror)

@@ -1,7 +1,6 @@
 """HTML from the templates in assets/templates: every value is escaped unless it is Markup.
 
-Markup is made in three places: here, of a filled-in template; in `phrase`; and in
-`lessons.formulas.render`, of a lesson's markdown.
+Markup is made in `phrase` and, of a lesson's markdown, in `lessons.formulas.render`; nowhere else.
 """
 
 from __future__ import annotations
@@ -35,8 +34,10 @@ def environment() -> Environment:
     return made
 
 
-def render(template: str, /, **values: object) -> Markup:
+def render(template: str, /, **values: object) -> str:
     """A template with its values filled in; from any thread.
+
+    What is returned is no Markup, which viser's messages cannot hold.
 
     Args:
         template: path in assets/templates.
@@ -45,7 +46,7 @@ def render(template: str, /, **values: object) -> Markup:
         jinja2.TemplateNotFound: there is no such template.
         jinja2.UndefinedError: it uses a value that is not given.
     """
-    return Markup(environment().get_template(template).render(values))
+    return environment().get_template(template).render(values)
 
 
 def phrase(words: Words, key: str, /, **values: object) -> Markup:

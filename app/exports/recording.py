@@ -14,11 +14,11 @@ from viser._viser import InitialCameraConfig
 from viser.infra import WebsockServer
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
-from onpath.app.lab.history import Segment
 from onpath.app.lab.plot_samples import sample_layout
-from onpath.app.lab.robot_geometry import robot_views
-from onpath.app.lab.snapshot import PathView, Snapshot
-from onpath.app.lab.take_snapshot import CURVE_POINTS
+from onpath.app.lab.segments import Segment
+from onpath.app.lab.snapshots.robot_geometry import robot_views
+from onpath.app.lab.snapshots.snapshot import PathView, Snapshot
+from onpath.app.lab.snapshots.take_snapshot import CURVE_POINTS
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import set_initial_camera
 from onpath.app.scene.stage_catalogue import stage_of

@@ -14,7 +14,7 @@ from onpath.app.common.access_codes import shown
 from onpath.app.common.templates import render
 from onpath.app.exports.report_facts import Chapter, chapters, predictions, quizzes
 from onpath.app.exports.report_plot import draw_prediction, number
-from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Prediction, Quiz, Sketch, Task
@@ -72,7 +72,7 @@ class ChapterRecord:
     questions: list[tuple[Quiz, int | None]]
 
 
-def report(run: LessonRun, code: str, made: datetime) -> bytes:
+def report(run: LessonState, code: str, made: datetime) -> bytes:
     """The record as a page that stands alone; the same record gives the same bytes.
 
     Args:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.progress import Answer, Notes, Truth
 from onpath.lessons.schema import Choice, Lesson, Prediction, Quiz, Sketch
 
@@ -47,7 +47,7 @@ class Chapter:
         ]
 
 
-def chapters(run: LessonRun) -> list[Chapter]:
+def chapters(run: LessonState) -> list[Chapter]:
     """All lessons of the course, in the student's language where they are written in it."""
     progress, found = run.progress, list[Chapter]()
     for number, name in enumerate(run.course.lessons, start=1):

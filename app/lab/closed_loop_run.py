@@ -7,8 +7,8 @@ from math import isfinite
 
 import numpy as np
 
-from onpath.app.lab.history import Drive, Input
 from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.segments import Drive, Input
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.simulation import (
     Push,

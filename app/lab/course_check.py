@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from onpath.app.lab.commands.scripts import player_of
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.lesson_scene import set_up
+from onpath.app.lab.lesson_run import setup_of
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.script_player import ScriptPlayer
-from onpath.app.lab.session import Session
 from onpath.lessons.checks import Verdict, judge
 from onpath.lessons.course import REFERENCE, Course, read_references
 from onpath.lessons.problems import Problem
@@ -36,35 +36,36 @@ def play_course(course: Course, folder: Path, store: LoopCache) -> Iterator[Prob
         yield from _reference_faults(lesson, home / REFERENCE, store)
 
 
-def lab_at(lesson: Lesson, step: Step, store: LoopCache) -> Session:
+def lab_at(lesson: Lesson, step: Step, store: LoopCache) -> Lab:
     """A lab set up for a step of a lesson."""
-    session = Session(store)
-    set_up(session, lesson, lesson.steps.index(step))
-    return session
+    lab = Lab(store)
+    lab.set_up(setup_of(lesson, lesson.steps.index(step)))
+    return lab
 
 
-def play(session: Session, script: Script, task: Task | None = None) -> Iterator[list[Verdict]]:
+def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Verdict]]:
     """Play a script to its end; the verdicts on a task, ten times a second.
 
     Raises:
         ValueError: the lab refuses what the script does; the message says why.
     """
-    begin, words = Beginning.now(session), Words()
-    session.script, session.running = ScriptPlayer(script), True
+    session, words = lab.session, Words()
+    begin = Beginning.now(session)
+    lab.script, session.running = player_of(script), True
     for _ in range(round(3 * script.until / LOOKS)):
         for _ in range(round(LOOKS / FRAME)):
-            session.drain()
-            session.advance(session.rate * FRAME)
-        if session.message_level == "warning":
-            raise ValueError(session.message)
+            lab.drain()
+            lab.advance(session.rate * FRAME)
+        if lab.message_level == "warning":
+            raise ValueError(lab.message)
         if task is not None:
             yield judge(task, record_of(session, begin), words)
-        if session.script is None:
+        if lab.script is None:
             return
     raise ValueError(f"the script does not reach its end at {script.until:g} s")
 
 
-def solved(session: Session, script: Script, task: Task) -> tuple[bool, list[Verdict]]:
+def solved(lab: Lab, script: Script, task: Task) -> tuple[bool, list[Verdict]]:
     """Whether a script ever passes a task, and the last verdicts.
 
     Raises:
@@ -72,7 +73,7 @@ def solved(session: Session, script: Script, task: Task) -> tuple[bool, list[Ver
     """
     last: list[Verdict] = []
     passed = False
-    for last in play(session, script, task):
+    for last in play(lab, script, task):
         passed |= all(verdict.passed for verdict in last)
     return passed, last
 

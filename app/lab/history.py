@@ -7,15 +7,13 @@ can be computed again, exactly, when somebody wants it as a file.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
-from operator import is_
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.paths.curves import Curve
+from onpath.app.lab.segments import HistoryCopy, HistoryFrame, Segment, segment_at
 
 SECONDS = 60.0
 LONGEST = 17  # ticks in a stretch at most
@@ -25,126 +23,6 @@ MOST = 7200
 BATCH = 16  # frames that wait at most to be put in together, which is much quicker
 FIRST = 256  # stretches that there is room for at first
 FULL = 0.9  # of the room, when more is needed
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Input:
-    """What drives one robot; the same object while nothing changes.
-
-    Attributes:
-        kind: which loop.
-        settings: of the loop.
-        frozen: whether the robot has diverged and stands still.
-    """
-
-    kind: Kind
-    settings: np.ndarray
-    frozen: bool
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Inputs:
-    """All inputs of some stretches.
-
-    Attributes:
-        curve: the path.
-        dt: length of a tick, [s].
-        of: each robot's, by controller.
-    """
-
-    curve: Curve
-    dt: float
-    of: dict[str, Input]
-
-    def are(self, curve: Curve, dt: float, of: Iterable[Input]) -> bool:
-        """Whether they are these."""
-        same = self.curve is curve and self.dt == dt
-        return same and all(map(is_, self.of.values(), of))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Drive:
-    """One robot's part of a stretch.
-
-    Attributes:
-        kind: which loop drives it.
-        state: at the beginning.
-        settings: of the loop during the stretch.
-        frozen: whether it has diverged and stands still.
-        max_distance: from the path since reset, [m].
-    """
-
-    kind: Kind
-    state: np.ndarray
-    settings: np.ndarray
-    frozen: bool
-    max_distance: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Instant:
-    """Both robots at one time.
-
-    Attributes:
-        time: [s].
-        states: one for each robot.
-        max_distances: since reset, shape (robots,), [m].
-        sample: what the plots show, shape (robots, fields).
-    """
-
-    time: float
-    states: Sequence[np.ndarray]
-    max_distances: Sequence[float]
-    sample: np.ndarray
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class HistoryFrame:
-    """What has just been simulated.
-
-    Attributes:
-        time: at the beginning, [s].
-        ticks: how many.
-        inputs: the same object while nothing changes.
-        states: of each robot, at the beginning; nobody changes them any more.
-        max_distances: of each, at the beginning, [m].
-        rows: of the log, of each, at the beginning.
-        distances: of each, at the beginning, [m].
-    """
-
-    time: float
-    ticks: int
-    inputs: Inputs
-    states: Sequence[np.ndarray]
-    max_distances: Sequence[float]
-    rows: Sequence[np.ndarray]
-    distances: Sequence[float]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Segment:
-    """Some ticks with the same inputs.
-
-    Attributes:
-        time: at the beginning, [s].
-        dt: length of a tick, [s].
-        curve: the path during the stretch.
-        drives: by controller.
-        sample: what the plots show, at the beginning, shape (robots, fields).
-    """
-
-    time: float
-    ticks: int
-    dt: float
-    curve: Curve
-    drives: dict[str, Drive]
-    sample: np.ndarray
-
-    def instant(self) -> Instant:
-        """Its beginning."""
-        drives = self.drives.values()
-        states, most = [d.state for d in drives], [d.max_distance for d in drives]
-        return Instant(self.time, states, most, self.sample.astype(float))
 
 
 class History:
@@ -216,8 +94,14 @@ class History:
         """Everything, oldest first; the same objects until something changes."""
         self.settle()
         if self._list is None:
-            self._list = [self._stretch(row) for row in range(self._begin, self._end)]
+            self._list = [segment_at(self._columns, row) for row in range(self._begin, self._end)]
         return list(self._list)
+
+    def copy(self) -> HistoryCopy:
+        """Everything, to be looked at in another thread or process."""
+        self.settle()
+        rows = slice(self._begin, self._end)
+        return HistoryCopy({name: column[rows].copy() for name, column in self._columns.items()})
 
     def span(self) -> float:
         """How far back it reaches, [s]."""
@@ -229,7 +113,7 @@ class History:
         """The stretch during which it was `time`, or the nearest one; None if there is none."""
         if not len(self):
             return None
-        return self._stretch(max(self._find(time, "right") - 1, self._begin))
+        return segment_at(self._columns, max(self._find(time, "right") - 1, self._begin))
 
     def before(self, stretch: Segment) -> History:
         """A copy of what came before `stretch`."""
@@ -260,17 +144,6 @@ class History:
             return self._end
         times = self._columns["time"][self._begin : self._end]
         return self._begin + int(times.searchsorted(time, side))
-
-    def _stretch(self, row: int) -> Segment:
-        columns = self._columns
-        inputs: Inputs = columns["inputs"][row]
-        states, most = columns["state"][row].copy(), columns["most"][row]
-        drives = {
-            name: Drive(one.kind, state, one.settings, one.frozen, float(distance))
-            for (name, one), state, distance in zip(inputs.of.items(), states, most, strict=True)
-        }
-        time, ticks = float(columns["time"][row]), int(columns["ticks"][row])
-        return Segment(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())
 
     def _make_room(self, frames: Sequence[HistoryFrame], samples: np.ndarray) -> None:
         """Columns with free rows at their end: thinned out, and larger if that is not enough."""

@@ -6,11 +6,10 @@ import dataclasses
 import math
 from functools import lru_cache
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onpath.app.lab.history import Drive, Segment
+from onpath.app.lab.segments import Drive, Segment
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
@@ -30,9 +29,6 @@ from onpath.models.studies.identification import (
 from onpath.models.systems.parameters import Parameters, specs
 from onpath.models.systems.robots import BalancedLinkage, Robot
 
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
-
 MOST_TICKS = 3000  # of the past, so that the lab does not stop for it
 FOLLOWER = "path_following"
 PLANT = ("plant", "coulomb", "encoder_step")  # as long as these stay, it is the same robot
@@ -40,20 +36,27 @@ UNITS = {"M": "kg m²", "b": "N m s", "c": "N m", "G": "N m"}
 POOR = 0.05  # of the torque, unexplained: worth a word
 
 
-def identify_model(session: Session) -> None:
-    """Give the controllers the model that the follower's last seconds tell, and say it.
+def identify_model(
+    robot: Robot, parameters: Parameters, history: list[Segment], words: Words
+) -> tuple[Parameters, str]:
+    """The model that the follower's last seconds tell.
+
+    Args:
+        history: of the lab, oldest first.
+        words: for the report.
+
+    Returns:
+        The parameters with the controllers' model as identified, and a report for the user.
 
     Raises:
         ValueError: another robot, nothing to learn from, or too poor a motion.
     """
-    robot, parameters = session.robot, session.parameters
     linkage = robot.linkage
     if linkage is None:
         raise CodedError("identified.other_robot")
-    found, duration = _learned(robot, tuple(_same_robot(robot, session.history.all())))
-    session.set_parameters(believing(linkage, parameters, found))
-    words = session.lessons.words
-    session.show_message(_sentence(robot, parameters, session.parameters, found, duration, words))
+    found, duration = _learned(robot, tuple(_same_robot(robot, history)))
+    after = believing(linkage, parameters, found)
+    return after, _sentence(robot, parameters, after, found, duration, words)
 
 
 @lru_cache(maxsize=4)  # whoever keeps the button down learns nothing new

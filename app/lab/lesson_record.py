@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from onpath.app.lab.session import Session
+from onpath.app.lab.timeline import LabEvent
 from onpath.lessons.progress import MOST_POINTS, Truth
-from onpath.lessons.record import ROBOTS, ROLES, Record
+from onpath.lessons.record import ROBOTS, ROLES, Happening, Record
 from onpath.lessons.schema import RobotName
 from onpath.lessons.thinning import peaks
 from onpath.models.arrays import Array
 from onpath.models.layout import Layout
-
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
 
 MOST_SAMPLES = 3600
 
@@ -30,7 +28,7 @@ class Beginning:
     @staticmethod
     def now(session: Session) -> Beginning:
         """At this instant; what has happened before is forgotten."""
-        session.happenings.clear()
+        session.events.clear()
         return Beginning(session.run_number, session.time)
 
 
@@ -41,7 +39,7 @@ def record_of(session: Session, since: Beginning) -> Record:
     return Record(
         times=times,
         values=_values(session, samples.astype(float)) if len(times) else _nothing(session),
-        happenings=tuple(session.happenings),
+        happenings=tuple(map(_happening, session.events)),
         run=session.run_number,
         parameters=session.parameters,
         end=session.time,
@@ -83,6 +81,12 @@ class Trace:
         kept = peaks(curves, MOST_POINTS)
         columns = [tuple(np.round(column[kept], 4).tolist()) for column in (times, *curves)]
         return Truth(self._quantity, *columns)
+
+
+def _happening(event: LabEvent) -> Happening:
+    """An event as the checks look at it."""
+    robots = tuple[RobotName, ...](ROLES[name] for name in event.controllers)
+    return Happening(event.run, event.time, event.name, event.detail, robots)
 
 
 def _nothing(session: Session) -> dict[RobotName, dict[str, Array]]:

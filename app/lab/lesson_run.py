@@ -1,138 +1,82 @@
-"""A student's way through the lessons: which step, what was predicted, which tasks are passed.
+"""Plays the lessons' steps on a student's lab and judges what is done there.
 
-No viser in it. Only the simulation thread calls it; app/lab/apply_lesson.py brings it the commands.
+No viser in it. Only the simulation thread calls it, by the commands in `app.lab.commands.lessons`.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from msgspec.structs import replace
 
 from onpath.app.lab.lesson_record import Beginning, Trace, record_of
-from onpath.app.lab.lesson_scene import set_up
-from onpath.app.lab.script_player import ScriptPlayer, perform
-from onpath.app.lab.setup import Setup, capture, restore
+from onpath.app.lab.lesson_state import LessonState
+from onpath.app.lab.script_player import ScriptPlayer
+from onpath.app.lab.session import Session
+from onpath.app.lab.setup import Path, RobotSetup, Setup, capture
 from onpath.app.lab.sketches import sketched
 from onpath.lessons.checks import Verdict, judge, statistic
 from onpath.lessons.course import Course
-from onpath.lessons.progress import Answer, Notes, Progress, Truth
+from onpath.lessons.progress import Answer, Progress, Truth
 from onpath.lessons.record import Record
-from onpath.lessons.schema import Action, Lesson, Prediction, Quiz, Sketch, Step, Task, Window
+from onpath.lessons.schema import Lesson, Prediction, Sketch, Task, Window
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameters import unknown_name
 
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
-
 CHECK_INTERVAL = 30  # frames between looks at the tasks
 
 
-class LessonRun:
-    """The lessons as one student goes through them.
+class LessonLab(Protocol):
+    """What a lesson needs of a lab.
 
     Attributes:
-        course: all lessons there are.
-        progress: what is kept.
-        words: of the student's language.
-        version: changes whenever the page must be drawn anew.
+        session: the simulated lab.
+        script: what is being done by itself, or None.
+    """
+
+    session: Session
+    script: ScriptPlayer[Any] | None
+
+    def set_up(self, setup: Setup) -> None:
+        """Set the lab up; raises ValueError if it is impossible, and then all is as it was."""
+        ...
+
+
+class LessonRun(LessonState):
+    """The lessons as one student goes through them on a lab.
+
+    Attributes:
         verdicts: on the checks of the open step's tasks, by task.
         before: the lab as it was before any lesson was open.
     """
 
     def __init__(self, course: Course, progress: Progress | None = None) -> None:
-        self.course = course
-        self.progress = progress or Progress()
-        self.words = Words(self.progress.language)
-        self.version = 0
+        super().__init__(course, progress)
         self.verdicts: dict[str, list[Verdict]] = {}
         self._begin = Beginning(0, 0.0)
         self._frames = 0
-        self._player: ScriptPlayer | None = None  # of what the step shows
+        self._player: ScriptPlayer[Any] | None = None  # of what the step shows
         self._trace: Trace | None = None  # of what is played
         self._passed: dict[str, int] = {}  # the run in which a task was passed
         self.before: Setup | None = None
-
-    # Where we are
-
-    @property
-    def lesson(self) -> Lesson | None:
-        """The open one."""
-        name = self.progress.lesson
-        if name not in self.course.lessons:
-            return None
-        return self.course.lesson(name, self.progress.language)
-
-    @property
-    def notes(self) -> Notes:
-        """On the open lesson."""
-        return self.progress.notes.get(self.progress.lesson, Notes())
-
-    @property
-    def index(self) -> int:
-        """Of the open step."""
-        return self._left_at(self.progress.lesson)
-
-    def _left_at(self, name: str) -> int:
-        """The step of a lesson that was last open; 0 if there is no such lesson."""
-        if name not in self.course.lessons:
-            return 0
-        last = len(self.course.lesson(name, self.progress.language).steps) - 1
-        return min(self.progress.notes.get(name, Notes()).step, last)
-
-    @property
-    def step(self) -> Step | None:
-        """The open one."""
-        lesson = self.lesson
-        return lesson.steps[self.index] if lesson else None
-
-    def prediction(self) -> tuple[str, Prediction] | None:
-        """The one that belongs to the open step, here or in the step before, and its key."""
-        lesson = self.lesson
-        if lesson is None:
-            return None
-        for index in (self.index, self.index - 1):
-            step = lesson.steps[index] if index >= 0 else None
-            if step is not None and (step is self.step or self.step_is("run")):
-                for prediction in step.predictions():
-                    return str(index), prediction
-        return None
-
-    def step_is(self, kind: str) -> bool:
-        """Whether the open step is of a kind."""
-        return self.step is not None and self.step.kind == kind
-
-    def answer(self) -> Answer | None:
-        """To the open step's prediction; None while there is none."""
-        found = self.prediction()
-        return None if found is None else self.notes.answers.get(found[0])
-
-    @property
-    def waits(self) -> bool:
-        """Whether a prediction is still to be made, or skipped."""
-        return self.prediction() is not None and self.answer() is None
 
     @property
     def playing(self) -> bool:
         """Whether the lab does by itself what the step shows."""
         return self._player is not None
 
-    def has_played(self) -> bool:
-        """Whether the lab has done what the open step shows, now or earlier."""
-        return str(self.index) in self.notes.played
-
     # What is asked
 
-    def open(self, name: str, session: Session) -> None:
+    def open(self, name: str, lab: LessonLab) -> None:
         """Open a lesson where it was left.
 
         Raises:
             ValueError: there is no such lesson.
         """
-        self.open_at(name, self._left_at(name), session)
+        self.open_at(name, self.left_at(name), lab)
 
-    def open_at(self, name: str, index: int, session: Session) -> None:
+    def open_at(self, name: str, index: int, lab: LessonLab) -> None:
         """Open a step of a lesson, from anywhere, with the lab as that step expects to find it.
 
         Raises:
@@ -143,39 +87,39 @@ class LessonRun:
         lesson = self.course.lesson(name, self.progress.language)
         if index not in range(len(lesson.steps)):
             raise CodedError("error.no_step", step=index + 1, steps=len(lesson.steps))
-        before = capture(session) if self.lesson is None else self.before
-        set_up(session, lesson, index)
+        before = capture(lab.session) if self.lesson is None else self.before
+        _set_up(lab, lesson, index)
         self.progress, self.before = replace(self.progress, lesson=name), before
-        self._arrive(index, session)
+        self._arrive(index, lab)
 
-    def resume(self, progress: Progress, before: Setup | None, session: Session) -> None:
+    def resume(self, progress: Progress, before: Setup | None, lab: LessonLab) -> None:
         """Go on as it was kept, in a lab that is as it was left."""
         self.progress, self.before = progress, before
         self.words = Words(progress.language)
         self.version += 1
         if self.lesson is not None:
-            self._arrive(self.index, session)
+            self._arrive(self.index, lab)
 
-    def take(self, setup: Setup, session: Session) -> None:
+    def take(self, setup: Setup, lab: LessonLab) -> None:
         """Set the lab up otherwise; the open step stays, `begin_anew` brings its own set-up back.
 
         Raises:
             ValueError: see `restore`; then all is as it was.
         """
-        restore(session, setup)
-        self._begin_again(session, running=True)
+        lab.set_up(setup)
+        self._begin_again(lab, running=True)
         self.version += 1
 
-    def close(self, session: Session) -> None:
+    def close(self, lab: LessonLab) -> None:
         """No lesson is open; the lab is as it was before."""
         self.progress = replace(self.progress, lesson="")
-        self._begin_again(session, running=session.running)
+        self._begin_again(lab, running=lab.session.running)
         if self.before is not None:
-            restore(session, self.before)
-            session.running = True
+            lab.set_up(self.before)
+            lab.session.running = True
         self.version += 1
 
-    def go(self, by: int, session: Session) -> None:
+    def go(self, by: int, lab: LessonLab) -> None:
         """Another step; on the way on, a prediction that is not made is skipped.
 
         Where the lab then shows what was asked, only the prediction is skipped.
@@ -185,16 +129,16 @@ class LessonRun:
             return
         target = min(max(self.index + by, 0), len(lesson.steps) - 1)
         if by > 0 and self.waits:
-            self._note_answer(Answer())
+            self.note_answer(Answer())
             if self.step_is("run"):
-                self._lock(session)
+                self._lock(lab.session)
                 return
-        self._go(target, session)
+        self._go(target, lab)
 
-    def begin_anew(self, session: Session) -> None:
+    def begin_anew(self, lab: LessonLab) -> None:
         """Set the lab up again for the open step."""
         if self.lesson is not None:
-            self._go(self.index, session)
+            self._go(self.index, lab)
 
     def predict(self, answer: Answer, session: Session) -> None:
         """Commit to a prediction.
@@ -210,67 +154,40 @@ class LessonRun:
             answer = sketched(prediction, answer)
         elif answer.option is not None and answer.option >= len(prediction.options):
             raise CodedError("lesson.no_such_option")
-        self._note_answer(answer)
+        self.note_answer(answer)
         self._lock(session)
         self.version += 1
 
-    def play(self, session: Session) -> None:
-        """Let the lab do what the step shows, set up as the step wants it."""
-        lesson, step, found = self.lesson, self.step, self.prediction()
-        if lesson is None or step is None or step.script is None:
+    def play(self, player: ScriptPlayer[Any], lab: LessonLab) -> None:
+        """Let the lab do what the open step shows, set up as the step wants it.
+
+        Args:
+            player: of the step's script.
+
+        Raises:
+            ValueError: a prediction is to be made first.
+        """
+        lesson, found, session = self.lesson, self.prediction(), lab.session
+        if lesson is None:
             return
-        if session.locked:
-            raise ValueError(session.locked)
+        if self.locked:
+            raise ValueError(self.locked)
         rate = session.rate
-        set_up(session, lesson, self.index)
+        _set_up(lab, lesson, self.index)
         session.rate = rate  # may be slow motion; what happens is the same
         self._begin = Beginning.now(session)
         self._trace = Trace(quantity_of(found[1]), self._begin) if found else None
-        self._player = session.script = ScriptPlayer(step.script)
+        self._player = lab.script = player
         session.running = True
-        self.version += 1
-
-    def act(self, actions: tuple[Action, ...], session: Session) -> None:
-        """What a link in the text does."""
-        for action in actions:
-            if session.locked and action.run:
-                raise ValueError(session.locked)
-            perform(action, session)
-
-    def hint(self, task: str) -> None:
-        """One hint more."""
-        shown = self.notes.hints.get(task, 0) + 1
-        self._note(hints={**self.notes.hints, task: shown})
-
-    def answer_quiz(self, block: int, option: int) -> None:
-        """Choose an option of the quiz that is the open step's block.
-
-        Raises:
-            ValueError: there is no such quiz or option.
-        """
-        step = self.step
-        quiz = step.blocks[block] if step and block in range(len(step.blocks)) else None
-        if not isinstance(quiz, Quiz) or option not in range(len(quiz.options)):
-            raise CodedError("lesson.no_such_option")
-        self._note(quiz={**self.notes.quiz, f"{self.index}.{block}": option})
-
-    def set_language(self, language: str) -> None:
-        """Of texts and interface."""
-        self.words = Words(language)
-        self.progress = replace(self.progress, language=self.words.language)
-        self.version += 1
-
-    def set_presenting(self, on: bool) -> None:
-        """Large type, or not."""
-        self.progress = replace(self.progress, presenting=on)
         self.version += 1
 
     # What happens
 
-    def follow(self, session: Session) -> None:
+    def follow(self, lab: LessonLab) -> None:
         """Look at the tasks now and then, and at the end of what a step shows; every frame."""
         self._frames += 1
-        if self._player is not None and session.script is not self._player:
+        session = lab.session
+        if self._player is not None and lab.script is not self._player:
             ended, self._player = self._player, None
             if ended.finished:
                 self._note_truth(session)
@@ -308,24 +225,25 @@ class LessonRun:
             chosen = record.chosen("follower", Window())
             value = statistic(record, "follower", task.best, "max", chosen) or 0.0
         if best is None or value < best:
-            self._note(tasks={**self.notes.tasks, task.id: round(value, 3)})
+            self.note(tasks={**self.notes.tasks, task.id: round(value, 3)})
 
-    def _go(self, index: int, session: Session) -> None:
+    def _go(self, index: int, lab: LessonLab) -> None:
         lesson = self.lesson
         assert lesson is not None
-        set_up(session, lesson, index)
-        self._arrive(index, session)
+        _set_up(lab, lesson, index)
+        self._arrive(index, lab)
 
-    def _arrive(self, index: int, session: Session) -> None:
+    def _arrive(self, index: int, lab: LessonLab) -> None:
         """A step begins, in a lab that is set up."""
         lesson = self.lesson
         assert lesson is not None
-        self._note(step=index, seen=max(self.notes.seen, index + 1))
-        self._begin_again(session, lesson.scene_at(index).running)
+        self.note(step=index, seen=max(self.notes.seen, index + 1))
+        self._begin_again(lab, lesson.scene_at(index).running)
 
-    def _begin_again(self, session: Session, running: bool) -> None:
+    def _begin_again(self, lab: LessonLab, running: bool) -> None:
         """Nothing is shown, has been done or can be undone from now on."""
-        session.script, session.put_aside, session.running = None, None, running
+        session = lab.session
+        lab.script, session.put_aside, session.running = None, None, running
         self._player = self._trace = None
         self.verdicts, self._passed = {}, {}
         self._begin = Beginning.now(session)
@@ -333,7 +251,6 @@ class LessonRun:
 
     def _lock(self, session: Session) -> None:
         """Time stands still until a prediction has been made or skipped."""
-        session.locked = self.words("lesson.locked") if self.waits else ""
         if self.waits:
             session.running = False
 
@@ -343,17 +260,26 @@ class LessonRun:
             self._trace.follow(session)
             truths = {**truths, found[0]: self._trace.truth()}
         played = tuple(dict.fromkeys((*self.notes.played, str(self.index))))
-        self._note(truths=truths, played=played)
+        self.note(truths=truths, played=played)
 
-    def _note_answer(self, answer: Answer) -> None:
-        found = self.prediction()
-        assert found is not None
-        self._note(answers={**self.notes.answers, found[0]: answer})
 
-    def _note(self, **changes: Any) -> None:
-        notes = {**self.progress.notes, self.progress.lesson: replace(self.notes, **changes)}
-        self.progress = replace(self.progress, notes=notes)
-        self.version += 1
+def setup_of(lesson: Lesson, index: int, exaggeration: float = 1.0) -> Setup:
+    """A step's set-up: of the lesson alone, not of what was done in the lab before.
+
+    Args:
+        index: of the step.
+        exaggeration: how many times larger a deflection is drawn, as in the lab before.
+    """
+    scene = lesson.scene_at(index)
+    robot, path = scene.robot or lesson.front.robot, Path(scene.path or Path().name)
+    own = {robot: RobotSetup(dict(scene.set), path)}
+    return Setup(robot, own, exaggeration=exaggeration)
+
+
+def _set_up(lab: LessonLab, lesson: Lesson, index: int) -> None:
+    """Both robots at the start, everything as the step wants it but how large it is drawn."""
+    lab.set_up(setup_of(lesson, index, lab.session.exaggeration))
+    lab.session.editor.select(None)
 
 
 def quantity_of(prediction: Prediction) -> str:

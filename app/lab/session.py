@@ -1,35 +1,24 @@
-"""One user's lab: two robots, one path, one clock. No viser in it; one thread at a time.
+"""The simulated lab: two robots on one path with one clock. No viser in it, one thread at a time.
 
-Commands come in through `post` from any thread and are applied by the simulation thread at the
-beginning of its next frame.
+It knows nothing of its user: commands, lessons, class and messages belong to `app.lab.lab`.
 """
 
 from __future__ import annotations
 
-import logging
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
-from math import inf
+from collections.abc import Mapping, Sequence
 from operator import is_
-from time import perf_counter
 
 import numpy as np
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
-from onpath.app.lab.command import Command
 from onpath.app.lab.external_forces import ExternalForces
-from onpath.app.lab.history import History, HistoryFrame, Inputs, Instant
-from onpath.app.lab.lesson_run import LessonRun
-from onpath.app.lab.looking_back import Timeline
+from onpath.app.lab.history import History
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout, samples_of
-from onpath.app.lab.script_player import ScriptPlayer
-from onpath.app.lab.snapshot import PathView
-from onpath.lessons.course import NO_LESSONS, Course
-from onpath.lessons.record import ROLES, Happening
-from onpath.lessons.schema import RobotName
+from onpath.app.lab.segments import HistoryFrame, Inputs, Instant
+from onpath.app.lab.timeline import LabEvent, Timeline
 from onpath.models.arrays import Array
 from onpath.models.control.laws import NAMES
 from onpath.models.layout import Layout
@@ -39,40 +28,37 @@ from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 from onpath.models.systems.parameters import TICK, Parameters, time_step
 from onpath.models.systems.robots import Robot
 
-log = logging.getLogger(__name__)
-
-MOST_COMMANDS = 500  # waiting at once; a flood beyond is dropped
 MOST_TICKS = 200  # in one frame
-MOST_HAPPENINGS = 1500  # 0.2 MB
+MOST_EVENTS = 1500  # 0.2 MB
 
 
 class Session:
-    """The state of one lab.
+    """The state of one simulated lab.
+
+    Args:
+        store: where the closed loops come from.
+        entry: the robot to begin with.
 
     Attributes:
+        entry, robot, parameters: the robot in use, as the catalogue has it and as it is made.
         runs: the two closed loops, by controller.
         editor: the path.
+        grips: external forces: what holds the robots back, and what pulls at them.
         history: the last minute.
         time: simulated, [s].
+        running: whether simulated time advances.
+        rate: simulated seconds per second.
+        copy: whether hand and hold act on both robots.
+        exaggeration: of a deflection, in the drawing alone.
         viewing: the past instant being looked at, [s], or None.
         put_aside: what going on from the past has forgotten, or None.
-        grips: what holds the robots back, and what pulls at them.
-        happenings: what was done and came about, for the lessons' checks.
+        events: what was done and what came about, oldest first.
+        faults: the controllers whose robots have stopped and of which nobody has been told.
         run_number: how often the robots have been set back to the start.
-        script: what is being done by itself, or None.
-        lessons: the way through the lessons.
-        watch: called at every frame, or None.
-        shared: the share code asked for last.
-        locked: why time must not run now; empty when it may.
-        frozen: whether the teacher has stopped this lab.
-        asked: how many commands the user has given.
     """
 
-    def __init__(
-        self, store: LoopCache, entry: RobotEntry = FIVE_BAR, course: Course = NO_LESSONS
-    ) -> None:
+    def __init__(self, store: LoopCache, entry: RobotEntry = FIVE_BAR) -> None:
         self._store = store
-        self._inbox: deque[Command] = deque(maxlen=MOST_COMMANDS)
         self._benches: dict[str, tuple[Parameters, PathEditor]] = {}
         self.history = History(self._samples)
         self._inputs: Inputs | None = None
@@ -80,17 +66,10 @@ class Session:
         self.running = True
         self.rate = 1.0
         self.copy = True
-        self.exaggeration = 1.0  # of a deflection, in the drawing alone
-        self.path_view: PathView | None = None  # the last one drawn, while it is still right
-        self.message, self.message_level = "", "info"
-        self.happenings: deque[Happening] = deque(maxlen=MOST_HAPPENINGS)
+        self.exaggeration = 1.0
+        self.events: deque[LabEvent] = deque(maxlen=MOST_EVENTS)
+        self.faults: list[str] = []
         self.run_number = 0
-        self.script: ScriptPlayer | None = None
-        self.locked = ""
-        self.frozen, self.asked = False, 0
-        self.lessons = LessonRun(course)
-        self.watch: Callable[[Session], None] | None = None
-        self.shared = ""
         self._set_up(entry)
 
     # The robot
@@ -101,7 +80,6 @@ class Session:
             self._benches[self.entry.name] = (self.parameters, self.editor)
             self._set_up(entry)
             self.note("robot", entry.name)
-            self.show_message("")
 
     def set_parameters(self, parameters: Parameters) -> None:
         """New numbers; a structural one makes another robot, which starts anew."""
@@ -120,81 +98,16 @@ class Session:
         self.parameters: Parameters = parameters
         self.robot: Robot = entry.make(parameters)
         self.editor = editor or PathEditor(self.robot, self.presets["circle"])
-        self.path_view = None
         self._restart()
-
-    # Commands
-
-    def post(self, command: Command) -> None:
-        """Ask for something; from any thread."""
-        self._inbox.append(command)
-
-    def drain(self, most: float = inf) -> float:
-        """Apply what has been asked for. A command that makes no sense is answered in words.
-
-        Args:
-            most: of computing, after which the rest waits, [s].
-
-        Returns:
-            How long the commands took, [s].
-        """
-        begun = perf_counter()
-        while self._inbox and perf_counter() - begun < most:
-            command = self._inbox.popleft()
-            if not command.from_teacher:
-                self.asked += 1
-                if refusal := self._refusal(command):
-                    self.show_message(refusal, "warning")
-                    continue
-            try:
-                command.apply(self)
-            except ValueError as error:
-                self.show_message(self.lessons.words.sentence(error), "warning")
-        taken = perf_counter() - begun
-        if not self.frozen:
-            self._play()
-        self.lessons.follow(self)
-        if self.watch is not None:
-            self.watch(self)
-        return taken
-
-    def _refusal(self, command: Command) -> str:
-        """Why a command of the user's is not applied now; empty when it is."""
-        if self.frozen:
-            return self.lessons.words("class.frozen")
-        return self.locked if command.lets_time_run else ""
-
-    def _play(self) -> None:
-        """What a script says."""
-        try:
-            if self.script is not None and self.script.play(self):
-                self.script = None
-        except ValueError as error:
-            self.script = None
-            self.show_message(self.lessons.words.sentence(error), "warning")
 
     def note(self, name: str, detail: str = "", controllers: tuple[str, ...] = NAMES) -> None:
         """Remember that something has happened."""
-        what = Happening(self.run_number, self.time, name, detail, _roles(controllers))
-        self.happenings.append(what)
-
-    def show_message(self, message: str, level: str = "info") -> None:
-        """Show a sentence to the user."""
-        self.message, self.message_level = message, level
-
-    def clear_message(self) -> None:
-        """Say nothing more, but for robots that still stand still."""
-        self.show_message("")
-        for name, run in self.runs.items():
-            if run.diverged is not None:
-                self._tell_divergence(name)
+        self.events.append(LabEvent(self.run_number, self.time, name, detail, controllers))
 
     # Time
 
     def advance(self, seconds: float) -> None:
         """Simulate `seconds` of simulated time, if running."""
-        if self.frozen:
-            return
         if not self.running:
             self._owed = 0.0
             if self.viewing is None:
@@ -231,7 +144,8 @@ class Session:
             self._store, self.parameters, editor.curve, editor.table, push, ticks, self.time, dt
         )
         if run.diverged is not None and was is None:
-            self._tell_divergence(name)
+            self.note("diverged", controllers=(name,))
+            self.faults.append(name)
 
     def _bend(self, seconds: float) -> None:
         """Let an edit of the path blend in."""
@@ -241,8 +155,6 @@ class Session:
 
     def step_once(self) -> None:
         """One step of a paused lab: the controller's next action, at least a millisecond."""
-        if self.locked:
-            raise ValueError(self.locked)
         self.running = False
         dt = time_step(self.parameters)
         self.simulate(max(1, round(max(TICK, 1 / self.parameters.control_rate) / dt)))
@@ -251,7 +163,6 @@ class Session:
         """Both robots to the start, at rest. The past is forgotten; path and parameters stay."""
         self._restart()
         self.note("reset")
-        self.show_message("")
 
     def _restart(self) -> None:
         self.run_number += 1
@@ -261,6 +172,7 @@ class Session:
         self.viewing: float | None = None
         self.put_aside: Timeline | None = None
         self.history.clear()
+        self.faults.clear()
         start = self.start_point(self.editor.curve)
         curve = self.editor.curve
         self.runs = {
@@ -271,19 +183,6 @@ class Session:
     def start_point(self, curve: Curve) -> Array:
         """Where a run begins: on the path, (p,), [m]."""
         return self.robot.frame.lift(curve.at(np.array(0.0)))
-
-    def _tell_divergence(self, name: str) -> None:
-        run = self.runs[name]
-        assert run.diverged is not None
-        self.note("diverged", controllers=(name,))
-        words = self.lessons.words
-        said = words(
-            "say.stopped",
-            robot=words(f"controller.{name}.title"),
-            time=f"{run.diverged.time:.2f}",
-            reason=words.sentence(run.diverged.reason),
-        )
-        self.show_message(said, "error")
 
     def targets(self, controller: str) -> list[str]:
         """Which robots a gesture at `controller` acts on."""
@@ -318,9 +217,3 @@ class Session:
         distances = [distance for frame in frames for distance in frame.distances]
         samples = samples_of(self.robot, self.parameters, rows, distances)
         return samples.reshape(len(frames), len(self.runs), -1)
-
-
-@lru_cache
-def _roles(controllers: tuple[str, ...]) -> tuple[RobotName, ...]:
-    """The same object for all that concerns the same robots: it is kept many times."""
-    return tuple(ROLES[controller] for controller in controllers)

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import msgspec
 import numpy as np
 
 from onpath.app.lab.path_editor import BLEND
+from onpath.app.lab.session import Session
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through
@@ -29,9 +30,6 @@ from onpath.models.systems.parameters import (
     specs,
     unknown_name,
 )
-
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
 
 EXAGGERATIONS = (1.0, 20.0)  # the least and the most
 RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)  # simulated seconds per second

@@ -96,7 +96,7 @@ def simulate(
     )
     faults = curve_faults(chosen.robot().margin, curve)
     if faults:
-        raise ValueError("; ".join(fault.reason for fault in faults))
+        raise ValueError("; ".join(str(fault.reason) for fault in faults))
     return Run(chosen, experiments.run(chosen, law))
 
 

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from markupsafe import Markup
-
 from onpath.app.common.palette import BORDER, FOLLOWER, GREEN
 from onpath.app.common.templates import render
-from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.checks import Verdict
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Choice, Lesson, Quiz, Sketch, Step, Task
@@ -17,7 +15,7 @@ from onpath.lessons.words import Words
 LETTERS = "ABCDEFGH"
 
 
-def heading(lesson: Lesson, step: Step, run: LessonRun) -> Markup:
+def heading(lesson: Lesson, step: Step, run: LessonState) -> str:
     """Where one is: lesson, progress bar, kind and title of the step."""
     return render(
         "lesson/heading.html",
@@ -30,22 +28,22 @@ def heading(lesson: Lesson, step: Step, run: LessonRun) -> Markup:
     )
 
 
-def text(content: str) -> Markup:
+def text(content: str) -> str:
     """Prose: markup from a lesson, or plain text."""
     return render("lesson/text.html", content=content)
 
 
-def remark(said: str, italic: bool = False) -> Markup:
+def remark(said: str, italic: bool = False) -> str:
     """A sentence of the interface."""
     return render("lesson/remark.html", said=said, italic=italic)
 
 
-def asked(block: Sketch) -> Markup:
+def asked(block: Sketch) -> str:
     """A question that is answered by a sketch."""
     return render("lesson/box.html", title=block.question, colour=BORDER.hex)
 
 
-def question(block: Choice | Quiz, chosen: int | None, revealed: bool, words: Words) -> Markup:
+def question(block: Choice | Quiz, chosen: int | None, revealed: bool, words: Words) -> str:
     """A question with lettered options; once revealed, with what is right and why.
 
     Args:
@@ -62,7 +60,7 @@ def question(block: Choice | Quiz, chosen: int | None, revealed: bool, words: Wo
     )
 
 
-def task(block: Task, verdicts: list[Verdict], run: LessonRun) -> Markup:
+def task(block: Task, verdicts: list[Verdict], run: LessonState) -> str:
     """What to do, how far it is done, and the hints shown so far."""
     words, best = run.words, run.notes.tasks.get(block.id)
     passed = ""
@@ -75,7 +73,7 @@ def task(block: Task, verdicts: list[Verdict], run: LessonRun) -> Markup:
 
 
 @lru_cache(maxsize=256)  # every page asks ten times a second
-def _task(title: str, verdicts: tuple[Verdict, ...], hints: tuple[str, ...], passed: str) -> Markup:
+def _task(title: str, verdicts: tuple[Verdict, ...], hints: tuple[str, ...], passed: str) -> str:
     return render(
         "lesson/task.html",
         title=title,
@@ -86,7 +84,7 @@ def _task(title: str, verdicts: tuple[Verdict, ...], hints: tuple[str, ...], pas
     )
 
 
-def entry(lesson: Lesson, run: LessonRun, number: int) -> Markup:
+def entry(lesson: Lesson, run: LessonState, number: int) -> str:
     """A line of the overview."""
     notes = run.progress.notes.get(lesson.name)
     tasks = lesson.tasks()

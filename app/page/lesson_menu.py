@@ -7,23 +7,31 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
+from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
-from onpath.lessons.words import languages
+from onpath.lessons.course import Course
+from onpath.lessons.words import Words, languages
 
 
 class LessonMenu:
     """The button near the top, and its window."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
-        self._gui, self._session, self._post = gui, session, post
-        words = session.lessons.words
+    def __init__(
+        self, gui: viser.GuiApi, words: Words, post: Post, course: Course, first: PageSnapshot
+    ) -> None:
+        self._gui, self._words, self._post, self._course = gui, words, post, course
+        self.follow(first)
         button = gui.add_button(words("lesson.lessons"), icon=viser.Icon.SCHOOL, color="green")
         on_press(button, self._open)
 
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Remember how far the student is, for the window."""
+        self._run = LessonView(self._course, self._words, snapshot.lesson)
+
     def _open(self) -> None:
-        run, gui = self._session.lessons, self._gui
+        run, gui = self._run, self._gui
         with gui.add_modal(run.words("lesson.choose")) as modal:
             for number, name in enumerate(run.course.lessons, start=1):
                 lesson = run.course.lesson(name, run.words.language)
@@ -38,7 +46,7 @@ class LessonMenu:
             self._add_choices(modal.close)
 
     def _add_choices(self, close: Callable[[], None]) -> None:
-        run, gui = self._session.lessons, self._gui
+        run, gui = self._run, self._gui
         names = {run.words(f"language.{code}"): code for code in languages()}
         language = gui.add_dropdown(
             run.words("lesson.language"),

@@ -9,14 +9,15 @@ import numpy as np
 import viser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.lesson_run import LessonRun
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
 from onpath.app.page.lesson_chart import PredictionChart
+from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
 from onpath.app.scene.scene import Scene
-from onpath.app.scene.stage_catalogue import stage_of
+from onpath.lessons.course import Course
 from onpath.lessons.schema import Choice, Prediction, Quiz, Sketch, Step, Task, Text
+from onpath.lessons.words import Words
 
 if TYPE_CHECKING:
     from onpath.app.scene.sketch_board import SketchBoard
@@ -26,7 +27,7 @@ NUMBERS = 6  # sliders that draw a sketch
 
 
 class LessonPanel:
-    """Shows the open step; draws it anew when the session's lessons have changed.
+    """Shows the open step; draws it anew when the lab's lessons have changed.
 
     Args:
         submit: runs something in another thread.
@@ -36,21 +37,22 @@ class LessonPanel:
     def __init__(
         self,
         client: viser.ClientHandle,
-        session: Session,
+        words: Words,
         post: Post,
+        course: Course,
         scene: Scene,
         submit: Callable[[Callable[[], None]], None],
+        first: PageSnapshot,
         tab: viser.GuiTabHandle | None = None,
     ) -> None:
         self._client, self._gui, self._post, self._submit = client, client.gui, post, submit
-        self._scene = scene
+        self._scene, self._words, self._course = scene, words, course
         self._handles: list[Any] = []
         self._tasks: list[tuple[Task, viser.GuiHtmlHandle]] = []
         self._chart: PredictionChart | None = None
         self._board: SketchBoard | None = None
         self._draft = c.Predict()
         self._busy, self._version, self._reading = False, -1, -1
-        words = session.lessons.words
         self._panel = None
         if tab is None:
             self._panel = self._gui.add_panel(order=0)
@@ -62,32 +64,35 @@ class LessonPanel:
         on.on_trigger(_turns(post, 1))
         back = self._gui.add_command(words("lesson.back"), hotkey="pageup")
         back.on_trigger(_turns(post, -1))
-        self._build(session)
+        self._build(self._view(first))
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """Draw anew what has changed; what is measured, always."""
         if self._busy:
             return
-        run = session.lessons
+        run = self._view(snapshot)
         if run.version != self._version:
             self._busy = True
-            self._submit(lambda: self._rebuild(session))
+            self._submit(lambda: self._rebuild(run))
             return
         for task, handle in self._tasks:
             content = page.task(task, run.verdicts.get(task.id, []), run)
             if handle.content != content:
                 handle.content = content
         if self._chart is not None and run.playing:
-            self._chart.show(run.truth(session))
+            self._chart.show(run.truth)
         board = self._board  # another thread may take it away
         if board is not None:
             board.draw()
 
-    def _rebuild(self, session: Session) -> None:
+    def _view(self, snapshot: PageSnapshot) -> LessonView:
+        return LessonView(self._course, self._words, snapshot.lesson)
+
+    def _rebuild(self, run: LessonView) -> None:
         try:
-            if session.lessons.lesson is not None:
+            if run.lesson is not None:
                 self._clear()
-                self._build(session)
+                self._build(run)
         finally:
             self._busy = False
 
@@ -100,8 +105,7 @@ class LessonPanel:
             self._board = None
             self._scene.show_titles(True)
 
-    def _build(self, session: Session) -> None:
-        run = session.lessons
+    def _build(self, run: LessonView) -> None:
         self._version = run.version
         lesson, step = run.lesson, run.step
         assert lesson is not None and step is not None
@@ -112,15 +116,15 @@ class LessonPanel:
         with self._tab:
             self._html(page.heading(lesson, step, run))
             if step.kind == "run":
-                self._add_run(session)
+                self._add_run(run)
             if step.kind != "run" or run.has_played() or self._reading == run.index:
                 for number, block in enumerate(step.blocks):
-                    self._add(number, block, session)
+                    self._add(number, block, run)
             else:
                 self._add_reading(run)
             self._add_ways(step, run)
 
-    def _add_reading(self, run: LessonRun) -> None:
+    def _add_reading(self, run: LessonView) -> None:
         """The text tells what happens; who wants to read it first, may."""
 
         def read() -> None:
@@ -130,8 +134,7 @@ class LessonPanel:
         on_press(button, read)
         self._handles.append(button)
 
-    def _add(self, number: int, block: object, session: Session) -> None:
-        run = session.lessons
+    def _add(self, number: int, block: object, run: LessonView) -> None:
         if isinstance(block, Text):
             self._html(page.text(block.html))
             for link in block.links:
@@ -143,9 +146,9 @@ class LessonPanel:
             self._html(page.question(block, chosen, chosen is not None, run.words))
             self._add_letters(block, lambda option: self._post(c.AnswerQuiz(number, option)))
         elif isinstance(block, Choice | Sketch):
-            self._add_prediction(block, session)
+            self._add_prediction(block, run)
 
-    def _add_task(self, task: Task, run: LessonRun) -> None:
+    def _add_task(self, task: Task, run: LessonView) -> None:
         verdicts = run.verdicts.get(task.id, [])
         self._tasks.append((task, self._html(page.task(task, verdicts, run))))
         left = len(task.hints) - run.notes.hints.get(task.id, 0)
@@ -153,29 +156,29 @@ class LessonPanel:
             label = run.words("lesson.hint", left=left)
             self._button(label, c.ShowHint(task.id), "gray", viser.Icon.BULB)
 
-    def _add_prediction(self, block: Prediction, session: Session) -> None:
-        run, answer = session.lessons, session.lessons.answer()
+    def _add_prediction(self, block: Prediction, run: LessonView) -> None:
+        answer = run.answer()
         if isinstance(block, Sketch):
             self._html(page.asked(block))
             if answer is None:
-                self._add_sketching(block, session)
+                self._add_sketching(block)
             else:
-                self._add_chart(block, session)
+                self._add_chart(block, run)
             return
         chosen = answer.option if answer else None
         self._html(page.question(block, chosen, False, run.words))
         if answer is None:
-            commit = self._commit_button(run)
+            commit = self._commit_button()
             letters = self._add_letters(block, lambda option: self._choose(option, commit, run))
             commit.order = letters.order + 0.5
 
-    def _choose(self, option: int, commit: viser.GuiButtonHandle, run: LessonRun) -> None:
+    def _choose(self, option: int, commit: viser.GuiButtonHandle, run: LessonView) -> None:
         self._draft = c.Predict(option=option)
         commit.label = f"{run.words('lesson.commit')}: {page.LETTERS[option]}"
         commit.disabled = False
 
-    def _commit_button(self, run: LessonRun) -> viser.GuiButtonHandle:
-        commit = self._gui.add_button(run.words("lesson.commit"), icon=viser.Icon.LOCK)
+    def _commit_button(self) -> viser.GuiButtonHandle:
+        commit = self._gui.add_button(self._words("lesson.commit"), icon=viser.Icon.LOCK)
         commit.disabled = True
         self._draft = c.Predict()
         on_press(commit, lambda: self._post(self._draft))
@@ -189,13 +192,13 @@ class LessonPanel:
         self._handles.append(group)
         return group
 
-    def _add_sketching(self, block: Sketch, session: Session) -> None:
+    def _add_sketching(self, block: Sketch) -> None:
         """The board, its keyboard twin, and the button that commits."""
-        words = session.lessons.words
+        words = self._words
         said = self._html(page.remark(words("lesson.draw_first")))
         from onpath.app.scene.sketch_board import SketchBoard  # see app/server/lazy_imports.py
 
-        commit = self._commit_button(session.lessons)
+        commit = self._commit_button()
 
         def drawn(times: np.ndarray, values: np.ndarray) -> None:
             self._draft = c.Predict(None, tuple(times.tolist()), tuple(values.tolist()))
@@ -203,15 +206,13 @@ class LessonPanel:
             said.content = page.remark(words("lesson.drawn"))
 
         title = f"{words(f'robot.{block.robot}')}: {words(f'quantity.{block.quantity}')}"
-        stage = stage_of(session.robot)
         self._scene.show_titles(False)
-        self._board = SketchBoard(self._client.scene, stage, block, title, drawn)
-        self._add_numbers(block, session.lessons, self._board, drawn)
+        self._board = SketchBoard(self._client.scene, self._scene.stage, block, title, drawn)
+        self._add_numbers(block, self._board, drawn)
 
     def _add_numbers(
         self,
         block: Sketch,
-        run: LessonRun,
         board: SketchBoard,
         drawn: Callable[[np.ndarray, np.ndarray], None],
     ) -> None:
@@ -223,22 +224,20 @@ class LessonPanel:
             board.show(times, values)
             drawn(times, values)
 
-        folder = self._gui.add_folder(run.words("lesson.numbers"), expand_by_default=False)
+        folder = self._gui.add_folder(self._words("lesson.numbers"), expand_by_default=False)
         self._handles.append(folder)
         with folder:
             for time in times:
                 unit = page.QUANTITIES[block.quantity]
-                label = run.words("lesson.at", time=f"{time:g}", unit=unit)
+                label = self._words("lesson.at", time=f"{time:g}", unit=unit)
                 step = (block.top - block.bottom) / 100
                 slider = self._gui.add_slider(label, block.bottom, block.top, step, block.bottom)
                 on_user_update(slider, moved)
                 sliders.append(slider)
 
-    def _add_run(self, session: Session) -> None:
+    def _add_run(self, run: LessonView) -> None:
         """What was predicted beside what happens, and the button that lets it happen."""
-        run, step, found = session.lessons, session.lessons.step, session.lessons.prediction()
-        assert step is not None
-        truth = run.truth(session)
+        found, truth = run.prediction(), run.truth
         if run.playing:
             self._html(page.remark(run.words("lesson.playing"), italic=True))
         else:
@@ -253,18 +252,17 @@ class LessonPanel:
         if answer is not None and answer.skipped:
             self._html(page.remark(run.words("lesson.skipped"), italic=True))
         if isinstance(block, Sketch):
-            self._add_chart(block, session)
+            self._add_chart(block, run)
         elif truth is not None and not run.playing:
             chosen = answer.option if answer else None
             self._html(page.question(block, chosen, True, run.words))
 
-    def _add_chart(self, block: Sketch, session: Session) -> None:
-        run = session.lessons
+    def _add_chart(self, block: Sketch, run: LessonView) -> None:
         self._chart = PredictionChart(self._gui, block, run.answer(), run.words)
         self._handles.append(self._chart)
-        self._chart.show(run.truth(session))
+        self._chart.show(run.truth)
 
-    def _add_ways(self, step: Step, run: LessonRun) -> None:
+    def _add_ways(self, step: Step, run: LessonView) -> None:
         """Back, on, set up again, away."""
         lesson = run.lesson
         assert lesson is not None

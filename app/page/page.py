@@ -1,8 +1,6 @@
-"""One browser tab: scene, panels and plots around one session."""
+"""One browser tab: scene, panels and plots around what is shown of one lab."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import viser
 
@@ -10,8 +8,8 @@ from onpath.app.common.palette import FOLLOWER
 from onpath.app.common.templates import render
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
-from onpath.app.lab.take_snapshot import take_snapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel
@@ -20,34 +18,41 @@ from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.app.page.panels.class_panel import ClassPanel
 from onpath.app.page.panels.keys import add_keys
 from onpath.app.page.panels.readout import Readout
+from onpath.app.page.panels.widgets import Post
 from onpath.app.page.plots import DISTANCE, LivePlot
+from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.page.step_controls import StepControls
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene, SceneCallbacks
 from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.app.simulation.display_rate import STRIDES, is_turn
 from onpath.app.viser_adapter.frame_channel import FrameChannel
+from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot
 
-AT_EASE = STRIDES[0]  # the stride of a thread that has time
-SLOW, SLOWER = 6, 12  # frames or so per update of traces, plots, readouts: 10 Hz, 5 of many labs
 SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
 
 
 class Page:
-    """What one client sees. Built in a thread of its own, then used by the simulation thread."""
+    """What one client sees. Built in a thread of its own, then used by the simulation thread.
 
-    def __init__(self, client: viser.ClientHandle, session: Session, desk: PageContext) -> None:
+    Args:
+        first: what it shows at first.
+
+    Attributes:
+        is_outdated: whether a whole snapshot is wanted, to build the page anew.
+        exporter: makes the files that are asked for on it.
+    """
+
+    def __init__(self, client: viser.ClientHandle, first: PageSnapshot, desk: PageContext) -> None:
         self._client = client
         self._desk = desk
         self._channel = FrameChannel(client)
-        self._offset = client.client_id  # spreads the clients' slow updates over the frames
-        self._exporter = Exporter(client)
+        self.exporter, self._rebuilds = Exporter(client), RebuildThread()
         self._framed, self._settling = 0.0, SETTLING
-        self._shown: tuple[object, ...] = ()
+        self._building, self.is_outdated = True, False
         client.gui.configure_theme(
             show_logo=False, show_share_button=False, brand_color=FOLLOWER.rgb
         )
@@ -56,26 +61,31 @@ class Page:
             client.gui.main_panel.dock_right()
             client.gui.main_panel.set_width(CONTROL_WIDTH)
         with one_at_a_time:
-            self._build(session)
+            self._build(first)
 
     def close(self) -> None:
         """The tab is gone."""
-        self._exporter.close()
+        self.exporter.close()
+        self._rebuilds.close()
 
-    def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
-        """See `app.simulation.simulation_thread.Display`."""
-        count = frame + self._offset
-        if session.grips.grabbed and stride == AT_EASE:
-            stride = 1.0  # the hand feels every frame of delay
-        if not is_turn(count, stride) or self._robot is None or self._channel.closed:
-            return
-        if self._page(session) != self._built:
-            self._robot = None  # nothing is shown until the new one stands
-            self._exporter.submit(lambda: self._rebuild(session))
+    @property
+    def is_ready(self) -> bool:
+        """Whether anything can be shown: the page stands, and somebody is there."""
+        return not self._building and not self._channel.closed
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show what is; on the simulation thread, while the page is ready."""
+        if self._key(snapshot) != self._built:
+            self._renew(snapshot)
             return
         with self._channel:
-            every = stride * round((SLOW if stride <= AT_EASE else SLOWER) / stride)
-            self._show(session, achieved, slow=is_turn(count, every))
+            self._scene.update(snapshot)
+            self._scene.update_path(snapshot)
+            if isinstance(snapshot, PageSnapshot):
+                self._scene.update_traces(snapshot)
+                self._frame_camera()
+                for part in self._parts:
+                    part.follow(snapshot)
 
     def reset_view(self) -> None:
         """Put the camera back where it was at first, soon; from any thread."""
@@ -90,95 +100,95 @@ class Page:
         """See `app.server.tab_visibility.CountingDisplay`."""
         return self._channel.frames
 
-    def _show(self, session: Session, achieved: float, slow: bool) -> None:
-        shown = session.instant(), session.viewing, session.editor.version, session.exaggeration
-        if shown == self._shown and not slow:
-            return
-        self._shown = shown
-        snapshot = take_snapshot(session, achieved, traces=slow)
-        self._scene.update(snapshot)
-        self._scene.update_path(snapshot)
-        if slow:
-            self._scene.update_traces(snapshot)
-            self._frame_camera()
-            for part in self._parts:
-                part.follow(session)
-            self._readout.follow(snapshot)
-            self._exporter.serve(session)
+    def _renew(self, snapshot: Snapshot) -> None:
+        """The page is to be built anew; until it stands, nothing is shown."""
+        self.is_outdated = True
+        if isinstance(snapshot, PageSnapshot):
+            self._building = True
+            self._rebuilds.submit(lambda: self._rebuild(snapshot))
 
-    def _rebuild(self, session: Session) -> None:
+    def _rebuild(self, first: PageSnapshot) -> None:
         with one_at_a_time:
             self._client.scene.reset()
             self._client.gui.reset()
             self._framed, self._settling = 0.0, SETTLING
-            self._build(session)
+            self._build(first)
 
-    def _page(self, session: Session) -> tuple[object, ...]:
+    def _key(self, snapshot: Snapshot) -> tuple[object, ...]:
         """What the whole page depends on: when it is another, all is built anew."""
-        run = session.lessons
-        return session.robot, run.lesson is not None, run.words.language, run.progress.presenting
+        return (snapshot.key,)
 
-    def _poster(self, session: Session) -> Callable[[c.Command], None]:
+    def _post_for(self, snapshot: PageSnapshot) -> Post:
         """What takes the commands of this page."""
-        return session.post
+        return self._desk.post
 
-    def _build(self, session: Session) -> None:
-        robot, post = session.robot, self._poster(session)
-        self._built = self._page(session)
-        words = session.lessons.words
+    def _build(self, first: PageSnapshot) -> None:
+        post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
+        self._built = self._key(first)
         self._scene = Scene(self._client, stage_of(robot), _hooks(post, robot), words)
-        self._scene.build(take_snapshot(session, 1.0))
-        self._build_panels(session, post)
-        add_keys(self._client.gui, words, post, self.reset_view)
-        self._robot = robot
-
-    def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
-        gui, run = self._client.gui, session.lessons
-        self._client.gui.add_html(render("panel/wide_sheet.html"))
+        self._scene.build(first)
         self._parts: list[Part] = []
-        controls = self._controls(session, post)
-        if run.lesson is None:
-            self._build_head(session, post)
-            self._parts += controls.everything()
+        self._build_panels(first, words, post)
+        add_keys(self._client.gui, words, post, self.reset_view)
+        self._building = self.is_outdated = False
+
+    def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
+        gui = self._client.gui
+        self._client.gui.add_html(render("panel/wide_sheet.html"))
+        controls = self._controls(words, post)
+        if not first.key.in_lesson:
+            self._build_head(first, words, post)
+            self._parts += controls.everything(first)
             return
-        submit, words = self._exporter.submit, run.words
+        submit = self._rebuilds.submit
         tab = None
         if self._is_narrow():  # one panel for all: the lesson first, the lab behind its tab
             tabs = gui.add_tab_group()
             tab = tabs.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
             own = tabs.add_tab(words("lesson.lab"), viser.Icon.ROBOT)
             with own:
-                self._build_head(session, post)
+                self._build_head(first, words, post)
         else:
-            self._build_head(session, post)
+            self._build_head(first, words, post)
             tabs = gui.add_tab_group()
             own = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
-        self._parts.append(StepControls(gui, own, session, controls, submit))
-        if not run.progress.presenting:
+        course = self._desk.course
+        self._parts.append(StepControls(gui, own, words, course, controls, submit, first))
+        if not first.key.presenting:
             with tabs.add_tab(words("lesson.all_controls"), viser.Icon.ADJUSTMENTS_HORIZONTAL):
-                self._parts += controls.everything()
-        self._parts.append(LessonPanel(self._client, session, post, self._scene, submit, tab))
+                self._parts += controls.everything(first)
+        lesson = LessonPanel(self._client, words, post, course, self._scene, submit, first, tab=tab)
+        self._parts.append(lesson)
 
-    def _controls(self, session: Session, post: Callable[[c.Command], None]) -> PanelFactory:
-        gui, exporter, scene = self._client.gui, self._exporter, self._scene
-        return PanelFactory(gui, session, post, exporter, scene, self._desk, self.reset_view)
+    def _controls(self, words: Words, post: Post) -> PanelFactory:
+        return PanelFactory(
+            self._client.gui,
+            words,
+            post,
+            self.exporter,
+            self._rebuilds.submit,
+            self._scene,
+            self._desk,
+            self.reset_view,
+        )
 
-    def _build_head(self, session: Session, post: Callable[[c.Command], None]) -> None:
+    def _build_head(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """What is always there: numbers, the way to the lessons, the distance."""
         gui = self._client.gui
-        self._build_numbers(session)
-        if session.lessons.course.lessons:
-            LessonMenu(gui, session, post)
+        self._build_numbers(words)
+        if self._desk.course.lessons:
+            self._parts.append(LessonMenu(gui, words, post, self._desk.course, first))
         if self._desk.seat is not None:
-            self._parts.append(ClassPanel(gui, session, self._desk.seat))
-        self._build_distance(session)
+            self._parts.append(ClassPanel(gui, words, self._desk.seat, first))
+        self._build_distance(first, words)
 
-    def _build_numbers(self, session: Session) -> None:
-        self._readout = Readout(self._client.gui, session)
+    def _build_numbers(self, words: Words) -> None:
+        self._parts.append(Readout(self._client.gui, words))
 
-    def _build_distance(self, session: Session) -> None:
+    def _build_distance(self, first: PageSnapshot, words: Words) -> None:
         """The plot that tells the story."""
-        self._parts.append(LivePlot(self._client.gui, session, DISTANCE, height=190))
+        plot = LivePlot(self._client.gui, words, first.key.fields, DISTANCE, height=190)
+        self._parts.append(plot)
 
     def _is_narrow(self) -> bool:
         camera = self._client.camera
@@ -203,7 +213,7 @@ class Page:
             self._scene.frame_camera(Insets(bottom=below))
 
 
-def _hooks(post: Callable[[c.Command], None], robot: Robot) -> SceneCallbacks:
+def _hooks(post: Post, robot: Robot) -> SceneCallbacks:
     def move(index: int, at: Array) -> None:
         post(c.MovePoint(index, plane_coordinates(robot, at), finished=False))
 

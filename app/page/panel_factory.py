@@ -9,7 +9,7 @@ import viser
 
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.flexible_panel import FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
@@ -23,10 +23,9 @@ from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press, on_
 from onpath.app.page.plots import MORE, LivePlot, MorePlots
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
-from onpath.app.scene.stage_catalogue import stage_of
 from onpath.lessons.schema import StepSetup
+from onpath.lessons.words import Words
 from onpath.models.systems.flexible_parameters import FlexibleParameters
-from onpath.models.systems.parameters import specs
 
 ALL = (
     *("robot", "hold", "path", "flexible", "gains", "editor", "plots", "past", "keep"),
@@ -35,9 +34,9 @@ ALL = (
 
 
 class Part(Protocol):
-    """Something on the page that follows the session."""
+    """Something on the page that shows what a lab is like."""
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """Show what is."""
         ...
 
@@ -46,6 +45,7 @@ class PanelFactory:
     """Makes panels for one client.
 
     Args:
+        submit: runs something in another thread.
         scene: what drawing, pulling and shading act on.
         reset_view: puts the camera back.
     """
@@ -53,62 +53,63 @@ class PanelFactory:
     def __init__(
         self,
         gui: viser.GuiApi,
-        session: Session,
+        words: Words,
         post: Post,
         exporter: Exporter,
+        submit: Callable[[Callable[[], None]], None],
         scene: Scene,
         desk: PageContext,
         reset_view: Callable[[], None],
     ) -> None:
         self._reset_view = reset_view
-        self._gui, self._session, self._post = gui, session, post
-        self._words = session.lessons.words
-        self._exporter, self._scene, self._desk = exporter, scene, desk
+        self._gui, self._words, self._post = gui, words, post
+        self._exporter, self._submit = exporter, submit
+        self._scene, self._desk = scene, desk
 
-    def everything(self) -> list[Part]:
+    def everything(self, first: PageSnapshot) -> list[Part]:
         """All there is."""
-        parts = [part for name in ALL for part in self._add(name)]
+        parts = [part for name in ALL for part in self._add(name, first)]
         helping = self._gui.add_button(self._words("controls.help"), icon=viser.Icon.HELP)
         on_press(helping, self._help)
         return parts
 
-    def of_step(self, scene: StepSetup) -> list[Part]:
+    def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         """Run and hold, and what a lesson's scene names."""
         self._scene.path_first = "editor" in scene.controls
-        parts = list(self._add("hold"))
-        known = specs(self._session.parameters)
+        parts = list(self._add("hold", first))
+        known = first.parameters
         parameters = [name for name in scene.controls if name in known]
         if parameters:
-            parts.append(_Numbers(self._gui, self._session, parameters, self._post))
+            parts.append(ParameterWidgets(self._gui, self._words, self._post, parameters, first))
         for name in scene.controls:
             if name not in known and name != "hold":
-                parts += self._add(name)
+                parts += self._add(name, first)
         if scene.plot:
             plot = MORE[scene.plot]
-            if plot.field in dict(self._session.sample_layout.fields):
-                parts.append(LivePlot(self._gui, self._session, plot, height=200))
+            if plot.field in dict(first.key.fields):
+                parts.append(LivePlot(self._gui, self._words, first.key.fields, plot, height=200))
         return parts
 
-    def _add(self, name: str) -> list[Part]:
-        gui, session, post = self._gui, self._session, self._post
+    def _add(self, name: str, first: PageSnapshot) -> list[Part]:
+        gui, words, post, exporter = self._gui, self._words, self._post, self._exporter
         make: dict[str, Callable[[], Part | None]] = {
-            "hold": lambda: RunPanel(gui, session, post, self._reset_view),
-            "path": lambda: PathChoice(gui, session, post),
-            "editor": self._editor,
-            "gains": lambda: GainsPanel(gui, session, post),
-            "plots": lambda: MorePlots(gui, session),
-            "past": lambda: PastPanel(gui, session, post, self._exporter),
-            "keep": lambda: KeepPanel(gui, session, post, self._exporter, self._desk),
-            "robot": lambda: _silent(RobotPanel(gui, session, post)),
-            "copy": self._copy,
-            "flexible": self._flexible,
-            "identify": lambda: _silent(add_identify(gui, session, post)),
+            "hold": lambda: RunPanel(gui, words, post, self._reset_view),
+            "path": lambda: PathChoice(gui, words, post, first),
+            "editor": lambda: self._editor(first),
+            "gains": lambda: GainsPanel(gui, words, post, first),
+            "plots": lambda: MorePlots(gui, words, first.key.fields),
+            "past": lambda: PastPanel(gui, words, post, exporter),
+            "keep": lambda: KeepPanel(gui, words, post, exporter, self._desk),
+            "robot": lambda: _silent(RobotPanel(gui, words, post, first.key.robot)),
+            "copy": lambda: self._copy(first),
+            "flexible": lambda: self._flexible(first),
+            "identify": lambda: _silent(add_identify(gui, words, post)),
         }
         part = make[name]()
         return [] if part is None else [part]
 
-    def _editor(self) -> Part:
-        robot = self._session.robot
+    def _editor(self, first: PageSnapshot) -> Part:
+        robot = robot_of(first)
 
         def draw() -> None:
             self._scene.begin_freehand(
@@ -119,23 +120,22 @@ class PanelFactory:
             self._scene.show_singular_zone(visible)
 
         with self._gui.add_folder(self._words("controls.editor"), expand_by_default=False):
-            return PathPanel(self._gui, self._session, self._post, draw, shade)
+            return PathPanel(self._gui, self._words, self._post, first, draw, shade)
 
-    def _flexible(self) -> Part | None:
-        if not isinstance(self._session.parameters, FlexibleParameters):
+    def _flexible(self, first: PageSnapshot) -> Part | None:
+        if not isinstance(parameters_of(first), FlexibleParameters):
             return None
 
         def choose(name: str) -> None:
             self._scene.pull = name
 
-        pulls = list(stage_of(self._session.robot).pulls)
-        submit = self._exporter.submit
-        return FlexiblePanel(self._gui, self._session, self._post, pulls, choose, submit)
+        pulls = list(self._scene.stage.pulls)
+        return FlexiblePanel(self._gui, self._words, self._post, first, pulls, choose, self._submit)
 
-    def _copy(self) -> None:
+    def _copy(self, first: PageSnapshot) -> None:
         copy = self._gui.add_checkbox(
             self._words("controls.copy"),
-            self._session.copy,
+            first.run.copy,
             hint=self._words("controls.copy_hint"),
         )
         on_user_update(copy, lambda on: self._post(c.SetCopy(on)))
@@ -153,14 +153,6 @@ class PanelFactory:
 
         close.on_click(shut)
         escape.on_trigger(shut)
-
-
-class _Numbers(ParameterWidgets):
-    """Some parameters, as a part of the page."""
-
-    def follow(self, session: Session) -> None:  # type: ignore[override]
-        """Show the session's values."""
-        super().follow(session.parameters)
 
 
 def _silent(_: object) -> None:

@@ -10,13 +10,17 @@ import viser
 from viser import uplot
 
 from onpath.app.common.palette import CONTROLLERS
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.words import Words
+from onpath.models.control.laws import NAMES
+from onpath.models.layout import Layout
 
-WINDOW = 10.0  # [s]
-POINTS = 160
 LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and third line
+
+
+Fields = tuple[tuple[str, int], ...]
+"""What there is to plot; see `PageKey.fields`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +29,7 @@ class Plot:
 
     Attributes:
         name: in the catalogue and in lessons.
-        field: of the session's samples.
+        field: of a snapshot's samples.
         scale: from SI to what is shown.
         lines: names of the field's entries; one name for a single line.
         least: what is shown at least, of what is nearly nothing when all goes well: a ripple of a
@@ -35,19 +39,19 @@ class Plot:
     name: str
     field: str
     scale: float
-    lines: Callable[[Session], list[str]]
+    lines: Callable[[Fields], list[str]]
     least: tuple[float, float] | None = None
 
 
-def _numbered(symbol: str, field: str) -> Callable[[Session], list[str]]:
-    def names(session: Session) -> list[str]:
-        size = dict(session.sample_layout.fields)[field]
+def _numbered(symbol: str, field: str) -> Callable[[Fields], list[str]]:
+    def names(fields: Fields) -> list[str]:
+        size = dict(fields)[field]
         return [f"{symbol}{i + 1}" for i in range(size)] if size > 1 else [""]
 
     return names
 
 
-def _alone(_: Session) -> list[str]:
+def _alone(_: Fields) -> list[str]:
     """A single line is named after its robot."""
     return [""]
 
@@ -81,20 +85,22 @@ def _at_least(limits: tuple[float, float] | None) -> uplot.Scale:
 class LivePlot:
     """One uPlot chart."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, plot: Plot, height: int) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, words: Words, fields: Fields, plot: Plot, height: int
+    ) -> None:
         self._plot = plot
         self._shown = -1.0
-        words = session.lessons.words
         series = [uplot.Series(label=words("plots.time"))]
-        names = plot.lines(session)
-        for robot in session.runs:
+        names = plot.lines(fields)
+        for robot in NAMES:
             for name, dash in zip(names, LINES, strict=False):
                 label = f"{words(f'controller.{robot}.short')} {name}".rstrip()
                 line = uplot.Series(label=label, stroke=CONTROLLERS[robot].hex, width=2)
                 if dash is not None:
                     line["dash"] = dash
                 series.append(line)
-        self._lines = min(len(names), len(LINES))
+        begin = Layout(fields).slices[plot.field].start
+        self._lines = slice(begin, begin + min(len(names), len(LINES)))
         self._handle = gui.add_uplot(
             tuple(np.zeros(2) for _ in series),
             tuple(series),
@@ -104,18 +110,14 @@ class LivePlot:
             height=height,
         )
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """Draw the last seconds, up to the instant that is shown."""
-        now = session.time if session.viewing is None else session.viewing
-        if now == self._shown:
+        if snapshot.time == self._shown:
             return
-        self._shown = now
-        begin = session.sample_layout.slices[self._plot.field].start
-        fields = slice(begin, begin + self._lines)
-        times, samples = session.history.samples(now - WINDOW, now, POINTS, fields)
+        self._shown, times = snapshot.time, snapshot.plots.times
         if len(times) < 2:
             return
-        values = samples.astype(float) * self._plot.scale
+        values = snapshot.plots.values[:, :, self._lines].astype(float) * self._plot.scale
         lines = np.vstack([times, values.reshape(len(times), -1).T])
         finite = lines if np.isfinite(lines).all() else np.nan_to_num(lines)
         update_gui(self._handle, "data", tuple(finite))
@@ -125,21 +127,19 @@ class LivePlot:
         self._handle.remove()
 
 
-def _shown(session: Session, words: Words) -> dict[str, Plot | None]:
+def _shown(fields: Fields, words: Words) -> dict[str, Plot | None]:
     """What this robot has something for, by name as shown; first of all none."""
-    fields = dict(session.sample_layout.fields)
-    some = {words(f"plot.{p.name}"): p for p in MORE.values() if p.field in fields}
+    some = {words(f"plot.{p.name}"): p for p in MORE.values() if p.field in dict(fields)}
     return {words("plots.none"): None, **some}
 
 
 class MorePlots:
     """A plot to choose."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session) -> None:
-        self._gui = gui
+    def __init__(self, gui: viser.GuiApi, words: Words, fields: Fields) -> None:
+        self._gui, self._words, self._fields = gui, words, fields
         self._plot: LivePlot | None = None
-        words = session.lessons.words
-        self._plots = _shown(session, words)
+        self._plots = _shown(fields, words)
         self._folder = gui.add_folder(words("plots.more"), expand_by_default=False)
         with self._folder:
             self._choice = gui.add_dropdown(
@@ -147,7 +147,7 @@ class MorePlots:
             )
         self._drawn: Plot | None = None
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """Draw the chosen plot."""
         chosen = self._plots[self._choice.value]
         if chosen is not self._drawn:
@@ -157,6 +157,6 @@ class MorePlots:
                 self._plot = None
             if chosen is not None:
                 with self._folder:
-                    self._plot = LivePlot(self._gui, session, chosen, height=200)
+                    self._plot = LivePlot(self._gui, self._words, self._fields, chosen, 200)
         if self._plot is not None:
-            self._plot.follow(session)
+            self._plot.follow(snapshot)

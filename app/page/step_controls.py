@@ -6,9 +6,12 @@ from collections.abc import Callable
 
 import viser
 
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panel_factory import PanelFactory, Part
+from onpath.lessons.course import Course
 from onpath.lessons.schema import StepSetup
+from onpath.lessons.words import Words
 
 
 class StepControls:
@@ -22,40 +25,37 @@ class StepControls:
         self,
         gui: viser.GuiApi,
         tab: viser.GuiTabHandle,
-        session: Session,
+        words: Words,
+        course: Course,
         controls: PanelFactory,
         submit: Callable[[Callable[[], None]], None],
+        first: PageSnapshot,
     ) -> None:
         self._gui, self._controls, self._submit = gui, controls, submit
-        self._tab, self._title = tab, session.lessons.words("lesson.controls")
+        self._tab, self._words, self._course = tab, words, course
         self._folder: viser.GuiFolderHandle | None = None
         self._scene: StepSetup | None = None
         self._parts: list[Part] = []
-        self._fill(_scene_of(session))
+        self._fill(self._setup_of(first), first)
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """Show the open step's controls, and what they stand at."""
-        scene = _scene_of(session)
+        scene = self._setup_of(snapshot)
         if scene != self._scene:
             self._scene, self._parts = scene, []
-            self._submit(lambda: self._fill(scene))
+            self._submit(lambda: self._fill(scene, snapshot))
         for part in self._parts:
-            part.follow(session)
+            part.follow(snapshot)
 
-    def _fill(self, scene: StepSetup) -> None:
+    def _fill(self, scene: StepSetup, first: PageSnapshot) -> None:
         if self._folder is not None:
             self._folder.remove()
         self._scene = scene
         with self._tab:
-            self._folder = self._gui.add_folder(self._title)
+            self._folder = self._gui.add_folder(self._words("lesson.controls"))
         with self._folder:
-            self._parts = self._controls.of_step(scene)
+            self._parts = self._controls.of_step(scene, first)
 
-
-EMPTY = StepSetup()
-
-
-def _scene_of(session: Session) -> StepSetup:
-    """Of the open step."""
-    run = session.lessons
-    return EMPTY if run.lesson is None else run.lesson.scene_at(run.index)
+    def _setup_of(self, snapshot: PageSnapshot) -> StepSetup:
+        """Of the open step."""
+        return LessonView(self._course, self._words, snapshot.lesson).setup

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from onpath.app.classroom.classroom import Classroom
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.lessons.progress import Progress
 from onpath.lessons.words import Words
 
 
@@ -31,32 +31,18 @@ class TeacherContext:
     """For one teacher's page.
 
     Attributes:
-        lab: of a session code, here or mirrored; None when there is nothing to show.
+        progress: the teacher's own way through the lessons.
+        why_still: why the lab that the teacher looks at is not there or stands still; empty if it
+            runs.
+        send_setup: send the set-up of the teacher's own lab to all.
         forget: delete all that is kept, and end the class; returns how many labs there were.
         stop: back to a lab's own page.
     """
 
     classroom: Classroom
     chosen: TeacherChoices
-    lab: Callable[[str], Lab | None]
+    progress: Callable[[], Progress]
+    why_still: Callable[[Words], str]
+    send_setup: Callable[[], None]
     forget: Callable[[], int]
     stop: Callable[[], None]
-
-    def followed(self) -> Lab | None:
-        """The lab that the teacher looks at, if the student is still in the class."""
-        code = self.chosen.followed
-        if not code or self.classroom.member(code) is None:
-            return None
-        return self.lab(code)
-
-    def why_still(self, words: Words) -> str:
-        """Why the lab that the teacher looks at is not there or stands still; empty if it runs."""
-        member = self.classroom.member(self.chosen.followed)
-        if member is None:
-            return ""
-        if not member.connected:
-            return words("class.absent")
-        lab = self.followed()
-        if lab is None:
-            return words("class.fetching")
-        return "" if lab.is_seen else words("class.hidden")

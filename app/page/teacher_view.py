@@ -2,66 +2,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import viser
 
-from onpath.app.classroom.mirror import Mirror
 from onpath.app.lab import commands as c
-from onpath.app.lab.commands import CloseLesson
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.teacher_controls import FollowedStudent, TeacherControls
 from onpath.app.page.panels.teacher_panel import TeacherPanel
+from onpath.app.page.panels.widgets import Post
 from onpath.app.page.teacher_context import TeacherContext
+from onpath.lessons.words import Words
 
 
 class TeacherView(Page):
-    """What a teacher sees; a followed lab is shown and not touched."""
+    """What a teacher sees; a followed lab is shown and not touched.
+
+    Args:
+        first: of the teacher's own lab, whose language the class is shown in.
+    """
 
     def __init__(
         self,
         client: viser.ClientHandle,
-        session: Session,
+        first: PageSnapshot,
         desk: PageContext,
         teaching: TeacherContext,
     ) -> None:
-        self._own, self._teaching = session, teaching
-        session.post(CloseLesson())
-        super().__init__(client, session, desk)
+        self._own_words, self._teaching = Words(first.key.language), teaching
+        super().__init__(client, first, desk)
 
-    def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
-        """See `app.simulation.simulation_thread.Display`."""
-        lab = self._teaching.followed()
-        if lab is None:
-            super().show(session, achieved, frame, stride)
+    def _key(self, snapshot: Snapshot) -> tuple[object, ...]:
+        key = snapshot.key
+        return key.student, key.robot, key.fields
+
+    def _post_for(self, snapshot: PageSnapshot) -> Post:
+        return _ignore if snapshot.key.student else self._desk.post
+
+    def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
+        gui, own, teaching = self._client.gui, self._own_words, self._teaching
+        if first.key.student:
+            self._parts.append(FollowedStudent(gui, own, teaching))
+            self._build_numbers(words)
+            self._build_distance(first, words)
         else:
-            if isinstance(lab, Mirror):
-                lab.keep_up()
-            super().show(lab.session, lab.achieved, frame, stride)
-
-    def _page(self, session: Session) -> tuple[object, ...]:
-        words = self._own.lessons.words
-        return id(session), session.robot, words.language
-
-    def _poster(self, session: Session) -> Callable[[c.Command], None]:
-        return session.post if session is self._own else _ignore
-
-    def _build_panels(self, session: Session, post: Callable[[c.Command], None]) -> None:
-        gui, own = self._client.gui, self._own
-        self._parts = []
-        if session is own:
-            self._parts.append(TeacherControls(gui, own, self._teaching))
-            self._build_numbers(session)
-            self._build_distance(session)
-            self._parts += self._controls(own, post).everything()
-        else:
-            self._parts.append(FollowedStudent(gui, own, self._teaching))
-            self._build_numbers(session)
-            self._build_distance(session)
-        submit = self._exporter.submit
-        self._parts.append(TeacherPanel(self._client, own, self._teaching, submit))
+            self._parts.append(TeacherControls(gui, own, teaching))
+            self._build_numbers(words)
+            self._build_distance(first, words)
+            self._parts += self._controls(own, post).everything(first)
+        submit, course = self._rebuilds.submit, self._desk.course
+        panel = TeacherPanel(self._client, own, self._desk.post, course, teaching, submit)
+        self._parts.append(panel)
 
 
 def _ignore(_: c.Command) -> None:

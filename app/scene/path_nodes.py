@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshot import PathView
+from onpath.app.lab.snapshots.snapshot import PathView
 from onpath.app.scene import meshes
 from onpath.app.scene.stage import add_copies
 

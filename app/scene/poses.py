@@ -9,7 +9,7 @@ from math import prod, sqrt
 
 import numpy as np
 
-from onpath.app.lab.snapshot import Counts, RobotView
+from onpath.app.lab.snapshots.snapshot import Counts, RobotView
 from onpath.app.scene.stage import Stage
 
 UNSEEN = 1e-5
@@ -54,13 +54,11 @@ def difference(a: np.ndarray, b: np.ndarray) -> float:
 
 def poses_of(stage: Stage, robots: list[RobotView]) -> Poses:
     """The poses of robots that are all alike, on their stage, at one instant."""
-    bases = tuple(map(tuple, stage.origins.tolist()))
-    layout = _layout(bases, robots[0].counts)
+    layout = _layout(stage, robots[0].counts)
     flat = np.concatenate([robot.poses for robot in robots])
     with np.errstate(over="ignore"):  # what is not finite then is not drawn
-        whole = (flat[layout.order] + layout.offsets).astype(np.float32)
-    named = zip(layout.places, layout.shapes, strict=True)
-    return Poses(whole, *[whole[place].reshape(shape) for place, shape in named])
+        whole = (flat.take(layout.order) + layout.offsets).astype(np.float32)
+    return Poses(whole, *[whole[place].reshape(shape) for place, shape in layout.fields])
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,29 +68,31 @@ class _Layout:
     Attributes:
         order: where each number of `Poses.whole` comes from.
         offsets: what is added to it, the origins of the robots' frames.
-        places, shapes: of the fields of `Poses`.
+        fields: where each field of `Poses` lies in it, and its shape.
     """
 
     order: np.ndarray
     offsets: np.ndarray
-    places: list[slice]
-    shapes: list[tuple[int, ...]]
+    fields: list[tuple[slice, tuple[int, ...]]]
 
 
-@lru_cache(maxsize=16)
-def _layout(bases: tuple[tuple[float, ...], ...], counts: Counts) -> _Layout:
+@lru_cache(maxsize=64)
+def _layout(stage: Stage, counts: Counts) -> _Layout:
     own = counts.pose_shapes
     sizes = [prod(shape) for shape in own]
     starts = np.cumsum([0, *sizes]).tolist()
+    bases = stage.origins.tolist()
     total, k = starts[-1], len(bases)
     order, offsets = list[int](), list[float]()
     for start, size, name in zip(starts[:-1], sizes, own._fields, strict=True):
         for i, base in enumerate(bases):
             order.extend(range(i * total + start, i * total + start + size))
             offsets.extend(base * (size // 3) if name in PLACED else [0.0] * size)
-    shapes = [(k * shape[0], *shape[1:]) for shape in own]
     ends = np.cumsum([0, *(k * size for size in sizes)]).tolist()
-    return _Layout(np.array(order), np.array(offsets), [slice(*e) for e in pairwise(ends)], shapes)
+    fields = [
+        (slice(*e), (k * n, *rest)) for e, (n, *rest) in zip(pairwise(ends), own, strict=True)
+    ]
+    return _Layout(np.array(order), np.array(offsets), fields)
 
 
 def trace_segments(trace: np.ndarray, count: int) -> np.ndarray:

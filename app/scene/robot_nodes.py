@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshot import Counts, RobotView, TrackerName
+from onpath.app.lab.snapshots.snapshot import Counts, RobotView, TrackerName
 from onpath.app.scene import meshes
 from onpath.app.scene.poses import Poses, difference, trace_segments
 from onpath.app.scene.stage import IDENTITY, Stage, add_copies, add_text, set_text

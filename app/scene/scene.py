@@ -1,4 +1,4 @@
-"""The 3D scene of one client: what it shows of a session, and what its mouse tells.
+"""The 3D scene of one client: what it shows of a lab, and what its mouse tells.
 
 Cost follows the number of property assignments, not their size, so both robots share their nodes
 (machine.py, path_nodes.py).
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshot import PathView, RobotView, Snapshot
+from onpath.app.lab.snapshots.snapshot import PathView, RobotView, Snapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.freehand import Freehand
 from onpath.app.scene.path_nodes import PathNodes
@@ -107,6 +107,11 @@ class Scene:
         self._covered: int | None = None
         self._freehand: Freehand | None = None
         self._zone: viser.BatchedMeshHandle | None = None
+
+    @property
+    def stage(self) -> Stage:
+        """Where the robots stand."""
+        return self._stage
 
     def build(self, snapshot: Snapshot) -> None:
         """Creates every node, once, with as many bars, joints and points as the snapshot has."""

@@ -9,7 +9,7 @@ import numpy as np
 import trimesh
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshot import FollowerName, TrackerName
+from onpath.app.lab.snapshots.snapshot import FollowerName, TrackerName
 from onpath.app.scene import meshes
 from onpath.app.scene.pointer_projection import DragPlane
 from onpath.app.scene.stage import Stage

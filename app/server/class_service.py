@@ -12,12 +12,14 @@ from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.relay import Relay
 from onpath.app.classroom.shared_classroom import SharedClassroom
 from onpath.app.classroom.watches import Watches
-from onpath.app.lab.commands import ReportState
-from onpath.app.lab.session import Session
+from onpath.app.lab.commands import CloseLesson, ReportState, TakeSetup
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.setup import capture
 from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
+from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import Records
 from onpath.app.storage.write_behind import WriteBehind
@@ -47,7 +49,8 @@ class ClassService:
         self._relay: Relay | None = None
         if isinstance(classroom, SharedClassroom) and records is not None:
             watches = Watches(records, classroom.id)
-            self._relay = Relay(watches, self._here, self._wanted, sessions.make)
+            simulation = sessions.simulation
+            self._relay = Relay(watches, self._here, self._wanted, sessions.make, simulation)
             self._relay.rounds.start()
 
     def stop(self) -> None:
@@ -72,6 +75,11 @@ class ClassService:
         """A browser has left."""
         self._teachers.pop(client, None)
 
+    def nickname(self, code: str) -> str:
+        """Of the student of a lab; empty while the student has not joined."""
+        member = self._class.member(code)
+        return member.name if member else ""
+
     def seat(self, client: viser.ClientHandle, code: str, reopen: Callable[[], None]) -> ClassSeat:
         """A lab's place in the class.
 
@@ -79,10 +87,6 @@ class ClassService:
             code: of its session.
             reopen: build the client's page anew.
         """
-
-        def name() -> str:
-            member = self._class.member(code)
-            return member.name if member else ""
 
         def teach(key: str) -> None:
             shown = self._class.admit(key, code)
@@ -96,23 +100,43 @@ class ClassService:
             entry, keeper = self._sessions.find(code), self._keeper
             if entry is not None and keeper is not None:  # to be found again by another process
                 submit = partial(keeper.submit, code)
-                entry.lab.session.post(ReportState(lambda session: keep(session, submit)))
+                entry.scheduled.lab.post(ReportState(lambda lab: keep(lab, submit)))
 
         return ClassSeat(
-            name=name,
             join=join,
             leave=lambda: self._class.leave(code),
             teach=teach,
         )
 
-    def teaching(
-        self, client: viser.ClientHandle, reopen: Callable[[], None]
-    ) -> TeacherContext | None:
-        """For a teacher's page; None for everybody else."""
-        teacher = self._teachers.get(client.client_id)
+    def teaches(self, client: int) -> bool:
+        """Whether a client is a teacher's."""
+        return client in self._teachers
+
+    def followed(self, client: int) -> FollowedLab | None:
+        """What a teacher looks at instead of the lab of one's own; None for everybody else."""
+        teacher = self._teachers.get(client)
         if teacher is None:
             return None
+        return FollowedLab(self._class, teacher[1], partial(self._lab, client))
+
+    def teaching(
+        self, client: viser.ClientHandle, lab: Lab, reopen: Callable[[], None]
+    ) -> TeacherContext | None:
+        """For a teacher's page; None for everybody else.
+
+        Args:
+            lab: the teacher's own, where no lesson is open from now on.
+            reopen: build the client's page anew.
+        """
+        teacher, followed = self._teachers.get(client.client_id), self.followed(client.client_id)
+        if teacher is None or followed is None:
+            return None
         shown, chosen = teacher
+        lab.post(CloseLesson())
+
+        def send_setup() -> None:
+            push = self._class.push
+            lab.post(ReportState(lambda own: push(TakeSetup(capture(own.session)))))
 
         def stop() -> None:
             self._teachers.pop(client.client_id, None)
@@ -120,24 +144,31 @@ class ClassService:
             reopen()
             self._class.revoke(shown)
 
-        lab = partial(self._lab, client.client_id)
-        return TeacherContext(self._class, chosen, lab, self._forget, stop)
+        return TeacherContext(
+            classroom=self._class,
+            chosen=chosen,
+            progress=lambda: lab.lessons.progress,
+            why_still=followed.why_still,
+            send_setup=send_setup,
+            forget=self._forget,
+            stop=stop,
+        )
 
-    def _student(self, code: str) -> tuple[Session, bool] | None:
+    def _student(self, code: str) -> tuple[Lab, bool] | None:
         entry = self._sessions.find(code)
-        return None if entry is None else (entry.lab.session, entry.client is not None)
+        return None if entry is None else (entry.scheduled.lab, entry.client is not None)
 
-    def _lab(self, client: int, code: str) -> Lab | None:
+    def _lab(self, client: int, code: str) -> ScheduledLab | None:
         """For a teacher's page."""
         here = self._here(code)
         if here is None and self._relay is not None:
             return self._relay.mirror(client, code)
         return here
 
-    def _here(self, code: str) -> Lab | None:
+    def _here(self, code: str) -> ScheduledLab | None:
         """A lab that lives in this process."""
         entry = self._sessions.find(code)
-        return None if entry is None or self._class.is_elsewhere(code) else entry.lab
+        return None if entry is None or self._class.is_elsewhere(code) else entry.scheduled
 
     def _wanted(self) -> dict[int, str]:
         """The labs of others that the teachers in this process look at, by client."""

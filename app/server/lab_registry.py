@@ -16,8 +16,8 @@ from dataclasses import dataclass, field
 
 from onpath.app.common.access_codes import new_code
 from onpath.app.common.throttle import Throttle
-from onpath.app.lab.session import Session
-from onpath.app.simulation.simulation_thread import Lab, SimulationThread
+from onpath.app.lab.lab import Lab
+from onpath.app.simulation.simulation_thread import ScheduledLab, SimulationThread
 from onpath.app.storage.lab_state import LabState, StateObserver, put_back
 from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import NotKept
@@ -42,7 +42,7 @@ class RegisteredLab:
     """
 
     code: str
-    lab: Lab
+    scheduled: ScheduledLab
     client: int | None = None
     left: float = 0.0
 
@@ -52,14 +52,14 @@ class LabRegistry:
     """All sessions by code.
 
     Attributes:
-        make: a new session.
+        make: a new lab.
         load: what was kept under a code, or None.
         keeper: keeps what changes, or None.
         leases: says which labs other processes have, or None.
     """
 
     simulation: SimulationThread
-    make: Callable[[], Session]
+    make: Callable[[], Lab]
     clock: Callable[[], float] = time.monotonic
     load: Callable[[str], LabState | None] = lambda _: None
     keeper: WriteBehind | None = None
@@ -88,7 +88,7 @@ class LabRegistry:
             remark = f"Your lab is kept, but cannot be opened now: {error}"
         entry = self._made(new_code())
         if remark:
-            entry.lab.session.show_message(remark, "warning")
+            entry.scheduled.lab.show_message(remark, "warning")
         return self._give(client, entry)
 
     def enter(self, client: int, code: str) -> RegisteredLab:
@@ -162,16 +162,16 @@ class LabRegistry:
             NotKept: the state cannot be read.
         """
         with self._making:
-            session = self.make()
+            lab = self.make()
             try:
                 if state is not None:
-                    put_back(session, state)
+                    put_back(lab, state)
             except ValueError as error:
                 log.warning("what was kept cannot be read: %s", error)
                 raise NotKept("what was kept of this lab cannot be read") from None
         if (keeper := self.keeper) is not None:
-            session.watch = StateObserver(lambda make: keeper.submit(code, make), session)
-        return RegisteredLab(code, Lab(session))
+            lab.watch = StateObserver(lambda make: keeper.submit(code, make), lab)
+        return RegisteredLab(code, ScheduledLab(lab))
 
     def _give(self, client: int, entry: RegisteredLab) -> RegisteredLab:
         with self._lock:
@@ -179,7 +179,7 @@ class LabRegistry:
             entry.client = client
             if entry.code not in self._entries:
                 self._entries[entry.code] = entry
-                self.simulation.add(entry.lab)
+                self.simulation.add(entry.scheduled)
             return entry
 
     def find(self, code: str) -> RegisteredLab | None:
@@ -236,14 +236,14 @@ class LabRegistry:
                 self.leases.release(entry.code)
 
     def _remove(self, entry: RegisteredLab) -> None:
-        self.simulation.remove(entry.lab)
+        self.simulation.remove(entry.scheduled)
         self._entries.pop(entry.code, None)
 
     def _abandon(self, client: int) -> RegisteredLab | None:
         for entry in self._entries.values():
             if entry.client == client:
                 entry.client, entry.left = None, self.clock()
-                entry.lab.view = None
+                entry.scheduled.view = None
                 return entry
         return None
 

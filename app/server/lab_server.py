@@ -16,8 +16,10 @@ import viser
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import normalised
 from onpath.app.common.error_log import log_error
+from onpath.app.exports import exporter as exports
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.build_queue import BuildQueue
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
@@ -27,6 +29,7 @@ from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.admission_queue import AdmissionQueue
 from onpath.app.server.arrivals import Arrivals, Kept
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
+from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.lazy_imports import warm_up
 from onpath.app.server.tab_visibility import TabVisibilities
@@ -74,21 +77,21 @@ class LabServer:
     ) -> None:
         self._store = store
         self._room = AdmissionQueue(most_clients)
-        lessons = course or read_course([BUILT_IN])[0]
+        self._course = lessons = course or read_course([BUILT_IN])[0]
         self.simulation = SimulationThread()
         health = partial(asked_vitals, self.simulation)
         self.server = make_server(host, port, label="OnPath", health=health, **listening)
         self._records = records
         self._leases = Leases(records) if records else None
         self._keeper = WriteBehind(self._leases) if self._leases else None
-        self.sessions = LabRegistry(self.simulation, lambda: Session(store, FIVE_BAR, lessons))
+        self.sessions = LabRegistry(self.simulation, lambda: Lab(store, FIVE_BAR, lessons))
         if records is not None:
             self.sessions.load, self.sessions.keeper = records.load, self._keeper
             self.sessions.leases = self._leases
         self._class: ClassService | None = None
         if classroom is not None:
             self._class = ClassService(classroom, self.sessions, records, self._keeper)
-        self._views: dict[int, Page] = {}
+        self._views: dict[int, LabFeed] = {}
         self._newcomers, self._onlookers = BuildQueue(self.server), TabVisibilities(self.server)
         set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.lab)))
         self._arrivals = Arrivals(self.server, [STORAGE_KEY, TEACHER_KEY], self._connected)
@@ -111,6 +114,7 @@ class LabServer:
             self._class.stop()
         self.simulation.stop()
         self._store.close()
+        exports.process.stop()
         self.server.stop()
         if self._keeper is not None and self._records is not None:
             self._keeper.close()
@@ -121,7 +125,7 @@ class LabServer:
     def _connected(self, client: viser.ClientHandle, kept: Kept) -> None:
         if self._class is not None:
             self._class.greet(client, kept[TEACHER_KEY])
-        teaches = self._class and self._class.teaching(client, lambda: None)
+        teaches = self._class and self._class.teaches(client.client_id)
         enter = partial(self._entered, client, kept[STORAGE_KEY])
         self._room.admit(client, enter, always=bool(teaches))
         if client.client_id not in self.server.get_clients():
@@ -148,22 +152,25 @@ class LabServer:
             self.sessions.leave(client.client_id)
             return
         self._views[client.client_id] = view
-        self._onlookers.watch(client, entry.lab, view)
+        self._onlookers.watch(client, entry.scheduled, view)
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
 
-    def _view(self, client: viser.ClientHandle, entry: RegisteredLab) -> Page:
-        """The page of a lab, or the teacher's."""
-        reopen = partial(self._reopen, client, entry)
-        taught = self._class and self._class.teaching(client, reopen)
-        seat = self._class.seat(client, entry.code, reopen) if self._class else None
-        desk = PageContext(
-            entry.code, self._records is not None, partial(self._enter, client), seat
-        )
-        session = entry.lab.session
-        if taught:
-            return TeacherView(client, session, desk, taught)
-        return Page(client, session, desk)
+    def _view(self, client: viser.ClientHandle, entry: RegisteredLab) -> LabFeed:
+        """The page of a lab, or the teacher's, and what feeds it."""
+        number, code, service = client.client_id, entry.code, self._class
+        lab = entry.scheduled.lab
+        reopen, enter = partial(self._reopen, client, entry), partial(self._enter, client)
+        seat = service.seat(client, code, reopen) if service else None
+        teaching = service.teaching(client, lab, reopen) if service else None
+        post, keeps = lab.post, self._records is not None
+        desk = PageContext(code, post, self._course, keeps, enter, seat)
+        nickname = partial(service.nickname, code) if service else str
+        first = take_page_snapshot(lab, 1.0, nickname=nickname())
+        if teaching is None:
+            return LabFeed(Page(client, first, desk), number, nickname)
+        followed = service.followed(number) if service else None
+        return LabFeed(TeacherView(client, first, desk, teaching), number, nickname, followed)
 
     def _enter(self, client: viser.ClientHandle, text: str) -> None:
         """Another session for a client, by a code that was typed.
@@ -185,7 +192,7 @@ class LabServer:
         self._onlookers.leave(client.client_id)
         view = self._views.pop(client.client_id, None)
         if view is not None:
-            view.close()
+            view.page.close()
         client.scene.reset()
         client.gui.reset()
         self._show(client, entry, None)
@@ -197,7 +204,7 @@ class LabServer:
             self._class.gone(client.client_id)
         view = self._views.pop(client.client_id, None)
         if view is not None:
-            view.close()
+            view.page.close()
         self._room.leave(client.client_id)
 
 

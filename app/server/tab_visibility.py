@@ -16,7 +16,7 @@ from typing import Protocol
 import viser
 from viser import _messages
 
-from onpath.app.simulation.simulation_thread import Display, Lab
+from onpath.app.simulation.simulation_thread import Display, ScheduledLab
 
 QUESTION_INTERVAL = 2.0  # [s] between questions, while anything is sent to the browser
 PATIENCE = 4.0  # [s] to wait for the reply; a browser that draws in software may stall for two
@@ -40,14 +40,14 @@ class TabVisibility:
     ) -> None:
         self._client, self._clock = client, clock
         self._lock = threading.Lock()
-        self._lab: Lab | None = None
+        self._lab: ScheduledLab | None = None
         self._view: CountingDisplay | None = None
         self._heard = self._questioned = clock()
         self._told = 0  # number of updates when the last reply came
         self._unanswered: float | None = None  # time of the unanswered question, [s]
         client.camera.on_update(self._hear)
 
-    def watch(self, lab: Lab, view: CountingDisplay) -> None:
+    def watch(self, lab: ScheduledLab, view: CountingDisplay) -> None:
         """Show a lab from now on."""
         with self._lock:
             self._lab, self._view = lab, view
@@ -99,7 +99,7 @@ class TabVisibilities:
         self._loop = server.get_event_loop()
         self._loop.call_soon_threadsafe(self._look)
 
-    def watch(self, client: viser.ClientHandle, lab: Lab, view: CountingDisplay) -> None:
+    def watch(self, client: viser.ClientHandle, lab: ScheduledLab, view: CountingDisplay) -> None:
         """Show a lab in a browser, instead of any other."""
         number = client.client_id
         if number not in self._all:

@@ -1,4 +1,4 @@
-"""THE simulation thread: it owns all sessions and advances them at 60 Hz against a deadline.
+"""THE simulation thread: it owns all labs and advances them at 60 Hz against a deadline.
 
 A frame that takes longer than its budget slows simulated time, visibly, and never piles up.
 """
@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from onpath.app.common.error_log import log_error
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import DisplayRate
 
 log = logging.getLogger(__name__)
@@ -28,9 +28,9 @@ COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones are paid f
 
 
 class Display(Protocol):
-    """Whatever shows a session; called by the simulation thread only."""
+    """Whatever shows a lab; called by the simulation thread only."""
 
-    def show(self, session: Session, achieved: float, frame: int, stride: float) -> None:
+    def show(self, lab: Lab, achieved: float, frame: int, stride: float) -> None:
         """Show it, in every `stride`-th frame at least; `frame` counts them all."""
         ...
 
@@ -39,16 +39,17 @@ class Display(Protocol):
         ...
 
 
-class Lab:
-    """A session, how fast it really runs, and who looks at it.
+class ScheduledLab:
+    """A lab, how fast it really runs, and who looks at it.
 
     Attributes:
-        session: the state.
+        lab: the lab.
+        session: its simulated part.
         view: who looks, or None.
     """
 
-    def __init__(self, session: Session) -> None:
-        self.session = session
+    def __init__(self, lab: Lab) -> None:
+        self.lab, self.session = lab, lab.session
         self.view: Display | None = None
         self._credit = 0.0  # [s] of computing for commands
         self._simulated = self._passed = 1e-6  # lately, each fading over about a second
@@ -66,7 +67,7 @@ class Lab:
     def drain(self) -> None:
         """Apply commands; most of a frame's worth at a time."""
         self._credit = min(self._credit, 0.0) + COMMANDS
-        self._credit -= self.session.drain(self._credit)
+        self._credit -= self.lab.drain(self._credit)
 
     def advance(self, seconds: float) -> None:
         """Simulate a frame, which has taken so long. While nobody looks, simulated time waits."""
@@ -74,8 +75,8 @@ class Lab:
         if self.view is None:
             return
         before = session.time
-        session.advance(session.rate * FRAME)
-        if session.running and not session.frozen:
+        self.lab.advance(session.rate * FRAME)
+        if session.running and not self.lab.frozen:
             self._simulated += session.time - before - self._simulated * FADING
             self._passed += seconds - self._passed * FADING
 
@@ -83,7 +84,7 @@ class Lab:
         """Show it to who looks."""
         view = self.view  # may go at any time
         if view is not None:
-            view.show(self.session, self.achieved, count, stride)
+            view.show(self.lab, self.achieved, count, stride)
 
     def send(self) -> None:
         """Let out what has been shown."""
@@ -108,7 +109,7 @@ class SimulationThread:
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self._clock, self._sleep = clock, sleep
-        self._labs: list[Lab] = []
+        self._labs: list[ScheduledLab] = []
         self._lock = threading.Lock()
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self.run, name="simulation", daemon=True)
@@ -126,18 +127,18 @@ class SimulationThread:
         if self._thread.is_alive():
             self._thread.join(timeout=2.0)
 
-    def add(self, lab: Lab) -> None:
+    def add(self, lab: ScheduledLab) -> None:
         """Run one lab more; from any thread."""
         with self._lock:
             self._labs = [*self._labs, lab]
 
-    def remove(self, lab: Lab) -> None:
+    def remove(self, lab: ScheduledLab) -> None:
         """Run it no more; from any thread."""
         with self._lock:
             self._labs = [other for other in self._labs if other is not lab]
 
     @property
-    def labs(self) -> list[Lab]:
+    def labs(self) -> list[ScheduledLab]:
         """Those that run now."""
         return self._labs
 
@@ -168,15 +169,15 @@ class SimulationThread:
             What was spent on the display, [s].
         """
         labs = self._labs
-        _do(Lab.drain, labs)
+        _do(ScheduledLab.drain, labs)
         _do(lambda lab: lab.advance(seconds), labs)
         begun = self._clock()
         _do(lambda lab: lab.show(count, stride), labs)
-        _do(Lab.send, labs)
+        _do(ScheduledLab.send, labs)
         return self._clock() - begun
 
 
-def _do(step: Callable[[Lab], None], labs: list[Lab]) -> None:
+def _do(step: Callable[[ScheduledLab], None], labs: list[ScheduledLab]) -> None:
     for lab in labs:
         try:
             step(lab)

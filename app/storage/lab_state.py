@@ -7,8 +7,8 @@ from typing import Any
 
 import msgspec
 
-from onpath.app.lab.session import Session
-from onpath.app.lab.setup import Setup, capture, from_data, restore, to_data
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.setup import Setup, capture, from_data, to_data
 from onpath.lessons.progress import Progress, read_progress
 
 SAVE_INTERVAL = 60  # frames between checks for changes
@@ -17,7 +17,7 @@ NEW = (Setup(), Progress(), None)
 
 
 class StateObserver:
-    """Watches a session, and submits its state when it has changed, at most once a second.
+    """Watches a lab, and submits its state when it has changed, at most once a second.
 
     Args:
         submit: takes a function that builds the state; that function is called in another thread.
@@ -25,45 +25,45 @@ class StateObserver:
     """
 
     def __init__(
-        self, submit: Callable[[Callable[[], LabState]], None], session: Session | None = None
+        self, submit: Callable[[Callable[[], LabState]], None], lab: Lab | None = None
     ) -> None:
         self._submit = submit
-        self._seen = NEW if session is None else _now(session)
+        self._seen = NEW if lab is None else _now(lab)
         self._frames = 0
 
-    def __call__(self, session: Session) -> None:
-        """Called in every frame; see `Session.watch`."""
+    def __call__(self, lab: Lab) -> None:
+        """Called in every frame; see `Lab.watch`."""
         self._frames += 1
         if self._frames % SAVE_INTERVAL:
             return
-        now = _now(session)
+        now = _now(lab)
         if now != self._seen:
             self._seen = now
             self._submit(lambda: _state(*now))
 
 
-def keep(session: Session, submit: Callable[[Callable[[], LabState]], None]) -> None:
+def keep(lab: Lab, submit: Callable[[Callable[[], LabState]], None]) -> None:
     """Submit the state even if it has not changed. Call it on the simulation thread."""
-    now = _now(session)
+    now = _now(lab)
     submit(lambda: _state(*now))
 
 
-def put_back(session: Session, state: LabState) -> None:
-    """Restore a stored state into a new session.
+def put_back(lab: Lab, state: LabState) -> None:
+    """Restore a stored state into a new lab.
 
     Raises:
-        ValueError: the state is invalid; the session is then unchanged.
+        ValueError: the state is invalid; the lab is then unchanged.
     """
     setup = from_data(state.get("setup"))
     progress = read_progress(state.get("lessons"))
     before = state.get("before")
     earlier = from_data(before) if before else None
-    restore(session, setup)
-    session.lessons.resume(progress, earlier, session)
+    lab.set_up(setup)
+    lab.lessons.resume(progress, earlier, lab)
 
 
-def _now(session: Session) -> tuple[Setup, Progress, Setup | None]:
-    return capture(session), session.lessons.progress, session.lessons.before
+def _now(lab: Lab) -> tuple[Setup, Progress, Setup | None]:
+    return capture(lab.session), lab.lessons.progress, lab.lessons.before
 
 
 def _state(setup: Setup, progress: Progress, before: Setup | None) -> LabState:

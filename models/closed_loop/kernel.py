@@ -262,7 +262,7 @@ def _command(
     measured: tuple[ca.SX, ca.SX],
     beam: composite.Compensation | None,
 ) -> tuple[ca.SX, ca.SX]:
-    """Commanded y'' and the error that is integrated (ξ or e), both (p, 1)."""
+    """Commanded y'' and the error that is integrated (λ or e), both (p, 1)."""
     gains = Gains(*[settings[name] for name in GAINS])
     k5, speed = settings["K5"], settings["speed"]
     speed = speed if beam is None else composite.wanted_speed(beam, output, k5)

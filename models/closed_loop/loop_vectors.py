@@ -19,7 +19,7 @@ def state_layout(system: MechanicalSystem) -> Layout:
             ("theta", 1),  # closest point, [rad]
             ("theta_rate", 1),  # its rate, which predicts the next one, [rad/s]
             ("theta_ref", 1),  # reference point of trajectory tracking, [rad]
-            ("integral", p),  # of ξ, or of the tracking error
+            ("integral", p),  # of λ, or of the tracking error
             ("encoder", m),  # last reading, [rad]
             ("encoder_rate", m),  # filtered velocity, [rad/s]
             *(composite.MEMORY.fields if n > m else ()),

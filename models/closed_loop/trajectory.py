@@ -138,9 +138,10 @@ def write_csv(file: TextIO, robot: Robot, trajectories: Iterable[Trajectory]) ->
         columns = np.column_stack(
             [f["q"], f["y"], f["theta"], run.speed, run.distance, f["u"], f["force"]]
         )
-        for time, values in zip(run.t, columns, strict=True):
-            numbers = [f"{value:.9g}" for value in values + 0.0]  # + 0.0 turns -0 into 0
-            writer.writerow([f"{time:.6g}", run.controller, *numbers])
+        line = f"%.6g,{run.controller}{',%.9g' * columns.shape[1]}\n"
+        columns += 0.0  # turns -0 into 0
+        rows = np.column_stack([run.t, columns]).tolist()
+        file.writelines(line % tuple(row) for row in rows)
 
 
 def read_csv(file: TextIO) -> dict[str, dict[str, Array]]:

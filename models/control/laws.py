@@ -57,19 +57,19 @@ def path_following(
 ) -> ca.SX:
     """Commanded y'' of path following, (p, 1), [m/s²].
 
-        v_perp = -K1 ξ - K2 ξ' - K3 ∫ξ dt                     (18)
+        v_perp = -K1 λ - K2 λ' - K3 ∫λ dt                     (18)
         v_par  = -K4 (θ - θ_ref) - K5 θ'    (position task)   (19)
         v_par  = -K5 (θ' - ω_ref)           (speed task)      (19) with K4 = 0
 
-    where θ - θ_ref is taken modulo 2π on a closed curve. `VirtualOutput.acceleration` turns (v_par,
-    v_perp) into y''. On an open curve ω_ref is reduced near the ends.
+    λ = ξ_1 is `output.xi`. θ - θ_ref is taken modulo 2π on a closed curve. On an open curve ω_ref
+    is reduced near the ends. `VirtualOutput.acceleration` turns (v_par, v_perp) into y''.
 
     Args:
         output: coordinates along and across the path.
         closed: whether the curve is closed.
         gains: K1 to K5.
         task: the wanted motion along the path.
-        integral: ∫ξ dt, (p - 1, 1), [m s].
+        integral: ∫λ dt, (p - 1, 1), [m s].
 
     Source: eqs. (16), (18), (19).
     """

@@ -70,7 +70,7 @@ class VirtualOutput:
     frame: Frame
 
     def acceleration(self, tangential: ca.SX, transversal: ca.SX) -> ca.SX:
-        """The output acceleration y'' that gives θ'' = v_par and ξ'' = v_perp.
+        """The output acceleration y'' that gives θ'' = v_par and λ'' = v_perp.
 
         This inverts the decoupling of (16) in the output space; `linearization` in
         models/control/laws.py then turns y'' into torques.

@@ -18,7 +18,7 @@ from onpath.models.errors import Message
 from onpath.models.paths.curves import Curve
 
 TUBE = 0.008  # [m], radius of the tube in which the closest point must be unique
-LEAST_MARGIN = 0.2  # smallest admissible value of Robot.margin, which is 1 at best
+LEAST_MARGIN = 0.2  # smallest admissible value of Robot.margin, which is 1 at home
 SAMPLES = 240  # points of the curve that are checked
 
 

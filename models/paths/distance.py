@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.paths.curves import Curve, local_minima
 from onpath.models.paths.frames import Frame
 
 CHUNK = 4096  # points per array operation, which bounds the memory
+MOST = 4  # local minima of a distance that are refined
 NEAR = 0.1  # [rad], largest correction of a guess for which its Taylor polynomial is trusted
 
 
@@ -29,13 +31,36 @@ def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> A
     distances = np.empty(len(y))
     for begin in range(0, len(y), CHUNK):
         some = y[begin : begin + CHUNK]
-        theta = grid[local_minima(((some[:, None, :] - points) ** 2).sum(-1))]
-        each, theta = some.repeat(theta.shape[1], axis=0), theta.ravel()
+        row, column = _candidates(_squared(some, points))
+        each, theta = some[row], grid[column]
         for _ in range(3):
             theta = _refined(frame, curve, each, theta, step)[0]
         found = np.linalg.norm(frame.lift(curve.at(theta)) - each, axis=1)
-        distances[begin : begin + CHUNK] = found.reshape(len(some), -1).min(axis=1)
+        first = np.searchsorted(row, np.arange(len(some)))
+        distances[begin : begin + CHUNK] = np.minimum.reduceat(found, first)
     return distances if curve.closed else np.minimum(distances, _beyond_the_ends(frame, curve, y))
+
+
+def _candidates(squared: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns of each row's local minima, row by row, (n, k) -> two of shape (m,)."""
+    is_lowest = np.ones(squared.shape, dtype=bool)
+    rising = squared[:, :-1] <= squared[:, 1:]
+    is_lowest[:, :-1] &= rising
+    is_lowest[:, 1:] &= squared[:, 1:] <= squared[:, :-1]
+    count = is_lowest.sum(axis=1)
+    alone = len(squared) == 1  # BLAS computes one row otherwise, to another last bit
+    if not alone and count.min() > 0 and count.max() <= MOST:
+        return np.nonzero(is_lowest)
+    column = local_minima(squared, MOST)
+    return np.arange(len(squared)).repeat(MOST), column.ravel()
+
+
+def _squared(y: Array, points: Array) -> Array:
+    """Squared distances of all y, (n, p), to all points, (k, p): (n, k)."""
+    squared = (y[:, None, 0] - points[:, 0]) ** 2
+    for axis in range(1, y.shape[1]):
+        squared += (y[:, None, axis] - points[:, axis]) ** 2
+    return squared
 
 
 def _beyond_the_ends(frame: Frame, curve: Curve, y: Array) -> Array:

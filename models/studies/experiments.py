@@ -149,8 +149,8 @@ def experiments(robot: str = "") -> dict[str, Experiment]:
     """All experiments by name, with their defaults.
 
     Args:
-        robot: who does them, by its name in the catalogue; empty: the paper's. The last one is for
-            the flexible link alone.
+        robot: name of the robot in the catalogue; empty: the robots of the paper. The experiment
+            "flexible" exists for the flexible five-bar only.
 
     Raises:
         ValueError: an unknown robot.

@@ -106,7 +106,7 @@ class Robot(Protocol):
     def margin(self, z: Array) -> Array:
         """Distance of points of the path's plane from singular configurations, (n, 2) -> (n,).
 
-        A number in [0, 1] or of that order; 0 out of reach.
+        Dimensionless: 1 at home, and 0 where the robot is singular or the point out of reach.
         """
         ...
 

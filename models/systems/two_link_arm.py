@@ -44,17 +44,20 @@ SINGULAR = Message("stop.singular")
 
 @dataclass(frozen=True, slots=True)
 class ArmLinks:
-    """Illustrative values. Units: m, kg, kg m², N m s."""
+    """Illustrative values, not those of a particular arm. Units: m, kg, kg m², N m s.
+
+    Link 2 carries a pen at its end and a counterweight behind the elbow.
+    """
 
     l1: float = 0.22
     l2: float = 0.20
-    r1: float = 0.09
-    r2: float = 0.08
-    m1: float = 0.5
+    r1: float = 0.08
+    r2: float = 0.06
+    m1: float = 0.4
     m2: float = 0.25
-    motor: float = 0.3  # of the elbow, [kg]
-    I1: float = 0.003
-    I2: float = 0.0012
+    motor: float = 0.1  # of the elbow, [kg]
+    I1: float = 0.002
+    I2: float = 0.006
     b1: float = 0.05
     b2: float = 0.03
 

@@ -16,33 +16,17 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, BrowserContext, Download, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Download, Page
 
 from onpath.app.bench.mouse_latency import NO_TRIANGLES
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.trajectory import read_csv
-from tests.support.browser import CHROMIUM, PLAIN, SELDOM, Tab, wait_for
+from tests.support.browser import SELDOM, Tab, wait_for
 
 TRACKER, FOLLOWER = "trajectory_tracking", "path_following"
 WINDOW = {"width": 1000, "height": 700}
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache())
-    yield server
-    server.stop()
 
 
 def fresh(browser: Browser, **options: Any) -> BrowserContext:
@@ -60,13 +44,13 @@ def shared(browser: Browser, server: LabServer) -> Iterator[Tab]:
 @pytest.fixture
 def tab(shared: Tab) -> Iterator[Tab]:
     """A tab as it is when one comes to the lab; no test may make its page complain."""
-    session = shared.session
+    lab = shared.lab
     shared.page.keyboard.press("Escape")
     shared.page.mouse.move(1, 1)
     shared.page.locator("body").evaluate("() => document.activeElement?.blur()")
     shared.ask(c.ResetParameters(), c.ChoosePath("circle"), c.SelectPoint(None), c.Reset())
     shared.ask(c.SetCopy(True), c.SetRate(1.0), c.SetRunning(True))
-    wait_for(lambda: session.time > 0.1)
+    wait_for(lambda: lab.session.time > 0.1)
     yield shared
     shared.ask(c.SetRunning(False))  # draws nothing more: other tabs need the processor
     assert shared.errors == []
@@ -98,28 +82,30 @@ def stop_between_control_points(tab: Tab) -> None:
 
 @pytest.mark.parametrize("name", [FOLLOWER, TRACKER])
 def test_pulling_an_end_point_pulls_both(tab: Tab, name: str) -> None:
-    session = tab.session
+    lab = tab.lab
     stop_between_control_points(tab)
-    before = {each: tab.tip(each) for each in session.runs}
+    before = {each: tab.tip(each) for each in lab.session.runs}
     start = tab.placed(name, before[name])
     goal = start[0] - 40, start[1] + 30
     with tab.dragging(start, goal):
-        wait_for(lambda: session.grips.grabbed == name and len(session.grips.hands) == 2)
-        wait_for(lambda: math.dist(tab.placed(name, hands(session)[name]), goal) < 12)
-        pulled = hands(session)
+        wait_for(lambda: lab.session.grips.grabbed == name and len(lab.session.grips.hands) == 2)
+        wait_for(lambda: math.dist(tab.placed(name, hands(lab)[name]), goal) < 12)
+        pulled = hands(lab)
         moved = {each: pulled[each] - before[each] for each in pulled}
         np.testing.assert_allclose(moved[TRACKER], moved[FOLLOWER], atol=1e-9)
         tab.ask(c.SetParameter("speed", 0.0), c.SetRunning(True))
-        wait_for(lambda: session.time > 0.8)
-        for each, run in session.runs.items():
+        wait_for(lambda: lab.session.time > 0.8)
+        for each, run in lab.session.runs.items():
             assert (tab.tip(each) - before[each]) @ moved[each] > 0, each
             assert np.linalg.norm(run.shown()["force"]) > 0.1
-    wait_for(lambda: session.grips.grabbed is None and not session.grips.hands)
+    wait_for(lambda: lab.session.grips.grabbed is None and not lab.session.grips.hands)
 
 
-def hands(session: Session) -> dict[str, np.ndarray]:
+def hands(lab: Lab) -> dict[str, np.ndarray]:
     """Where they pull, in the path's plane, shape (2,) each, [m]."""
-    return {name: session.robot.frame.planar(hand) for name, hand in session.grips.hands.items()}
+    return {
+        name: lab.session.robot.frame.planar(hand) for name, hand in lab.session.grips.hands.items()
+    }
 
 
 def test_without_copy_only_the_robot_in_hand_is_pulled(tab: Tab) -> None:
@@ -178,25 +164,25 @@ def test_drawing_a_path_freehand(tab: Tab) -> None:
 
 def test_holding_both_back_tells_the_story(tab: Tab) -> None:
     """What a student must find out within a minute."""
-    session = tab.session
+    lab = tab.lab
     tab.press("Pause")
-    wait_for(lambda: not session.running)
+    wait_for(lambda: not lab.session.running)
     tab.press("Reset")
-    wait_for(lambda: session.time == 0.0)
+    wait_for(lambda: lab.session.time == 0.0)
     for _ in range(5):  # two laps: as in the paper's experiment, held back at the rightmost point
         tab.ask(*[c.StepOnce()] * 400)
     tab.press("Hold both back")
-    wait_for(lambda: len(session.grips.held) == 2)
+    wait_for(lambda: len(lab.session.grips.held) == 2)
     tab.press("Run")
-    wait_for(lambda: session.time > 4.0)
-    assert session.runs[FOLLOWER].max_distance < 0.003
-    assert session.runs[TRACKER].max_distance > 0.040
+    wait_for(lambda: lab.session.time > 4.0)
+    assert lab.session.runs[FOLLOWER].max_distance < 0.003
+    assert lab.session.runs[TRACKER].max_distance > 0.040
     shown = tab.page.get_by_role("row", name="Path following").first.inner_text()
     assert float(shown.split("\t")[-1].split()[0]) < 3.0
     tab.press("Let both go")
-    wait_for(lambda: not session.grips.held)
+    wait_for(lambda: not lab.session.grips.held)
     tab.button("Hold both back").wait_for()
-    wait_for(lambda: max(run.distance for run in session.runs.values()) < 2e-3)
+    wait_for(lambda: max(run.distance for run in lab.session.runs.values()) < 2e-3)
 
 
 def test_holding_as_long_as_the_button_is_down(tab: Tab) -> None:
@@ -216,16 +202,16 @@ def test_holding_as_long_as_the_button_is_down(tab: Tab) -> None:
 
 
 def test_pause_step_and_run(tab: Tab) -> None:
-    session = tab.session
+    lab = tab.lab
     tab.press("Pause")
-    wait_for(lambda: not session.running)
-    paused = session.time
+    wait_for(lambda: not lab.session.running)
+    paused = lab.session.time
     for steps in (1, 2, 3):
         tab.press("Step")
-        wait_for(lambda steps=steps: session.time >= paused + (steps - 0.5) * 1e-3)
-        assert session.time == pytest.approx(paused + steps * 1e-3, abs=1e-9)
+        wait_for(lambda steps=steps: lab.session.time >= paused + (steps - 0.5) * 1e-3)
+        assert lab.session.time == pytest.approx(paused + steps * 1e-3, abs=1e-9)
     tab.press("Run")
-    wait_for(lambda: session.time > paused + 0.2)
+    wait_for(lambda: lab.session.time > paused + 0.2)
 
 
 @pytest.mark.flaky(reruns=2, only_rerun="TimeoutError")  # a busy machine may be slower still
@@ -238,22 +224,22 @@ def test_time_runs_slower(tab: Tab) -> None:
 
 
 def test_gains_by_number_and_by_slider(tab: Tab) -> None:
-    session = tab.session
+    lab = tab.lab
     tab.enter("K2", "10")
-    wait_for(lambda: session.parameters.K2 == 10.0)
+    wait_for(lambda: lab.session.parameters.K2 == 10.0)
     tab.open("Advanced")
     tab.enter("K3", "8000")  # more than K1 K2
-    wait_for(lambda: session.parameters.K3 == 8000.0)
+    wait_for(lambda: lab.session.parameters.K3 == 8000.0)
     tab.page.get_by_text("⚠").wait_for()
     handle = tab.slider("K1").bounding_box()
     assert handle is not None
     start = (handle["x"] + handle["width"] / 2, handle["y"] + handle["height"] / 2)
     with tab.dragging(start, (start[0] + 40, start[1])):
-        wait_for(lambda: session.parameters.K1 > 600.0)
+        wait_for(lambda: lab.session.parameters.K1 > 600.0)
     shown = tab.number("K1")
-    wait_for(lambda: float(shown.input_value()) == session.parameters.K1)
+    wait_for(lambda: float(shown.input_value()) == lab.session.parameters.K1)
     tab.press("Reset to defaults")
-    wait_for(lambda: session.parameters == type(session.parameters)())
+    wait_for(lambda: lab.session.parameters == type(lab.session.parameters)())
     wait_for(lambda: float(shown.input_value()) == 400.0)
 
 
@@ -287,19 +273,19 @@ def test_a_robot_that_leaves_its_workspace_stops_and_says_why(tab: Tab) -> None:
 
 
 def test_rewind_and_go_on_from_there(tab: Tab) -> None:
-    session = tab.session
-    wait_for(lambda: session.time > 2.5)
+    lab = tab.lab
+    wait_for(lambda: lab.session.time > 2.5)
     tab.open("Look back")
     tab.enter("Seconds ago", "1.5")
-    wait_for(lambda: session.viewing is not None)
-    assert not session.running
-    then, viewing = session.time, session.viewing or 0.0
+    wait_for(lambda: lab.session.viewing is not None)
+    assert not lab.session.running
+    then, viewing = lab.session.time, lab.session.viewing or 0.0
     assert viewing == pytest.approx(then - 1.5, abs=0.02)
     tab.press("Go on from here")
-    wait_for(lambda: session.viewing is None and session.running)
-    assert session.time < then
-    wait_for(lambda: session.time > viewing + 0.2)
-    assert session.runs[FOLLOWER].distance < 1e-3
+    wait_for(lambda: lab.session.viewing is None and lab.session.running)
+    assert lab.session.time < then
+    wait_for(lambda: lab.session.time > viewing + 0.2)
+    assert lab.session.runs[FOLLOWER].distance < 1e-3
     wait_for(lambda: float(tab.number("Seconds ago").input_value()) == 0.0)
 
 
@@ -307,21 +293,21 @@ def test_rewind_and_go_on_from_there(tab: Tab) -> None:
 
 
 def test_keys_do_what_the_buttons_do(tab: Tab) -> None:
-    session, keys = tab.session, tab.page.keyboard
+    lab, keys = tab.lab, tab.page.keyboard
     keys.press("Space")
-    wait_for(lambda: not session.running)
-    paused = session.time
+    wait_for(lambda: not lab.session.running)
+    paused = lab.session.time
     keys.press("ArrowRight")
-    wait_for(lambda: session.time > paused)
-    assert session.time == pytest.approx(paused + 1e-3, abs=1e-9)
+    wait_for(lambda: lab.session.time > paused)
+    assert lab.session.time == pytest.approx(paused + 1e-3, abs=1e-9)
     keys.press("h")
-    wait_for(lambda: len(session.grips.held) == 2)
+    wait_for(lambda: len(lab.session.grips.held) == 2)
     keys.press("h")
-    wait_for(lambda: not session.grips.held)
+    wait_for(lambda: not lab.session.grips.held)
     keys.press("r")
-    wait_for(lambda: session.time == 0.0)
+    wait_for(lambda: lab.session.time == 0.0)
     keys.press("Space")
-    wait_for(lambda: session.running and session.time > 0.1)
+    wait_for(lambda: lab.session.running and lab.session.time > 0.1)
 
 
 def test_space_after_a_click_on_pause_is_one_toggle_not_two(tab: Tab) -> None:
@@ -407,17 +393,19 @@ def plays_without_complaint(page: Page, film: Path) -> None:
 
 
 def test_a_reload_comes_back_to_the_same_lab(other: Tab) -> None:
-    session = other.session
+    lab = other.lab
     old = weakref.ref(other.view)
     other.enter("K1", "150")
     other.choose("Path", "clover")
-    wait_for(lambda: session.parameters.K1 == 150.0 and session.editor.design.name == "clover")
-    wait_for(lambda: session.time > 0.5)
-    before = session.time
+    wait_for(
+        lambda: lab.session.parameters.K1 == 150.0 and lab.session.editor.design.name == "clover"
+    )
+    wait_for(lambda: lab.session.time > 0.5)
+    before = lab.session.time
     other.reload()
-    assert other.session is session
-    assert (session.parameters.K1, session.editor.design.name) == (150.0, "clover")
-    wait_for(lambda: session.time > before)
+    assert other.lab is lab
+    assert (lab.session.parameters.K1, lab.session.editor.design.name) == (150.0, "clover")
+    wait_for(lambda: lab.session.time > before)
     assert other.number("K1").input_value() == "150"
     assert other.page.get_by_label("Path", exact=True).input_value() == "clover"
     assert len(other.server.server.get_clients()) == len(other._looked_at())
@@ -429,7 +417,7 @@ def test_another_tab_is_another_lab_that_ends_with_it(tab: Tab) -> None:
     wait_for(lambda: not tab.session.running)
     clients, threads = len(tab.server.server.get_clients()), export_threads()
     second = Tab(tab.server, tab.page.context, draws=False)
-    assert second.session is not tab.session
+    assert second.lab is not tab.lab
     assert second.session.running and not tab.session.running
     second.press("Help and keys")
     second.page.get_by_role("dialog").wait_for()
@@ -470,9 +458,9 @@ def test_a_narrow_screen_shows_both_robots_and_the_buttons(
 def test_hostile_text_is_not_rendered(tab: Tab) -> None:
     """No browser can make the lab say this, but nothing may rely on that."""
     tab.page.evaluate("window.harmed = false")
-    tab.session.show_message("<img src=x onerror='window.harmed = true'><b>bold</b>", "warning")
+    tab.lab.show_message("<img src=x onerror='window.harmed = true'><b>bold</b>", "warning")
     tab.page.get_by_role("status").filter(has_text="<b>bold</b>").wait_for()
     tab.page.wait_for_timeout(300)
     assert tab.page.get_by_role("status").locator("b, img").count() == 0
     assert tab.page.evaluate("window.harmed") is False
-    tab.session.show_message("")
+    tab.lab.show_message("")

@@ -10,15 +10,16 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 
 from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.common.access_codes import shown
 from onpath.app.lab import commands as c
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.teacher_view import TeacherView
+from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 
 HOSTILE = "<img src=x onerror=1>"
 WINDOWS = ((1100, 600), (800, 400), (800, 400))
@@ -34,20 +35,19 @@ class Class:
 
 
 @pytest.fixture(scope="module")
-def tabs() -> Iterator[Class]:
+def tabs(browser: Browser) -> Iterator[Class]:
     room = LocalClassroom()
     store = LoopCache()
     server = LabServer("127.0.0.1", 0, store, classroom=room)
-    with sync_playwright() as playwright:
-        browser: Browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        made: list[Tab] = []
-        for width, height in WINDOWS:
-            context = browser.new_context(viewport={"width": width, "height": height})
-            made.append(Tab(server, context, draws=False))
-            made[-1].ask(c.SetRunning(False))
-        yield Class(room, made[0], made[1:])
-        assert [tab.errors for tab in made] == [[], [], []]
-        browser.close()
+    made: list[Tab] = []
+    for width, height in WINDOWS:
+        context = browser.new_context(viewport={"width": width, "height": height})
+        made.append(Tab(server, context, draws=False))
+        made[-1].ask(c.SetRunning(False))
+    yield Class(room, made[0], made[1:])
+    assert [tab.errors for tab in made] == [[], [], []]
+    for tab in made:
+        tab.page.context.close()
     server.stop()
 
 
@@ -85,8 +85,9 @@ def test_frozen_labs_stand_still_and_say_so(tabs: Class) -> None:
     for student in tabs.students:
         wait_for(lambda student=student: "look to the front" in student.said())
         before = student.session.time
+        asked = student.session.asked
         student.press("Pause")
-        student.page.wait_for_timeout(300)
+        wait_for(lambda student=student, asked=asked: student.session.asked > asked)
         assert student.session.running and student.session.time == before
     tabs.teacher.press("Let all labs go on")
     for student in tabs.students:
@@ -116,10 +117,10 @@ def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None
     teacher.ask(c.SetParameter("K2", 33.0))
     teacher.press("Send my set-up to all")
     wait_for(lambda: "“Set up again” brings" in first.said())
-    assert first.session.parameters.K2 == 33.0 and first.session.lessons.index == 1
+    assert first.session.parameters.K2 == 33.0 and first.lab.lessons.index == 1
     assert first.page.get_by_role("heading", name="Draw what the tracker does").is_visible()
     first.press("Next")
-    wait_for(lambda: first.session.lessons.index == 2)
+    wait_for(lambda: first.lab.lessons.index == 2)
     wait_for(lambda: teacher.page.get_by_text("Sent to 2 students").count() == 2)
     teacher.page.get_by_role("tab", name="Class").click()
     teacher.page.get_by_text("Students who join receive the set-up").wait_for()
@@ -134,10 +135,12 @@ def test_the_teacher_looks_on_and_touches_nothing(tabs: Class) -> None:
     teacher.field("Follow").click()
     teacher.page.get_by_role("option", name="1. Ada").click()
     teacher.page.get_by_text("This is the lab of Ada").wait_for()
-    view = teacher.lab.view
+    feed = teacher.scheduled.view
+    assert isinstance(feed, LabFeed)
+    view, (ada, _) = feed.page, tabs.room.members().values()
     assert isinstance(view, TeacherView)
-    wait_for(lambda: view._built[0] == id(first.session))
-    assert first.session.lessons.lesson is not None
+    wait_for(lambda: view._built[0] == ada.number)
+    assert first.lab.lessons.lesson is not None
     assert teacher.button("Hold both back").count() == 0
     teacher.page.keyboard.press("h")
     teacher.page.wait_for_timeout(300)

@@ -9,38 +9,33 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import Browser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.scene.stage_catalogue import HORIZONTAL, IN_PATH_PLANE
 from onpath.app.server.lab_server import LabServer
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
 from onpath.models.systems.flexible_robot import UNSTABLE, FlexibleFiveBar
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 
 FOLLOWER = "path_following"
 
 
 @pytest.fixture(scope="module")
-def tab() -> Iterator[Tab]:
+def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     """A tab in which the flexible link has been chosen from the menu."""
-    store = LoopCache()
-    server = LabServer("127.0.0.1", 0, store)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        tab = Tab(server, browser.new_context(viewport={"width": 1000, "height": 700}), draws=False)
-        tab.press("Robot…")
-        for entry in (FIVE_BAR, FLEXIBLE):
-            tab.page.get_by_alt_text(entry.label).wait_for()
-        tab.press(FLEXIBLE.label)
-        wait_for(lambda: tab.session.entry is FLEXIBLE and tab.session.time > 0.3)
-        tab.page.get_by_text("Flexible link", exact=True).wait_for()
-        tab.settle()
-        yield tab
-        assert tab.errors == []
-        browser.close()
-    server.stop()
+    context = browser.new_context(viewport={"width": 1000, "height": 700})
+    tab = Tab(server, context, draws=False)
+    tab.press("Robot…")
+    for entry in (FIVE_BAR, FLEXIBLE):
+        tab.page.get_by_alt_text(entry.label).wait_for()
+    tab.press(FLEXIBLE.label)
+    wait_for(lambda: tab.session.entry is FLEXIBLE and tab.session.time > 0.3)
+    tab.page.get_by_text("Flexible link", exact=True).wait_for()
+    tab.settle()
+    yield tab
+    assert tab.errors == []
+    context.close()
 
 
 def deflection(tab: Tab) -> float:
@@ -54,13 +49,13 @@ def deflection(tab: Tab) -> float:
 
 def tip(tab: Tab) -> np.ndarray:
     """The follower's end-point in the robot's frame for drawing, (3,), [m]."""
-    session = tab.session
-    return session.robot.place(session.runs[FOLLOWER].shown()["y"])
+    lab = tab.lab
+    return lab.session.robot.place(lab.session.runs[FOLLOWER].shown()["y"])
 
 
 @pytest.mark.parametrize("plane", [IN_PATH_PLANE, HORIZONTAL])
 def test_the_tip_is_pulled_in_the_plane_that_was_chosen(tab: Tab, plane: str) -> None:
-    session = tab.session
+    lab = tab.lab
     tab.choose("Pull in", plane)
     tab.ask(c.SetParameter("speed", 0.0), c.Reset(), c.SetRunning(False))
     tab.ask(*[c.StepOnce()] * 50)
@@ -68,43 +63,43 @@ def test_the_tip_is_pulled_in_the_plane_that_was_chosen(tab: Tab, plane: str) ->
     before, start = tip(tab), tab.pixel(FOLLOWER, tip(tab))
 
     def pulled() -> np.ndarray:
-        return session.robot.place(session.grips.hands[FOLLOWER])
+        return lab.session.robot.place(lab.session.grips.hands[FOLLOWER])
 
     with tab.dragging(start, (start[0] + 45, start[1] + 25)):
-        wait_for(lambda: session.grips.hands and np.linalg.norm(pulled() - before) > 0.01)
+        wait_for(lambda: lab.session.grips.hands and np.linalg.norm(pulled() - before) > 0.01)
         moved = pulled() - before
         flat = moved[2] if plane == HORIZONTAL else moved @ [0.1, 1.0, 0.0]
         assert abs(flat) < 1e-6
         tab.ask(c.SetRunning(True))
         wait_for(lambda: deflection(tab) > 1e-3)
-    wait_for(lambda: not session.grips.hands)
+    wait_for(lambda: not lab.session.grips.hands)
     wait_for(lambda: deflection(tab) < 1e-3)
     assert tab.said() == ""
 
 
 def test_the_path_is_dragged_in_its_slanted_plane(tab: Tab) -> None:
-    session = tab.session
+    lab = tab.lab
     tab.ask(c.ChoosePath("circle"), c.Reset(), c.SetRunning(False))
     tab.settle()
-    old = session.editor.design.points[3].copy()
+    old = lab.session.editor.design.points[3].copy()
     start, end = tab.placed(FOLLOWER, old), tab.placed(FOLLOWER, old + [0.015, 0.012])
     with tab.dragging(start, end):
-        wait_for(lambda: session.editor.design.name == "edited" or session.editor.proposed)
-    wait_for(lambda: session.editor.design.name == "edited")
-    np.testing.assert_allclose(session.editor.design.points[3], old + [0.015, 0.012], atol=2e-3)
+        wait_for(lambda: lab.session.editor.design.name == "edited" or lab.session.editor.proposed)
+    wait_for(lambda: lab.session.editor.design.name == "edited")
+    np.testing.assert_allclose(lab.session.editor.design.points[3], old + [0.015, 0.012], atol=2e-3)
     tab.ask(c.SetRunning(True))
-    wait_for(lambda: session.time > 1.5)
-    assert session.runs[FOLLOWER].distance < 2e-3 and tab.said() == ""
+    wait_for(lambda: lab.session.time > 1.5)
+    assert lab.session.runs[FOLLOWER].distance < 2e-3 and tab.said() == ""
     tab.ask(c.ChoosePath("circle"), c.Reset())
 
 
 def test_a_divergence_is_caught_said_and_reset(tab: Tab) -> None:
-    session = tab.session
+    lab = tab.lab
     tab.ask(c.SetParameter("speed", 2.0), c.Reset(), c.SetRunning(True))
     tab.enter("Drawn larger", "5")
-    wait_for(lambda: session.exaggeration == 5.0)
+    wait_for(lambda: lab.session.exaggeration == 5.0)
     tab.enter("α", "0.95")
-    wait_for(lambda: session.parameters.law == "redefined")  # type: ignore[attr-defined]
+    wait_for(lambda: lab.session.parameters.law == "redefined")  # type: ignore[attr-defined]
     wait_for(lambda: UNSTABLE in tab.said())
     assert deflection(tab) > 0.01  # the last instant before: seen at a glance
     bar = tab.page.get_by_text("unstable inside")
@@ -112,8 +107,8 @@ def test_a_divergence_is_caught_said_and_reset(tab: Tab) -> None:
     tab.enter("α", "0.5")
     wait_for(lambda: bar.count() == 0)
     tab.press("Reset")
-    wait_for(lambda: tab.said() == "" and session.time > 1.5)
-    assert session.runs[FOLLOWER].distance < 5e-3
+    wait_for(lambda: tab.said() == "" and lab.session.time > 1.5)
+    assert lab.session.runs[FOLLOWER].distance < 5e-3
 
 
 def test_the_other_robot_is_as_it_was(tab: Tab) -> None:

@@ -124,12 +124,12 @@ def test_a_covered_tab_costs_nothing_and_then_shows_what_is(
     hidden = meter.rate(3.0)
     assert hidden < min(HIDDEN, 0.02 * visible)
     assert lab.view is None and lab.session.time == simulated
-    lab.session.post(c.ChoosePath("clover"))
+    lab.lab.post(c.ChoosePath("clover"))
     window.uncover()
     wait_for(lambda: lab.view is view)
     wait_for(lambda: window.evaluate(f"{VALUES}.includes('clover')"))
     assert meter.rate(1.0) > 0.3 * visible and lab.session.time > simulated
     assert np.allclose(client.camera.position, camera, atol=1e-9)  # for all that it was asked
-    lab.session.post(c.SetRunning(False))
+    lab.lab.post(c.SetRunning(False))
     time.sleep(QUESTION_INTERVAL + TICK)
     assert meter.rate(2.0) < PAUSED and lab.view is view

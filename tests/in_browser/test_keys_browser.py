@@ -10,36 +10,20 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 from viser import _messages
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.panels.keys import KEYS
 from onpath.app.server.lab_server import LabServer
 from onpath.models.systems.parameters import specs
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 
 NAMES = {"space": "Space", "escape": "Escape", "insert": "Insert", "delete": "Delete"}
 NAMES |= {f"arrow{way.lower()}": f"Arrow{way}" for way in ("Left", "Right", "Up", "Down")}
 NAMES |= {"home": "Home"}
 LESSON = "01-path-or-timetable"
 TOUCH = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache())
-    yield server
-    server.stop()
 
 
 @contextmanager
@@ -66,24 +50,19 @@ def shared(request: pytest.FixtureRequest, browser: Browser, server: LabServer) 
 @pytest.fixture
 def tab(shared: Tab) -> Iterator[Tab]:
     """Running, with nothing selected and nothing focused."""
-    leave(shared)
+    shared.blur()
     shared.ask(c.ResetParameters(), c.SelectPoint(None), c.Reset(), c.SetRunning(True))
     yield shared
     shared.ask(c.SetRunning(False))
 
 
-def leave(tab: Tab) -> None:
-    """Take the focus away from whatever has it."""
-    tab.page.evaluate("document.activeElement?.blur()")
-
-
 def asked_since(tab: Tab, before: int) -> int:
     """How many commands the keys have given, one more that is the last not counted."""
-    leave(tab)
+    tab.blur()
     tab.ask(c.SelectPoint(None))
     tab.page.keyboard.press("n")
     wait_for(lambda: tab.session.editor.selected == 0)
-    return tab.session.asked - before - 3
+    return tab.lab.asked - before - 3
 
 
 def camera(tab: Tab) -> np.ndarray:
@@ -116,14 +95,14 @@ def test_no_key_of_lab_or_lesson_moves_the_camera(tab: Tab) -> None:
     ]
     placed = settled_camera(tab)
     for name in [*pressed, "q", "e", "PageDown", "PageUp"]:
-        asked = tab.session.asked
+        asked = tab.lab.asked
         tab.page.keyboard.down(name) if "+" not in name else tab.page.keyboard.press(name)
         tab.settle()
         if "+" not in name:
             tab.page.keyboard.up(name)
         np.testing.assert_allclose(camera(tab), placed, atol=1e-6, err_msg=name)
         if name not in ("q", "e", "Home", "PageDown", "PageUp"):
-            assert tab.session.asked > asked, name
+            assert tab.lab.asked > asked, name
 
 
 def turn_the_view(tab: Tab) -> None:
@@ -140,13 +119,13 @@ def turn_the_view(tab: Tab) -> None:
 def test_the_view_is_reset_by_a_key_and_by_a_button(tab: Tab) -> None:
     placed = settled_camera(tab)
     turn_the_view(tab)
-    asked = tab.session.asked
+    asked = tab.lab.asked
     tab.page.keyboard.press("Home")
     wait_for(lambda: np.allclose(camera(tab), placed, atol=1e-4))
     turn_the_view(tab)
     tab.button("Reset view").first.click()
     wait_for(lambda: np.allclose(camera(tab), placed, atol=1e-4))
-    assert tab.session.asked == asked  # nobody else who looks at this lab notices
+    assert tab.lab.asked == asked  # nobody else who looks at this lab notices
 
 
 @pytest.mark.parametrize("place", ["lab", "lesson"])
@@ -164,88 +143,92 @@ def test_the_view_is_reset_on_a_phone(browser: Browser, server: LabServer, place
 
 
 def test_arrows_on_a_slider_move_that_alone(tab: Tab) -> None:
-    session, before = tab.session, tab.session.asked
-    value, spec = session.parameters.K1, specs(session.parameters)["K1"]
+    lab, before = tab.lab, tab.lab.asked
+    value, spec = lab.session.parameters.K1, specs(lab.session.parameters)["K1"]
     steps = [("ArrowRight", value + spec.step), ("ArrowLeft", value), ("Home", spec.low)]
-    tab.slider("K1").focus()
+    tab.focus(tab.slider("K1"))
     for key, wanted in steps:
         tab.page.keyboard.press(key)
-        wait_for(lambda wanted=wanted: wanted == session.parameters.K1)
+        wait_for(lambda wanted=wanted: wanted == lab.session.parameters.K1)
     assert asked_since(tab, before) == 3 and tab.session.running
 
 
 def test_arrows_move_the_slider_of_the_past(tab: Tab) -> None:
-    session = tab.session
-    wait_for(lambda: session.time > 1.0)
+    lab = tab.lab
+    wait_for(lambda: lab.session.time > 1.0)
     tab.open("Look back")
-    tab.slider("Seconds ago").focus()
+    tab.focus(tab.slider("Seconds ago"))
     for tenths in (1, 2, 3):
         tab.page.keyboard.press("ArrowRight")
         wait_for(
-            lambda tenths=tenths: round(10 * (session.time - (session.viewing or 9e9))) == tenths
+            lambda tenths=tenths: (
+                round(10 * (lab.session.time - (lab.session.viewing or 9e9))) == tenths
+            )
         )
-    time = session.time
+    time = lab.session.time
     tab.page.keyboard.press("ArrowLeft")
-    wait_for(lambda: session.time - (session.viewing or 0.0) == pytest.approx(0.2, abs=0.01))
-    assert session.time == time and not session.running
+    wait_for(
+        lambda: lab.session.time - (lab.session.viewing or 0.0) == pytest.approx(0.2, abs=0.01)
+    )
+    assert lab.session.time == time and not lab.session.running
 
 
 @pytest.mark.parametrize("key", ["Space", "Enter"])
 def test_a_focused_button_is_pressed_and_nothing_else(tab: Tab, key: str) -> None:
-    before = tab.session.asked
-    tab.button("Hold both back").first.focus()
+    before = tab.lab.asked
+    tab.focus(tab.button("Hold both back").first)
     tab.page.keyboard.press(key)
     wait_for(lambda: len(tab.session.grips.held) == 2)
     assert asked_since(tab, before) == 1 and tab.session.running
 
 
 def test_letters_still_work_on_buttons_sliders_and_boxes_to_tick(tab: Tab) -> None:
-    session = tab.session
+    lab = tab.lab
     tab.button("Hold both back").first.click()
-    wait_for(lambda: session.grips.held)
+    wait_for(lambda: lab.session.grips.held)
     for control in (None, tab.slider("K1"), tab.page.get_by_label("Copy to both")):
         if control is not None:
-            control.focus()
-        held = bool(session.grips.held)
+            tab.focus(control)
+        held = bool(lab.session.grips.held)
         tab.page.keyboard.press("h")
-        wait_for(lambda held=held: bool(session.grips.held) is not held)
+        wait_for(lambda held=held: bool(lab.session.grips.held) is not held)
         tab.page.keyboard.press("d")
-        wait_for(lambda: session.grips.hands)
+        wait_for(lambda: lab.session.grips.hands)
         tab.page.keyboard.press("x")
-        wait_for(lambda: not session.grips.hands)
+        wait_for(lambda: not lab.session.grips.hands)
 
 
 def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
-    session = tab.session
+    lab = tab.lab
     tab.open("Keep and share")
-    before, step = session.asked, session.lessons.index
+    before, step = lab.asked, lab.lessons.index
     for field in (tab.field("Share code"), tab.number("K1")):
-        field.focus()
+        tab.focus(field)
         for key in ("d", "x", "h", "w", "r", "g", "u", "PageDown", "PageUp", "Home"):
             tab.page.keyboard.press(key)
     assert tab.field("Share code").input_value() == "dxhwrgu"
-    assert asked_since(tab, before) == 0 and session.running and session.lessons.index == step
+    assert asked_since(tab, before) == 0 and lab.session.running and lab.lessons.index == step
     tab.field("Share code").fill("")
 
 
 def test_going_on_is_said_and_undone_by_key_and_button(tab: Tab) -> None:
-    session = tab.session
-    wait_for(lambda: session.time > 1.5)
+    lab = tab.lab
+    wait_for(lambda: lab.session.time > 1.5)
     tab.page.keyboard.press("b")
-    wait_for(lambda: session.viewing is not None)
-    time = session.time
+    wait_for(lambda: lab.session.viewing is not None)
+    time = lab.session.time
     wait_for(lambda: "This is the past" in tab.said())
     tab.page.keyboard.press("Space")
-    wait_for(lambda: session.running and session.time > time)  # back at the present
+    wait_for(lambda: lab.session.running and lab.session.time > time)  # back at the present
     tab.page.keyboard.press("b")
-    wait_for(lambda: session.viewing is not None)
-    end = session.time
+    wait_for(lambda: lab.session.viewing is not None)
+    end = lab.session.time
     tab.open("Look back")
     tab.press("Go on from here")
     wait_for(lambda: "are discarded" in tab.said())
     tab.press("Undo going on")
-    wait_for(lambda: session.time == end and not session.running)
+    wait_for(lambda: lab.session.time == end and not lab.session.running)
     tab.page.keyboard.press("u")
-    wait_for(lambda: session.time != end)
+    wait_for(lambda: lab.session.time != end)
     tab.page.keyboard.press("u")
-    wait_for(lambda: session.time == end)
+    wait_for(lambda: lab.session.time == end)

@@ -8,13 +8,12 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
-from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 
 LESSON, LONG = "01-path-or-timetable", "03-the-five-bar"
 LINE = 24  # [px]; the browser itself may scroll so far, to keep what is read in its place
@@ -32,19 +31,6 @@ SEEN = """(heading) => {
 }"""
 
 
-@pytest.fixture(scope="module")
-def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache())
-    yield server
-    server.stop()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        yield playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-
-
 @pytest.fixture(params=[(1280, 800), (390, 844)], ids=["desk", "telephone"])
 def tab(request: pytest.FixtureRequest, server: LabServer, browser: Browser) -> Iterator[Tab]:
     width, height = request.param
@@ -58,7 +44,7 @@ def tab(request: pytest.FixtureRequest, server: LabServer, browser: Browser) -> 
 
 def is_seen(tab: Tab, index: int) -> bool:
     """Whether the title of a step of the lesson is on the screen."""
-    run = tab.session.lessons
+    run = tab.lab.lessons
     assert run.lesson is not None
     heading = tab.page.get_by_role("heading", name=run.lesson.steps[index].title)
     return heading.count() == 1 and heading.evaluate(SEEN)
@@ -98,6 +84,6 @@ def test_what_happens_can_be_seen_without_a_prediction(tab: Tab) -> None:
     assert tab.button("Let it happen").is_disabled()
     tab.press("Skip the prediction")
     tab.page.get_by_text("You skipped the prediction.").wait_for()
-    assert tab.session.lessons.index == 2
+    assert tab.lab.lessons.index == 2
     tab.press("Let it happen")
-    wait_for(lambda: tab.session.lessons.playing)
+    wait_for(lambda: tab.lab.lessons.playing)

@@ -11,14 +11,13 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.schema import Task
-from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.browser import Tab, wait_for
 from tests.support.hands import (
     ROBOT,
     Choose,
@@ -130,21 +129,6 @@ def cases(walks: dict[str, dict[str, tuple[Gesture, ...]]]) -> list[tuple[str, s
     return [(lesson, task) for lesson, tasks in walks.items() for task in tasks]
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache())
-    yield server
-    server.stop()
-
-
 def opened(browser: Browser, server: LabServer, touch: bool) -> Iterator[Hands]:
     """A student's tab."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, has_touch=touch)
@@ -166,7 +150,7 @@ def finger(browser: Browser, server: LabServer) -> Iterator[Hands]:
 
 def go_to(tab: Tab, lesson: str, index: int) -> None:
     """To a step, unless it is open; time stands still there."""
-    run = tab.session.lessons
+    run = tab.lab.lessons
     if run.lesson is None or run.lesson.name != lesson:
         tab.ask(c.OpenLesson(lesson))
     if run.index != index:
@@ -198,7 +182,7 @@ def passed(tab: Tab, task: Task) -> bool:
 
 def verdicts(tab: Tab, task: Task) -> list[str]:
     """What the lab has measured."""
-    return [verdict.words for verdict in tab.session.lessons.verdicts.get(task.id, [])]
+    return [verdict.words for verdict in tab.lab.lessons.verdicts.get(task.id, [])]
 
 
 def beginning(task: Task) -> str:
@@ -236,9 +220,9 @@ def test_a_task_is_passed_by_touch(finger: Hands, lesson: str, task: str) -> Non
 def test_the_ball_under_the_end_point_is_dragged(by: str, request: pytest.FixtureRequest) -> None:
     """As the five-bar's first step asks: the end-point rests on the ball at the right end."""
     hands: Hands = request.getfixturevalue(by)
-    tab, session = hands.tab, hands.session
+    tab, lab = hands.tab, hands.lab
     go_to(tab, "03-the-five-bar", 0)
     tab.elapse(2)  # both come to rest there
-    end = session.editor.design.points[-1] * 1e3
+    end = lab.session.editor.design.points[-1] * 1e3
     assert np.linalg.norm(tab.tip(ROBOT) * 1e3 - end) < 1
     DragBall((end[0], end[1]), (end[0] - 10, end[1] + 25))(hands)

@@ -46,9 +46,9 @@ def test_solution_passes_and_failure_does_not(lesson: Lesson, step: Step, task: 
 @pytest.mark.parametrize(("lesson", "step"), SCRIPTS, ids=label)
 def test_what_a_step_shows_by_itself_is_let_happen(lesson: Lesson, step: Step) -> None:
     assert step.script is not None
-    session = lab_at(lesson, step, store())
-    assert list(play(session, step.script)) == []
-    assert session.time > 0
+    lab = lab_at(lesson, step, store())
+    assert list(play(lab, step.script)) == []
+    assert lab.session.time > 0
 
 
 def test_references_are_where_the_lessons_are() -> None:

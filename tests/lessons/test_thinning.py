@@ -14,7 +14,7 @@ from onpath.app.classroom.results import Distribution
 from onpath.app.page.lesson_chart import together
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.schema import Sketch
-from onpath.lessons.thinning import peaks, stretches
+from onpath.lessons.thinning import intervals, peaks
 from onpath.lessons.words import Words
 
 numbers = st.floats(-1e6, 1e6)
@@ -32,7 +32,7 @@ def test_every_stretch_keeps_its_least_and_its_greatest(
     assert len(kept) <= most and np.all(np.diff(kept) > 0)
     assert kept[0] == 0 and kept[-1] == count - 1
     whole = [slice(0, count)]
-    parts = stretches(count, len(curves), most) if count > most else whole
+    parts = intervals(count, len(curves), most) if count > most else whole
     assert [i for part in parts for i in range(part.start, part.stop)] == list(range(count))
     for part in whole + parts:
         inside = kept[(kept >= part.start) & (kept < part.stop)]

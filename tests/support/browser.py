@@ -15,10 +15,11 @@ from viser import ClientHandle
 
 from onpath.app.bench.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from onpath.app.lab.commands import Command
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
-from onpath.app.simulation.simulation_thread import FRAME, Lab
+from onpath.app.simulation.simulation_thread import FRAME, ScheduledLab
 from onpath.models.systems.parameters import time_step
 from tests.support import waiting
 
@@ -45,7 +46,7 @@ class Note(Command):
     def __init__(self, done: list[bool]) -> None:
         self.done = done
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         self.done.append(True)
 
 
@@ -55,11 +56,11 @@ class Elapse(Command):
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
 
-    def apply(self, session: Session) -> None:
-        dt = time_step(session.parameters)
+    def apply(self, lab: Lab) -> None:
+        dt = time_step(lab.session.parameters)
         left, each = round(self.seconds / dt), round(FRAME / dt)
         while left > 0:
-            session.simulate(min(each, left))
+            lab.session.simulate(min(each, left))
             left -= each
 
 
@@ -89,18 +90,21 @@ class Tab:
         """As a user does; returns when the lab knows."""
         self.page.close()
         wait_for(lambda: self.client.client_id not in self.server.server.get_clients())
-        wait_for(lambda: self.lab.view is not self.view)
+        wait_for(lambda: self.scheduled.view is not self.view)
 
     def _join(self, load: Callable[[], Any]) -> None:
-        clients, views = self._clients(), {id(lab.view) for lab in self._looked_at()}
+        clients, views = self._clients(), {id(scheduled.view) for scheduled in self._looked_at()}
         load()
         self.client: ClientHandle = wait_for(
             lambda: next((c for i, c in self._clients().items() if i not in clients), None)
         )
-        self.lab: Lab = wait_for(
-            lambda: next((lab for lab in self._looked_at() if id(lab.view) not in views), None)
+        self.scheduled: ScheduledLab = wait_for(
+            lambda: next(
+                (scheduled for scheduled in self._looked_at() if id(scheduled.view) not in views),
+                None,
+            )
         )
-        self.view = self.lab.view
+        self.view = self.scheduled.view
         self.page.get_by_role("button", name="Pause").or_(
             self.page.get_by_role("button", name="Run", exact=True)
         ).wait_for()
@@ -110,8 +114,10 @@ class Tab:
     def _clients(self) -> dict[int, ClientHandle]:
         return self.server.server.get_clients()
 
-    def _looked_at(self) -> list[Lab]:
-        return [lab for lab in self.server.simulation.labs if lab.view is not None]
+    def _looked_at(self) -> list[ScheduledLab]:
+        return [
+            scheduled for scheduled in self.server.simulation.labs if scheduled.view is not None
+        ]
 
     def _framed(self) -> bool:
         """Whether the browser has taken the camera that the lab chose for its size."""
@@ -122,16 +128,21 @@ class Tab:
         return same and bool(np.linalg.norm(camera.position - initial) > 1e-6)
 
     @property
-    def session(self) -> Session:
+    def lab(self) -> Lab:
         """What the tab shows."""
+        return self.scheduled.lab
+
+    @property
+    def session(self) -> Session:
+        """Its simulated part."""
         return self.lab.session
 
     def ask(self, *commands: Command) -> None:
         """Commands behind the mouse's back; returns when they have been applied."""
         done: list[bool] = []
         for command in commands:
-            self.session.post(command)
-        self.session.post(Note(done))
+            self.lab.post(command)
+        self.lab.post(Note(done))
         wait_for(lambda: done)
 
     def elapse(self, seconds: float) -> None:
@@ -227,11 +238,23 @@ class Tab:
         if content.get_attribute("aria-hidden") == "true":
             title.click()
             wait_for(lambda: content.get_attribute("aria-hidden") != "true")
+        content.locator("visible=true").first.wait_for()  # it unfolds some frames later
 
     def choose(self, label: str, option: str) -> None:
         """Take an option of a drop-down list."""
         self.page.get_by_label(label, exact=True).filter(visible=True).first.click()
         self.page.get_by_role("option", name=option, exact=True).click()
+
+    def focus(self, control: Locator) -> None:
+        """Give a control the focus, which one that is not shown yet would not take."""
+        control.wait_for(state="visible")
+        control.focus()
+        wait_for(lambda: control.evaluate("control => control === document.activeElement"))
+
+    def blur(self) -> None:
+        """Take the focus away from whatever has it."""
+        self.page.evaluate("document.activeElement?.blur()")
+        self.page.wait_for_function("document.activeElement === document.body")
 
     def slider(self, label: str) -> Locator:
         """The handle of a slider."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from playwright.sync_api import Locator
 
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import label_of
 from onpath.lessons.words import ENGLISH
@@ -36,9 +37,14 @@ class Hands:
         self.tab, self._touch = tab, touch
 
     @property
-    def session(self) -> Session:
+    def lab(self) -> Lab:
         """What the student looks at."""
-        return self.tab.session
+        return self.tab.lab
+
+    @property
+    def session(self) -> Session:
+        """Its simulated part."""
+        return self.lab.session
 
     def press(self, what: Locator) -> None:
         """A button, a link."""
@@ -53,9 +59,9 @@ class Hands:
     @contextmanager
     def heard(self) -> Iterator[None]:
         """What is done within is a command to the lab, and has come there afterwards."""
-        asked = self.session.asked
+        asked = self.lab.asked
         yield
-        wait_for(lambda: self.session.asked > asked)
+        wait_for(lambda: self.lab.asked > asked)
 
     def has(self, label: str, value: float, near: float = 0.0) -> bool:
         """Whether what stands in the lab under a label is near a value."""

@@ -1,4 +1,4 @@
-"""What the tests of the lab share: a session driven by hand."""
+"""What the tests of the lab share: a lab driven by hand."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from functools import lru_cache
 import numpy as np
 
 from onpath.app.lab.commands import Command
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
-from onpath.app.lab.snapshot import Snapshot
-from onpath.app.lab.take_snapshot import take_snapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_snapshot
 from onpath.models.control.laws import NAMES
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.systems.parameters import checked, specs
@@ -25,25 +26,25 @@ def store() -> LoopCache:
     return LoopCache()
 
 
-def new_session(seconds: float = 0.0) -> Session:
+def new_lab(seconds: float = 0.0) -> Lab:
     """A lab that has run for a while."""
-    session = Session(store())
-    run(session, seconds)
-    return session
+    lab = Lab(store())
+    run(lab, seconds)
+    return lab
 
 
-def run(session: Session, seconds: float) -> None:
+def run(lab: Lab, seconds: float) -> None:
     """Frame after frame, as the simulation thread does it."""
     for _ in range(round(seconds / FRAME)):
-        session.drain()
-        session.advance(session.rate * FRAME)
+        lab.drain()
+        lab.advance(lab.session.rate * FRAME)
 
 
-def do(session: Session, *commands: Command) -> None:
+def do(lab: Lab, *commands: Command) -> None:
     """Apply commands at once."""
     for command in commands:
-        session.post(command)
-    session.drain()
+        lab.post(command)
+    lab.drain()
 
 
 def states(session: Session) -> dict[str, np.ndarray]:
@@ -56,23 +57,23 @@ def y(session: Session, name: str) -> np.ndarray:
     return session.robot.endpoint(session.runs[name].fields()["q"])
 
 
-def assert_sound(session: Session) -> None:
+def assert_sound(lab: Lab) -> None:
     """Whatever was asked for: numbers are numbers, settings in range, the path one to follow."""
-    for run_ in session.runs.values():
+    for run_ in lab.session.runs.values():
         assert np.isfinite(run_.state).all()
         assert np.isfinite(run_.row).all()
         assert run_.diverged is None or run_.diverged.reason
-    for name, spec in specs(session.parameters).items():
-        value = getattr(session.parameters, name)
+    for name, spec in specs(lab.session.parameters).items():
+        value = getattr(lab.session.parameters, name)
         assert checked(spec, name, value) == value
-    editor = session.editor
-    assert curve_faults(session.robot.margin, editor.design.curve) == []
+    editor = lab.session.editor
+    assert curve_faults(lab.session.robot.margin, editor.design.curve) == []
     assert np.isfinite(editor.table).all() and np.isfinite(editor.points()).all()
     assert editor.selected is None or 0 <= editor.selected < len(editor.design.points)
-    assert 0.125 <= session.rate <= 4
-    assert session.grips.held <= set(NAMES) and set(session.grips.hands) <= set(NAMES)
-    assert session.viewing is None or not session.running
-    assert_drawable(take_snapshot(session, 1.0))
+    assert 0.125 <= lab.session.rate <= 4
+    assert lab.session.grips.held <= set(NAMES) and set(lab.session.grips.hands) <= set(NAMES)
+    assert lab.session.viewing is None or not lab.session.running
+    assert_drawable(take_snapshot(lab, 1.0))
 
 
 def assert_drawable(snapshot: Snapshot) -> None:

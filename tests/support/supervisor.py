@@ -7,10 +7,10 @@ import re
 import subprocess
 import sys
 import threading
-import time
 from contextlib import suppress
 from pathlib import Path
 
+from tests.support import waiting
 from tests.support.checkout import ROOT
 
 
@@ -36,11 +36,14 @@ class Supervisor:
             self.said += line
 
     def wait_for(self, pattern: str, times: int = 1) -> list[str]:
-        end = time.monotonic() + 30
-        while len(found := re.findall(pattern, self.said, re.MULTILINE)) < times:
-            assert time.monotonic() < end, self.said
-            time.sleep(0.05)
-        return found
+        def found() -> list[str]:
+            return re.findall(pattern, self.said, re.MULTILINE)
+
+        try:
+            waiting.wait_for(lambda: len(found()) >= times, 60.0)
+        except AssertionError:
+            raise AssertionError(self.said) from None
+        return found()
 
     def workers(self) -> list[int]:
         """Process ids of those that live."""

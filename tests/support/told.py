@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from onpath.app.exports.exporter import replay
-from onpath.app.lab.lesson_scene import set_up
-from onpath.app.lab.script_player import ScriptPlayer
-from onpath.app.lab.session import Session
-from onpath.app.lab.setup import Path, RobotSetup, Setup, restore
+from onpath.app.exports.replay import replay
+from onpath.app.lab.commands.scripts import player_of
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.lesson_run import setup_of
+from onpath.app.lab.setup import Path, RobotSetup, Setup
 from onpath.lessons.course import BUILT_IN
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.record import ROLES
@@ -103,11 +103,10 @@ WORST = 3 + 25 / 36  # [s], the brake then catches the follower at 214 degrees
 
 def play(until: float, do: list[Action], path: str = "", **settings: Value) -> Run:
     """What both robots do, set up with the lab's defaults but for some settings."""
-    session = Session(store())
-    restore(
-        session, Setup("five_bar", {"five_bar": RobotSetup(settings, Path(path or Path().name))})
-    )
-    return _played(session, Script(tuple(do), until))
+    lab = Lab(store())
+    own = RobotSetup(settings, Path(path or Path().name))
+    lab.set_up(Setup("five_bar", {"five_bar": own}))
+    return _played(lab, Script(tuple(do), until))
 
 
 def held(at: float, seconds: float = 2.0, robot: RobotName = "follower", **gains: Any) -> Motion:
@@ -127,17 +126,17 @@ def shown(lesson: str, title: str) -> Run:
     told: Lesson = read_lesson(home / "en.md")
     for index, step in enumerate(told.steps):
         if step.title == title and step.script is not None:
-            session = Session(store())
-            set_up(session, told, index)
-            return _played(session, step.script)
+            lab = Lab(store())
+            lab.set_up(setup_of(told, index))
+            return _played(lab, step.script)
     raise AssertionError(f"lesson {lesson} shows no {title!r}")
 
 
-def _played(session: Session, script: Script) -> Run:
-    session.script, session.running = ScriptPlayer(script), True
-    while session.script is not None:
-        run(session, 0.1)
-    runs = replay(session.robot, session.history.all())
+def _played(lab: Lab, script: Script) -> Run:
+    lab.script, lab.session.running = player_of(script), True
+    while lab.script is not None:
+        run(lab, 0.1)
+    runs = replay(lab.session.robot, lab.session.history.all())
     return {ROLES[name]: _motion(trajectory) for name, trajectory in runs.items()}
 
 

@@ -1,6 +1,5 @@
 """What can be asked of a lab: frozen records, each of which knows how to apply itself."""
 
-from onpath.app.lab.command import Command as Command
 from onpath.app.lab.commands.classroom import Freeze, ReportState, TakeSetup, TakeStep
 from onpath.app.lab.commands.forces import Grab, Hold, MoveHand, Release, SetCopy
 from onpath.app.lab.commands.lessons import (
@@ -43,6 +42,7 @@ from onpath.app.lab.commands.time import (
     StepOnce,
     UndoGoOn,
 )
+from onpath.app.lab.lab import Command as Command
 from onpath.app.lab.setup import EXAGGERATIONS, RATES
 
 __all__ = [

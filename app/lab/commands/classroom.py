@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
-from onpath.app.lab.command import Command
 from onpath.app.lab.commands.path import finish
+from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.setup import Setup
-
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,17 +18,17 @@ class Freeze(Command):
     from_teacher: ClassVar[bool] = True
     on: bool
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        if self.on == session.frozen:
+        if self.on == lab.frozen:
             return
         if self.on:
-            session.grips.release()
-            if session.editor.proposed is not None:  # a point is being dragged
-                finish(session)
-        session.frozen = self.on
-        session.clear_message()
-        _tell(session)
+            lab.session.grips.release()
+            if lab.session.editor.proposed is not None:  # a point is being dragged
+                finish(lab)
+        lab.frozen = self.on
+        lab.clear_message()
+        _tell(lab)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,13 +38,13 @@ class TakeSetup(Command):
     from_teacher: ClassVar[bool] = True
     setup: Setup
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        run = session.lessons
-        run.take(self.setup, session)
+        run = lab.lessons
+        run.take(self.setup, lab)
         text = run.words("class.setup" if run.lesson is None else "class.setup_in_step")
-        session.show_message(text)
-        _tell(session)
+        lab.show_message(text)
+        _tell(lab)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +55,13 @@ class TakeStep(Command):
     lesson: str
     step: int
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        run = session.lessons
+        run = lab.lessons
         elsewhere = run.lesson is not None and run.progress.lesson != self.lesson
-        run.open_at(self.lesson, self.step, session)
-        session.show_message(run.words("class.step_elsewhere" if elsewhere else "class.step"))
-        _tell(session)
+        run.open_at(self.lesson, self.step, lab)
+        lab.show_message(run.words("class.step_elsewhere" if elsewhere else "class.step"))
+        _tell(lab)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,14 +69,14 @@ class ReportState(Command):
     """Tell how the lab is now to somebody who must not keep it waiting."""
 
     from_teacher: ClassVar[bool] = True
-    to: Callable[[Session], None]
+    to: Callable[[Lab], None]
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        self.to(session)
+        self.to(lab)
 
 
-def _tell(session: Session) -> None:
+def _tell(lab: Lab) -> None:
     """Whoever finds the lab standing still reads why."""
-    if session.frozen:
-        session.show_message(session.lessons.words("class.frozen"), "warning")
+    if lab.frozen:
+        lab.show_message(lab.words("class.frozen"), "warning")

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onpath.app.lab.command import Command
 from onpath.app.lab.commands import checks
 from onpath.app.lab.external_forces import displaced
-from onpath.app.lab.looking_back import return_to_present
+from onpath.app.lab.lab import Command, Lab
 from onpath.models.arrays import Array
 from onpath.models.control.laws import NAMES
-
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,10 +24,10 @@ class Hold(Command):
     on: bool | None = None
     controller: str | None = None
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        return_to_present(session)
-        names = list[str](NAMES)
+        lab.return_to_present()
+        session, names = lab.session, list[str](NAMES)
         if self.controller is not None:
             names = session.targets(checks.controller(self.controller))
         on = not session.grips.held.intersection(names) if self.on is None else self.on
@@ -51,12 +46,12 @@ class Grab(Command):
     controller: str
     target: Array
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         name = checks.controller(self.controller)
-        target = checks.point(self.target, session.robot.system.p)
-        return_to_present(session)
-        session.grips.grab(name, target, session.targets(name))
+        target = checks.point(self.target, lab.session.robot.system.p)
+        lab.return_to_present()
+        lab.session.grips.grab(name, target, lab.session.targets(name))
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,10 +60,10 @@ class Release(Command):
 
     controller: str | None = None
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        if self.controller in (None, session.grips.grabbed):
-            session.grips.release()
+        if self.controller in (None, lab.session.grips.grabbed):
+            lab.session.grips.release()
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,14 +73,14 @@ class MoveHand(Command):
     right: float
     up: float
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         by = np.array([checks.finite(self.right), checks.finite(self.up)])
-        return_to_present(session)
-        name = session.grips.grabbed or NAMES[-1]
-        target = session.grips.hands.get(name, session.runs[name].shown()["y"])
-        there = displaced(session.robot.frame, target, by)
-        session.grips.grab(name, there, session.targets(name))
+        lab.return_to_present()
+        session, grips = lab.session, lab.session.grips
+        name = grips.grabbed or NAMES[-1]
+        target = grips.hands.get(name, session.runs[name].shown()["y"])
+        grips.grab(name, displaced(session.robot.frame, target, by), session.targets(name))
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +89,6 @@ class SetCopy(Command):
 
     on: bool
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.copy = bool(self.on)
+        lab.session.copy = bool(self.on)

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from onpath.app.lab.command import Command
+from onpath.app.lab.commands.scripts import commands_of, player_of
+from onpath.app.lab.lab import Command, Lab
 from onpath.lessons.progress import Answer
 from onpath.lessons.schema import Action
-
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,18 +16,18 @@ class OpenLesson(Command):
 
     name: str
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.lessons.open(self.name, session)
+        lab.lessons.open(self.name, lab)
 
 
 @dataclass(frozen=True, slots=True)
 class CloseLesson(Command):
     """Go back to the lab as it was before the lesson."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.lessons.close(session)
+        lab.lessons.close(lab)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +36,9 @@ class GoToStep(Command):
 
     by: int
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.lessons.go(int(self.by), session)
+        lab.lessons.go(int(self.by), lab)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,27 +49,29 @@ class Predict(Command):
     times: tuple[float, ...] = ()
     values: tuple[float, ...] = ()
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.lessons.predict(Answer(self.option, self.times, self.values), session)
+        lab.lessons.predict(Answer(self.option, self.times, self.values), lab.session)
 
 
 @dataclass(frozen=True, slots=True)
 class PlayStep(Command):
     """Let the lab do what the step shows."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.lessons.play(session)
+        step = lab.lessons.step
+        if step is not None and step.script is not None:
+            lab.lessons.play(player_of(step.script), lab)
 
 
 @dataclass(frozen=True, slots=True)
 class BeginStepAnew(Command):
     """Set the lab up again as the step wants it."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.lessons.begin_anew(session)
+        lab.lessons.begin_anew(lab)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,9 +80,9 @@ class ShowHint(Command):
 
     task: str
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.lessons.hint(self.task)
+        lab.lessons.hint(self.task)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,9 +92,9 @@ class AnswerQuiz(Command):
     block: int
     option: int
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.lessons.answer_quiz(self.block, self.option)
+        lab.lessons.answer_quiz(self.block, self.option)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,9 +103,13 @@ class Act(Command):
 
     actions: tuple[Action, ...]
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.lessons.act(self.actions, session)
+        for action in self.actions:
+            if lab.locked and action.run:
+                raise ValueError(lab.locked)
+            for command in commands_of(action):
+                command.apply(lab)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,12 +118,10 @@ class SetLanguage(Command):
 
     language: str
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.lessons.set_language(self.language)
-        if session.locked:
-            session.locked = session.lessons.words("lesson.locked")
-        session.clear_message()
+        lab.lessons.set_language(self.language)
+        lab.clear_message()
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +130,6 @@ class SetPresenting(Command):
 
     on: bool
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.lessons.set_presenting(bool(self.on))
+        lab.lessons.set_presenting(bool(self.on))

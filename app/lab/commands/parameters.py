@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from onpath.app.lab.command import Command
 from onpath.app.lab.identify import identify_model
+from onpath.app.lab.lab import Command, Lab
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import changed, unknown_name
-
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,9 +23,9 @@ class SetParameter(Command):
     name: str
     value: Any
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        before = session.parameters
+        session, before = lab.session, lab.session.parameters
         session.set_parameters(changed(before, self.name, self.value))
         if session.parameters != before:
             session.note("set", self.name)
@@ -38,19 +35,22 @@ class SetParameter(Command):
 class ResetParameters(Command):
     """Set all parameters to their defaults."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.set_parameters(session.entry.lab)
+        lab.session.set_parameters(lab.session.entry.lab)
 
 
 @dataclass(frozen=True, slots=True)
 class Identify(Command):
     """Give the controllers the model identified from the follower's last seconds."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        identify_model(session)
+        session, history = lab.session, lab.session.history.all()
+        found, said = identify_model(session.robot, session.parameters, history, lab.words)
+        session.set_parameters(found)
         session.note("identify")
+        lab.show_message(said)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +59,10 @@ class ChooseRobot(Command):
 
     name: str
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         if self.name not in ROBOTS:
             raise unknown_name(self.name, list(ROBOTS), "robot")
-        session.choose_robot(ROBOTS[self.name])
+        if ROBOTS[self.name] is not lab.session.entry:
+            lab.session.choose_robot(ROBOTS[self.name])
+            lab.show_message("")

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onpath.app.lab.command import Command
 from onpath.app.lab.commands.checks import finite, point
-from onpath.app.lab.looking_back import return_to_present
+from onpath.app.lab.commands.time import StepOnce
+from onpath.app.lab.lab import Command, Lab
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.paths.path_design import PathDesign, drawn
 from onpath.models.systems.parameters import unknown_name
-
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
 
 MOST_STROKE_POINTS = 5000
 
@@ -27,11 +23,11 @@ class ChoosePath(Command):
 
     name: str
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        if self.name not in session.presets:
-            raise unknown_name(self.name, list(session.presets), "path")
-        commit(session, session.presets[self.name])
+        if self.name not in lab.session.presets:
+            raise unknown_name(self.name, list(lab.session.presets), "path")
+        commit(lab, lab.session.presets[self.name])
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,18 +36,18 @@ class SelectPoint(Command):
 
     index: int | None
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.editor.select(self.index)
+        lab.session.editor.select(self.index)
 
 
 @dataclass(frozen=True, slots=True)
 class SelectNext(Command):
     """Select the control point after the selected one, or the first."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        editor = session.editor
+        editor = lab.session.editor
         editor.select((-1 if editor.selected is None else editor.selected) + 1)
         if editor.selected is None:
             editor.select(0)
@@ -71,23 +67,23 @@ class MovePoint(Command):
     target: Array
     finished: bool = True
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        editor, target = session.editor, point(self.target, 2)
+        editor, target = lab.session.editor, point(self.target, 2)
         if editor.proposed is None or editor.selected != self.index:
             editor.select(self.index)
         editor.propose((editor.proposed or editor.design).moved(self.index, target))
         if self.finished:
-            finish(session)
+            finish(lab)
 
 
 @dataclass(frozen=True, slots=True)
 class EndMove(Command):
     """Let the control point that is being dragged go where it is."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        finish(session)
+        finish(lab)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,17 +93,16 @@ class Arrow(Command):
     right: float
     up: float
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        index = session.editor.selected
+        index = lab.session.editor.selected
         if index is None:
             if self.right > 0:
-                return_to_present(session)
-                session.step_once()
+                StepOnce().apply(lab)
             return
-        design = session.editor.design
+        design = lab.session.editor.design
         step = np.array([finite(self.right), finite(self.up)])
-        commit(session, design.moved(index, design.points[index] + step))
+        commit(lab, design.moved(index, design.points[index] + step))
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,25 +112,25 @@ class PlacePoint(Command):
     first: float | None = None
     second: float | None = None
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        index, design = _selected(session), session.editor.design
+        index, design = _selected(lab), lab.session.editor.design
         old = design.points[index]
         wanted = zip(old, (self.first, self.second), strict=True)
         new = [o if n is None else finite(n) for o, n in wanted]
         if not np.allclose(old, new, atol=1e-6):
-            commit(session, design.moved(index, np.array(new)))
+            commit(lab, design.moved(index, np.array(new)))
 
 
 @dataclass(frozen=True, slots=True)
 class AddPoint(Command):
     """Add a control point after the selected one."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        editor = session.editor
+        editor = lab.session.editor
         index = 0 if editor.selected is None else editor.selected
-        commit(session, editor.design.added(index))
+        commit(lab, editor.design.added(index))
         editor.select(min(index + 1, len(editor.design.points) - 1))
 
 
@@ -143,9 +138,9 @@ class AddPoint(Command):
 class RemovePoint(Command):
     """Remove the selected control point."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        commit(session, session.editor.design.removed(_selected(session)))
+        commit(lab, lab.session.editor.design.removed(_selected(lab)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -158,57 +153,57 @@ class DrawPath(Command):
 
     stroke: Array
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         stroke = np.asarray(self.stroke, dtype=float)
         if stroke.ndim != 2 or stroke.shape[1] != 2 or len(stroke) > MOST_STROKE_POINTS:
             raise CodedError("error.stroke_without_points")
-        commit(session, drawn(stroke, session.editor.design.curve))
+        commit(lab, drawn(stroke, lab.session.editor.design.curve))
 
 
 @dataclass(frozen=True, slots=True)
 class Undo(Command):
     """The path as before the last edit."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        words = session.lessons.words
-        session.show_message("" if session.editor.undo() else words("say.nothing_to_undo"))
+        words = lab.words
+        lab.show_message("" if lab.session.editor.undo() else words("say.nothing_to_undo"))
 
 
 @dataclass(frozen=True, slots=True)
 class Redo(Command):
     """The path as before the last undo."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        words = session.lessons.words
-        session.show_message("" if session.editor.redo() else words("say.nothing_to_redo"))
+        words = lab.words
+        lab.show_message("" if lab.session.editor.redo() else words("say.nothing_to_redo"))
 
 
-def commit(session: Session, design: PathDesign) -> None:
+def commit(lab: Lab, design: PathDesign) -> None:
     """Make a whole edit at once."""
-    session.editor.propose(design)
-    finish(session)
+    lab.session.editor.propose(design)
+    finish(lab)
 
 
-def finish(session: Session) -> None:
+def finish(lab: Lab) -> None:
     """End an edit of the path and say why if it is refused."""
-    editor = session.editor
+    editor = lab.session.editor
     before = editor.design
     if editor.finish():
         if editor.design is not before:
-            session.note("path", editor.design.name)
-        session.clear_message()
-        return_to_present(session)
+            lab.session.note("path", editor.design.name)
+        lab.clear_message()
+        lab.return_to_present()
     elif editor.faults:
-        words = session.lessons.words
+        words = lab.words
         reasons = "; ".join(words.sentence(fault.reason) for fault in editor.faults)
-        return_to_present(session)
-        session.show_message(words("say.refused", reasons=reasons), "warning")
+        lab.return_to_present()
+        lab.show_message(words("say.refused", reasons=reasons), "warning")
 
 
-def _selected(session: Session) -> int:
-    if session.editor.selected is None:
+def _selected(lab: Lab) -> int:
+    if lab.session.editor.selected is None:
         raise CodedError("say.select_first")
-    return session.editor.selected
+    return lab.session.editor.selected

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from onpath.app.lab.command import Command
-from onpath.app.lab.setup import capture, restore
+from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.setup import capture
 from onpath.app.lab.share_code import decode, encode
-
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
 
 
 @dataclass(frozen=True, slots=True)
 class Share(Command):
     """Make a share code of the lab as it is."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.shared = encode(capture(session))
+        lab.shared = encode(capture(lab.session))
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +24,6 @@ class UseShared(Command):
 
     text: str
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        restore(session, decode(self.text))
-        session.show_message("")
+        lab.set_up(decode(self.text))

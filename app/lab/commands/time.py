@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
-from onpath.app.lab.command import Command
 from onpath.app.lab.commands.checks import finite, within
-from onpath.app.lab.looking_back import go_on, look_back, return_to_present, undo_going_on
+from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.looking_back import go_on, look_back, undo_going_on
 from onpath.app.lab.setup import EXAGGERATIONS, RATES
-
-if TYPE_CHECKING:
-    from onpath.app.lab.session import Session
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,12 +18,12 @@ class SetRunning(Command):
     lets_time_run: ClassVar[bool] = True
     running: bool | None = None
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        running = not session.running if self.running is None else self.running
+        running = not lab.session.running if self.running is None else self.running
         if running:
-            return_to_present(session)
-        session.running = running
+            lab.return_to_present()
+        lab.session.running = running
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,19 +32,22 @@ class StepOnce(Command):
 
     lets_time_run: ClassVar[bool] = True
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        return_to_present(session)
-        session.step_once()
+        lab.return_to_present()
+        if lab.locked:
+            raise ValueError(lab.locked)
+        lab.session.step_once()
 
 
 @dataclass(frozen=True, slots=True)
 class Reset(Command):
     """Put both robots at the start, at rest; path and parameters stay."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.reset()
+        lab.session.reset()
+        lab.show_message("")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +56,9 @@ class SetRate(Command):
 
     rate: float
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.rate = within("speed", self.rate, RATES)
+        lab.session.rate = within("speed", self.rate, RATES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +67,9 @@ class LookAt(Command):
 
     ago: float
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        look_back(session, finite(self.ago))
+        _look_back(lab, finite(self.ago))
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,10 +78,10 @@ class LookBack(Command):
 
     by: float
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        shown = session.time if session.viewing is None else session.viewing
-        look_back(session, session.time - shown + finite(self.by))
+        now, viewing = lab.session.time, lab.session.viewing
+        _look_back(lab, now - (now if viewing is None else viewing) + finite(self.by))
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,18 +90,27 @@ class GoOn(Command):
 
     lets_time_run: ClassVar[bool] = True
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        go_on(session)
+        put_aside = go_on(lab.session)
+        if put_aside is None:
+            lab.clear_message()
+            return
+        lab.script = None
+        time, seconds = (f"{number:.1f}" for number in put_aside)
+        lab.remark(lab.words("say.went_on", time=time, seconds=seconds))
 
 
 @dataclass(frozen=True, slots=True)
 class UndoGoOn(Command):
     """Bring back what was put aside last, and put aside what was done instead."""
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        undo_going_on(session)
+        if undo_going_on(lab.session):
+            lab.remark(lab.words("say.brought_back", time=f"{lab.session.time:.1f}"))
+        else:
+            lab.show_message(lab.words("say.nothing_to_undo"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +119,18 @@ class SetExaggeration(Command):
 
     factor: float
 
-    def apply(self, session: Session) -> None:
+    def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session.exaggeration = within("exaggeration", self.factor, EXAGGERATIONS)
+        lab.session.exaggeration = within("exaggeration", self.factor, EXAGGERATIONS)
+
+
+def _look_back(lab: Lab, ago: float) -> None:
+    session, words = lab.session, lab.words
+    if ago <= 0 or not len(session.history):
+        lab.return_to_present()
+        return
+    if session.viewing is None:
+        lab.show_message(words("say.looking_back"))
+    if session.grips.hands:
+        lab.show_message(words("say.looking_back") + " " + words("say.let_go"))
+    look_back(session, ago)

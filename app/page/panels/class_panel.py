@@ -7,18 +7,20 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.common.templates import render
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.panels.widgets import note, on_slow_press
+from onpath.lessons.words import Words
 
 
 class ClassPanel:
     """A folder: class code and nickname, or who one is in the class."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, seat: ClassSeat) -> None:
-        self._seat, self._words = seat, session.lessons.words
-        words = self._words
-        with gui.add_folder(words("class.title"), expand_by_default=not seat.name()):
+    def __init__(
+        self, gui: viser.GuiApi, words: Words, seat: ClassSeat, first: PageSnapshot
+    ) -> None:
+        self._words = words
+        with gui.add_folder(words("class.title"), expand_by_default=not first.nickname):
             self._member = gui.add_html("")
             self._code = gui.add_text(words("class.code"), "", hint=words("class.code_hint"))
             self._name = gui.add_text(
@@ -34,16 +36,16 @@ class ClassPanel:
         self._try(self._leave, seat.leave)
         self._try(teach, lambda: seat.teach(key.value))
         self._shown: str | None = None
-        self.follow(session)
+        self.follow(first)
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """Show whether the student is in the class."""
-        name = self._seat.name()
+        name = snapshot.nickname
         if name == self._shown:
             return
         self._shown = name
-        member = render("panel/member.html", name=name, words=self._words)
-        self._member.content = note(member, small=True) if name else ""
+        member = render("panel/member.html", name=name, words=self._words, small=True)
+        self._member.content = member if name else ""
         for handle in (self._code, self._name, self._join):
             handle.visible = not name
         self._leave.visible = bool(name)

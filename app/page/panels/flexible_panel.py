@@ -8,12 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import viser
-from markupsafe import Markup
 
 from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
-from onpath.app.lab.snapshot import FollowerName
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
+from onpath.app.lab.snapshots.snapshot import FollowerName, TrackerName
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_user_update
 from onpath.lessons.words import Words
 from onpath.models.systems.flexible_five_bar import RIGID
@@ -68,7 +67,7 @@ class CriticalAlpha:
             self._busy = False
 
 
-def alpha_bar(alpha: float, critical: float, used: bool, words: Words) -> Markup:
+def alpha_bar(alpha: float, critical: float, used: bool, words: Words) -> str:
     """A line from -1 to 1, red where the inside is unstable, with alpha marked.
 
     Args:
@@ -111,18 +110,18 @@ class FlexiblePanel:
     def __init__(
         self,
         gui: viser.GuiApi,
-        session: Session,
+        words: Words,
         post: Post,
+        first: PageSnapshot,
         pulls: list[str],
         choose_pull: Callable[[str], None],
         submit: Callable[[Callable[[], None]], None],
     ) -> None:
-        self._post, self._words = post, session.lessons.words
-        words = self._words
+        self._post, self._words = post, words
         self._critical = CriticalAlpha(submit)
         self._shown: tuple[float, float, bool] | None = None
         with gui.add_folder(words("flexible.title")):
-            self._widgets = [ParameterWidgets(gui, session, ["law", "alpha"], self._set)]
+            self._widgets = [ParameterWidgets(gui, words, self._set, ["law", "alpha"], first)]
             self._bar = gui.add_html("")
             self._numbers = gui.add_markdown("")
             planes = {words(f"pull.{plane}"): plane for plane in pulls}
@@ -134,31 +133,30 @@ class FlexiblePanel:
                 min=c.EXAGGERATIONS[0],
                 max=c.EXAGGERATIONS[-1],
                 step=1.0,
-                initial_value=session.exaggeration,
+                initial_value=first.run.exaggeration,
                 hint=words("flexible.larger_hint"),
             )
             with gui.add_folder(words("flexible.beam"), expand_by_default=False):
                 gui.add_markdown(words("flexible.anew"))
-                self._widgets.append(ParameterWidgets(gui, session, BEAM, post))
+                self._widgets.append(ParameterWidgets(gui, words, post, BEAM, first))
             with gui.add_folder(words("flexible.composite"), expand_by_default=False):
-                self._widgets.append(ParameterWidgets(gui, session, COMPOSITE, post))
+                self._widgets.append(ParameterWidgets(gui, words, post, COMPOSITE, first))
         on_user_update(pull, lambda shown: choose_pull(planes[shown]))
         on_user_update(self._larger, lambda factor: post(c.SetExaggeration(factor)))
 
-    def follow(self, session: Session) -> None:
-        """Show the session's values and where the limit lies now."""
-        own = session.parameters
-        if not isinstance(own, FlexibleParameters):
-            return  # another robot: the page is about to be rebuilt
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show the lab's values and where the limit lies now."""
+        own = parameters_of(snapshot)
+        assert isinstance(own, FlexibleParameters)
         for widgets in self._widgets:
-            widgets.follow(own)
-        if self._larger.value != session.exaggeration:
-            self._larger.value = session.exaggeration
-        self._critical.follow(own, session.runs[FollowerName].shown()["q"])
+            widgets.follow(snapshot)
+        if self._larger.value != snapshot.run.exaggeration:
+            self._larger.value = snapshot.run.exaggeration
+        self._critical.follow(own, snapshot.joints)
         shown = own.alpha, self._critical.value, own.law == "redefined"
         if shown != self._shown:
             self._shown, self._bar.content = shown, alpha_bar(*shown, self._words)
-        numbers = deflections(session)
+        numbers = deflections(snapshot, self._words)
         if self._numbers.content != numbers:
             self._numbers.content = numbers
 
@@ -169,13 +167,12 @@ class FlexiblePanel:
             self._post(c.SetParameter("law", "redefined"))
 
 
-def deflections(session: Session) -> str:
+def deflections(snapshot: PageSnapshot, words: Words) -> str:
     """How far each tip is bent aside, in words."""
-    layout = session.sample_layout
-    past = None if session.viewing is None else session.history.at(session.viewing)
-    samples = session.sample() if past is None else past.sample
-    tracking, following = (f"{mm:.1f}" for mm in layout.unpack(samples)["deflection"][:, 0] * 1e3)
-    words, factor = session.lessons.words, session.exaggeration
+    tracking, following = (
+        f"{snapshot.robots[name].deflection * 1e3:.1f}" for name in (TrackerName, FollowerName)
+    )
+    factor = snapshot.run.exaggeration
     scale = words("flexible.drawn", factor=f"{factor:g}") if factor != 1 else None
     return words(
         "flexible.deflections",

@@ -5,11 +5,12 @@ from __future__ import annotations
 import viser
 
 from onpath.app.lab.commands import Identify, ResetParameters
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues, parameters_of
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, SwitchedParameter, on_press
 from onpath.lessons.words import Words
 from onpath.models.control.poles import Channel, channels
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import specs
 
 BASIC = ["speed", "K1", "K2", "K5"]
 ADVANCED = ["task", "target", "K3", "K4", "across"]
@@ -20,41 +21,40 @@ LAST_OF_MODEL = "error_b2"
 class GainsPanel:
     """The controls that a first-time user sees, and the rest in folders."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
-        self._words = words = session.lessons.words
-        self._shown: Parameters | None = None
-        self._widgets = [ParameterWidgets(gui, session, BASIC, post)]
+    def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
+        self._words = words
+        self._shown: ParameterValues | None = None
+        self._widgets = [ParameterWidgets(gui, words, post, BASIC, first)]
         self._settling = gui.add_markdown("")
         with gui.add_folder(words("gains.advanced"), expand_by_default=False):
-            self._widgets.append(ParameterWidgets(gui, session, ADVANCED, post))
+            self._widgets.append(ParameterWidgets(gui, words, post, ADVANCED, first))
             reset = gui.add_button(words("gains.defaults"), icon=viser.Icon.RESTORE)
             on_press(reset, lambda: post(ResetParameters()))
         with gui.add_folder(words("gains.realism"), expand_by_default=False):
             gui.add_markdown(words("gains.ideal"))
-            for name, spec in specs(session.parameters).items():
+            for name, spec in specs(ROBOTS[first.key.robot].parameters).items():
                 if spec.group != "realism":
                     continue
                 if spec.on is None:
-                    self._widgets.append(ParameterWidgets(gui, session, [name], post))
+                    self._widgets.append(ParameterWidgets(gui, words, post, [name], first))
                 else:
-                    self._widgets.append(SwitchedParameter(gui, session, name, post))
+                    self._widgets.append(SwitchedParameter(gui, words, post, name, first))
                 if name == LAST_OF_MODEL:
-                    add_identify(gui, session, post)
+                    add_identify(gui, words, post)
 
-    def follow(self, session: Session) -> None:
-        """Show the session's values and what follows from them."""
-        if session.parameters is self._shown:
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show the lab's values and what follows from them."""
+        if snapshot.parameters == self._shown:
             return
-        self._shown = session.parameters
+        self._shown = snapshot.parameters
         for widgets in self._widgets:
-            widgets.follow(session.parameters)
-        lines = [_line(channel, self._words) for channel in channels(session.parameters)]
+            widgets.follow(snapshot)
+        lines = [_line(channel, self._words) for channel in channels(parameters_of(snapshot))]
         self._settling.content = "\n\n".join(lines)
 
 
-def add_identify(gui: viser.GuiApi, session: Session, post: Post) -> None:
+def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
     """The button that fits the controllers' model to what was measured."""
-    words = session.lessons.words
     label, hint = words("gains.identify"), words("gains.identify_hint")
     button = gui.add_button(label, icon=viser.Icon.RULER_MEASURE, hint=hint)
     on_press(button, lambda: post(Identify()))

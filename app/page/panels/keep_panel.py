@@ -1,26 +1,25 @@
-"""Keep and share: the session's code, share codes, the record of the lessons."""
+"""Keep and share: the lab's code, share codes, the record of the lessons."""
 
 from __future__ import annotations
 
 import viser
-from markupsafe import Markup
 
 from onpath.app.common.access_codes import shown
 from onpath.app.common.templates import render
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.widgets import Post, on_press, on_slow_press
+from onpath.lessons.words import Words
 
 
 class KeepPanel:
     """A folder with codes to note down, to send and to type in."""
 
     def __init__(
-        self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter, desk: PageContext
+        self, gui: viser.GuiApi, words: Words, post: Post, exporter: Exporter, desk: PageContext
     ) -> None:
-        words = session.lessons.words
         self._desk, self._words, self._code = desk, words, ""
         with gui.add_folder(words("keep.title"), expand_by_default=False):
             if desk.keeps:
@@ -38,11 +37,11 @@ class KeepPanel:
         on_press(use, lambda: post(c.UseShared(pasted.value)))
         on_press(report, lambda: exporter.report(desk.code if desk.keeps else ""))
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """Show the share code that was asked for."""
-        if session.shared != self._code:
-            self._code = session.shared
-            self._share.content = _code(self._words("keep.shared"), session.shared)
+        if snapshot.shared != self._code:
+            self._code = snapshot.shared
+            self._share.content = _code(self._words("keep.shared"), snapshot.shared)
 
     def _enter(self) -> None:
         self._say(self._words("keep.moment"))
@@ -55,5 +54,5 @@ class KeepPanel:
         self._said.content = render("lesson/text.html", content=said)
 
 
-def _code(label: str, code: str) -> Markup:
+def _code(label: str, code: str) -> str:
     return render("panel/code.html", label=label, code=code)

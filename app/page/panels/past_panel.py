@@ -6,8 +6,9 @@ import viser
 
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
+from onpath.lessons.words import Words
 
 REACH = 60.0
 
@@ -15,8 +16,7 @@ REACH = 60.0
 class PastPanel:
     """Rewind and export."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, post: Post, exporter: Exporter) -> None:
-        words = session.lessons.words
+    def __init__(self, gui: viser.GuiApi, words: Words, post: Post, exporter: Exporter) -> None:
         with gui.add_folder(words("past.title"), expand_by_default=False):
             self._ago = gui.add_slider(
                 words("past.ago"),
@@ -50,15 +50,15 @@ class PastPanel:
         on_press(picture, exporter.picture)
         on_press(film, exporter.recording)
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """The slider stands at the instant that is shown, however one has come there."""
-        viewing = session.viewing
+        run = snapshot.run
         for button, useless in (
-            (self._go_on, viewing is None),
-            (self._undo, session.put_aside is None),
+            (self._go_on, run.viewing is None),
+            (self._undo, not run.can_undo_going_on),
         ):
             if button.disabled != useless:
                 button.disabled = useless
-        ago = 0.0 if viewing is None else round(session.time - viewing, 1)
+        ago = 0.0 if run.viewing is None else round(run.now - run.viewing, 1)
         if self._ago.value != ago:
             self._ago.value = ago

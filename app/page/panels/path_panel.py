@@ -8,32 +8,33 @@ import numpy as np
 import viser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
+from onpath.lessons.words import Words
 from onpath.models.control.rank_test import rank_map
+from onpath.models.paths.path_design import presets
 
 
 class PathChoice:
     """The preset in use; one of the first controls a user sees."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
-        words = session.lessons.words
-        self._shown = {name: words.get(f"path.{name}", name) for name in session.presets}
+    def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
+        self._shown = {name: words.get(f"path.{name}", name) for name in presets()}
         self._own = words("design.own")
         names = {shown: name for name, shown in self._shown.items()}
         self._choice = gui.add_dropdown(
             words("design.path"),
             [*names, self._own],
-            initial_value=self._shown.get(session.editor.design.name, self._own),
+            initial_value=self._shown.get(first.edit.name, self._own),
             hint=words("design.path_hint"),
         )
         on_user_update(
             self._choice, lambda shown: post(c.ChoosePath(names[shown])) if shown in names else None
         )
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """Show which one it is."""
-        shown = self._shown.get(session.editor.design.name, self._own)
+        shown = self._shown.get(snapshot.edit.name, self._own)
         if self._choice.value != shown:
             self._choice.value = shown
 
@@ -44,13 +45,14 @@ class PathPanel:
     def __init__(
         self,
         gui: viser.GuiApi,
-        session: Session,
+        words: Words,
         post: Post,
+        first: PageSnapshot,
         draw: Callable[[], None],
         show_zone: Callable[[bool], None],
     ) -> None:
-        self._version, self._words = -1, session.lessons.words
-        words, planar = self._words, session.robot.frame.p == 2
+        self._version, self._words = -1, words
+        planar = robot_of(first).frame.p == 2
         drawing = gui.add_button(
             words("design.draw"), icon=viser.Icon.PENCIL, hint=words("design.draw_hint")
         )
@@ -63,7 +65,7 @@ class PathPanel:
         on_press(points, lambda: post(adding[points.value]))
         self._add_coordinates(gui, post, ("y1", "y2") if planar else ("y2", "y3"))
         gui.add_markdown(words("design.arrows"))
-        self._design: object = None
+        self._sampled: np.ndarray | None = None
         self._rank = gui.add_markdown("")
         zone = gui.add_checkbox(words("design.zone"), False, hint=words("design.zone_hint"))
         zone.visible = planar  # it is drawn about the base pivot, in the robot's own plane
@@ -85,21 +87,20 @@ class PathPanel:
         on_user_update(self._first, lambda mm: post(c.PlacePoint(first=mm / 1e3)))
         on_user_update(self._second, lambda mm: post(c.PlacePoint(second=mm / 1e3)))
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """Show the selected point's coordinates."""
-        editor = session.editor
-        if editor.version == self._version:
+        edit = snapshot.edit
+        if edit.version == self._version:
             return
-        self._version = editor.version
-        if editor.design is not self._design:
-            self._design = editor.design
-            z = editor.design.curve.at(editor.design.curve.sample(32))
-            number = float(np.min(rank_map(session.robot, session.parameters, z)))
-            self._rank.content = self._words("design.rank", number=f"{number:.2f}")
-        selected = editor.selected
+        self._version = edit.version
+        if edit.sampled is not self._sampled:
+            self._sampled = edit.sampled
+            ranks = rank_map(robot_of(snapshot), parameters_of(snapshot), edit.sampled)
+            self._rank.content = self._words("design.rank", number=f"{float(np.min(ranks)):.2f}")
+        selected = edit.selected
         self._set(self._which, 0 if selected is None else selected + 1)
-        if selected is not None and selected < len(editor.points()):
-            z = editor.points()[selected] * 1e3
+        if selected is not None and selected < len(edit.points):
+            z = edit.points[selected] * 1e3
             self._set(self._first, round(float(z[0]), 1))
             self._set(self._second, round(float(z[1]), 1))
 

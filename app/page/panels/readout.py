@@ -5,12 +5,11 @@ from __future__ import annotations
 from functools import lru_cache, partial
 
 import viser
-from markupsafe import Markup
+from markupsafe import escape
 
 from onpath.app.common.palette import AMBER, BLUE, CONTROLLERS, WARNING
 from onpath.app.common.templates import render
-from onpath.app.lab.session import Session
-from onpath.app.lab.snapshot import Snapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.words import Words
 
@@ -20,8 +19,8 @@ LEVELS = {"info": BLUE.hex, "warning": AMBER.hex, "error": WARNING.hex}
 class Readout:
     """Two lines of numbers, a clock, and the message."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session) -> None:
-        self._words = session.lessons.words
+    def __init__(self, gui: viser.GuiApi, words: Words) -> None:
+        self._words = words
         self._table = gui.add_html("")
         self._shown = ""
         self._frame = lru_cache(maxsize=8)(partial(_frame, self._words))
@@ -36,14 +35,14 @@ class Readout:
         names = tuple(snapshot.robots)
         level = snapshot.message_level if snapshot.message else ""
         content = self._frame(names, level).format(
-            *numbers, _clock(snapshot, self._words), snapshot.message
+            *numbers, escape(_clock(snapshot, self._words)), escape(snapshot.message)
         )
         if content != self._shown:
             self._shown = content
             update_gui(self._table, "content", content)
 
 
-def _frame(words: Words, names: tuple[str, ...], level: str) -> Markup:
+def _frame(words: Words, names: tuple[str, ...], level: str) -> str:
     """All but what changes ten times a second, where it has a {}.
 
     Args:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import viser
-from markupsafe import Markup
 
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseRobot
-from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import Post, on_press
 from onpath.app.page.robot_picture import picture_of
 from onpath.lessons.words import Words
@@ -19,15 +17,15 @@ from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 class RobotPanel:
     """The button near the top, and its menu."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, post: Post) -> None:
-        self._gui, self._words = gui, session.lessons.words
+    def __init__(self, gui: viser.GuiApi, words: Words, post: Post, robot: str) -> None:
+        self._gui, self._words = gui, words
         self._post = post
-        self._chosen = session.entry
+        self._chosen = ROBOTS[robot]
         button = gui.add_button(
             self._words("robots.button"),
             icon=viser.Icon.ROBOT,
             color="gray",
-            hint=self._words("robots.hint", robot=label_of(session.entry, self._words)),
+            hint=self._words("robots.hint", robot=label_of(self._chosen, self._words)),
         )
         on_press(button, self._open)
 
@@ -56,6 +54,6 @@ def label_of(entry: RobotEntry, words: Words) -> str:
     return words.get(f"machine.{entry.name}.label", entry.label)
 
 
-def _card(picture: str, label: str, text: str) -> Markup:
+def _card(picture: str, label: str, text: str) -> str:
     """Picture and a sentence."""
     return render("panel/robot.html", label=label, text=text, picture=picture)

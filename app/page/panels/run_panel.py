@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 
 import viser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
-from onpath.app.page.panels.widgets import Post, on_press, on_user_update
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.panels.widgets import Post, on_hold, on_press, on_user_update
+from onpath.lessons.words import Words
 
-PRESS_ENDS = 0.35  # [s] without a hold message: the button was let go
 RATE_LABELS = {f"{rate:g}×": rate for rate in c.RATES}
 
 
@@ -19,18 +18,16 @@ class RunPanel:
     """Transport and hold."""
 
     def __init__(
-        self, gui: viser.GuiApi, session: Session, post: Post, reset_view: Callable[[], None]
+        self, gui: viser.GuiApi, words: Words, post: Post, reset_view: Callable[[], None]
     ) -> None:
-        self._post, self._words = post, session.lessons.words
-        self._pressed_at: float | None = None
-        words = self._words
+        self._words = words
         self._hold = gui.add_button(
             words("run.hold_both"),
             icon=viser.Icon.HAND_STOP,
             color="orange",
             hint=words("run.hold_hint"),
         )
-        self._press = gui.add_button(
+        press = gui.add_button(
             words("run.press"),
             icon=viser.Icon.HAND_CLICK,
             color="gray",
@@ -52,29 +49,21 @@ class RunPanel:
         on_press(self._run, lambda: post(c.SetRunning()))
         on_press(group, lambda: row[group.value]())
         on_user_update(self._rate, lambda label: post(c.SetRate(RATE_LABELS[label])))
-        self._press.on_hold(self._held_down)
+        on_hold(press, lambda: post(c.Hold(True)), lambda: post(c.Hold(False)))
 
-    def follow(self, session: Session) -> None:
-        """Show what is; ends a press that has been let go."""
-        held = bool(session.grips.held)
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show what is."""
+        held = snapshot.held
         label = self._words("run.let_both_go" if held else "run.hold_both")
-        if not session.copy:
+        if not snapshot.run.copy:
             label = self._words("run.let_go" if held else "run.hold")
         if self._hold.label != label:
             self._hold.label = label
             self._hold.color = "red" if held else "orange"
-        label = self._words("run.pause" if session.running else "run.run")
+        label = self._words("run.pause" if snapshot.running else "run.run")
         if self._run.label != label:
             self._run.label = label
-            self._run.icon = viser.Icon.PLAYER_PAUSE if session.running else viser.Icon.PLAYER_PLAY
-        rate = f"{session.rate:g}×"
+            self._run.icon = viser.Icon.PLAYER_PAUSE if snapshot.running else viser.Icon.PLAYER_PLAY
+        rate = f"{snapshot.run.rate:g}×"
         if self._rate.value != rate:
             self._rate.value = rate
-        if self._pressed_at is not None and time.monotonic() - self._pressed_at > PRESS_ENDS:
-            self._pressed_at = None
-            self._post(c.Hold(False))
-
-    async def _held_down(self, _: viser.GuiEvent[viser.GuiButtonHandle]) -> None:
-        if self._pressed_at is None:
-            self._post(c.Hold(True))
-        self._pressed_at = time.monotonic()

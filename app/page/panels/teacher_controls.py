@@ -2,44 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import viser
 
 from onpath.app.lab.commands import TakeSetup
-from onpath.app.lab.session import Session
-from onpath.app.lab.setup import capture
 from onpath.app.lab.share_code import decode
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.widgets import note, on_press
 from onpath.app.page.teacher_context import TeacherContext
+from onpath.lessons.words import Words
 
 
 class TeacherControls:
     """Above the teacher's own lab."""
 
-    def __init__(self, gui: viser.GuiApi, own: Session, teaching: TeacherContext) -> None:
-        self._class, self._words, self._own = teaching.classroom, own.lessons.words, own
-        self._wanted: list[Callable[[], None]] = []
-        words = self._words
-        self._freezing = _add_freezing(gui, own, teaching)
+    def __init__(self, gui: viser.GuiApi, words: Words, teaching: TeacherContext) -> None:
+        self._class, self._words, self._teaching = teaching.classroom, words, teaching
+        self._freezing = _add_freezing(gui, words, teaching)
         send = gui.add_button(words("class.push_setup"), icon=viser.Icon.SEND)
         with gui.add_folder(words("keep.paste"), expand_by_default=False):
-            code = gui.addnote(words("keep.paste"), "", hint=words("keep.paste_hint"))
+            code = gui.add_text(words("keep.paste"), "", hint=words("keep.paste_hint"))
             push = gui.add_button(words("class.push_code"), color="gray", icon=viser.Icon.SEND)
         self._said = gui.add_html("")
         stop = gui.add_button(words("class.stop_teaching"), color="gray", icon=viser.Icon.DOOR_EXIT)
-        on_press(send, lambda: self._wanted.append(self._send_own))
+        on_press(send, self._send_own)
         on_press(push, lambda: self._send_code(code.value))
         stop.on_click(lambda _: teaching.stop())
 
-    def follow(self, session: Session) -> None:
-        """On the simulation thread, where one's own lab may be looked at."""
-        _show_freezing(self._freezing, self._own, self._class.orders.frozen)
-        while self._wanted:
-            self._wanted.pop(0)()
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show whether all labs stand still."""
+        _show_freezing(self._freezing, self._words, self._class.orders.frozen)
 
     def _send_own(self) -> None:
-        self._class.push(TakeSetup(capture(self._own)))
+        self._teaching.send_setup()
         self._tell_sent()
 
     def _send_code(self, text: str) -> None:
@@ -57,36 +51,34 @@ class TeacherControls:
 class FollowedStudent:
     """Above a student's lab."""
 
-    def __init__(self, gui: viser.GuiApi, own: Session, teaching: TeacherContext) -> None:
-        self._own, self._class = own, teaching.classroom
-        self._freezing = _add_freezing(gui, own, teaching)
+    def __init__(self, gui: viser.GuiApi, words: Words, teaching: TeacherContext) -> None:
+        self._words, self._class = words, teaching.classroom
+        self._freezing = _add_freezing(gui, words, teaching)
         member = self._class.member(teaching.chosen.followed)
         name = member.name if member else ""
-        gui.add_html(note(own.lessons.words("class.following", name=name)))
-        back = gui.add_button(own.lessons.words("class.own_lab"), icon=viser.Icon.EYE)
+        gui.add_html(note(words("class.following", name=name)))
+        back = gui.add_button(words("class.own_lab"), icon=viser.Icon.EYE)
 
         def stop() -> None:
             teaching.chosen.followed = ""
 
         on_press(back, stop)
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """Show whether all labs stand still."""
-        _show_freezing(self._freezing, self._own, self._class.orders.frozen)
+        _show_freezing(self._freezing, self._words, self._class.orders.frozen)
 
 
 def _add_freezing(
-    gui: viser.GuiApi, own: Session, teaching: TeacherContext
+    gui: viser.GuiApi, words: Words, teaching: TeacherContext
 ) -> viser.GuiButtonHandle:
     classroom = teaching.classroom
-    button = gui.add_button(
-        own.lessons.words("class.freeze"), color="red", icon=viser.Icon.HAND_STOP
-    )
+    button = gui.add_button(words("class.freeze"), color="red", icon=viser.Icon.HAND_STOP)
     on_press(button, lambda: classroom.freeze(not classroom.orders.frozen))
     return button
 
 
-def _show_freezing(button: viser.GuiButtonHandle, own: Session, frozen: bool) -> None:
-    label = own.lessons.words("class.unfreeze" if frozen else "class.freeze")
+def _show_freezing(button: viser.GuiButtonHandle, words: Words, frozen: bool) -> None:
+    label = words("class.unfreeze" if frozen else "class.freeze")
     if button.label != label:
         button.label = label

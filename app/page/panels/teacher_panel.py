@@ -10,9 +10,11 @@ from onpath.app.classroom import class_html as page
 from onpath.app.classroom.results import class_csv, distribution, prediction_at, truth_of
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
-from onpath.app.lab.session import Session
-from onpath.app.page.panels.widgets import note, on_press, on_user_update
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
+from onpath.lessons.course import Course
+from onpath.lessons.words import Words
 
 WIDTH, WIDE = 480, 760  # [px]; wide for a projector
 REFRESH_INTERVAL = 1.0  # [s] between two looks at the class
@@ -24,19 +26,25 @@ class TeacherPanel:
     """Three tabs; the second one names nobody, for the projector.
 
     Args:
-        own: the teacher's session: its language, its course.
+        post: takes the commands for the teacher's own lab.
         submit: runs something in another thread.
     """
 
     def __init__(
-        self, client: viser.ClientHandle, own: Session, teaching: TeacherContext, submit: Submit
+        self,
+        client: viser.ClientHandle,
+        words: Words,
+        post: Post,
+        course: Course,
+        teaching: TeacherContext,
+        submit: Submit,
     ) -> None:
         self._client, self._gui, self._submit = client, client.gui, submit
         self._teaching, self._class, self._chosen = teaching, teaching.classroom, teaching.chosen
-        self._course, self._words, self._own = own.lessons.course, own.lessons.words, own
+        self._course, self._words, self._post = course, words, post
         self._next, self._busy = 0.0, False
         self._codes: list[viser.GuiHtmlHandle] = []
-        words, self._large = self._words, own.lessons.progress.presenting
+        self._large = teaching.progress().presenting
         panel = self._gui.add_panel(order=0)
         with panel.add_tab(words("class.title"), viser.Icon.USERS):
             self._build_class()
@@ -49,7 +57,7 @@ class TeacherPanel:
         panel.set_width(WIDE if self._large else WIDTH)
         self._panel = panel
 
-    def follow(self, session: Session) -> None:
+    def follow(self, snapshot: PageSnapshot) -> None:
         """Once a second, in another thread: the class may be large."""
         now = self._class.clock()
         if now >= self._next and not self._busy:
@@ -174,7 +182,7 @@ class TeacherPanel:
 
     def _present(self, on: bool) -> None:
         self._large = on
-        self._own.post(c.SetPresenting(on))
+        self._post(c.SetPresenting(on))
         self._panel.set_width(WIDE if on else WIDTH)
         self._look_again()
 
@@ -194,7 +202,7 @@ class TeacherPanel:
             return note(words("class.no_prediction"))
         at, block = found
         ways = [member.progress for member in self._class.members().values()]
-        truth = truth_of(chosen.lesson, at, [*ways, self._own.lessons.progress])
+        truth = truth_of(chosen.lesson, at, [*ways, self._teaching.progress()])
         counted = distribution(block, chosen.lesson, at, ways)
         view = page.prediction_view(block, counted, truth, chosen.revealed, words, self._large)
         missing = chosen.revealed and not counted.counts and truth is None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 import threading
 from collections.abc import Callable
@@ -9,16 +10,17 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 import viser
-from markupsafe import Markup
 
 from onpath.app.common.error_log import log_error
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import Command, SetParameter
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues
 from onpath.lessons.words import Words
-from onpath.models.systems.parameters import Parameters, Spec, specs
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import Spec, specs
 
 Post = Callable[[Command], None]
+PRESS_ENDS = 0.35  # [s] without a message that the button is held down: it was let go
 
 
 def on_user_update(handle: Any, act: Callable[[Any], None]) -> None:
@@ -38,6 +40,29 @@ def on_press(handle: Any, act: Callable[[], None]) -> None:
         act()
 
     handle.on_click(pressed)
+
+
+def on_hold(handle: Any, begin: Callable[[], None], end: Callable[[], None]) -> None:
+    """Call `begin()` when the button is pressed, and `end()` when it is let go.
+
+    The browser tells ten times a second that it is held down, and nothing when it no longer is.
+    """
+    ending: asyncio.TimerHandle | None = None
+
+    def ended() -> None:
+        nonlocal ending
+        ending = None
+        end()
+
+    async def held_down(_: viser.GuiEvent[Any]) -> None:
+        nonlocal ending
+        if ending is None:
+            begin()
+        else:
+            ending.cancel()
+        ending = asyncio.get_running_loop().call_later(PRESS_ENDS, ended)
+
+    handle.on_hold(held_down)
 
 
 _slow_presses: WeakKeyDictionary[Any, threading.Lock] = WeakKeyDictionary()
@@ -64,7 +89,7 @@ def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
     handle.on_click(pressed)
 
 
-def note(said: str, small: bool = False) -> Markup:
+def note(said: str, small: bool = False) -> str:
     """A sentence between widgets."""
     return render("panel/note.html", said=said, small=small)
 
@@ -85,27 +110,29 @@ def option_of(words: Words, name: str, option: Any) -> str:
 
 
 class ParameterWidgets:
-    """Widgets of some parameters: they post changes and follow the session's values.
+    """Widgets of some parameters: they post changes and follow the lab's values.
 
     Args:
         gui: where to put them.
-        names: fields of the session's parameters, in order.
         post: takes the commands.
+        names: fields of the robot's parameters, in order.
     """
 
-    def __init__(self, gui: viser.GuiApi, session: Session, names: list[str], post: Post) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, words: Words, post: Post, names: list[str], first: PageSnapshot
+    ) -> None:
         self._handles: dict[str, Any] = {}
-        self._post, self._words = post, session.lessons.words
-        self._specs = specs(session.parameters)
+        self._post, self._words = post, words
+        self._specs = specs(ROBOTS[first.key.robot].parameters)
         for name in names:
-            shown = self._shown(name, session.parameters)
+            shown = self._shown(name, first.parameters)
             make = self._add_choice if self._specs[name].options else self._add_slider
             self._handles[name] = make(gui, name, shown)
 
-    def follow(self, parameters: Parameters) -> None:
-        """Show the session's values where they differ."""
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show the lab's values where they differ."""
         for name, handle in self._handles.items():
-            shown = self._shown(name, parameters)
+            shown = self._shown(name, snapshot.parameters)
             if handle.value != shown:
                 handle.value = shown
 
@@ -135,9 +162,9 @@ class ParameterWidgets:
         on_user_update(handle, lambda new: self._post(SetParameter(name, new)))
         return handle
 
-    def _shown(self, name: str, parameters: Parameters) -> Any:
+    def _shown(self, name: str, parameters: ParameterValues) -> Any:
         """As the widget holds it: options in words, numbers to the slider's step or finer."""
-        spec, value = self._specs[name], getattr(parameters, name)
+        spec, value = self._specs[name], parameters[name]
         if spec.options:
             return option_of(self._words, name, value)
         digits = max(0, 2 - math.floor(math.log10(spec.step) + 1e-9)) - 1
@@ -147,22 +174,24 @@ class ParameterWidgets:
 class SwitchedParameter(ParameterWidgets):
     """A parameter that is off at 0: a checkbox that shows its slider while on."""
 
-    def __init__(self, gui: viser.GuiApi, session: Session, name: str, post: Post) -> None:
-        words, spec = session.lessons.words, specs(session.parameters)[name]
+    def __init__(
+        self, gui: viser.GuiApi, words: Words, post: Post, name: str, first: PageSnapshot
+    ) -> None:
+        spec = specs(ROBOTS[first.key.robot].parameters)[name]
         self._name, self._on = name, spec.on
-        on = getattr(session.parameters, name) != 0
+        on = first.parameters[name] != 0
         self._switch = gui.add_checkbox(
             label_of(words, name, spec), initial_value=on, hint=help_of(words, name, spec)
         )
-        super().__init__(gui, session, [name], post)
+        super().__init__(gui, words, post, [name], first)
         self._slider = self._handles[name]
         self._slider.visible = on
         on_user_update(self._switch, self._turn)
 
-    def follow(self, parameters: Parameters) -> None:
-        """Show the session's value, and the slider only while on."""
-        super().follow(parameters)
-        on = getattr(parameters, self._name) != 0
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show the lab's value, and the slider only while on."""
+        super().follow(snapshot)
+        on = snapshot.parameters[self._name] != 0
         if self._switch.value != on:
             self._switch.value = on
         if self._slider.visible != on:

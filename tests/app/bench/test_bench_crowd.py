@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -14,6 +13,7 @@ import pytest
 from onpath.app.bench.crowd import HEAD, ClientLoad, folders, measured
 from onpath.app.bench.server_process import serving
 from onpath.app.cli.main import run_command
+from tests.support.waiting import wait_for
 
 CLIENTS, SECONDS = 3, 1.0
 WORKERS = 2 if sys.platform == "linux" else 1
@@ -85,12 +85,15 @@ def test_a_bench_that_is_stopped_takes_its_server_along(
     environment = {**os.environ, "TMPDIR": str(tmp_path)}
     pipe = subprocess.PIPE
     with subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe) as process:
-        until = time.monotonic() + 60.0
-        while not any(
-            "onpath.app.bench.simulated_browser" in each for each in processes_of(tmp_path)
-        ):
-            assert process.poll() is None and time.monotonic() < until
-            time.sleep(0.1)
+        simulated = "onpath.app.bench.simulated_browser"
+        wait_for(
+            lambda: (
+                process.poll() is not None
+                or any(simulated in each for each in processes_of(tmp_path))
+            ),
+            60.0,
+        )
+        assert process.poll() is None
         assert any("serve" in each for each in processes_of(tmp_path))
         process.send_signal(how)
         _, said = process.communicate(timeout=30.0)

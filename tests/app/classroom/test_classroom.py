@@ -25,7 +25,7 @@ from onpath.app.common.access_codes import ALPHABET, new_code, shown
 from onpath.app.common.throttle import TRIES, WITHIN, Throttle
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import Freeze, TakeSetup, TakeStep
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.setup import Setup, capture
 from onpath.app.storage.forget import forget
 from onpath.app.storage.leases import Leases
@@ -61,7 +61,7 @@ class Watched:
     course: Course
     records: Records | None = None
     now: float = 1000.0
-    labs: dict[str, tuple[Session, bool]] = field(default_factory=dict)
+    labs: dict[str, tuple[Lab, bool]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.room: LocalClassroom | SharedClassroom = LocalClassroom(lambda: self.now)
@@ -71,14 +71,14 @@ class Watched:
             self.leases = Leases(self.records, clock=wall)
         self.attendance = ClassSync(self.room, self.labs.get)
 
-    def student(self, name: str) -> Session:
+    def student(self, name: str) -> Lab:
         """One more, in the class."""
         code = f"lab {len(self.labs)}"
-        session = Session(store(), FIVE_BAR, self.course)
-        self.labs[code] = session, True
+        lab = Lab(store(), FIVE_BAR, self.course)
+        self.labs[code] = lab, True
         self.room.join(code, self.room.code, name)
         self.look()
-        return session
+        return lab
 
     def look(self) -> None:
         """As the class's thread does; then a frame of every lab."""
@@ -86,8 +86,8 @@ class Watched:
             self.leases.release()
             self.leases.renew([code for code, (_, connected) in self.labs.items() if connected])
         self.attendance.look()
-        for session, _ in self.labs.values():
-            session.drain()
+        for lab, _ in self.labs.values():
+            lab.drain()
 
 
 @pytest.fixture(params=["one process", "several"])
@@ -230,30 +230,30 @@ def test_attempts_under_way_count_and_only_failures_go_on_counting() -> None:
 
 
 def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -> None:
-    session = klass.student("Ada")
-    outside = Session(store(), FIVE_BAR, klass.course)
-    do(session, c.MoveHand(0.01, 0.0))
+    lab = klass.student("Ada")
+    outside = Lab(store(), FIVE_BAR, klass.course)
+    do(lab, c.MoveHand(0.01, 0.0))
     klass.room.freeze(True)
     klass.look()
-    before = session.time
-    assert session.message == ENGLISH("class.frozen") and not session.grips.hands
+    before = lab.session.time
+    assert lab.message == ENGLISH("class.frozen") and not lab.session.grips.hands
     for command in (
         c.SetRunning(False),
         c.StepOnce(),
         c.SetParameter("K1", 1.0),
         c.MoveHand(0.01, 0.0),
     ):
-        session.show_message("")
-        do(session, command)
-        assert session.message == ENGLISH("class.frozen")
-    run(session, 0.5)
+        lab.show_message("")
+        do(lab, command)
+        assert lab.message == ENGLISH("class.frozen")
+    run(lab, 0.5)
     run(outside, 0.5)
-    assert session.time == before and outside.time > 0.4
-    assert session.running and session.parameters.K1 != 1.0 and not session.grips.hands
+    assert lab.session.time == before and outside.session.time > 0.4
+    assert lab.session.running and lab.session.parameters.K1 != 1.0 and not lab.session.grips.hands
     klass.room.freeze(False)
     klass.look()
-    run(session, 0.5)
-    assert session.time > before and session.message == ""
+    run(lab, 0.5)
+    assert lab.session.time > before and lab.message == ""
 
 
 def test_who_joins_is_frozen_too_and_who_leaves_is_let_go(klass: Watched) -> None:
@@ -273,11 +273,11 @@ def test_a_step_is_opened_for_all_as_if_they_had_come_there(klass: Watched) -> N
     do(second, c.OpenLesson(LESSON), c.SetParameter("K1", 7.0))
     klass.room.push(TakeStep(LESSON, 1))
     klass.look()
-    for session in (first, second):
-        assert session.lessons.lesson is not None and session.lessons.index == 1
-        assert session.parameters.K1 == 300 and session.locked  # of the scene before
-        assert session.lessons.answer() is None
-        do(session, c.CloseLesson())
+    for lab in (first, second):
+        assert lab.lessons.lesson is not None and lab.lessons.index == 1
+        assert lab.session.parameters.K1 == 300 and lab.locked  # of the scene before
+        assert lab.lessons.answer() is None
+        do(lab, c.CloseLesson())
     klass.look()
     assert first.lessons.lesson is None  # once, not again and again
     for wrong in (TakeStep("nope", 0), TakeStep(LESSON, 99), TakeStep(LESSON, -1)):
@@ -287,80 +287,80 @@ def test_a_step_is_opened_for_all_as_if_they_had_come_there(klass: Watched) -> N
 
 
 def test_a_setup_is_taken_by_all_even_when_frozen(klass: Watched) -> None:
-    own = Session(store(), FIVE_BAR, klass.course)
+    own = Lab(store(), FIVE_BAR, klass.course)
     do(own, c.SetParameter("K2", 33), c.ChoosePath("clover"))
-    session = klass.student("Ada")
+    lab = klass.student("Ada")
     klass.room.freeze(True)
     klass.look()
-    klass.room.push(TakeSetup(capture(own)))
+    klass.room.push(TakeSetup(capture(own.session)))
     klass.look()
-    assert capture(session) == capture(own)
-    assert session.frozen and session.message == ENGLISH("class.frozen")
+    assert capture(lab.session) == capture(own.session)
+    assert lab.frozen and lab.message == ENGLISH("class.frozen")
 
 
 def sent_setup(course: Course) -> Setup:
     """That no step of the lessons has."""
-    own = Session(store(), FIVE_BAR, course)
+    own = Lab(store(), FIVE_BAR, course)
     do(own, c.SetParameter("K2", 33), c.ChoosePath("clover"))
-    return capture(own)
+    return capture(own.session)
 
 
 @pytest.mark.parametrize("step", range(8))
 def test_a_setup_leaves_a_student_in_the_open_step(klass: Watched, step: int) -> None:
-    session, setup = klass.student("Ada"), sent_setup(klass.course)
-    do(session, c.SetParameter("K1", 7.0), c.OpenLesson(LESSON))
-    do(session, *[c.GoToStep(1)] * step)
-    run(session, 0.2)
-    waits, before = session.locked, session.lessons.progress
+    lab, setup = klass.student("Ada"), sent_setup(klass.course)
+    do(lab, c.SetParameter("K1", 7.0), c.OpenLesson(LESSON))
+    do(lab, *[c.GoToStep(1)] * step)
+    run(lab, 0.2)
+    waits, before = lab.locked, lab.lessons.progress
     klass.room.push(TakeSetup(setup))
     klass.look()
-    assert capture(session) == setup and session.message == ENGLISH("class.setup_in_step")
-    assert session.lessons.progress == before and session.lessons.index == step
-    assert session.locked == waits and session.running == (not waits)
-    do(session, c.GoToStep(1))
-    assert session.lessons.index == min(step + 1, 7)
-    do(session, c.CloseLesson())
-    assert session.parameters.K1 == 7.0  # the free lab as it was
+    assert capture(lab.session) == setup and lab.message == ENGLISH("class.setup_in_step")
+    assert lab.lessons.progress == before and lab.lessons.index == step
+    assert lab.locked == waits and lab.session.running == (not waits)
+    do(lab, c.GoToStep(1))
+    assert lab.lessons.index == min(step + 1, 7)
+    do(lab, c.CloseLesson())
+    assert lab.session.parameters.K1 == 7.0  # the free lab as it was
 
 
 def test_set_up_again_brings_the_steps_own_setup_back(klass: Watched) -> None:
-    session = klass.student("Ada")
-    do(session, c.OpenLesson(LESSON))
-    own = capture(session)
+    lab = klass.student("Ada")
+    do(lab, c.OpenLesson(LESSON))
+    own = capture(lab.session)
     klass.room.push(TakeSetup(sent_setup(klass.course)))
     klass.look()
-    assert capture(session) != own
-    do(session, c.BeginStepAnew())
-    assert capture(session) == own and session.lessons.index == 0
+    assert capture(lab.session) != own
+    do(lab, c.BeginStepAnew())
+    assert capture(lab.session) == own and lab.lessons.index == 0
 
 
 def test_a_setup_ends_what_plays_and_nothing_is_noted_of_it(klass: Watched) -> None:
-    session = klass.student("Ada")
-    do(session, c.OpenLesson(LESSON), *[c.GoToStep(1)] * 2, c.PlayStep())
-    run(session, 0.5)
-    assert session.lessons.playing
+    lab = klass.student("Ada")
+    do(lab, c.OpenLesson(LESSON), *[c.GoToStep(1)] * 2, c.PlayStep())
+    run(lab, 0.5)
+    assert lab.lessons.playing
     klass.room.push(TakeSetup(sent_setup(klass.course)))
     klass.look()
-    run(session, 2.5)
-    assert not session.lessons.playing and not session.lessons.has_played()
-    assert session.lessons.notes.truths == {}
+    run(lab, 2.5)
+    assert not lab.lessons.playing and not lab.lessons.has_played()
+    assert lab.lessons.notes.truths == {}
 
 
 def test_a_step_that_is_opened_is_a_step_of_a_lesson(klass: Watched) -> None:
-    session, free = klass.student("Ada"), klass.student("Bob")
-    do(session, c.SetParameter("K1", 7.0), c.OpenLesson(OTHER), *[c.GoToStep(1)] * 6)
+    lab, free = klass.student("Ada"), klass.student("Bob")
+    do(lab, c.SetParameter("K1", 7.0), c.OpenLesson(OTHER), *[c.GoToStep(1)] * 6)
     klass.room.push(TakeStep(LESSON, 5))
     klass.look()
-    assert session.message == ENGLISH("class.step_elsewhere")
+    assert lab.message == ENGLISH("class.step_elsewhere")
     assert free.message == ENGLISH("class.step")
     for by, index in ((0, 5), (1, 6), (1, 7), (-1, 6), (-1, 5), (-1, 4)):
-        do(session, c.GoToStep(by))
-        assert session.lessons.progress.lesson == LESSON and session.lessons.index == index
-    do(session, c.OpenLesson(OTHER))
-    assert session.lessons.index == 6 and session.editor.design.name == "ellipse"
-    assert set(session.lessons.notes.answers) == {"1", "3"}
-    do(session, c.CloseLesson())
-    assert session.parameters.K1 == 7.0
+        do(lab, c.GoToStep(by))
+        assert lab.lessons.progress.lesson == LESSON and lab.lessons.index == index
+    do(lab, c.OpenLesson(OTHER))
+    assert lab.lessons.index == 6 and lab.session.editor.design.name == "ellipse"
+    assert set(lab.lessons.notes.answers) == {"1", "3"}
+    do(lab, c.CloseLesson())
+    assert lab.session.parameters.K1 == 7.0
 
 
 def test_who_joins_later_gets_what_was_sent_last(klass: Watched) -> None:
@@ -373,7 +373,7 @@ def test_who_joins_later_gets_what_was_sent_last(klass: Watched) -> None:
         klass.look()
         assert late.lessons.lesson is None  # once
     klass.room.push(TakeSetup(sent_setup(klass.course)))
-    assert capture(klass.student("Cid")) == sent_setup(klass.course)
+    assert capture(klass.student("Cid").session) == sent_setup(klass.course)
 
 
 def test_what_stands_ends_when_the_teacher_says_so(klass: Watched) -> None:
@@ -393,43 +393,43 @@ def test_what_stands_ends_when_the_teacher_says_so(klass: Watched) -> None:
 
 
 def test_who_reloads_has_what_was_sent_and_goes_on_from_there(klass: Watched) -> None:
-    session = klass.student("Ada")
-    klass.labs["lab 0"] = session, False  # a reload, and just then the teacher sends
+    lab = klass.student("Ada")
+    klass.labs["lab 0"] = lab, False  # a reload, and just then the teacher sends
     klass.look()
     klass.room.push(TakeStep(LESSON, 1))
     klass.look()
-    klass.labs["lab 0"] = session, True
+    klass.labs["lab 0"] = lab, True
     klass.look()
-    assert session.lessons.index == 1
-    do(session, c.GoToStep(1))
-    klass.labs["lab 0"] = session, False
+    assert lab.lessons.index == 1
+    do(lab, c.GoToStep(1))
+    klass.labs["lab 0"] = lab, False
     klass.look()
-    klass.labs["lab 0"] = session, True
+    klass.labs["lab 0"] = lab, True
     klass.look()
-    assert session.lessons.index == 2  # and is not sent back
+    assert lab.lessons.index == 2  # and is not sent back
 
 
 def test_only_a_teacher_thaws(klass: Watched) -> None:
-    session = klass.student("Ada")
-    do(session, Freeze(True))  # type: ignore[arg-type]
-    do(session, c.SetLanguage("de"), c.Reset())
-    assert session.frozen and session.lessons.words.language == "en"
+    lab = klass.student("Ada")
+    do(lab, Freeze(True))  # type: ignore[arg-type]
+    do(lab, c.SetLanguage("de"), c.Reset())
+    assert lab.frozen and lab.words.language == "en"
 
 
 def test_who_leaves_and_returns_keeps_its_place(klass: Watched) -> None:
-    session = klass.student("Ada")
+    lab = klass.student("Ada")
     klass.room.push(TakeStep(LESSON, 1))
     klass.look()
     klass.look()
-    klass.labs["lab 0"] = session, False
+    klass.labs["lab 0"] = lab, False
     klass.look()
     away = klass.room.member("lab 0")
     assert away is not None and not away.connected and away.progress.lesson == LESSON
     del klass.labs["lab 0"]  # dropped after a while; kept in the database
     klass.room.freeze(True)
     klass.look()
-    again = Session(store(), FIVE_BAR, klass.course)
-    again.lessons.resume(session.lessons.progress, None, again)
+    again = Lab(store(), FIVE_BAR, klass.course)
+    again.lessons.resume(lab.lessons.progress, None, again)
     klass.labs["lab 0"] = again, True
     klass.look()
     member = klass.room.member("lab 0")
@@ -504,10 +504,10 @@ def rows_of(data: bytes) -> list[dict[str, str]]:
 
 
 def test_the_record_has_a_row_for_each_prediction_and_task(klass: Watched) -> None:
-    session = klass.student("Ada")
+    lab = klass.student("Ada")
     klass.student("Bob")
-    do(session, c.OpenLesson(LESSON), c.GoToStep(1))
-    do(session, c.Predict(times=(0.0, 1.0), values=(1.0, 2.5)))
+    do(lab, c.OpenLesson(LESSON), c.GoToStep(1))
+    do(lab, c.Predict(times=(0.0, 1.0), values=(1.0, 2.5)))
     klass.look()
     rows = rows_of(class_csv(klass.room.members().values(), klass.course, "en"))
     assert {row["nickname"] for row in rows} == {"Ada"} and tuple(rows[0]) == HEADER
@@ -524,8 +524,8 @@ def test_the_record_has_a_row_for_each_prediction_and_task(klass: Watched) -> No
     ['=HYPERLINK("http://x")', "+1", "-1", "@SUM(A1)", " =1", "\t=1", "|calc", "%0", 'a","=1'],
 )
 def test_no_cell_is_a_formula(klass: Watched, name: str) -> None:
-    session = klass.student(name)
-    do(session, c.OpenLesson(LESSON))
+    lab = klass.student(name)
+    do(lab, c.OpenLesson(LESSON))
     klass.look()
     rows = rows_of(class_csv(klass.room.members().values(), klass.course, "en"))
     assert rows

@@ -16,11 +16,12 @@ from onpath.app.classroom.mirror import BEHIND, Mirror
 from onpath.app.classroom.moment import Moment, read_moment, tell
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import Freeze
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
-from onpath.app.lab.take_snapshot import take_snapshot
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.lab.snapshots.take_snapshot import take_snapshot
+from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.models.control.laws import NAMES
-from tests.support.lab import FRAME, assert_drawable, do, new_session, store, y
+from tests.support.lab import FRAME, assert_drawable, do, new_lab, store, y
 
 OFTEN = 8  # frames from one telling to the next
 SAME = 1e-3  # [m]
@@ -30,8 +31,8 @@ Act = Callable[[float], c.Command | None]
 """What is done, by the time since when, [s]."""
 
 
-def told(lab: Lab) -> str:
-    return msgspec.json.encode(tell(lab)).decode()
+def told(scheduled: ScheduledLab) -> str:
+    return msgspec.json.encode(tell(scheduled)).decode()
 
 
 @dataclass
@@ -43,14 +44,18 @@ class Followed:
     """
 
     late: Callable[[], int] = lambda: 5
-    lab: Lab = field(default_factory=lambda: Lab(new_session(0.5)))
+    scheduled: ScheduledLab = field(default_factory=lambda: ScheduledLab(new_lab(0.5)))
     frames: int = 0
     ways: dict[str, list[tuple[float, np.ndarray]]] = field(default_factory=dict)
     jumps: list[float] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.mirror = Mirror(Session(store()), told(self.lab))
+        self.mirror = Mirror(Lab(store()), told(self.scheduled))
         self._under_way: list[tuple[int, str]] = []
+
+    @property
+    def lab(self) -> Lab:
+        return self.scheduled.lab
 
     @property
     def session(self) -> Session:
@@ -62,17 +67,17 @@ class Followed:
         """Both go on; what the teacher sees is compared with what was."""
         for number in range(round(seconds / FRAME)):
             command = act(number * FRAME)
-            do(self.session, *([command] if command else []))
-            self.session.advance(self.session.rate * FRAME)
+            do(self.lab, *([command] if command else []))
+            self.lab.advance(self.session.rate * FRAME)
             for name in NAMES:
                 way = self.ways.setdefault(name, [])
-                way.append((self.session.time, y(self.session, name)))
+                way.append((self.session.time, y(self.lab.session, name)))
             if self.frames % OFTEN == 0:
-                self._under_way.append((self.frames + self.late(), told(self.lab)))
+                self._under_way.append((self.frames + self.late(), told(self.scheduled)))
             while self._under_way and self._under_way[0][0] <= self.frames:
                 self.mirror.tell(self._under_way.pop(0)[1])
             before = self.mirror.session.time
-            self.mirror.keep_up()
+            self.mirror.advance(FRAME)
             self.jumps.append(self.mirror.session.time - before)
             self.frames += 1
 
@@ -84,7 +89,7 @@ class Followed:
     def _distance(self, name: str, time: float) -> float:
         times, points = (np.array(part) for part in zip(*self.ways[name], strict=True))
         there = np.array([np.interp(time, times, along) for along in points.T])
-        return float(np.linalg.norm(y(self.mirror.session, name) - there))
+        return float(np.linalg.norm(y(self.mirror.lab.session, name) - there))
 
 
 def test_the_same_motion_a_little_later_and_smoothly() -> None:
@@ -97,7 +102,7 @@ def test_the_same_motion_a_little_later_and_smoothly() -> None:
         assert both.distance() < SAME
         assert 0.05 < both.session.time - both.mirror.session.time < 2 * BEHIND
     assert min(both.jumps) >= 0.5 * FRAME - 1e-3 and max(both.jumps) <= 2 * FRAME + 1e-3
-    assert_drawable(take_snapshot(both.mirror.session, 1.0))
+    assert_drawable(take_snapshot(both.mirror.lab, 1.0))
 
 
 def test_what_is_done_to_the_lab_is_seen_within_a_millimetre() -> None:
@@ -109,7 +114,7 @@ def test_what_is_done_to_the_lab_is_seen_within_a_millimetre() -> None:
         c.SetParameter("K1", 90.0),
         c.ChoosePath("clover"),
     ):
-        do(both.session, command)
+        do(both.lab, command)
         both.run(1.5)
         assert both.distance() < SAME, command
     assert both.mirror.session.parameters.K1 == 90.0
@@ -127,7 +132,7 @@ def test_a_path_that_is_dragged_and_let_go_is_the_same_path() -> None:
     both.run(1.0)
     both.run(1.0, drag)
     assert both.mirror.session.editor.points()[index][0] > x
-    do(both.session, c.EndMove())
+    do(both.lab, c.EndMove())
     both.run(1.5)
     assert both.distance() < SAME
     mine, theirs = both.mirror.session.editor, both.session.editor
@@ -144,7 +149,7 @@ def test_a_hand_that_pulls_is_near_meanwhile_and_exact_after() -> None:
 
     both.run(1.0, pull)
     assert both.distance() < 5 * SAME and both.mirror.session.grips.grabbed
-    do(both.session, c.Release())
+    do(both.lab, c.Release())
     both.run(1.5)
     assert both.distance() < SAME and not both.mirror.session.grips.grabbed
 
@@ -155,9 +160,9 @@ def test_a_hand_that_pulls_is_near_meanwhile_and_exact_after() -> None:
 def test_a_lab_that_stands_still_is_shown_where_it_stands(still: Any) -> None:
     both = Followed()
     both.run(1.0)
-    do(both.session, still)
+    do(both.lab, still)
     both.run(1.5)
-    shown, real = (take_snapshot(s, 1.0) for s in (both.mirror.session, both.session))
+    shown, real = (take_snapshot(s, 1.0) for s in (both.mirror.lab, both.lab))
     assert abs(shown.time - real.time) < 2e-3 and shown.running == real.running
     for name in NAMES:
         assert np.abs(shown.robots[name].tip - real.robots[name].tip).max() < SAME
@@ -167,10 +172,10 @@ def test_a_lab_that_stands_still_is_shown_where_it_stands(still: Any) -> None:
 def test_a_new_start_and_another_robot_are_followed() -> None:
     both = Followed()
     both.run(1.0)
-    do(both.session, c.Reset())
+    do(both.lab, c.Reset())
     both.run(0.7)
     assert both.mirror.session.time < 0.8
-    do(both.session, c.ChooseRobot("flexible"), c.SetParameter("modes", 2))
+    do(both.lab, c.ChooseRobot("flexible"), c.SetParameter("modes", 2))
     both.ways.clear()
     both.run(1.2)
     assert both.mirror.session.robot is both.session.robot
@@ -182,8 +187,8 @@ def test_nothing_that_the_teacher_does_reaches_the_lab_and_nothing_runs_unseen()
     both.run(1.0)
     before = both.mirror.session.time, both.session.time
     for _ in range(60):
-        both.mirror.tell(told(both.lab))
-        both.mirror.session.post(c.Reset())  # whatever a page may do wrong
+        both.mirror.tell(told(both.scheduled))
+        both.mirror.lab.post(c.Reset())  # whatever a page may do wrong
     assert (both.mirror.session.time, both.session.time) == before
     assert len(both.mirror._coming) <= 50
 
@@ -212,17 +217,17 @@ def spoilt(text: str) -> st.SearchStrategy[str]:
     return st.builds(replaced, st.sampled_from(keys), values)
 
 
-TEXT = told(Lab(new_session(0.2)))
+TEXT = told(ScheduledLab(new_lab(0.2)))
 
 
 @given(st.one_of(st.text(), spoilt(TEXT)))
 def test_what_comes_is_a_lab_or_is_left_out(text: str) -> None:
-    mirror = Mirror(Session(store()), TEXT)
-    mirror.keep_up()
+    mirror = Mirror(Lab(store()), TEXT)
+    mirror.advance(FRAME)
     mirror.tell(text)
     for _ in range(3):
-        mirror.keep_up()
-    assert_drawable(take_snapshot(mirror.session, 1.0))
+        mirror.advance(FRAME)
+    assert_drawable(take_snapshot(mirror.lab, 1.0))
     try:
         assert isinstance(read_moment(text), Moment)
     except ValueError:

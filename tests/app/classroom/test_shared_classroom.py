@@ -24,17 +24,18 @@ from onpath.app.common.access_codes import new_code, shown
 from onpath.app.common.throttle import TRIES
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup, TakeStep
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.setup import capture
-from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.page.teacher_context import TeacherChoices
+from onpath.app.server.followed_lab import FollowedLab
+from onpath.app.simulation.simulation_thread import ScheduledLab, SimulationThread
 from onpath.app.storage.forget import forget
 from onpath.app.storage.leases import TERM, Leases
 from onpath.app.storage.records import NotKept, Records, file_url
 from onpath.app.storage.schema import OF_A_CLASS, classes
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.words import ENGLISH
-from tests.support.lab import FOLLOWER, do, new_session, run, store, y
+from tests.support.lab import FOLLOWER, FRAME, do, new_lab, run, store, y
 from tests.support.waiting import wait_for
 
 CODE = "k7mf2xqa9tzr"
@@ -56,7 +57,7 @@ class Process:
     key: str
     clock: Clock
     begun: float = 0.0
-    labs: dict[str, Lab] = field(default_factory=dict)
+    labs: dict[str, ScheduledLab] = field(default_factory=dict)
     clients: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
@@ -70,35 +71,35 @@ class Process:
     def wall(self) -> float:
         return self.clock.now
 
-    def lab(self, code: str, session: Session | None = None) -> Session:
+    def lab(self, code: str, lab: Lab | None = None) -> Lab:
         """A student is here now."""
-        self.labs[code] = Lab(session or Session(store()))
+        self.labs[code] = ScheduledLab(lab or Lab(store()))
         self.clients.add(code)
         self.leases.claim(code)
-        return self.labs[code].session
+        return self.labs[code].lab
 
-    def student(self, code: str, name: str) -> Session:
-        session = self.lab(code)
+    def student(self, code: str, name: str) -> Lab:
+        lab = self.lab(code)
         self.room.join(code, self.room.code, name)
-        return session
+        return lab
 
     def look(self) -> None:
         """As the threads of a worker do, and a frame of each lab."""
         self.leases.renew(self.clients)
         self.attendance.look()
         for lab in self.labs.values():
-            lab.session.drain()
+            lab.lab.drain()
 
-    def here(self, code: str) -> Lab | None:
+    def here(self, code: str) -> ScheduledLab | None:
         return None if self.room.is_elsewhere(code) else self.labs.get(code)
 
     def kill(self) -> None:
         """Nothing is let go of."""
         self.records.close()
 
-    def _find(self, code: str) -> tuple[Session, bool] | None:
+    def _find(self, code: str) -> tuple[Lab, bool] | None:
         lab = self.labs.get(code)
-        return None if lab is None else (lab.session, code in self.clients)
+        return None if lab is None else (lab.lab, code in self.clients)
 
 
 @dataclass
@@ -205,16 +206,16 @@ def test_orders_reach_the_labs_of_all_processes(two: Two) -> None:
     assert one.room.orders.frozen
     two.look()
     assert [lab.frozen for lab in labs] == [True, True]
-    own = new_session()
+    own = new_lab()
     do(own, c.SetParameter("K2", 33.0))
-    other.room.push(TakeSetup(capture(own)))
+    other.room.push(TakeSetup(capture(own.session)))
     other.room.freeze(False)
     two.look()
     assert [lab.frozen for lab in labs] == [False, False]
-    assert [capture(lab) for lab in labs] == [capture(own)] * 2
+    assert [capture(lab.session) for lab in labs] == [capture(own.session)] * 2
     do(labs[0], c.SetParameter("K2", 44.0))
     two.look()
-    assert labs[0].parameters.K2 == 44.0  # once, not again and again
+    assert labs[0].session.parameters.K2 == 44.0  # once, not again and again
     assert one.room.end() == 2
     two.look()
     assert other.room.code == one.room.code and other.room.members() == {}
@@ -222,27 +223,27 @@ def test_orders_reach_the_labs_of_all_processes(two: Two) -> None:
 
 def test_who_joins_later_gets_what_was_sent_whichever_the_process(two: Two) -> None:
     one, other = two.both
-    own = new_session()
+    own = new_lab()
     do(own, c.SetParameter("K2", 33.0))
-    one.room.push(TakeSetup(capture(own)))
+    one.room.push(TakeSetup(capture(own.session)))
     one.look()
     labs = [one.student("a", "Ada"), other.student("b", "Bob")]
     two.look()
-    assert [capture(lab) for lab in labs] == [capture(own)] * 2
+    assert [capture(lab.session) for lab in labs] == [capture(own.session)] * 2
     do(labs[1], c.SetParameter("K2", 44.0))
     two.look()
-    assert labs[1].parameters.K2 == 44.0  # once
+    assert labs[1].session.parameters.K2 == 44.0  # once
     other.room.push(None)
     two.look()
     late = one.student("c", "Cid")
     two.look()
-    assert one.room.orders.push is None and capture(late) != capture(own)
+    assert one.room.orders.push is None and capture(late.session) != capture(own.session)
 
 
 def test_a_student_who_changes_the_process_is_the_same(two: Two) -> None:
     one, other = two.both
-    session = one.student("a", "Ada")
-    session.lessons.progress = WAY
+    lab = one.student("a", "Ada")
+    lab.lessons.progress = WAY
     one.room.push(TakeStep("none", 0))
     one.room.freeze(True)
     two.look()
@@ -280,8 +281,8 @@ def test_what_was_left_behind_does_not_speak_for_a_student(two: Two) -> None:
 
 def test_nothing_is_written_while_nothing_happens(two: Two) -> None:
     one, other = two.both
-    session = one.student("a", "Ada")
-    session.lessons.progress = WAY
+    lab = one.student("a", "Ada")
+    lab.lessons.progress = WAY
     two.look()
 
     def changes() -> int:
@@ -293,7 +294,7 @@ def test_nothing_is_written_while_nothing_happens(two: Two) -> None:
         two.look()
     for _ in range(10):  # hands that move all the time are noted now and then
         two.clock.now += LIVELY / 12
-        do(session, c.MoveHand(0.0, 0.001))
+        do(lab, c.MoveHand(0.0, 0.001))
         two.look()
     assert changes() <= before + 1
     assert other.room.members()["a"].progress is way
@@ -301,16 +302,16 @@ def test_nothing_is_written_while_nothing_happens(two: Two) -> None:
 
 def test_a_clock_that_jumps_makes_nobody_idle_for_long(two: Two) -> None:
     one, other = two.both
-    session = one.student("a", "Ada")
+    lab = one.student("a", "Ada")
     two.look()
     for jump in (86400.0, -2 * 86400.0):
         one.begun += jump  # the processes' own clocks go on
         other.begun += jump
         two.clock.now += jump
-        do(session, c.SetRate(1.0))
+        do(lab, c.SetRate(1.0))
         two.look()
         two.clock.now += LIVELY
-        do(session, c.SetRate(1.0))
+        do(lab, c.SetRate(1.0))
         two.look()
         for process in two.both:
             idle = process.room.clock() - process.room.members()["a"].active
@@ -372,18 +373,18 @@ def test_when_the_database_is_away_labs_stay_as_they_are(
     two: Two, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     one, _ = two.both
-    session = one.student("a", "Ada")
+    lab = one.student("a", "Ada")
     one.room.freeze(True)
     two.look()
     with monkeypatch.context() as patch:
         patch.setattr(one.room, "_written", lambda *_: _raise(NotKept("away")))
         one.room.freeze(False)
-        session.lessons.progress = WAY
+        lab.lessons.progress = WAY
         one.attendance.look()
         with pytest.raises(OSError, match="away"):
             one.room.join("b", one.room.code, "Bob")
     two.look()
-    assert not session.frozen and two.both[1].room.members()["a"].progress == WAY
+    assert not lab.frozen and two.both[1].room.members()["a"].progress == WAY
 
 
 def _raise(error: Exception) -> Any:
@@ -468,8 +469,9 @@ def test_a_lab_elsewhere_is_mirrored_as_long_as_a_teacher_looks(two: Two) -> Non
     one, other = two.both
     student = one.student("a", "Ada")
     wanted: dict[int, str] = {}
-    there = Relay(one.watches, one.here, dict, lambda: Session(store()))
-    here = Relay(other.watches, other.here, lambda: wanted, lambda: Session(store()))
+    simulation, elsewhere = SimulationThread(), SimulationThread()
+    there = Relay(one.watches, one.here, dict, lambda: Lab(store()), elsewhere)
+    here = Relay(other.watches, other.here, lambda: wanted, lambda: Lab(store()), simulation)
 
     def pass_time(looks: int) -> Mirror | None:
         for _ in range(looks):
@@ -479,7 +481,7 @@ def test_a_lab_elsewhere_is_mirrored_as_long_as_a_teacher_looks(two: Two) -> Non
             mirror = here.mirror(7, "a")
             if mirror is not None:
                 for _ in range(8):
-                    mirror.keep_up()
+                    mirror.advance(FRAME)
             two.clock.now += 0.125
         return here.mirror(7, "a")
 
@@ -487,17 +489,18 @@ def test_a_lab_elsewhere_is_mirrored_as_long_as_a_teacher_looks(two: Two) -> Non
     assert pass_time(8) is None
     wanted[7] = "a"
     mirror = pass_time(24)
+    assert simulation.labs == [mirror] and elsewhere.labs == []
     assert mirror is not None and here.mirror(8, "a") is None and here.mirror(7, "b") is None
-    behind = student.time - mirror.session.time
+    behind = student.session.time - mirror.session.time
     assert 0 < behind < 1.5
-    tip = y(mirror.session, FOLLOWER)
+    tip = y(mirror.lab.session, FOLLOWER)
     assert abs(float(tip @ tip) ** 0.5 - 0.05) < 1e-3  # on the circle
     assert not mirror.is_seen
     one.labs["a"].view = object()  # type: ignore[assignment]
     pass_time(8)
     assert mirror.is_seen
     wanted[7] = "b"
-    assert pass_time(1) is None and here._mirrors == {}
+    assert pass_time(1) is None and here._mirrors == {} and simulation.labs == []
     wanted.clear()
     pass_time(int(LASTS / 0.125) + 8)
     assert there._asked == set() and there._told == {}
@@ -511,11 +514,9 @@ def test_the_teacher_reads_why_a_lab_stands_still(two: Two) -> None:
     one.student("a", "Ada")
     other.student("b", "Bob")
     two.look()
-    lab = Lab(new_session())
-    shown_lab: list[Lab | None] = [lab]
-    teaching = TeacherContext(
-        one.room, TeacherChoices(), lambda _: shown_lab[0], forget=lambda: 0, stop=lambda: None
-    )
+    lab = ScheduledLab(new_lab())
+    shown_lab: list[ScheduledLab | None] = [lab]
+    teaching = FollowedLab(one.room, TeacherChoices(), lambda _: shown_lab[0])
     assert teaching.why_still(ENGLISH) == ""
     for code in ("a", "b"):
         teaching.chosen.followed = code
@@ -523,6 +524,7 @@ def test_the_teacher_reads_why_a_lab_stands_still(two: Two) -> None:
         assert teaching.why_still(ENGLISH) == ENGLISH("class.hidden")
         lab.view = object()  # type: ignore[assignment]
         assert teaching.why_still(ENGLISH) == ""
+        assert teaching.find() == (lab, one.room.members()[code].number)
     shown_lab[0] = None
     assert teaching.why_still(ENGLISH) == ENGLISH("class.fetching")
     other.clients.clear()
@@ -531,12 +533,13 @@ def test_the_teacher_reads_why_a_lab_stands_still(two: Two) -> None:
     assert teaching.why_still(ENGLISH) == ENGLISH("class.absent")
     other.room.leave("b")
     two.look()
-    assert teaching.why_still(ENGLISH) == "" and teaching.followed() is None
+    assert teaching.why_still(ENGLISH) == "" and teaching.find() is None
 
 
 def test_a_relay_that_is_told_nonsense_shows_nothing(two: Two) -> None:
     one, other = two.both
-    here = Relay(other.watches, other.here, lambda: {7: "a"}, lambda: Session(store()))
+    simulation = SimulationThread()
+    here = Relay(other.watches, other.here, lambda: {7: "a"}, lambda: Lab(store()), simulation)
     here.look()
     one.watches.tell({"a": "nonsense"})
     here.look()

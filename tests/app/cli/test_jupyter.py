@@ -6,7 +6,6 @@ import http.client
 import socket
 import subprocess
 import sys
-import time
 import tomllib
 from collections.abc import Iterator
 from importlib import import_module
@@ -18,10 +17,12 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from tests.support import stranger
 from tests.support.checkout import ROOT
 from tests.support.student import Student
+from tests.support.waiting import wait_for
 
 TOKEN = "a-token"
 CONFIGURATION = """
 from onpath.app.cli.jupyter import server
+from tests.support.waiting import wait_for
 c.ServerProxy.servers = {"onpath": server()}
 c.IdentityProvider.token = "a-token"
 c.ServerApp.jpserver_extensions = {"jupyter_server_proxy": True}
@@ -49,10 +50,8 @@ def port(folder: Path) -> Iterator[int]:
     environment = stranger.environment(**places)
     said = (folder / "log").open("w")
     server = subprocess.Popen(command, cwd=folder, env=environment, stderr=said)
-    end = time.monotonic() + 30
-    while not _answers(port):
-        assert server.poll() is None and time.monotonic() < end, (folder / "log").read_text()
-        time.sleep(0.1)
+    wait_for(lambda: _answers(port) or server.poll() is not None, 60.0)
+    assert server.poll() is None, (folder / "log").read_text()
     yield port
     server.terminate()
     server.wait(10)

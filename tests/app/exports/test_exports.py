@@ -7,53 +7,54 @@ import io
 import numpy as np
 import pytest
 
-from onpath.app.exports.exporter import csv_bytes, replay
 from onpath.app.exports.figures import draw_history
+from onpath.app.exports.files import csv_bytes
 from onpath.app.exports.recording import record_scene
+from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.models.closed_loop.trajectory import read_csv
 from onpath.models.control.laws import NAMES
-from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, new_session, run, y
+from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, new_lab, run, y
 
 
-def watched(session: Session, frames: int) -> list[tuple[float, dict[str, dict[str, np.ndarray]]]]:
+def watched(lab: Lab, frames: int) -> list[tuple[float, dict[str, dict[str, np.ndarray]]]]:
     """(time, what each robot's log said) at the end of each frame."""
     seen = []
     for _ in range(frames):
-        session.advance(session.rate * FRAME)
-        rows = {n: {k: v.copy() for k, v in r.shown().items()} for n, r in session.runs.items()}
-        seen.append((session.time, rows))
+        lab.advance(lab.session.rate * FRAME)
+        rows = {n: {k: v.copy() for k, v in r.shown().items()} for n, r in lab.session.runs.items()}
+        seen.append((lab.session.time, rows))
     return seen
 
 
-def eventful() -> tuple[Session, list]:
-    session = new_session()
-    seen = watched(session, 20)
-    do(session, c.Hold(True))
-    seen += watched(session, 15)
-    do(session, c.Hold(False), c.SetParameter("K3", 300), c.SetParameter("payload", 0.1))
+def eventful() -> tuple[Lab, list]:
+    lab = new_lab()
+    seen = watched(lab, 20)
+    do(lab, c.Hold(True))
+    seen += watched(lab, 15)
+    do(lab, c.Hold(False), c.SetParameter("K3", 300), c.SetParameter("payload", 0.1))
     do(
-        session,
-        c.Grab(FOLLOWER, y(session, FOLLOWER) + np.array([0.0, 0.03])),
+        lab,
+        c.Grab(FOLLOWER, y(lab.session, FOLLOWER) + np.array([0.0, 0.03])),
     )
-    seen += watched(session, 15)
-    do(session, c.Release(), c.ChoosePath("ellipse"), c.SetParameter("encoder_counts", 4000))
-    seen += watched(session, 30)
-    do(session, c.ChoosePath("segment"), c.SetRate(4.0))
-    seen += watched(session, 5)
-    do(session, c.SetParameter("control_rate", 50), c.SetRate(0.125))
-    seen += watched(session, 20)
-    return session, seen
+    seen += watched(lab, 15)
+    do(lab, c.Release(), c.ChoosePath("ellipse"), c.SetParameter("encoder_counts", 4000))
+    seen += watched(lab, 30)
+    do(lab, c.ChoosePath("segment"), c.SetRate(4.0))
+    seen += watched(lab, 5)
+    do(lab, c.SetParameter("control_rate", 50), c.SetRate(0.125))
+    seen += watched(lab, 20)
+    return lab, seen
 
 
 def test_replay_is_what_was_simulated_to_the_last_bit() -> None:
-    session, seen = eventful()
-    runs = replay(session.robot, session.history.all())
+    lab, seen = eventful()
+    runs = replay(lab.session.robot, lab.session.history.all())
     assert set(runs) == set(NAMES)
     for name, trajectory in runs.items():
         assert trajectory.t == pytest.approx(np.arange(len(trajectory.t)) * 1e-3)
-        assert trajectory.t[-1] == pytest.approx(session.time - 1e-3)
+        assert trajectory.t[-1] == pytest.approx(lab.session.time - 1e-3)
         for time, rows in seen:
             at = round(time * 1e3) - 1  # the row of the frame's last tick
             for field, value in rows[name].items():
@@ -64,10 +65,10 @@ def test_replay_is_what_was_simulated_to_the_last_bit() -> None:
 
 
 def test_replay_after_going_on_from_the_past() -> None:
-    session = new_session(1.0)
-    do(session, c.LookAt(0.5), c.GoOn(), c.SetParameter("K1", 100))
-    seen = watched(session, 20)
-    for name, trajectory in replay(session.robot, session.history.all()).items():
+    lab = new_lab(1.0)
+    do(lab, c.LookAt(0.5), c.GoOn(), c.SetParameter("K1", 100))
+    seen = watched(lab, 20)
+    for name, trajectory in replay(lab.session.robot, lab.session.history.all()).items():
         assert np.allclose(np.diff(trajectory.t), 1e-3, atol=1e-9)
         for time, rows in seen:
             row = trajectory.fields["q"][round(time * 1e3) - 1]
@@ -75,49 +76,51 @@ def test_replay_after_going_on_from_the_past() -> None:
 
 
 def test_two_kilohertz_gives_whole_milliseconds() -> None:
-    session = new_session()
-    do(session, c.SetParameter("control_rate", 2000))
+    lab = new_lab()
+    do(lab, c.SetParameter("control_rate", 2000))
     for k in range(12):  # every frame another path, so that no stretch joins the next
-        do(session, c.SelectPoint(0), c.Arrow(0.0005 * (-1) ** k, 0.0))
-        session.advance(FRAME)
-    for trajectory in replay(session.robot, session.history.all()).values():
+        do(lab, c.SelectPoint(0), c.Arrow(0.0005 * (-1) ** k, 0.0))
+        lab.advance(FRAME)
+    for trajectory in replay(lab.session.robot, lab.session.history.all()).values():
         assert trajectory.t == pytest.approx(np.arange(len(trajectory.t)) * 1e-3, abs=1e-9)
         assert len(trajectory.t) == 200
 
 
 def test_csv_tells_the_distance_to_the_path_as_it_was() -> None:
-    session, _ = eventful()
-    columns = read_csv(io.StringIO(csv_bytes(session.robot, session.history.all()).decode()))
+    lab, _ = eventful()
+    columns = read_csv(
+        io.StringIO(csv_bytes(lab.session.robot, lab.session.history.all()).decode())
+    )
     assert set(columns) == set(NAMES)
     first = slice(0, 330)  # on the circle
     radius = np.hypot(columns[TRACKER]["y1_m"], columns[TRACKER]["y2_m"])[first]
     assert columns[TRACKER]["distance_m"][first] == pytest.approx(np.abs(radius - 0.05), abs=1e-9)
-    assert len(columns[TRACKER]["t_s"]) == round(session.time * 1e3)
+    assert len(columns[TRACKER]["t_s"]) == round(lab.session.time * 1e3)
 
 
 def test_one_robot_that_stands_still_does_not_spoil_the_export() -> None:
-    session = new_session(0.3)
-    session.runs[FOLLOWER].fields()["v"][:] = 500.0
-    run(session, 0.4)
-    assert session.runs[FOLLOWER].diverged
-    both = replay(session.robot, session.history.all())
+    lab = new_lab(0.3)
+    lab.session.runs[FOLLOWER].fields()["v"][:] = 500.0
+    run(lab, 0.4)
+    assert lab.session.runs[FOLLOWER].diverged
+    both = replay(lab.session.robot, lab.session.history.all())
     assert both[FOLLOWER].t[-1] < 0.32 < 0.69 < both[TRACKER].t[-1]
-    later = [s for s in session.history.all() if s.time > 0.4]
-    assert set(replay(session.robot, later)) == {TRACKER}
-    assert b"path_following" not in csv_bytes(session.robot, later)
-    assert draw_history(replay(session.robot, later)).startswith(b"\x89PNG")
-    session.runs[TRACKER].fields()["v"][:] = 500.0
-    run(session, 0.2)
-    end = [s for s in session.history.all() if s.time > 0.75]
+    later = [s for s in lab.session.history.all() if s.time > 0.4]
+    assert set(replay(lab.session.robot, later)) == {TRACKER}
+    assert b"path_following" not in csv_bytes(lab.session.robot, later)
+    assert draw_history(replay(lab.session.robot, later)).startswith(b"\x89PNG")
+    lab.session.runs[TRACKER].fields()["v"][:] = 500.0
+    run(lab, 0.2)
+    end = [s for s in lab.session.history.all() if s.time > 0.75]
     with pytest.raises(ValueError, match="stood still"):
-        replay(session.robot, end)
+        replay(lab.session.robot, end)
 
 
 def test_picture_and_page_are_whole() -> None:
-    session = new_session(0.6)
-    history = session.history.all()
-    picture = draw_history(replay(session.robot, history))
+    lab = new_lab(0.6)
+    history = lab.session.history.all()
+    picture = draw_history(replay(lab.session.robot, history))
     assert picture.startswith(b"\x89PNG") and picture.endswith(b"IEND\xaeB`\x82")
-    page = record_scene(session.robot, history)
+    page = record_scene(lab.session.robot, history)
     assert page.lstrip()[:15].lower() == b"<!doctype html>" and page.rstrip().endswith(b"</html>")
     assert len(page) < 3_000_000

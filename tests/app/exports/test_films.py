@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -14,13 +14,16 @@ from viser.infra import WebsockServer
 
 from onpath.app.exports import exporter as exports
 from onpath.app.exports.exporter import Exporter
-from onpath.app.lab.session import Session
+from onpath.app.exports.recording import record_scene
+from onpath.app.lab.lab import Lab
 from onpath.app.viser_adapter import secure_server as hardening
 from tests.support import waiting
-from tests.support.lab import new_session
+from tests.support.export_jobs import die
+from tests.support.lab import new_lab
 
-WAIT = 60.0  # [s]; only ends a test that would hang
+WAIT = 240.0  # [s]; only ends a test that would hang
 CROWD = 12
+FILM = "onpath.html"
 SOCKETS = Path("/proc/self/fd")
 wait_for = partial(waiting.wait_for, seconds=WAIT)
 
@@ -60,8 +63,8 @@ def tab() -> Iterator[tuple[Client, Exporter]]:
 
 
 @pytest.fixture(scope="module")
-def session() -> Session:
-    return new_session(0.4)
+def lab() -> Lab:
+    return new_lab(0.4)
 
 
 def open_sockets() -> int:
@@ -70,14 +73,14 @@ def open_sockets() -> int:
     return sum(os.readlink(each).startswith("socket:") for each in ours if each.is_symlink())
 
 
-def press_at_once(session: Session, exporters: list[Exporter]) -> None:
+def press_at_once(lab: Lab, exporters: list[Exporter]) -> None:
     """The button of each, all in the same moment."""
     ready = threading.Barrier(len(exporters))
 
     def press(exporter: Exporter) -> None:
         exporter.recording()
         ready.wait()
-        exporter.serve(session)
+        exporter.serve(lab)
 
     threads = [threading.Thread(target=press, args=(each,)) for each in exporters]
     for thread in threads:
@@ -87,44 +90,57 @@ def press_at_once(session: Session, exporters: list[Exporter]) -> None:
 
 
 def test_twelve_pressed_together_are_twelve_films_and_leave_nothing_behind(
-    session: Session, monkeypatch: pytest.MonkeyPatch
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     started: list[WebsockServer] = []
     genuine = WebsockServer.start
     monkeypatch.setattr(WebsockServer, "start", lambda s: (started.append(s), genuine(s)))
+    record_scene(lab.session.robot, lab.session.history.all())
     with tab() as (client, exporter):  # a first one, which loads what all share
-        press_at_once(session, [exporter])
+        press_at_once(lab, [exporter])
         wait_for(lambda: client.answered)
-    wait_for(lambda: not exporters_threads())
+    wait_for(lambda: not exports.process._calls.locked())
     threads, sockets = threading.active_count(), open_sockets()
     clients, exporters = [Client() for _ in range(CROWD)], list[Exporter]()
     for each in clients:
         exporters.append(Exporter(each))  # type: ignore[arg-type]
-    press_at_once(session, exporters)
+    press_at_once(lab, exporters)
     wait_for(lambda: all(client.answered for client in clients))
     for exporter in exporters:
         exporter.close()
-    wait_for(lambda: not exporters_threads())
     assert [len(client.files) for client in clients] == [1] * CROWD
     assert len({film for client in clients for film in client.files}) == 1
     assert not started
-    assert threading.active_count() <= threads and open_sockets() <= sockets
+    wait_for(lambda: threading.active_count() <= threads)
+    assert open_sockets() <= sockets
 
 
-def exporters_threads() -> list[threading.Thread]:
-    return [thread for thread in threading.enumerate() if thread.name.startswith("export")]
+def test_the_user_is_told_that_the_process_died_and_the_next_film_is_made(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    failed = lab.words("export.failed", name=FILM)
+    with tab() as (client, exporter):
+        monkeypatch.setattr(exports, "film_file", die)
+        press_at_once(lab, [exporter])
+        wait_for(lambda: client.notes and client.notes[0].body == failed)
+        assert not client.files
+        monkeypatch.undo()
+        wait_for(lambda: not exporter._under_way)
+        press_at_once(lab, [exporter])
+        wait_for(lambda: client.files)
 
 
 def test_a_film_that_takes_too_long_is_given_up_and_the_user_is_told(
-    session: Session, monkeypatch: pytest.MonkeyPatch
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with tab() as (client, exporter):
         monkeypatch.setattr(exports, "PATIENCE", -1.0)
-        press_at_once(session, [exporter])
+        press_at_once(lab, [exporter])
         wait_for(lambda: client.answered)
-        assert session.lessons.words("export.failed", name="onpath.html") == client.notes[0].body
+        assert lab.words("export.failed", name=FILM) == client.notes[0].body
         monkeypatch.undo()
-        press_at_once(session, [exporter])  # the next one is made
+        wait_for(lambda: not exporter._under_way)
+        press_at_once(lab, [exporter])  # the next one is made
         wait_for(lambda: client.files)
 
 
@@ -134,38 +150,37 @@ class Occupied:
     def __init__(self) -> None:
         self.over = threading.Event()
         begun = threading.Event()
-        self._film = exports._films.submit(lambda: (begun.set(), self.over.wait(WAIT)))
+        self._film = exports._queue.submit(lambda: (begun.set(), self.over.wait(WAIT)))
         begun.wait(WAIT)
 
     def end(self) -> None:
         """And whoever was in the queue has had a turn."""
         self.over.set()
-        exports._films.submit(lambda: None).result(WAIT)
+        exports._queue.submit(lambda: None).result(WAIT)
 
 
-def test_pressed_a_hundred_times_it_makes_one_film(session: Session) -> None:
+def test_pressed_a_hundred_times_it_makes_one_film(lab: Lab) -> None:
     others = Occupied()
     with tab() as (client, exporter):
         for _ in range(100):
             exporter.recording()
-            exporter.serve(session)
+            exporter.serve(lab)
         wait_for(lambda: client.notes)
-        wait_for(lambda: exporter._film)
+        wait_for(lambda: exporter._under_way[FILM])
         others.end()
         wait_for(lambda: client.answered)
         assert (len(client.notes), len(client.files)) == (1, 1)
 
 
 def test_nothing_is_made_for_who_has_left_the_queue(
-    session: Session, monkeypatch: pytest.MonkeyPatch
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made: list[str] = []
-    genuine: Callable[..., bytes] = exports.record_scene
-    monkeypatch.setattr(exports, "record_scene", lambda *a: (made.append("film"), genuine(*a))[1])
+    monkeypatch.setattr(exports.process, "call", lambda *_: made.append("film"))
     others = Occupied()
     with tab() as (client, exporter):
-        press_at_once(session, [exporter])
-        wait_for(lambda: exporter._film)
+        press_at_once(lab, [exporter])
+        wait_for(lambda: exporter._under_way[FILM])
     others.end()
     assert not made and not client.files
 

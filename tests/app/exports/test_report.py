@@ -18,14 +18,15 @@ from onpath.app.common.palette import FOLLOWER, SELECTED, TRACKER
 from onpath.app.exports.exporter import Exporter
 from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_run import LessonRun
-from onpath.app.lab.session import Session
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.progress import Answer, Notes, Progress, Truth
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.lab import do, run, store
 from tests.support.lesson_texts import LESSON, write_lesson
+from tests.support.waiting import wait_for
 
 NAME, CODE, MADE = "01-a", "k7mf2xqa9tzr", datetime(2025, 3, 2, 14, 5)
 VOID = {"meta", "img", "br", "hr", "link", "input"}
@@ -269,14 +270,14 @@ class Client:
 
 
 def test_it_is_sent_as_it_was_when_it_was_asked_for(course: Course) -> None:
-    session, client = Session(store(), FIVE_BAR, course), Client()
-    do(session, c.OpenLesson(NAME), c.GoToStep(1))
-    do(session, c.Predict(times=(0.0, 2.0), values=(5.0, 30.0)), c.GoToStep(1), c.PlayStep())
-    run(session, 2.3)
+    lab, client = Lab(store(), FIVE_BAR, course), Client()
+    do(lab, c.OpenLesson(NAME), c.GoToStep(1))
+    do(lab, c.Predict(times=(0.0, 2.0), values=(5.0, 30.0)), c.GoToStep(1), c.PlayStep())
+    run(lab, 2.3)
     exporter = Exporter(client)  # type: ignore[arg-type]
     exporter.report(CODE)
-    exporter.serve(session)
-    exporter._pool.shutdown(wait=True)
+    exporter.serve(lab)
+    wait_for(lambda: client.sent, 240.0)
     page = Page(client.sent["onpath-report.html"])
     assert "k7mf-2xqa-9tzr" in page.text and "30 mm at 2 s" in page.text
     (picture,) = page.pictures()

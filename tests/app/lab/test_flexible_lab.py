@@ -8,12 +8,13 @@ import io
 import numpy as np
 import pytest
 
-from onpath.app.exports.exporter import csv_bytes, replay
 from onpath.app.exports.figures import draw_history
+from onpath.app.exports.files import csv_bytes
 from onpath.app.exports.recording import record_scene
+from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
-from onpath.app.lab.take_snapshot import take_snapshot
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.take_snapshot import take_snapshot
 from onpath.app.page.panels.flexible_panel import alpha_bar, critical_alpha
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.lessons.words import ENGLISH
@@ -25,124 +26,130 @@ from tests.support.lab import FOLLOWER, TRACKER, do, run, states, store
 STAGE = stage_of(FLEXIBLE.make(FLEXIBLE.lab))
 
 
-def flexible(seconds: float = 0.0, **changes: object) -> Session:
+def flexible(seconds: float = 0.0, **changes: object) -> Lab:
     """A lab with the flexible link, some of its parameters changed."""
-    session = Session(store(), FLEXIBLE)
-    do(session, *[c.SetParameter(name, value) for name, value in changes.items()])
-    run(session, seconds)
-    assert session.message == ""
-    return session
+    lab = Lab(store(), FLEXIBLE)
+    do(lab, *[c.SetParameter(name, value) for name, value in changes.items()])
+    run(lab, seconds)
+    assert lab.message == ""
+    return lab
 
 
-def robot_of(session: Session) -> FlexibleFiveBar:
-    assert isinstance(session.robot, FlexibleFiveBar)
-    return session.robot
+def robot_of(lab: Lab) -> FlexibleFiveBar:
+    assert isinstance(lab.session.robot, FlexibleFiveBar)
+    return lab.session.robot
 
 
-def extras(session: Session, name: str) -> np.ndarray:
+def extras(lab: Lab, name: str) -> np.ndarray:
     """One of the extra fields over the whole history, (rows, robots, size)."""
-    _, samples = session.history.samples(0.0, session.time, 10_000)
-    return session.sample_layout.unpack(samples)[name].astype(float)
+    _, samples = lab.session.history.samples(0.0, lab.session.time, 10_000)
+    return lab.session.sample_layout.unpack(samples)[name].astype(float)
 
 
 def test_it_runs_on_its_path() -> None:
-    session = flexible(3.0)
-    for run_ in session.runs.values():
+    lab = flexible(3.0)
+    for run_ in lab.session.runs.values():
         assert run_.diverged is None and run_.distance < 1e-3
-    assert session.runs[FOLLOWER].shown()["theta_rate"][0] == pytest.approx(2.0, abs=0.1)
+    assert lab.session.runs[FOLLOWER].shown()["theta_rate"][0] == pytest.approx(2.0, abs=0.1)
 
 
 def test_held_back_the_follower_waits_and_the_tracker_is_torn_off() -> None:
-    session = flexible(1.0)
-    do(session, c.Hold(True))
-    run(session, 1.5)
-    worst = {name: run_.max_distance for name, run_ in session.runs.items()}
+    lab = flexible(1.0)
+    do(lab, c.Hold(True))
+    run(lab, 1.5)
+    worst = {name: run_.max_distance for name, run_ in lab.session.runs.items()}
     assert worst[FOLLOWER] < 0.5 * worst[TRACKER]
-    assert all(run_.diverged is None for run_ in session.runs.values())
-    do(session, c.Hold(False))
-    run(session, 2.5)
-    assert max(run_.distance for run_ in session.runs.values()) < 2e-3
+    assert all(run_.diverged is None for run_ in lab.session.runs.values())
+    do(lab, c.Hold(False))
+    run(lab, 2.5)
+    assert max(run_.distance for run_ in lab.session.runs.values()) < 2e-3
 
 
 @pytest.mark.parametrize("plane", list(STAGE.pulls))
 def test_a_pull_bends_the_link_and_is_survived(plane: str) -> None:
-    session = flexible(0.5, speed=0.0)
-    robot, start = session.robot, session.runs[FOLLOWER].shown()["y"].copy()
+    lab = flexible(0.5, speed=0.0)
+    robot, start = lab.session.robot, lab.session.runs[FOLLOWER].shown()["y"].copy()
     across = np.cross(STAGE.pulls[plane].normal, [0.0, 0.0, 1.0])
     way = np.array([1.0, 0.0, 0.0]) if not across.any() else across / np.linalg.norm(across)
-    do(session, c.Grab(FOLLOWER, robot.unplace(robot.place(start) + 0.03 * way)))
-    run(session, 0.3)
-    moved = robot.place(session.runs[FOLLOWER].shown()["y"]) - robot.place(start)
+    do(lab, c.Grab(FOLLOWER, robot.unplace(robot.place(start) + 0.03 * way)))
+    run(lab, 0.3)
+    moved = robot.place(lab.session.runs[FOLLOWER].shown()["y"]) - robot.place(start)
     assert moved @ way > 1e-4
-    assert abs(float(robot_of(session).deflection(session.runs[FOLLOWER].fields()["q"]))) > 1e-4
-    do(session, c.Release())
-    run(session, 2.0)
-    assert session.runs[FOLLOWER].distance < 1e-3 and session.message == ""
+    assert abs(float(robot_of(lab).deflection(lab.session.runs[FOLLOWER].fields()["q"]))) > 1e-4
+    do(lab, c.Release())
+    run(lab, 2.0)
+    assert lab.session.runs[FOLLOWER].distance < 1e-3 and lab.message == ""
 
 
 def test_going_on_from_the_past_is_the_same_motion_again() -> None:
-    session = flexible(1.0)
-    stretch = session.history.at(0.5)
+    lab = flexible(1.0)
+    stretch = lab.session.history.at(0.5)
     assert stretch is not None
-    do(session, c.LookAt(session.time - 0.5))
-    shown = take_snapshot(session, 1.0).robots[FOLLOWER]
-    q = stretch.drives[FOLLOWER].state[: session.robot.system.n]
-    np.testing.assert_allclose(shown.bars, drawn(session.robot.skeleton, q, 1.0)[0], atol=1e-15)
+    do(lab, c.LookAt(lab.session.time - 0.5))
+    shown = take_snapshot(lab, 1.0).robots[FOLLOWER]
+    q = stretch.drives[FOLLOWER].state[: lab.session.robot.system.n]
+    np.testing.assert_allclose(shown.bars, drawn(lab.session.robot.skeleton, q, 1.0)[0], atol=1e-15)
     then = {name: drive.state.copy() for name, drive in stretch.drives.items()}
-    do(session, c.GoOn())
-    for name, state in states(session).items():
+    do(lab, c.GoOn())
+    for name, state in states(lab.session).items():
         np.testing.assert_array_equal(state, then[name])
-    run(session, 0.5)
-    assert session.time > stretch.time and session.message_level == "info"
+    run(lab, 0.5)
+    assert lab.session.time > stretch.time and lab.message_level == "info"
 
 
 def test_past_the_critical_alpha_the_vibration_grows_and_is_caught() -> None:
-    session = flexible(1.0, law="redefined")
-    own = session.parameters
+    lab = flexible(1.0, law="redefined")
+    own = lab.session.parameters
     assert isinstance(own, FlexibleParameters)
-    critical = critical_alpha(own, session.runs[FOLLOWER].shown()["q"][:3])
+    critical = critical_alpha(own, lab.session.runs[FOLLOWER].shown()["q"][:3])
     assert 0.5 < critical < 0.9
-    calm = extras(session, "internal_energy")[-20:].max()
-    do(session, c.SetParameter("alpha", 0.9))
-    run(session, 3.0)
-    assert session.message_level == "error" and UNSTABLE in session.message
-    assert extras(session, "internal_energy").max() > 100 * calm
-    for run_ in session.runs.values():
+    calm = extras(lab, "internal_energy")[-20:].max()
+    do(lab, c.SetParameter("alpha", 0.9))
+    run(lab, 3.0)
+    assert lab.message_level == "error" and UNSTABLE in lab.message
+    assert extras(lab, "internal_energy").max() > 100 * calm
+    for run_ in lab.session.runs.values():
         assert np.isfinite(run_.state).all() and np.isfinite(run_.row).all()
-    do(session, c.Reset())
-    run(session, 3.0)
-    assert UNSTABLE in session.message  # still too high: it says so again
-    do(session, c.SetParameter("alpha", 0.5), c.Reset())
-    assert session.message == ""
-    run(session, 2.5)
-    assert session.message == "" and max(r.distance for r in session.runs.values()) < 2e-3
+    do(lab, c.Reset())
+    run(lab, 3.0)
+    assert UNSTABLE in lab.message  # still too high: it says so again
+    do(lab, c.SetParameter("alpha", 0.5), c.Reset())
+    assert lab.message == ""
+    run(lab, 2.5)
+    assert lab.message == "" and max(r.distance for r in lab.session.runs.values()) < 2e-3
 
 
 def test_each_robot_keeps_its_bench() -> None:
-    session = Session(store())
-    do(session, c.SetParameter("K1", 900), c.ChoosePath("clover"))
-    do(session, c.ChooseRobot("flexible"))
-    assert session.editor.design.name == "circle" and session.parameters == FLEXIBLE.lab
-    do(session, c.SetParameter("rho", 0.3), c.ChoosePath("ellipse"))
-    run(session, 0.2)
-    do(session, c.ChooseRobot("five_bar"))
-    assert session.editor.design.name == "clover" and session.parameters.K1 == 900
-    assert session.entry is FIVE_BAR and session.time == 0.0 and not session.robot.extra_fields
-    do(session, c.ChooseRobot("flexible"))
-    assert session.editor.design.name == "ellipse"
-    assert isinstance(session.parameters, FlexibleParameters) and session.parameters.rho == 0.3
+    lab = Lab(store())
+    do(lab, c.SetParameter("K1", 900), c.ChoosePath("clover"))
+    do(lab, c.ChooseRobot("flexible"))
+    assert lab.session.editor.design.name == "circle" and lab.session.parameters == FLEXIBLE.lab
+    do(lab, c.SetParameter("rho", 0.3), c.ChoosePath("ellipse"))
+    run(lab, 0.2)
+    do(lab, c.ChooseRobot("five_bar"))
+    assert lab.session.editor.design.name == "clover" and lab.session.parameters.K1 == 900
+    assert (
+        lab.session.entry is FIVE_BAR
+        and lab.session.time == 0.0
+        and not lab.session.robot.extra_fields
+    )
+    do(lab, c.ChooseRobot("flexible"))
+    assert lab.session.editor.design.name == "ellipse"
+    assert (
+        isinstance(lab.session.parameters, FlexibleParameters) and lab.session.parameters.rho == 0.3
+    )
 
 
 def test_exaggeration_is_drawn_and_said_but_not_simulated() -> None:
     plain, drawn = flexible(0.3), flexible(0.3)
-    for session in (plain, drawn):
-        do(session, c.Hold(True))
+    for lab in (plain, drawn):
+        do(lab, c.Hold(True))
     do(drawn, c.SetExaggeration(10))
     run(plain, 0.3)
     run(drawn, 0.3)
-    for name, state in states(plain).items():
-        np.testing.assert_array_equal(states(drawn)[name], state)
-    true, large = (take_snapshot(session, 1.0) for session in (plain, drawn))
+    for name, state in states(plain.session).items():
+        np.testing.assert_array_equal(states(drawn.session)[name], state)
+    true, large = (take_snapshot(lab, 1.0) for lab in (plain, drawn))
     assert true.note == "" and "10×" in large.note
     one, two = true.robots[FOLLOWER], large.robots[FOLLOWER]
     rigid = one.marks[0]
@@ -150,24 +157,24 @@ def test_exaggeration_is_drawn_and_said_but_not_simulated() -> None:
     assert one.deflection == two.deflection != 0.0
     np.testing.assert_array_equal(one.trace[-1], two.trace[-1])
     do(drawn, c.SetExaggeration(float("nan")))
-    assert drawn.exaggeration == 10 and drawn.message
+    assert drawn.session.exaggeration == 10 and drawn.message
 
 
 @pytest.mark.parametrize(("name", "value"), [("modes", 5), ("plant", "unit_modes")])
 def test_a_structural_change_starts_anew_and_fits_what_is_kept(name: str, value: object) -> None:
-    session = flexible(0.2)
-    do(session, c.SetParameter(name, value))
-    assert session.time == 0.0 and not len(session.history)
-    run(session, 0.2)
-    sizes = dict(session.sample_layout.fields)
-    assert sizes["modes"] == robot_of(session).modes
-    total = extras(session, "modes").sum(-1)
-    np.testing.assert_allclose(total, extras(session, "deflection")[..., 0], atol=1e-8)
+    lab = flexible(0.2)
+    do(lab, c.SetParameter(name, value))
+    assert lab.session.time == 0.0 and not len(lab.session.history)
+    run(lab, 0.2)
+    sizes = dict(lab.session.sample_layout.fields)
+    assert sizes["modes"] == robot_of(lab).modes
+    total = extras(lab, "modes").sum(-1)
+    np.testing.assert_allclose(total, extras(lab, "deflection")[..., 0], atol=1e-8)
 
 
 def test_it_can_be_taken_home() -> None:
-    session = flexible(0.5)
-    robot, history = session.robot, session.history.all()
+    lab = flexible(0.5)
+    robot, history = lab.session.robot, lab.session.history.all()
     rows = list(csv.reader(io.StringIO(csv_bytes(robot, history).decode())))
     assert {"q3_rad", "y3_m", "f1_m1.5"} <= set(rows[0]) and len(rows) > 400
     assert draw_history(replay(robot, history)).startswith(b"\x89PNG")

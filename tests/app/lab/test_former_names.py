@@ -14,17 +14,17 @@ from onpath.app.classroom.moment import parameters_of, read_moment, tell
 from onpath.app.cli.main import run_command
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup
+from onpath.app.lab.commands.scripts import player_of
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.script_player import ScriptPlayer
-from onpath.app.lab.session import Session
 from onpath.app.lab.setup import capture, from_data
-from onpath.app.simulation.simulation_thread import Lab
+from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.lessons.checks import judge
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.words import Words
 from onpath.models.systems.flexible_parameters import FlexibleParameters
-from tests.support.lab import do, new_session, run, store
+from tests.support.lab import do, new_lab, run, store
 from tests.support.lesson_texts import LESSON, write_lesson
 
 OLD, NEW = "as_printed", "unit_modes"
@@ -42,40 +42,40 @@ LESSON_OF_THEN = (
 )
 
 
-def plant(session: Session) -> str:
-    assert isinstance(session.parameters, FlexibleParameters)
-    assert session.robot.system.name == "flexible_five_bar"
-    return session.parameters.plant
+def plant(lab: Lab) -> str:
+    assert isinstance(lab.session.parameters, FlexibleParameters)
+    assert lab.session.robot.system.name == "flexible_five_bar"
+    return lab.session.parameters.plant
 
 
 def test_a_share_code_of_then_opens() -> None:
-    session = new_session()
-    do(session, c.UseShared(SHARED))
-    assert plant(session) == NEW
-    assert capture(session).benches["flexible"].parameters == {"plant": NEW, "alpha": 1.0}
+    lab = new_lab()
+    do(lab, c.UseShared(SHARED))
+    assert plant(lab) == NEW
+    assert capture(lab.session).benches["flexible"].parameters == {"plant": NEW, "alpha": 1.0}
 
 
 def test_a_lab_kept_then_is_put_back_and_kept_under_the_new_name() -> None:
-    session, kept = new_session(), list[dict[str, Any]]()
-    put_back(session, {"setup": SETUP, "lessons": {}, "before": SETUP})
-    assert plant(session) == NEW
-    keep(session, lambda state: kept.append(state()))
+    lab, kept = new_lab(), list[dict[str, Any]]()
+    put_back(lab, {"setup": SETUP, "lessons": {}, "before": SETUP})
+    assert plant(lab) == NEW
+    keep(lab, lambda state: kept.append(state()))
     assert NEW in json.dumps(kept[0]["setup"]) and OLD not in json.dumps(kept[0]["setup"])
 
 
 def test_a_teacher_s_set_up_of_then_is_taken() -> None:
-    session = new_session()
-    session.post(TakeSetup(from_data(SETUP)))
-    session.drain()
-    assert plant(session) == NEW
+    lab = new_lab()
+    lab.post(TakeSetup(from_data(SETUP)))
+    lab.drain()
+    assert plant(lab) == NEW
 
 
 def test_a_lab_on_a_worker_of_then_is_mirrored() -> None:
-    session = new_session()
-    do(session, c.UseShared(SHARED))
-    text = msgspec.json.encode(tell(Lab(session))).decode().replace(NEW, OLD)
-    assert plant(session) == NEW and OLD in text
-    assert parameters_of(read_moment(text)) == session.parameters
+    lab = new_lab()
+    do(lab, c.UseShared(SHARED))
+    text = msgspec.json.encode(tell(ScheduledLab(lab))).decode().replace(NEW, OLD)
+    assert plant(lab) == NEW and OLD in text
+    assert parameters_of(read_moment(text)) == lab.session.parameters
 
 
 @pytest.fixture
@@ -88,21 +88,21 @@ def course(tmp_path: Path) -> Course:
 
 def test_a_lesson_of_then_sets_and_checks_it(course: Course) -> None:
     assert LESSON_OF_THEN.count(OLD) == 3
-    session = Session(store(), course=course)
-    do(session, c.OpenLesson("01-a"), c.GoToStep(0))
-    assert plant(session) == NEW
+    lab = Lab(store(), course=course)
+    do(lab, c.OpenLesson("01-a"), c.GoToStep(0))
+    assert plant(lab) == NEW
     lesson = course.lessons["01-a"]["en"]
     (task,) = lesson.tasks()
-    record = record_of(session, Beginning.now(session))
+    record = record_of(lab.session, Beginning.now(lab.session))
     assert [v.passed for v in judge(task, record, Words())] == [True]
     lagrangian = replace(record, parameters=FlexibleParameters())
     assert [v.passed for v in judge(task, lagrangian, Words())] == [False]
 
     script = next(step.script for step in lesson.steps if step.script)
-    do(session, c.SetParameter("plant", "lagrangian"))
-    session.script = ScriptPlayer(script)
-    run(session, 0.6)
-    assert plant(session) == NEW
+    do(lab, c.SetParameter("plant", "lagrangian"))
+    lab.script = player_of(script)
+    run(lab, 0.6)
+    assert plant(lab) == NEW
 
 
 @pytest.mark.parametrize(

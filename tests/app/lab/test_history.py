@@ -14,24 +14,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.history import (
-    COARSE,
-    LONGEST,
-    MOST,
-    RECENT,
-    SECONDS,
-    History,
-    HistoryFrame,
-    Input,
-    Inputs,
-    Segment,
-)
-from onpath.app.lab.session import Session
-from onpath.app.lab.take_snapshot import take_snapshot
+from onpath.app.lab.history import COARSE, LONGEST, MOST, RECENT, SECONDS, History
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.segments import HistoryFrame, Input, Inputs, Segment
+from onpath.app.lab.snapshots.take_snapshot import take_snapshot
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.control.laws import NAMES
 from onpath.models.paths.curves import Curve, circle
-from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, new_session, run, states, y
+from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, new_lab, run, states, y
 
 CURVE, SETTINGS = circle(0.05), np.zeros(3)
 
@@ -122,19 +112,19 @@ def test_short_stretches_do_not_pile_up() -> None:
 
 def test_a_minute_takes_little_memory() -> None:
     """At 60 Hz, both robots, after a long time: less than 1 MB."""
-    session = new_session(0.5)
-    session.simulate(17)
-    one = session.history.at(session.time)
+    lab = new_lab(0.5)
+    lab.session.simulate(17)
+    one = lab.session.history.at(lab.session.time)
     assert one is not None
-    taken = [memory_of_a_minute(session, one) for _ in range(3)]
+    taken = [memory_of_a_minute(lab, one) for _ in range(3)]
     used, peak = (min(each) for each in zip(*taken, strict=True))  # other threads take some, too
     assert used < 1e6 and peak < 2e6
 
 
-def memory_of_a_minute(session: Session, one: Segment) -> tuple[int, int]:
+def memory_of_a_minute(lab: Lab, one: Segment) -> tuple[int, int]:
     """What a history has in the end, and what all threads had meanwhile at most, [B]."""
-    names, rows = list(session.runs), list(one.sample)
-    inputs = Inputs(one.curve, one.dt, {name: session.runs[name].input() for name in names})
+    names, rows = list(lab.session.runs), list(one.sample)
+    inputs = Inputs(one.curve, one.dt, {name: lab.session.runs[name].input() for name in names})
     states = [one.drives[name].state for name in names]
     tracemalloc.start()
     history = new_history()
@@ -150,20 +140,20 @@ def memory_of_a_minute(session: Session, one: Segment) -> tuple[int, int]:
 
 def test_older_stretches_are_fewer_and_as_exact() -> None:
     """Each goes on where the one before ends, to the last bit; a change of input parts them."""
-    session = new_session()
+    lab = new_lab()
     for k in range(2400):
         if k % 37 == 0:
-            do(session, c.SetParameter("K2", 20.0 + k % 5))
-        session.simulate(17)
-    stretches, name = session.history.all(), FOLLOWER
+            do(lab, c.SetParameter("K2", 20.0 + k % 5))
+        lab.session.simulate(17)
+    stretches, name = lab.session.history.all(), FOLLOWER
     assert sum(s.ticks for s in stretches) == 2400 * 17
-    recent = [s.ticks for s in stretches if s.time > session.time - RECENT]
+    recent = [s.ticks for s in stretches if s.time > lab.session.time - RECENT]
     assert set(recent) == {17} and max(s.ticks for s in stretches) == COARSE
     assert len(stretches) < 2400 * 0.8
     for stretch, later in pairwise(stretches):
         drive, ends = stretch.drives[name], stretch.time + stretch.ticks * stretch.dt
         assert later.time == pytest.approx(ends, abs=1e-9)
-        loop = session._store.get(session.robot, drive.kind)
+        loop = lab.session._store.get(lab.session.robot, drive.kind)
         state, _ = loop.run(drive.state, drive.settings, stretch.curve.table(), stretch.ticks)
         assert np.array_equal(state, later.drives[name].state)
 
@@ -219,32 +209,34 @@ def test_samples_are_few_in_order_and_within(
 # In a session
 
 
-def busy(seconds: float = 1.0) -> Session:
+def busy(seconds: float = 1.0) -> Lab:
     """A lab with a past in which everything happened."""
-    session = new_session(0.3)
-    do(session, c.Hold(True))
-    run(session, seconds / 3)
-    do(session, c.Hold(False), c.SetParameter("K3", 200))
+    lab = new_lab(0.3)
+    do(lab, c.Hold(True))
+    run(lab, seconds / 3)
+    do(lab, c.Hold(False), c.SetParameter("K3", 200))
     do(
-        session,
-        c.Grab(TRACKER, y(session, TRACKER) + np.array([0.02, 0.0])),
+        lab,
+        c.Grab(TRACKER, y(lab.session, TRACKER) + np.array([0.02, 0.0])),
     )
-    run(session, seconds / 3)
-    do(session, c.Release(), c.ChoosePath("ellipse"))
-    run(session, seconds / 3 + 0.35)
-    return session
+    run(lab, seconds / 3)
+    do(lab, c.Release(), c.ChoosePath("ellipse"))
+    run(lab, seconds / 3 + 0.35)
+    return lab
 
 
 def test_past_is_shown_as_it_was() -> None:
-    session, seen = new_session(), []
+    lab, seen = new_lab(), []
     for _ in range(60):
-        session.advance(FRAME)
-        seen.append((session.time, take_snapshot(session, 1.0)))
+        lab.advance(FRAME)
+        seen.append((lab.session.time, take_snapshot(lab, 1.0)))
     for ago in (0.1, 0.4, 0.9):
-        do(session, c.LookAt(ago))
-        assert not session.running and session.viewing == pytest.approx(session.time - ago)
-        now = take_snapshot(session, 1.0)
-        at = session.history.at(session.viewing or 0.0)
+        do(lab, c.LookAt(ago))
+        assert not lab.session.running and lab.session.viewing == pytest.approx(
+            lab.session.time - ago
+        )
+        now = take_snapshot(lab, 1.0)
+        at = lab.session.history.at(lab.session.viewing or 0.0)
         assert at is not None
         begin = at.time
         then = min(seen, key=lambda pair: abs(pair[0] - begin))[1]
@@ -255,97 +247,99 @@ def test_past_is_shown_as_it_was() -> None:
             assert shown.distance == pytest.approx(was.distance, abs=1e-7)
             assert shown.max_distance == was.max_distance
             assert shown.speed == pytest.approx(was.speed, rel=1e-5)
-    do(session, c.LookAt(0.0))
-    assert session.viewing is None
-    assert take_snapshot(session, 1.0).robots[TRACKER].tip == pytest.approx(
+    do(lab, c.LookAt(0.0))
+    assert lab.session.viewing is None
+    assert take_snapshot(lab, 1.0).robots[TRACKER].tip == pytest.approx(
         seen[-1][1].robots[TRACKER].tip
     )
 
 
 def test_looking_back_by_keys_stops_at_both_ends() -> None:
-    session = new_session(1.0)
-    do(session, c.LookBack(0.2), c.LookBack(0.2))
-    assert session.viewing == pytest.approx(session.time - 0.4)
-    do(session, c.LookBack(-0.3))
-    assert session.viewing == pytest.approx(session.time - 0.1)
-    do(session, c.LookBack(100.0))
-    assert session.viewing == pytest.approx(session.time - session.history.span())
-    do(session, c.LookBack(-100.0))
-    assert session.viewing is None
+    lab = new_lab(1.0)
+    do(lab, c.LookBack(0.2), c.LookBack(0.2))
+    assert lab.session.viewing == pytest.approx(lab.session.time - 0.4)
+    do(lab, c.LookBack(-0.3))
+    assert lab.session.viewing == pytest.approx(lab.session.time - 0.1)
+    do(lab, c.LookBack(100.0))
+    assert lab.session.viewing == pytest.approx(lab.session.time - lab.session.history.span())
+    do(lab, c.LookBack(-100.0))
+    assert lab.session.viewing is None
 
 
 @pytest.mark.parametrize("values", [{}, {"K3": 300, "encoder_counts": 4000}, {"control_rate": 50}])
 def test_going_on_gives_the_same_future_to_the_last_bit(values: dict[str, float]) -> None:
-    session = new_session()
-    do(session, *[c.SetParameter(name, value) for name, value in values.items()])
-    run(session, 1.0)
+    lab = new_lab()
+    do(lab, *[c.SetParameter(name, value) for name, value in values.items()])
+    run(lab, 1.0)
     passed: dict[int, dict[str, np.ndarray]] = {}
     for _ in range(40):
-        session.advance(FRAME)
-        passed[round(session.time * 1e3)] = states(session)
-    do(session, c.LookAt(0.4), c.GoOn())
-    begin = session.time
-    assert session.viewing is None and session.running
+        lab.advance(FRAME)
+        passed[round(lab.session.time * 1e3)] = states(lab.session)
+    do(lab, c.LookAt(0.4), c.GoOn())
+    begin = lab.session.time
+    assert lab.session.viewing is None and lab.session.running
     assert begin == pytest.approx(1.667 - 0.4, abs=0.035)
     compared = 0
-    while session.time < 1.6:
-        session.simulate(1)
-        then = passed.get(round(session.time * 1e3))
+    while lab.session.time < 1.6:
+        lab.session.simulate(1)
+        then = passed.get(round(lab.session.time * 1e3))
         if then is not None:
             compared += 1
-            for name, state in states(session).items():
+            for name, state in states(lab.session).items():
                 assert np.array_equal(state, then[name])
     assert compared > 10
 
 
 def test_going_on_forgets_what_came_after() -> None:
-    session = busy()
-    most = session.runs[TRACKER].max_distance
-    do(session, c.LookAt(session.time - 0.2), c.GoOn())
-    assert session.time < 0.21 and session.history.span() < 0.21
-    assert not session.grips.held and not session.grips.hands
-    assert session.runs[TRACKER].max_distance < most / 3
-    run(session, 0.5)
-    assert contiguous(session.history)
-    for run_ in session.runs.values():
+    lab = busy()
+    most = lab.session.runs[TRACKER].max_distance
+    do(lab, c.LookAt(lab.session.time - 0.2), c.GoOn())
+    assert lab.session.time < 0.21 and lab.session.history.span() < 0.21
+    assert not lab.session.grips.held and not lab.session.grips.hands
+    assert lab.session.runs[TRACKER].max_distance < most / 3
+    run(lab, 0.5)
+    assert contiguous(lab.session.history)
+    for run_ in lab.session.runs.values():
         assert run_.diverged is None and run_.distance < 3e-3
 
 
 def test_going_on_from_a_time_with_another_path_finds_the_new_one() -> None:
-    session = new_session(0.5)
-    do(session, c.ChoosePath("segment"))
-    run(session, 0.5)
-    do(session, c.LookAt(0.8), c.GoOn())
-    run(session, 2.0)
-    for run_ in session.runs.values():
+    lab = new_lab(0.5)
+    do(lab, c.ChoosePath("segment"))
+    run(lab, 0.5)
+    do(lab, c.LookAt(0.8), c.GoOn())
+    run(lab, 2.0)
+    for run_ in lab.session.runs.values():
         assert run_.diverged is None and run_.distance < 1e-3
-        assert not session.editor.curve.closed
+        assert not lab.session.editor.curve.closed
 
 
 def test_acting_on_the_lab_ends_looking_back() -> None:
     for command in (c.Hold(True), c.MoveHand(0.01, 0.0), c.StepOnce(), c.ChoosePath("ellipse")):
-        session = new_session(0.5)
-        time = session.time
-        do(session, c.LookAt(0.3), command)
-        assert session.viewing is None and session.time >= time
+        lab = new_lab(0.5)
+        time = lab.session.time
+        do(lab, c.LookAt(0.3), command)
+        assert lab.session.viewing is None and lab.session.time >= time
 
 
 def test_reset_forgets_the_past() -> None:
-    session = new_session(0.5)
-    do(session, c.LookAt(0.3), c.Reset())
-    assert session.viewing is None and len(session.history) == 0 and session.time == 0.0
-    do(session, c.LookAt(0.3))
-    assert session.viewing is None
+    lab = new_lab(0.5)
+    do(lab, c.LookAt(0.3), c.Reset())
+    assert lab.session.viewing is None and len(lab.session.history) == 0 and lab.session.time == 0.0
+    do(lab, c.LookAt(0.3))
+    assert lab.session.viewing is None
 
 
 def test_a_robot_that_had_diverged_stands_still_again_and_one_that_had_not_runs() -> None:
-    session = new_session(0.5)
-    session.runs[FOLLOWER].fields()["v"][:] = 500.0
-    run(session, 0.5)
-    assert session.runs[FOLLOWER].diverged
-    do(session, c.LookAt(0.2), c.GoOn())
-    assert session.runs[FOLLOWER].diverged and "Path following stopped" in session.message
-    do(session, c.LookAt(session.time - 0.3), c.GoOn())
-    assert session.runs[FOLLOWER].diverged is None and session.message_level == "info"
-    run(session, 0.3)
-    assert session.runs[FOLLOWER].diverged is None and session.runs[FOLLOWER].distance < 1e-3
+    lab = new_lab(0.5)
+    lab.session.runs[FOLLOWER].fields()["v"][:] = 500.0
+    run(lab, 0.5)
+    assert lab.session.runs[FOLLOWER].diverged
+    do(lab, c.LookAt(0.2), c.GoOn())
+    assert lab.session.runs[FOLLOWER].diverged and "Path following stopped" in lab.message
+    do(lab, c.LookAt(lab.session.time - 0.3), c.GoOn())
+    assert lab.session.runs[FOLLOWER].diverged is None and lab.message_level == "info"
+    run(lab, 0.3)
+    assert (
+        lab.session.runs[FOLLOWER].diverged is None and lab.session.runs[FOLLOWER].distance < 1e-3
+    )

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.history import RECENT
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.lesson_run import LessonRun
-from onpath.app.lab.session import Session
 from onpath.app.lab.sketches import sketched
 from onpath.app.page import lesson_html as html
 from onpath.lessons.checks import judge
@@ -41,57 +41,57 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Course:
 
 
 @pytest.fixture
-def session(course: Course) -> Session:
+def lab(course: Course) -> Lab:
     """A lab with that lesson open."""
-    session = Session(store(), FIVE_BAR, course)
-    do(session, c.OpenLesson(NAME))
-    return session
+    lab = Lab(store(), FIVE_BAR, course)
+    do(lab, c.OpenLesson(NAME))
+    return lab
 
 
 def test_a_scene_sets_the_lab_up_and_the_free_lab_comes_back(course: Course) -> None:
-    session = Session(store(), FIVE_BAR, course)
-    do(session, c.SetParameter("K2", 33), c.ChoosePath("clover"))
-    do(session, c.OpenLesson(NAME))
-    assert session.parameters.K1 == 300 and session.parameters.K2 == FIVE_BAR.lab.K2
-    assert session.editor.design.name == "circle" and session.running
-    do(session, c.CloseLesson())
-    assert session.parameters.K2 == 33 and session.editor.design.name == "clover"
-    assert session.lessons.lesson is None and session.locked == ""
+    lab = Lab(store(), FIVE_BAR, course)
+    do(lab, c.SetParameter("K2", 33), c.ChoosePath("clover"))
+    do(lab, c.OpenLesson(NAME))
+    assert lab.session.parameters.K1 == 300 and lab.session.parameters.K2 == FIVE_BAR.lab.K2
+    assert lab.session.editor.design.name == "circle" and lab.session.running
+    do(lab, c.CloseLesson())
+    assert lab.session.parameters.K2 == 33 and lab.session.editor.design.name == "clover"
+    assert lab.lessons.lesson is None and lab.locked == ""
 
 
-def test_nothing_happens_before_a_prediction(session: Session) -> None:
-    do(session, c.GoToStep(1))
+def test_nothing_happens_before_a_prediction(lab: Lab) -> None:
+    do(lab, c.GoToStep(1))
     for command in (c.SetRunning(True), c.StepOnce(), c.GoOn(), c.PlayStep()):
-        do(session, command)
-        run(session, 0.2)
-        assert session.time == 0.0 and not session.running
-    assert session.message == session.locked != ""
-    do(session, c.Predict(times=(0.0, 1.0, 2.0), values=(0.0, 40.0, 0.0)))
-    assert session.locked == ""
-    do(session, c.SetRunning(True))
-    run(session, 0.2)
-    assert session.time > 0.1
+        do(lab, command)
+        run(lab, 0.2)
+        assert lab.session.time == 0.0 and not lab.session.running
+    assert lab.message == lab.locked != ""
+    do(lab, c.Predict(times=(0.0, 1.0, 2.0), values=(0.0, 40.0, 0.0)))
+    assert lab.locked == ""
+    do(lab, c.SetRunning(True))
+    run(lab, 0.2)
+    assert lab.session.time > 0.1
 
 
-def test_skipping_is_one_step_and_locks_nothing(session: Session) -> None:
-    do(session, c.GoToStep(1), c.GoToStep(1))
-    assert session.lessons.index == 2 and session.locked == ""
-    answer = session.lessons.answer()
+def test_skipping_is_one_step_and_locks_nothing(lab: Lab) -> None:
+    do(lab, c.GoToStep(1), c.GoToStep(1))
+    assert lab.lessons.index == 2 and lab.locked == ""
+    answer = lab.lessons.answer()
     assert answer is not None and answer.skipped
 
 
 def test_skipping_the_prediction_of_a_pushed_step_does_not_skip_what_happens(
-    session: Session,
+    lab: Lab,
 ) -> None:
-    do(session, TakeStep(NAME, 2))
-    run_ = session.lessons
-    assert run_.waits and session.locked
-    do(session, c.GoToStep(1))
-    assert run_.index == 2 and not run_.waits and not session.locked
+    do(lab, TakeStep(NAME, 2))
+    run_ = lab.lessons
+    assert run_.waits and lab.locked
+    do(lab, c.GoToStep(1))
+    assert run_.index == 2 and not run_.waits and not lab.locked
     assert run_.notes.answers["1"].skipped
-    do(session, c.PlayStep())
+    do(lab, c.PlayStep())
     assert run_.playing
-    do(session, c.GoToStep(1))
+    do(lab, c.GoToStep(1))
     assert run_.index == 3
 
 
@@ -109,14 +109,14 @@ def test_who_did_not_answer_is_told_the_answer_and_not_that_it_was_right(languag
         assert "of course" not in html.question(block, 0, False, words)
 
 
-def test_prediction_and_truth_are_kept_side_by_side(session: Session) -> None:
-    do(session, c.GoToStep(1), c.Predict(times=(0.0, 2.0), values=(5.0, 99.0)), c.GoToStep(1))
-    do(session, c.PlayStep())
-    run(session, 0.3)
-    assert session.lessons.playing and session.lessons.truth(session) is not None
-    run(session, 2.0)
-    assert not session.lessons.playing and not session.running
-    notes = session.lessons.notes
+def test_prediction_and_truth_are_kept_side_by_side(lab: Lab) -> None:
+    do(lab, c.GoToStep(1), c.Predict(times=(0.0, 2.0), values=(5.0, 99.0)), c.GoToStep(1))
+    do(lab, c.PlayStep())
+    run(lab, 0.3)
+    assert lab.lessons.playing and lab.lessons.truth(lab.session) is not None
+    run(lab, 2.0)
+    assert not lab.lessons.playing and not lab.session.running
+    notes = lab.lessons.notes
     truth, answer = notes.truths["1"], notes.answers["1"]
     assert answer.values[0] == 5.0 and answer.values[-1] == 60.0  # its axis ends there
     assert max(truth.tracker) > 10 * max(truth.follower) > 0
@@ -124,79 +124,79 @@ def test_prediction_and_truth_are_kept_side_by_side(session: Session) -> None:
     assert np.all(np.diff(truth.times) > 0)
 
 
-def test_a_task_fails_then_passes_and_stays_passed(session: Session) -> None:
-    do(session, c.GoToStep(3), c.GoToStep(3))
-    assert session.lessons.step_is("task") and session.editor.design.name == "ellipse"
-    do(session, c.Hold(True))
-    run(session, 0.5)
-    do(session, c.Hold(False))
-    run(session, 1.0)
-    verdicts = session.lessons.verdicts["hold"]
+def test_a_task_fails_then_passes_and_stays_passed(lab: Lab) -> None:
+    do(lab, c.GoToStep(3), c.GoToStep(3))
+    assert lab.lessons.step_is("task") and lab.session.editor.design.name == "ellipse"
+    do(lab, c.Hold(True))
+    run(lab, 0.5)
+    do(lab, c.Hold(False))
+    run(lab, 1.0)
+    verdicts = lab.lessons.verdicts["hold"]
     assert not verdicts[0].passed and "0.5 of 1 s" in verdicts[0].words
-    assert "hold" not in session.lessons.notes.tasks
-    do(session, c.Hold(True))
-    run(session, 1.5)
-    assert "hold" in session.lessons.notes.tasks
-    do(session, c.Reset())
-    run(session, 1.0)
-    assert "hold" in session.lessons.notes.tasks
+    assert "hold" not in lab.lessons.notes.tasks
+    do(lab, c.Hold(True))
+    run(lab, 1.5)
+    assert "hold" in lab.lessons.notes.tasks
+    do(lab, c.Reset())
+    run(lab, 1.0)
+    assert "hold" in lab.lessons.notes.tasks
 
 
 @pytest.mark.parametrize("frame", [0.7 / 60, 1 / 60, 1.3 / 60])
 def test_pulled_off_let_go_and_back_again(frame: float) -> None:
     """Lesson 1's last task, by the keys that it names, at the paces that a lab has."""
-    session = Session(store(), FIVE_BAR, read_course([BUILT_IN])[0])
-    do(session, TakeStep("01-path-or-timetable", 9))
+    lab = Lab(store(), FIVE_BAR, read_course([BUILT_IN])[0])
+    do(lab, TakeStep("01-path-or-timetable", 9))
     for _ in range(6):
-        do(session, c.MoveHand(0.005, 0.0))
-        run(session, 0.1)
-    run(session, 1.0)
-    do(session, c.Release())
+        do(lab, c.MoveHand(0.005, 0.0))
+        run(lab, 0.1)
+    run(lab, 1.0)
+    do(lab, c.Release())
     for _ in range(round(3.0 / frame)):
-        session.drain()
-        session.advance(frame)
-    assert "push-across" in session.lessons.notes.tasks
+        lab.drain()
+        lab.advance(frame)
+    assert "push-across" in lab.lessons.notes.tasks
 
 
-def test_the_marks_of_a_passed_task_stay_until_the_next_attempt(session: Session) -> None:
-    do(session, c.GoToStep(3), c.GoToStep(3), c.Hold(True))
-    run(session, 2.0)
-    assert all(verdict.passed for verdict in session.lessons.verdicts["hold"])
-    do(session, c.SetParameter("K1", 20), c.SetParameter("K2", 1), c.MoveHand(0.1, 0.1))
-    run(session, 2.0)  # far off
-    assert all(verdict.passed for verdict in session.lessons.verdicts["hold"])
-    do(session, c.Reset())
-    run(session, 1.0)
-    assert not any(verdict.passed for verdict in session.lessons.verdicts["hold"])
-    assert "hold" in session.lessons.notes.tasks
+def test_the_marks_of_a_passed_task_stay_until_the_next_attempt(lab: Lab) -> None:
+    do(lab, c.GoToStep(3), c.GoToStep(3), c.Hold(True))
+    run(lab, 2.0)
+    assert all(verdict.passed for verdict in lab.lessons.verdicts["hold"])
+    do(lab, c.SetParameter("K1", 20), c.SetParameter("K2", 1), c.MoveHand(0.1, 0.1))
+    run(lab, 2.0)  # far off
+    assert all(verdict.passed for verdict in lab.lessons.verdicts["hold"])
+    do(lab, c.Reset())
+    run(lab, 1.0)
+    assert not any(verdict.passed for verdict in lab.lessons.verdicts["hold"])
+    assert "hold" in lab.lessons.notes.tasks
 
 
-def test_what_is_undone_by_rewinding_passes_no_task(session: Session) -> None:
+def test_what_is_undone_by_rewinding_passes_no_task(lab: Lab) -> None:
     """Go on from before a hold, and it has not happened."""
     held = Task("held", "Hold back.", (Event("hold"), Event("let_go", times=1)))
-    begin = Beginning.now(session)
-    run(session, 1.0)
-    do(session, c.Hold(True))
-    run(session, 0.5)
-    do(session, c.LookAt(1.0), c.GoOn())
-    run(session, 0.5)
-    assert not judge(held, record_of(session, begin), Words())[0].passed
-    do(session, c.Hold(True))
-    run(session, 0.1)
-    assert all(verdict.passed for verdict in judge(held, record_of(session, begin), Words()))
+    begin = Beginning.now(lab.session)
+    run(lab, 1.0)
+    do(lab, c.Hold(True))
+    run(lab, 0.5)
+    do(lab, c.LookAt(1.0), c.GoOn())
+    run(lab, 0.5)
+    assert not judge(held, record_of(lab.session, begin), Words())[0].passed
+    do(lab, c.Hold(True))
+    run(lab, 0.1)
+    assert all(verdict.passed for verdict in judge(held, record_of(lab.session, begin), Words()))
 
 
 def test_the_truth_has_every_peak_however_long_ago() -> None:
     """Lesson 3 plays for longer than the lab's past is kept at every frame."""
-    session = Session(store(), FIVE_BAR, read_course([BUILT_IN])[0])
-    do(session, TakeStep("03-the-five-bar", 3), c.Predict(), c.PlayStep())
-    seen: dict[str, list[float]] = {name: [] for name in session.runs}
-    while session.lessons.playing:
-        for name, one in session.runs.items():
+    lab = Lab(store(), FIVE_BAR, read_course([BUILT_IN])[0])
+    do(lab, TakeStep("03-the-five-bar", 3), c.Predict(), c.PlayStep())
+    seen: dict[str, list[float]] = {name: [] for name in lab.session.runs}
+    while lab.lessons.playing:
+        for name, one in lab.session.runs.items():
             seen[name].append(float(np.abs(one.shown()["u"]).max()))
-        session.advance(FRAME)
-        session.drain()
-    truth = session.lessons.notes.truths["2"]
+        lab.advance(FRAME)
+        lab.drain()
+    truth = lab.lessons.notes.truths["2"]
     assert truth.times[-1] > RECENT and len(truth.times) <= MOST_POINTS
     for name, curve in ((FOLLOWER, truth.follower), (TRACKER, truth.tracker)):
         for times in ((0.0, 3.0), (3.1, 9.0), (9.1, 12.0), (12.1, 15.0)):
@@ -208,50 +208,50 @@ def test_the_truth_has_every_peak_however_long_ago() -> None:
         assert max(curve) == pytest.approx(max(seen[name]), abs=1e-4)
 
 
-def test_hints_come_one_at_a_time(session: Session) -> None:
-    do(session, c.ShowHint("hold"))
-    assert session.lessons.notes.hints == {"hold": 1}
+def test_hints_come_one_at_a_time(lab: Lab) -> None:
+    do(lab, c.ShowHint("hold"))
+    assert lab.lessons.notes.hints == {"hold": 1}
 
 
-def test_links_act_on_the_lab(session: Session) -> None:
-    do(session, c.Act((Action(set={"K3": 100.0}), Action(path="clover"), Action(hold=True))))
-    assert session.parameters.K3 == 100.0 and session.editor.design.name == "clover"
-    assert session.grips.held
-    do(session, c.Act((Action(set={"K3": 1e9}),)))
-    assert session.parameters.K3 == 100.0 and "K3" in session.message
+def test_links_act_on_the_lab(lab: Lab) -> None:
+    do(lab, c.Act((Action(set={"K3": 100.0}), Action(path="clover"), Action(hold=True))))
+    assert lab.session.parameters.K3 == 100.0 and lab.session.editor.design.name == "clover"
+    assert lab.session.grips.held
+    do(lab, c.Act((Action(set={"K3": 1e9}),)))
+    assert lab.session.parameters.K3 == 100.0 and "K3" in lab.message
 
 
-def test_resetting_by_hand_ends_what_is_shown(session: Session) -> None:
-    do(session, c.GoToStep(2), c.Predict(), c.PlayStep())
-    run(session, 0.5)
-    do(session, c.Reset())
-    run(session, 0.2)
-    assert session.script is None and not session.lessons.playing
+def test_resetting_by_hand_ends_what_is_shown(lab: Lab) -> None:
+    do(lab, c.GoToStep(2), c.Predict(), c.PlayStep())
+    run(lab, 0.5)
+    do(lab, c.Reset())
+    run(lab, 0.2)
+    assert lab.script is None and not lab.lessons.playing
 
 
 @pytest.mark.parametrize("command", [c.Reset(), c.ChoosePath("clover"), c.GoOn()])
-def test_what_is_given_up_half_way_has_not_been_seen(session: Session, command: object) -> None:
+def test_what_is_given_up_half_way_has_not_been_seen(lab: Lab, command: object) -> None:
     """Resetting, another robot's run, going on from the past: no truth, and not played."""
-    do(session, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(0.0, 1.0)), c.GoToStep(1))
-    do(session, c.PlayStep())
-    run(session, 1.0)
+    do(lab, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(0.0, 1.0)), c.GoToStep(1))
+    do(lab, c.PlayStep())
+    run(lab, 1.0)
     if isinstance(command, c.GoOn):
-        do(session, c.LookAt(0.5))
-    do(session, command)  # type: ignore[arg-type]
-    run(session, 3.0)
-    notes = session.lessons.notes
+        do(lab, c.LookAt(0.5))
+    do(lab, command)  # type: ignore[arg-type]
+    run(lab, 3.0)
+    notes = lab.lessons.notes
     done = isinstance(command, c.ChoosePath)  # that one lets the script go on to its end
     assert bool(notes.truths) is bool(notes.played) is done
-    assert not session.lessons.playing
+    assert not lab.lessons.playing
 
 
-def test_progress_comes_back_from_json(session: Session, course: Course) -> None:
-    do(session, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), c.GoToStep(1))
-    do(session, c.SetPresenting(True), c.ShowHint("hold"))
-    kept = msgspec.json.encode(session.lessons.progress)
+def test_progress_comes_back_from_json(lab: Lab, course: Course) -> None:
+    do(lab, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), c.GoToStep(1))
+    do(lab, c.SetPresenting(True), c.ShowHint("hold"))
+    kept = msgspec.json.encode(lab.lessons.progress)
     again = LessonRun(course, read_progress(msgspec.json.decode(kept)))
-    assert again.progress == session.lessons.progress
-    assert again.index == 2 and again.answer() == session.lessons.answer()
+    assert again.progress == lab.lessons.progress
+    assert again.index == 2 and again.answer() == lab.lessons.answer()
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from msgspec.structs import replace
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup, TakeStep
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.setup import Setup, capture
 from onpath.app.storage.lab_state import LabState, keep, put_back
 from onpath.lessons.course import BUILT_IN, Course, read_course
@@ -33,129 +33,129 @@ STEPS = [
 steps = st.sampled_from(STEPS)
 
 
-def new_lab() -> Session:
+def new_lab() -> Lab:
     """With all lessons, none of them open."""
-    return Session(store(), course=COURSE)
+    return Lab(store(), course=COURSE)
 
 
-def setting(session: Session) -> Setup:
+def setting(lab: Lab) -> Setup:
     """What of a lab decides what happens in it."""
-    return replace(capture(session), exaggeration=1.0)
+    return replace(capture(lab.session), exaggeration=1.0)
 
 
 @lru_cache
 def wanted(name: str, index: int) -> tuple[Setup, dict[str, np.ndarray]]:
     """Set-up and state of a new lab that came straight to a step."""
-    session, lesson = new_lab(), COURSE.lesson(name, "en")
-    do(session, TakeStep(name, index))
-    assert session.lessons.index == index
+    lab, lesson = new_lab(), COURSE.lesson(name, "en")
+    do(lab, TakeStep(name, index))
+    assert lab.lessons.index == index
     scene = [step.scene for step in lesson.steps[: index + 1] if step.scene][-1]
     parameters = ROBOTS[lesson.front.robot].lab
     for parameter, value in scene.set.items():
         parameters = changed(parameters, parameter, value)
-    assert session.parameters == parameters
-    assert session.editor.design is session.presets[scene.path or "circle"]
-    return setting(session), {n: run.state.copy() for n, run in session.runs.items()}
+    assert lab.session.parameters == parameters
+    assert lab.session.editor.design is lab.session.presets[scene.path or "circle"]
+    return setting(lab), {n: run.state.copy() for n, run in lab.session.runs.items()}
 
 
-def here(session: Session) -> tuple[str, int]:
+def here(lab: Lab) -> tuple[str, int]:
     """Lesson and step."""
-    return session.lessons.progress.lesson, session.lessons.index
+    return lab.lessons.progress.lesson, lab.lessons.index
 
 
-def assert_at_the_beginning(session: Session) -> None:
+def assert_at_the_beginning(lab: Lab) -> None:
     """As a new lab that came straight to this step."""
-    setup, states = wanted(*here(session))
-    assert setting(session) == setup
-    for name, one in session.runs.items():
+    setup, states = wanted(*here(lab))
+    assert setting(lab) == setup
+    for name, one in lab.session.runs.items():
         assert np.array_equal(one.state, states[name])
-    assert session.time == 0.0 and session.viewing is None
-    assert session.grips.pushes == dict.fromkeys(NAMES, FREE) and not session.grips.held
-    assert session.editor.selected is None and session.editor.proposed is None
-    assert np.array_equal(session.editor.table, session.editor.design.curve.table())
+    assert lab.session.time == 0.0 and lab.session.viewing is None
+    assert lab.session.grips.pushes == dict.fromkeys(NAMES, FREE) and not lab.session.grips.held
+    assert lab.session.editor.selected is None and lab.session.editor.proposed is None
+    assert np.array_equal(lab.session.editor.table, lab.session.editor.design.curve.table())
 
 
-def arrived(session: Session) -> Session:
+def arrived(lab: Lab) -> Lab:
     """Just now, by some way."""
-    run_, lesson = session.lessons, session.lessons.lesson
-    assert lesson is not None and session.script is None
-    assert_at_the_beginning(session)
-    assert session.running == (lesson.scene_at(run_.index).running and not run_.waits)
-    return session
+    run_, lesson = lab.lessons, lab.lessons.lesson
+    assert lesson is not None and lab.script is None
+    assert_at_the_beginning(lab)
+    assert lab.session.running == (lesson.scene_at(run_.index).running and not run_.waits)
+    return lab
 
 
-def turned(by: int) -> Callable[[Session], Session]:
+def turned(by: int) -> Callable[[Lab], Lab]:
     """Next, or Back; where a prediction is skipped first, nothing is arrived at."""
 
-    def turn(session: Session) -> Session:
-        stays = by > 0 and session.lessons.waits and session.lessons.step_is("run")
-        do(session, c.GoToStep(by))
-        return session if stays else arrived(session)
+    def turn(lab: Lab) -> Lab:
+        stays = by > 0 and lab.lessons.waits and lab.lessons.step_is("run")
+        do(lab, c.GoToStep(by))
+        return lab if stays else arrived(lab)
 
     return turn
 
 
-def asked(*commands: c.Command) -> Callable[[Session], Session]:
+def asked(*commands: c.Command) -> Callable[[Lab], Lab]:
     """Something done in the lab meanwhile."""
 
-    def ask(session: Session) -> Session:
-        do(session, *commands)
-        run(session, 0.1)
-        return session
+    def ask(lab: Lab) -> Lab:
+        do(lab, *commands)
+        run(lab, 0.1)
+        return lab
 
     return ask
 
 
-def set_up_again(session: Session) -> Session:
-    do(session, c.BeginStepAnew())
-    return arrived(session)
+def set_up_again(lab: Lab) -> Lab:
+    do(lab, c.BeginStepAnew())
+    return arrived(lab)
 
 
-def played(session: Session) -> Session:
+def played(lab: Lab) -> Lab:
     """The script, from its beginning, seen at any speed."""
-    do(session, c.Predict())
-    rate = session.rate
-    session.lessons.play(session)  # and nothing of the script yet
-    if session.script is not None:
-        assert session.rate == rate and session.running
-        session.rate = 1.0
-        assert_at_the_beginning(session)
-    run(session, 0.3)
-    return session
+    do(lab, c.Predict())
+    rate = lab.session.rate
+    c.PlayStep().apply(lab)  # and nothing of the script yet
+    if lab.script is not None:
+        assert lab.session.rate == rate and lab.session.running
+        lab.session.rate = 1.0
+        assert_at_the_beginning(lab)
+    run(lab, 0.3)
+    return lab
 
 
-def left_and_opened(session: Session) -> Session:
-    name = session.lessons.progress.lesson
-    do(session, c.CloseLesson(), c.OpenLesson(name))
-    return arrived(session)
+def left_and_opened(lab: Lab) -> Lab:
+    name = lab.lessons.progress.lesson
+    do(lab, c.CloseLesson(), c.OpenLesson(name))
+    return arrived(lab)
 
 
-def reloaded(session: Session) -> Session:
+def reloaded(lab: Lab) -> Lab:
     """In another process, as it was left, at the start."""
     kept: list[LabState] = []
-    keep(session, lambda make: kept.append(make()))
+    keep(lab, lambda make: kept.append(make()))
     again = new_lab()
     put_back(again, kept[0])
-    assert capture(again) == capture(session) and here(again) == here(session)
-    assert again.time == 0.0 and not again.grips.held and not again.happenings
+    assert capture(again.session) == capture(lab.session) and here(again) == here(lab)
+    assert again.session.time == 0.0 and not again.session.grips.held and not again.session.events
     return again
 
 
-def pushed(step: tuple[str, int]) -> Callable[[Session], Session]:
+def pushed(step: tuple[str, int]) -> Callable[[Lab], Lab]:
     """The teacher opens a step for all."""
 
-    def push(session: Session) -> Session:
-        do(session, TakeStep(*step))
-        return arrived(session)
+    def push(lab: Lab) -> Lab:
+        do(lab, TakeStep(*step))
+        return arrived(lab)
 
     return push
 
 
-def pushed_setup(session: Session) -> Session:
+def pushed_setup(lab: Lab) -> Lab:
     """The teacher sends a set-up; then the student comes back."""
-    name = session.lessons.progress.lesson
-    do(session, TakeSetup(Setup(robot="flexible", rate=2.0)), c.OpenLesson(name))
-    return arrived(session)
+    name = lab.lessons.progress.lesson
+    do(lab, TakeSetup(Setup(robot="flexible", rate=2.0)), c.OpenLesson(name))
+    return arrived(lab)
 
 
 MEDDLING = (
@@ -180,24 +180,24 @@ ways = st.one_of(
 
 @given(steps, st.lists(st.one_of(meddling, ways, st.just(played), st.just(reloaded)), max_size=12))
 @settings(max_examples=30)
-def test_random_walks(first: tuple[str, int], walk: list[Callable[[Session], Session]]) -> None:
-    session = pushed(first)(new_lab())
+def test_random_walks(first: tuple[str, int], walk: list[Callable[[Lab], Lab]]) -> None:
+    lab = pushed(first)(new_lab())
     for move in walk:
-        session = move(session)
-    assert set_up_again(session)
+        lab = move(lab)
+    assert set_up_again(lab)
 
 
 @pytest.mark.parametrize("name", COURSE.lessons)
 def test_there_and_back_through_a_lesson_while_meddling(name: str) -> None:
-    session = pushed((name, 0))(new_lab())
+    lab = pushed((name, 0))(new_lab())
     last = len(COURSE.lesson(name, "en").steps) - 1
     places = [0]
     for by in (1, -1):
         for turn in range(2 * last):
-            session = MEDDLING[turn % len(MEDDLING)](session)
-            session = turned(by)(session)
-            places.append(session.lessons.index)
-            if session.lessons.index == (last if by > 0 else 0):
+            lab = MEDDLING[turn % len(MEDDLING)](lab)
+            lab = turned(by)(lab)
+            places.append(lab.lessons.index)
+            if lab.lessons.index == (last if by > 0 else 0):
                 break
     assert sorted(set(places)) == list(range(last + 1)) and places[-1] == 0
 
@@ -214,7 +214,7 @@ def test_what_a_step_keeps_is_what_the_step_before_has(
         [TakeStep("01-a", 2)],
         [c.OpenLesson("01-a"), *3 * [c.GoToStep(1)], c.GoToStep(-1)],
     ):
-        session = Session(store(), course=Course(course.lessons))
-        do(session, *ways, c.SetParameter("K1", 50.0), c.BeginStepAnew())
-        assert session.lessons.index == 2
-        assert (session.parameters.K1, session.parameters.K2) == (300.0, 30.0)
+        lab = Lab(store(), course=Course(course.lessons))
+        do(lab, *ways, c.SetParameter("K1", 50.0), c.BeginStepAnew())
+        assert lab.lessons.index == 2
+        assert (lab.session.parameters.K1, lab.session.parameters.K2) == (300.0, 30.0)

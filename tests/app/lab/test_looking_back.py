@@ -11,10 +11,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.lessons.course import read_course
 from onpath.models.systems.catalogue import FIVE_BAR
-from tests.support.lab import FOLLOWER, assert_sound, do, new_session, run, states, store, y
+from tests.support.lab import FOLLOWER, assert_sound, do, new_lab, run, states, store, y
 from tests.support.lesson_texts import write_lesson
 
 
@@ -26,25 +26,25 @@ class Seen:
     kept: dict[float, bytes]
     robots: tuple[bytes, ...]
     held: frozenset[str]
-    happenings: tuple[object, ...]
+    events: tuple[object, ...]
 
 
-def seen(session: Session) -> Seen:
+def seen(lab: Lab) -> Seen:
     """What is to be kept. A stretch is known by its time: those that wait may still grow."""
     kept = {
         stretch.time: b"".join(
             [stretch.sample.tobytes(), *(d.state.tobytes() for d in stretch.drives.values())]
         )
-        for stretch in session.history.all()
+        for stretch in lab.session.history.all()
     }
     robots = tuple(
         run.state.tobytes()
         + run.row.tobytes()
         + np.array([run.distance, run.max_distance]).tobytes()
-        for run in session.runs.values()
+        for run in lab.session.runs.values()
     )
-    held = frozenset(session.grips.held)
-    return Seen(session.time, kept, robots, held, tuple(session.happenings))
+    held = frozenset(lab.session.grips.held)
+    return Seen(lab.session.time, kept, robots, held, tuple(lab.session.events))
 
 
 ACTIONS = [
@@ -77,22 +77,22 @@ COMMANDS: dict[str, c.Command] = {
 @example(["run", "back", "Run", "run"])
 @example(["run", "hold", "run", "back", "go on", "run", "undo", "undo", "hold", "back", "go on"])
 def test_only_going_on_forgets_and_undo_brings_all_of_it_back(actions: list[str]) -> None:
-    session = new_session(0.4)
+    lab = new_lab(0.4)
     aside: Seen | None = None
     for action in actions:
-        before, viewing = seen(session), session.viewing
+        before, viewing = seen(lab), lab.session.viewing
         if action == "run":
-            run(session, 0.1)
+            run(lab, 0.1)
         else:
-            do(session, COMMANDS[action])
-        after = seen(session)
-        assert_sound(session)
+            do(lab, COMMANDS[action])
+        after = seen(lab)
+        assert_sound(lab)
         if action == "undo" and aside is not None:
             assert after == aside
-            assert session.viewing is None and not session.running
+            assert lab.session.viewing is None and not lab.session.running
             aside = before
         elif action == "go on" and viewing is not None:
-            assert session.message and session.put_aside is not None
+            assert lab.message and lab.session.put_aside is not None
             assert after.time <= viewing and after.kept == {
                 time: bits for time, bits in before.kept.items() if time < after.time
             }
@@ -102,89 +102,106 @@ def test_only_going_on_forgets_and_undo_brings_all_of_it_back(actions: list[str]
             if action in ("back", "forward", "present", "Run"):
                 assert after == before
             if action == "Run":
-                assert session.running and session.viewing is None
+                assert lab.session.running and lab.session.viewing is None
 
 
 def test_a_lab_brought_back_goes_on_as_if_nothing_had_been() -> None:
-    session, twin = new_session(), new_session()
-    for lab in (session, twin):
-        do(lab, c.SetParameter("K3", 200), c.SetParameter("encoder_counts", 4000))
-        run(lab, 0.5)
-        do(lab, c.Hold(True))
-        run(lab, 0.5)
-    do(session, c.LookAt(0.7), c.GoOn())
-    assert not session.grips.held
-    run(session, 0.3)
-    do(session, c.UndoGoOn())
-    assert session.grips.held == twin.grips.held != set()
-    for lab in (session, twin):
-        lab.simulate(50)
-        do(lab, c.Hold(False))
-        lab.simulate(400)
-    assert seen(session) == seen(twin)
+    lab, twin = new_lab(), new_lab()
+    for each in (lab, twin):
+        do(each, c.SetParameter("K3", 200), c.SetParameter("encoder_counts", 4000))
+        run(each, 0.5)
+        do(each, c.Hold(True))
+        run(each, 0.5)
+    do(lab, c.LookAt(0.7), c.GoOn())
+    assert not lab.session.grips.held
+    run(lab, 0.3)
+    do(lab, c.UndoGoOn())
+    assert lab.session.grips.held == twin.session.grips.held != set()
+    for each in (lab, twin):
+        each.session.simulate(50)
+        do(each, c.Hold(False))
+        each.session.simulate(400)
+    assert seen(lab) == seen(twin)
 
 
 def test_a_robot_that_had_stopped_stands_still_again_after_undo() -> None:
-    session = new_session(0.5)
-    session.runs[FOLLOWER].fields()["v"][:] = 500.0
-    run(session, 0.3)
-    stopped = session.runs[FOLLOWER].diverged
+    lab = new_lab(0.5)
+    lab.session.runs[FOLLOWER].fields()["v"][:] = 500.0
+    run(lab, 0.3)
+    stopped = lab.session.runs[FOLLOWER].diverged
     assert stopped
-    do(session, c.LookAt(0.6), c.GoOn())
-    assert session.runs[FOLLOWER].diverged is None
-    do(session, c.UndoGoOn())
-    assert session.runs[FOLLOWER].diverged == stopped
-    assert "Path following stopped" in session.message
+    do(lab, c.LookAt(0.6), c.GoOn())
+    assert lab.session.runs[FOLLOWER].diverged is None
+    do(lab, c.UndoGoOn())
+    assert lab.session.runs[FOLLOWER].diverged == stopped
+    assert "Path following stopped" in lab.message
 
 
 def test_what_was_set_meanwhile_stays_when_the_past_comes_back() -> None:
-    session = new_session(0.6)
-    end = y(session, FOLLOWER)
-    do(session, c.LookAt(0.4), c.GoOn(), c.ChoosePath("segment"), c.SetParameter("K1", 300))
-    run(session, 0.8)
-    do(session, c.UndoGoOn())
-    assert session.time == pytest.approx(0.6, abs=0.02)
-    assert np.array_equal(y(session, FOLLOWER), end)
-    assert session.parameters.K1 == 300 and not session.editor.curve.closed
-    do(session, c.SetRunning(True))
-    run(session, 2.0)
-    assert_sound(session)
-    assert all(run_.distance < 1e-3 for run_ in session.runs.values())
+    lab = new_lab(0.6)
+    end = y(lab.session, FOLLOWER)
+    do(lab, c.LookAt(0.4), c.GoOn(), c.ChoosePath("segment"), c.SetParameter("K1", 300))
+    run(lab, 0.8)
+    do(lab, c.UndoGoOn())
+    assert lab.session.time == pytest.approx(0.6, abs=0.02)
+    assert np.array_equal(y(lab.session, FOLLOWER), end)
+    assert lab.session.parameters.K1 == 300 and not lab.session.editor.curve.closed
+    do(lab, c.SetRunning(True))
+    run(lab, 2.0)
+    assert_sound(lab)
+    assert all(run_.distance < 1e-3 for run_ in lab.session.runs.values())
 
 
 @pytest.mark.parametrize("command", [c.Reset(), c.ChooseRobot("flexible")])
 def test_a_new_beginning_leaves_nothing_to_bring_back(command: c.Command) -> None:
-    session = new_session(0.5)
-    do(session, c.LookAt(0.3), c.GoOn(), command)
-    before = states(session)
-    do(session, c.UndoGoOn())
-    assert session.time == 0.0 and "nothing" in session.message
-    assert all(np.array_equal(state, before[name]) for name, state in states(session).items())
+    lab = new_lab(0.5)
+    do(lab, c.LookAt(0.3), c.GoOn(), command)
+    before = states(lab.session)
+    do(lab, c.UndoGoOn())
+    assert lab.session.time == 0.0 and "nothing" in lab.message
+    assert all(np.array_equal(state, before[name]) for name, state in states(lab.session).items())
 
 
 def test_a_step_of_a_lesson_cannot_be_passed_by_bringing_back_what_came_before(
     tmp_path: Path,
 ) -> None:
     write_lesson(tmp_path)
-    session = Session(store(), FIVE_BAR, read_course([tmp_path])[0])
-    do(session, c.OpenLesson("01-a"), c.SetRunning(True))
-    run(session, 0.5)
-    do(session, c.LookAt(0.3), c.GoOn())
-    assert session.put_aside is not None
-    do(session, c.GoToStep(1))
-    assert session.put_aside is None
+    lab = Lab(store(), FIVE_BAR, read_course([tmp_path])[0])
+    do(lab, c.OpenLesson("01-a"), c.SetRunning(True))
+    run(lab, 0.5)
+    do(lab, c.LookAt(0.3), c.GoOn())
+    assert lab.session.put_aside is not None
+    do(lab, c.GoToStep(1))
+    assert lab.session.put_aside is None
 
 
 def test_whoever_acts_on_the_lab_while_looking_back_is_told_that_it_is_the_present() -> None:
     for command in (c.Hold(True), c.MoveHand(0.01, 0.0), c.StepOnce(), c.ChoosePath("ellipse")):
-        session = new_session(0.5)
-        do(session, c.LookAt(0.3))
-        assert "the past" in session.message
-        do(session, command)
-        assert "present" in session.message
-    session = new_session(0.5)
-    do(session, c.MoveHand(0.01, 0.0), c.LookAt(0.3))
-    assert "let go" in session.message and not session.grips.hands
-    session = new_session(0.5)
-    do(session, c.LookAt(0.3), c.ChoosePath("figure of eight"))
-    assert "refused" in session.message
+        lab = new_lab(0.5)
+        do(lab, c.LookAt(0.3))
+        assert "the past" in lab.message
+        do(lab, command)
+        assert "present" in lab.message
+    lab = new_lab(0.5)
+    do(lab, c.MoveHand(0.01, 0.0), c.LookAt(0.3))
+    assert "let go" in lab.message and not lab.session.grips.hands
+    lab = new_lab(0.5)
+    do(lab, c.LookAt(0.3), c.ChoosePath("figure of eight"))
+    assert "refused" in lab.message
+
+
+def test_going_on_forgets_what_was_done_later_and_undo_brings_it_back() -> None:
+    """Else a lesson's task could be passed by what never happened."""
+    lab = new_lab(0.5)
+    session = lab.session
+    do(lab, c.Hold(True))
+    run(lab, 0.5)
+    do(lab, c.Hold(False))
+    run(lab, 0.5)
+    all_of_it = tuple(session.events)
+    do(lab, c.LookBack(1.2), c.GoOn())
+    later = [event for event in all_of_it if event.time > session.time]
+    assert {event.name for event in later} >= {"hold", "release"}
+    assert all(event.time <= session.time for event in session.events)
+    do(lab, c.UndoGoOn())
+    assert tuple(session.events) == all_of_it

@@ -15,8 +15,8 @@ import pytest
 
 from onpath.app.lab import commands as c
 from onpath.app.lab import loop_cache as loop_store
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.session import Session
 from onpath.app.server.lazy_imports import LATER, warm_up
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
@@ -66,26 +66,26 @@ def finish(store: LoopCache) -> None:
             wanted.result(PATIENCE)
 
 
-def loops(session: Session, store: LoopCache) -> list[Loop]:
-    return [store.get(run.robot, run.kind) for run in session.runs.values()]
+def loops(lab: Lab, store: LoopCache) -> list[Loop]:
+    return [store.get(run.robot, run.kind) for run in lab.session.runs.values()]
 
 
 def test_loops_are_interpreted_at_once_and_compiled_later(store: LoopCache, gate: Gate) -> None:
     never = LoopCache()
     never.close()
-    session, reference = Session(store), Session(never)
+    lab, reference = Lab(store), Lab(never)
     for tier in (InterpretedLoop, CompiledLoop):
         for _ in range(30):
-            session.advance(FRAME)
+            lab.advance(FRAME)
             reference.advance(FRAME)
-        now = loops(session, store)
-        assert all(isinstance(loop, tier) for loop in now) and loops(session, store) == now
+        now = loops(lab, store)
+        assert all(isinstance(loop, tier) for loop in now) and loops(lab, store) == now
         assert all(isinstance(loop, InterpretedLoop) for loop in loops(reference, never))
         gate.set()
         finish(store)
-    for name, state in states(session).items():
-        assert np.array_equal(state, reference.runs[name].state)
-        assert session.runs[name].diverged is None
+    for name, state in states(lab.session).items():
+        assert np.array_equal(state, reference.session.runs[name].state)
+        assert lab.session.runs[name].diverged is None
     assert len(gate.passed) == len(NAMES)
 
 
@@ -93,19 +93,19 @@ def test_what_cannot_be_compiled_is_told_once_and_the_lab_goes_on(
     store: LoopCache, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setitem(sys.modules, "llvmlite.binding", None)
-    session = Session(store)
+    lab = Lab(store)
     with caplog.at_level(logging.WARNING):
-        session.advance(FRAME)
+        lab.advance(FRAME)
         finish(store)
         for _ in range(20):
-            session.advance(FRAME)
-        do(session, c.Hold(on=True))
-        session.advance(FRAME)  # a loop that nobody has asked for before
+            lab.advance(FRAME)
+        do(lab, c.Hold(on=True))
+        lab.advance(FRAME)  # a loop that nobody has asked for before
         finish(store)
     (warning,) = [r for r in caplog.records if r.name == "onpath.app.lab.loop_cache"]
     assert "interpreted" in warning.getMessage()
-    assert session.time == pytest.approx(22 * FRAME, abs=2e-3)
-    assert all(isinstance(loop, InterpretedLoop) for loop in loops(session, store))
+    assert lab.session.time == pytest.approx(22 * FRAME, abs=2e-3)
+    assert all(isinstance(loop, InterpretedLoop) for loop in loops(lab, store))
 
 
 def test_closing_gives_up_what_is_waiting(store: LoopCache, gate: Gate) -> None:
@@ -128,9 +128,9 @@ def test_a_first_lab_finds_its_loops_compiled(store: LoopCache) -> None:
     warm_up(store, rest=0.0).join(PATIENCE)
     finish(store)
     assert all(name in sys.modules for name in LATER)
-    session = Session(store)
+    lab = Lab(store)
     for commands in ([], [c.Hold(on=True)]):
-        do(session, *commands)
-        session.advance(FRAME)
-        assert all(isinstance(loop, CompiledLoop) for loop in loops(session, store))
+        do(lab, *commands)
+        lab.advance(FRAME)
+        assert all(isinstance(loop, CompiledLoop) for loop in loops(lab, store))
     assert len(store._wanted) == 2 * len(NAMES)

@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 
 from onpath.app.cli.main import run_command
-from onpath.app.exports.exporter import csv_bytes, png_bytes
+from onpath.app.exports.files import csv_bytes, picture_file
 from onpath.app.lab import commands as c
-from onpath.app.lab.robot_geometry import geometry_function, robot_views
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import capture, restore
 from onpath.app.lab.share_code import decode, encode
-from onpath.app.lab.take_snapshot import take_snapshot
+from onpath.app.lab.snapshots.robot_geometry import geometry_function, robot_views
+from onpath.app.lab.snapshots.take_snapshot import take_snapshot
 from onpath.app.page.robot_picture import picture_of
 from onpath.app.scene.poses import poses_of
 from onpath.app.scene.stage_catalogue import stage_of
@@ -93,12 +94,12 @@ def entry(request: pytest.FixtureRequest, gantry: None) -> RobotEntry:
     return ROBOTS[request.param]
 
 
-def lab(entry: RobotEntry, seconds: float = 0.0) -> Session:
+def lab_with(entry: RobotEntry, seconds: float = 0.0) -> Lab:
     """As a user comes to it: from the first robot, by the menu."""
-    session = Session(store())
-    do(session, c.ChooseRobot(entry.name))
-    run_lab(session, seconds)
-    return session
+    lab = Lab(store())
+    do(lab, c.ChooseRobot(entry.name))
+    run_lab(lab, seconds)
+    return lab
 
 
 def test_the_catalogue_finds_it_by_its_name(entry: RobotEntry) -> None:
@@ -118,35 +119,38 @@ def test_two_robots_of_one_name_are_refused(gantry: None, tmp_path: Path) -> Non
 
 
 def test_it_follows_the_circle_in_the_lab_and_waits_when_held(entry: RobotEntry) -> None:
-    session = lab(entry, 2.0)
+    lab = lab_with(entry, 2.0)
+    session = lab.session
     for name in NAMES:
         assert session.runs[name].diverged is None
-        assert session.runs[name].max_distance < 2e-3
-    do(session, c.Hold(True))
-    run_lab(session, 1.0)
-    do(session, c.Hold(False))
+        assert session.runs[name].distance < 2e-4
+    do(lab, c.Hold(True))
+    run_lab(lab, 1.0)
+    do(lab, c.Hold(False))
     follower, tracker = (session.runs[name].max_distance for name in (FOLLOWER, TRACKER))
     assert follower < tracker / 3
-    run_lab(session, 0.5)
-    assert_sound(session)
+    run_lab(lab, 0.5)
+    assert_sound(lab)
 
 
 def test_a_pull_moves_it_and_it_comes_back(entry: RobotEntry) -> None:
-    session = lab(entry, 0.5)
+    lab = lab_with(entry, 0.5)
+    session = lab.session
     target = session.robot.place(y(session, FOLLOWER) + 0.01)
-    do(session, c.Grab(FOLLOWER, target))
-    run_lab(session, 0.5)
-    assert_sound(session)
-    do(session, c.Release(FOLLOWER))
-    run_lab(session, 1.5)
+    do(lab, c.Grab(FOLLOWER, target))
+    run_lab(lab, 0.5)
+    assert_sound(lab)
+    do(lab, c.Release(FOLLOWER))
+    run_lab(lab, 1.5)
     assert session.runs[FOLLOWER].diverged is None
     assert session.runs[FOLLOWER].distance < 2e-3
 
 
 def test_bars_join_joints_and_end_at_the_end_point_also_in_the_scene(entry: RobotEntry) -> None:
-    session = lab(entry, 0.3)
+    lab = lab_with(entry, 0.3)
+    session = lab.session
     robot, stage = session.robot, stage_of(session.robot)
-    snapshot = take_snapshot(session, 1.0)
+    snapshot = take_snapshot(lab, 1.0)
     assert_drawable(snapshot)
     views = [snapshot.robots[name] for name in stage.bases]
     poses = poses_of(stage, views)
@@ -180,7 +184,8 @@ def test_one_function_gives_points_and_poses(entry: RobotEntry) -> None:
 
 
 def test_bars_and_path_lie_in_what_the_camera_shows(entry: RobotEntry) -> None:
-    session = lab(entry)
+    lab = lab_with(entry)
+    session = lab.session
     stage = stage_of(session.robot)
     for design in presets().values():
         if curve_faults(session.robot.margin, design.curve):
@@ -205,18 +210,22 @@ def test_it_has_a_picture(entry: RobotEntry) -> None:
 
 
 def test_what_it_did_can_be_taken_home(entry: RobotEntry) -> None:
-    session = lab(entry, 0.3)
+    lab = lab_with(entry, 0.3)
+    session = lab.session
     history = session.history.all()
     head = csv_bytes(session.robot, history).decode().splitlines()[0]
     assert all(name in head for name in session.robot.coordinate_names)
-    assert png_bytes(session.robot, history, session.lessons.words).startswith(b"\x89PNG")
+    assert picture_file(entry.name, session.parameters, session.history.copy(), "en").startswith(
+        b"\x89PNG"
+    )
 
 
 def test_its_share_code_brings_back_the_same_lab(entry: RobotEntry) -> None:
-    session = lab(entry, 0.1)
-    do(session, c.SetParameter("K1", 350.0), c.ChoosePath("ellipse"))
+    lab = lab_with(entry, 0.1)
+    session = lab.session
+    do(lab, c.SetParameter("K1", 350.0), c.ChoosePath("ellipse"))
     own = next(n for n, spec in specs(entry.parameters).items() if spec.group == "realism")
-    do(session, c.SetParameter(own, specs(entry.parameters)[own].on or 100))
+    do(lab, c.SetParameter(own, specs(entry.parameters)[own].on or 100))
     session.editor.advance(1.0)
     setup = capture(session)
     again = Session(store())

@@ -18,7 +18,7 @@ from onpath.app.lab.commands import (
     SetParameter,
     Undo,
 )
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.setup import (
     DRAWN_POINTS,
     Path,
@@ -34,7 +34,7 @@ from onpath.app.lab.setup import (
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.parameters import NOTHING, specs
-from tests.support.lab import FOLLOWER, do, new_session, run
+from tests.support.lab import FOLLOWER, do, new_lab, run
 from tests.support.some_setups import CALM, FOLLOWABLE, PRESETS, designs, setups, wave
 
 SLOW = settings(CALM, max_examples=25)
@@ -48,44 +48,60 @@ def own(**path: Any) -> Setup:
 def followable(setup: Setup) -> bool:
     """Whether a new lab takes it."""
     try:
-        restore(new_session(), setup)
+        restore(new_lab().session, setup)
     except ValueError as error:
         assert "cannot follow this path" in str(error)
         return False
     return True
 
 
-def everything(session: Session) -> list[Any]:
+def everything(lab: Lab) -> list[Any]:
     """What restoring touches, and what it must not."""
-    editor = session.editor
-    kept = [session.entry, session.parameters, session.robot, editor, editor.design, editor.curve]
-    kept += [editor.version, session.rate, session.copy, session.exaggeration, session.time]
-    kept += [id(run) for run in session.runs.values()] + [len(session.history), session.running]
-    return [*kept, dict(session._benches), session.grips.held.copy(), session.message]
+    editor = lab.session.editor
+    kept = [
+        lab.session.entry,
+        lab.session.parameters,
+        lab.session.robot,
+        editor,
+        editor.design,
+        editor.curve,
+    ]
+    kept += [
+        editor.version,
+        lab.session.rate,
+        lab.session.copy,
+        lab.session.exaggeration,
+        lab.session.time,
+    ]
+    kept += [id(run) for run in lab.session.runs.values()] + [
+        len(lab.session.history),
+        lab.session.running,
+    ]
+    return [*kept, dict(lab.session._benches), lab.session.grips.held.copy(), lab.message]
 
 
 def test_a_new_lab_has_nothing_to_tell() -> None:
-    assert capture(new_session()) == Setup()
+    assert capture(new_lab().session) == Setup()
     assert to_data(Setup()) == {}
 
 
 @SLOW
 @given(setups())
 def test_what_is_restored_is_captured_again(setup: Setup) -> None:
-    session = new_session(0.1)
+    lab = new_lab(0.1)
     if followable(setup):
-        restore(session, setup)
-        run(session, 0.1)
-        assert capture(session) == setup
-        assert session.time > 0
+        restore(lab.session, setup)
+        run(lab, 0.1)
+        assert capture(lab.session) == setup
+        assert lab.session.time > 0
 
 
 def test_what_a_parameter_takes_for_nothing_is_kept_as_nothing() -> None:
     for gain in (NOTHING, NOTHING / 2, 2 * NOTHING):
-        session = new_session()
-        restore(session, Setup(benches={"five_bar": RobotSetup({"K1": gain})}))
-        value = session.parameters.K1
-        assert value == kept(specs(session.parameters)["K1"], gain) == (gain > NOTHING) * gain
+        lab = new_lab()
+        restore(lab.session, Setup(benches={"five_bar": RobotSetup({"K1": gain})}))
+        value = lab.session.parameters.K1
+        assert value == kept(specs(lab.session.parameters)["K1"], gain) == (gain > NOTHING) * gain
 
 
 @CALM
@@ -97,15 +113,15 @@ def test_data_round_trip(setup: Setup) -> None:
 @SLOW
 @given(designs)
 def test_a_path_comes_back_where_it_was(design: PathDesign) -> None:
-    session = new_session()
-    if session.editor.commit(design):
-        other = new_session()
-        restore(other, capture(session))
-        back, theta = other.editor.design, design.curve.sample()
+    lab = new_lab()
+    if lab.session.editor.commit(design):
+        other = new_lab()
+        restore(other.session, capture(lab.session))
+        back, theta = other.session.editor.design, design.curve.sample()
         assert back.curve.closed == design.curve.closed
         assert np.abs(back.curve.at(theta) - design.curve.at(theta)).max() < 2e-5
         assert np.abs(back.points - design.points).max() < 2e-5
-        np.testing.assert_array_equal(other.editor.curve.series, back.curve.series)
+        np.testing.assert_array_equal(other.session.editor.curve.series, back.curve.series)
 
 
 @pytest.mark.parametrize("closed", [True, False])
@@ -114,40 +130,40 @@ def test_a_stroke_keeps_its_number_of_control_points(closed: bool) -> None:
 
 
 def test_robots_start_on_the_new_path_and_undo_brings_the_old() -> None:
-    session = new_session(0.5)
-    restore(session, own(name="ellipse"))
-    assert (session.time == 0 and session.editor.curve is PRESETS["ellipse"].curve) or (
-        session.editor.curve is session.presets["ellipse"].curve
+    lab = new_lab(0.5)
+    restore(lab.session, own(name="ellipse"))
+    assert (lab.session.time == 0 and lab.session.editor.curve is PRESETS["ellipse"].curve) or (
+        lab.session.editor.curve is lab.session.presets["ellipse"].curve
     )
-    run(session, 1.0)
-    assert session.runs[FOLLOWER].max_distance < 1e-4
-    do(session, Undo())
-    assert session.editor.design.name == "circle"
+    run(lab, 1.0)
+    assert lab.session.runs[FOLLOWER].max_distance < 1e-4
+    do(lab, Undo())
+    assert lab.session.editor.design.name == "circle"
 
 
 def test_every_bench_is_kept_and_those_not_named_are_as_new() -> None:
-    session = new_session()
-    do(session, SetParameter("K3", 100.0), ChooseRobot(FLEXIBLE), SetParameter("alpha", 0.25))
-    do(session, ChoosePath("segment"))
-    kept = capture(session)
+    lab = new_lab()
+    do(lab, SetParameter("K3", 100.0), ChooseRobot(FLEXIBLE), SetParameter("alpha", 0.25))
+    do(lab, ChoosePath("segment"))
+    kept = capture(lab.session)
     assert kept.robot == FLEXIBLE and set(kept.benches) == {RIGID, FLEXIBLE}
-    restore(session, Setup())
-    assert capture(session) == Setup()
-    restore(session, kept)
-    assert session.entry.name == FLEXIBLE and session.parameters.K3 == 0.0
-    do(session, ChooseRobot(RIGID))
-    assert session.parameters.K3 == 100.0
-    assert capture(session).benches == kept.benches
+    restore(lab.session, Setup())
+    assert capture(lab.session) == Setup()
+    restore(lab.session, kept)
+    assert lab.session.entry.name == FLEXIBLE and lab.session.parameters.K3 == 0.0
+    do(lab, ChooseRobot(RIGID))
+    assert lab.session.parameters.K3 == 100.0
+    assert capture(lab.session).benches == kept.benches
 
 
 def test_numbers_with_a_tail_are_rounded_within_their_range() -> None:
-    session = new_session()
-    do(session, SetParameter("target", math.pi), SetParameter("K1", 0.1 + 0.2))
-    do(session, SetParameter("payload", 1e-300))
-    kept = capture(session)
+    lab = new_lab()
+    do(lab, SetParameter("target", math.pi), SetParameter("K1", 0.1 + 0.2))
+    do(lab, SetParameter("payload", 1e-300))
+    kept = capture(lab.session)
     assert kept.benches[RIGID].parameters == {"K1": 0.3, "target": 3.14159}
-    restore(session, kept)
-    assert capture(session) == kept
+    restore(lab.session, kept)
+    assert capture(lab.session) == kept
 
 
 BAD: dict[str, tuple[Setup, str]] = {
@@ -194,12 +210,12 @@ def test_a_bad_setup_is_refused_in_words_and_changes_nothing(case: str) -> None:
     if setup.benches:  # what else is in it is good, and must not be applied either
         good = {"rate": 2.0, "copy": False, "exaggeration": 3.0, "robot": FLEXIBLE}
         setup = msgspec.structs.replace(setup, **good)
-    session = new_session(0.2)
-    do(session, ChooseRobot(FLEXIBLE), ChooseRobot(RIGID), SelectPoint(2), AddPoint())
-    before = everything(session)
+    lab = new_lab(0.2)
+    do(lab, ChooseRobot(FLEXIBLE), ChooseRobot(RIGID), SelectPoint(2), AddPoint())
+    before = everything(lab)
     with pytest.raises(ValueError, match=words):
-        restore(session, setup)
-    assert everything(session) == before
+        restore(lab.session, setup)
+    assert everything(lab) == before
 
 
 @pytest.mark.parametrize("data", [None, 3, "x", [], {"robots": 1}, {"benches": {RIGID: {"x": 1}}}])
@@ -209,9 +225,9 @@ def test_strange_data_is_refused(data: Any) -> None:
 
 
 def test_presets_that_are_offered_can_be_restored() -> None:
-    session = new_session()
+    lab = new_lab()
     for name in FOLLOWABLE:
-        assert not curve_faults(session.robot.margin, PRESETS[name].curve)
+        assert not curve_faults(lab.session.robot.margin, PRESETS[name].curve)
         assert capture_path(PRESETS[name], PRESETS) == Path(name)
-        restore(session, own(name=name))
-        assert session.editor.design is session.presets[name]
+        restore(lab.session, own(name=name))
+        assert lab.session.editor.design is lab.session.presets[name]

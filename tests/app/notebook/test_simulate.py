@@ -103,8 +103,9 @@ def test_every_parameter_is_listed_with_its_range_and_can_be_set(robot: str) -> 
         specs(type(onpath.simulate(robot, duration=0.01).experiment.parameters))
     )
     for name, text in listed.items():
+        wrong: Any = {name: "no such value"}
         with pytest.raises(ValueError, match=re.escape(name.replace("output", "law"))):
-            onpath.simulate(robot, **{name: "no such value"})
+            onpath.simulate(robot, **wrong)
         assert re.match(r"\S+, (one of|\S+ to \S+)", text)
     assert "output" in onpath.parameters(FLEXIBLE.name)
 
@@ -161,7 +162,8 @@ def test_a_path_goes_through_its_points() -> None:
     for closed in (True, False):
         curve = onpath.through(points, closed)
         assert curve.nearest(points)[1].max() < 1e-3 and curve.closed is closed
-    assert onpath.segment((0.0, 0.01), (0.03, 0.02)).at(np.pi) == pytest.approx([0.03, 0.02])
+    end = onpath.segment((0.0, 0.01), (0.03, 0.02)).at(np.array(np.pi))
+    assert end == pytest.approx([0.03, 0.02])
 
 
 def test_pictures_and_files_are_whole_or_refused(tmp_path: Path) -> None:

@@ -9,9 +9,10 @@ from contextlib import ExitStack
 
 import pytest
 
+from onpath.app.exports import exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.build_queue import FEW
 from onpath.app.page.page import Page
 from onpath.app.server.lab_server import LabServer
@@ -32,11 +33,11 @@ class Builds:
     def watch(self, monkeypatch: pytest.MonkeyPatch) -> None:
         genuine = Page._build
 
-        def build(view: Page, session: Session) -> None:
+        def build(view: Page, first: PageSnapshot) -> None:
             self._now += 1
             self.most = max(self.most, self._now)
             time.sleep(LONG)
-            genuine(view, session)
+            genuine(view, first)
             self._now -= 1
             self.done += 1
 
@@ -100,9 +101,26 @@ def test_pages_are_built_one_at_a_time_and_who_waits_is_told(
         assert not any(comer.student.sees(MOMENT) for comer in crowd)
         assert after[-1] - after[0] > 2 * (CROWD - 2) * LONG  # with a rest after each
         for lab in server.simulation.labs:  # a teacher opens a lesson for all
-            lab.session.post(c.OpenLesson(next(iter(lab.session.lessons.course.lessons))))
+            lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
         wait_for(lambda: builds.done >= 2 * CROWD, 20)
         assert builds.most == 1
+
+
+def test_a_file_that_is_being_made_does_not_delay_the_page(
+    server: LabServer, builds: Builds, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun, over = threading.Event(), threading.Event()
+    monkeypatch.setattr(exporter.process, "call", lambda *_: (begun.set(), over.wait(), b"")[2])
+    comer = Comer(f"ws://127.0.0.1:{server.server.get_port()}")
+    with comer.student:
+        comer.run()
+        wait_for_views(server, 1)
+        (view,), (lab,) = server._views.values(), server.simulation.labs
+        view.page.exporter.csv()
+        assert begun.wait(60)
+        lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
+        wait_for(lambda: builds.done == 2, 60)
+        over.set()
 
 
 def test_who_leaves_while_waiting_is_built_nothing(server: LabServer, builds: Builds) -> None:

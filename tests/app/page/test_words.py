@@ -15,7 +15,7 @@ import pytest
 from jinja2 import Environment, nodes
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.page.panels.keys import KEYS, help_text
 from onpath.app.page.panels.widgets import label_of, option_of
 from onpath.app.page.plots import MORE
@@ -397,18 +397,18 @@ def test_numbers_are_written_plainly_in_every_language() -> None:
 
 
 def test_a_german_lab_speaks_german() -> None:
-    session = Session(store(), FLEXIBLE)
-    do(session, c.SetLanguage("de"), c.ChoosePath("figure of eight"))
-    assert session.message.startswith("Diese Bahn geht nicht: die Bahn kreuzt sich selbst")
-    do(session, c.Undo())
-    assert session.message == "es gibt nichts rückgängig zu machen"
-    do(session, c.RemovePoint())
-    assert session.message.startswith("wähle erst einen Kontrollpunkt")
-    do(session, c.SetParameter("law", "redefined"), c.SetParameter("alpha", 0.95))
-    run(session, 3.0)
-    assert "regelung: stehen geblieben" in session.message and "Nulldynamik" in session.message
-    do(session, c.SetLanguage("en"))
-    assert "stopped at" in session.message and str(UNSTABLE) in session.message
+    lab = Lab(store(), FLEXIBLE)
+    do(lab, c.SetLanguage("de"), c.ChoosePath("figure of eight"))
+    assert lab.message.startswith("Diese Bahn geht nicht: die Bahn kreuzt sich selbst")
+    do(lab, c.Undo())
+    assert lab.message == "es gibt nichts rückgängig zu machen"
+    do(lab, c.RemovePoint())
+    assert lab.message.startswith("wähle erst einen Kontrollpunkt")
+    do(lab, c.SetParameter("law", "redefined"), c.SetParameter("alpha", 0.95))
+    run(lab, 3.0)
+    assert "regelung: stehen geblieben" in lab.message and "Nulldynamik" in lab.message
+    do(lab, c.SetLanguage("en"))
+    assert "stopped at" in lab.message and str(UNSTABLE) in lab.message
 
 
 def test_a_parameter_without_words_has_those_of_its_declaration() -> None:

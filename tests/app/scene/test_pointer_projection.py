@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -12,8 +13,10 @@ from onpath.app.scene.pointer_projection import (
     VERTICAL_PLANE,
     Box,
     intersect_ray_plane,
+    plane_coordinates,
     pointer_on_plane,
 )
+from onpath.models.systems.catalogue import ROBOTS
 
 vectors = arrays(np.float64, 3, elements=st.floats(-10.0, 10.0))
 NOT_FINITE = st.sampled_from([np.nan, np.inf, -np.inf])
@@ -87,3 +90,12 @@ def test_far_pointer_stays_within_reach():
     )
     assert far is not None
     np.testing.assert_allclose(far, [REACHABLE.upper[0], 0.0, REACHABLE.upper[2]])
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+@given(z=arrays(np.float64, (5, 2), elements=st.floats(-0.6, 0.6)))
+def test_coordinates_of_the_path_s_plane_are_those_a_point_was_drawn_from(name, z):
+    robot = ROBOTS[name].make(ROBOTS[name].lab)
+    np.testing.assert_allclose(
+        plane_coordinates(robot, robot.place(robot.frame.lift(z))), z, atol=1e-15
+    )

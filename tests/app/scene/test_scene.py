@@ -13,9 +13,16 @@ import viser
 from scipy.spatial.transform import Rotation
 
 from onpath.app.common import palette
-from onpath.app.lab.part_poses import bar_quaternions, waist_angle
-from onpath.app.lab.robot_geometry import geometry_function
-from onpath.app.lab.snapshot import TIP, FollowerName, PathView, RobotView, Snapshot, TrackerName
+from onpath.app.lab.snapshots.part_poses import bar_quaternions, waist_angle
+from onpath.app.lab.snapshots.robot_geometry import geometry_function
+from onpath.app.lab.snapshots.snapshot import (
+    TIP,
+    FollowerName,
+    PathView,
+    RobotView,
+    Snapshot,
+    TrackerName,
+)
 from onpath.app.scene.poses import trace_segments
 from onpath.app.scene.robot_nodes import TRACE_SEGMENTS
 from onpath.app.scene.scene import Scene, SceneCallbacks, meshes

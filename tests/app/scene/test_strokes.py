@@ -36,7 +36,7 @@ class Page:
         (self.number,) = wait_for(lambda: list(lab._views))
         self.view: Any = lab._views[self.number]
         self.client = lab.server.get_clients()[self.number]
-        self.session = next(iter(lab.sessions._entries.values())).lab.session
+        self.lab = next(iter(lab.sessions._entries.values())).scheduled.lab
         lab.simulation.stop()
         self.frame, self._showing = 0, False
         self.told: list[int] = []  # points of each drawing
@@ -56,8 +56,8 @@ class Page:
     def show(self) -> None:
         """A frame, as the simulation thread does it."""
         self._showing = True
-        self.session.drain()
-        self.view.show(self.session, 1.0, self.frame, 2.0)
+        self.lab.drain()
+        self.view.show(self.lab, 1.0, self.frame, 2.0)
         self.view.send()
         self._showing = False
         self.frame += 1
@@ -102,7 +102,7 @@ def around(k: int) -> np.ndarray:
 
 def test_an_endless_freehand_stroke_is_drawn_ten_times_a_second_of_few_points(page: Page) -> None:
     strokes: list[np.ndarray] = []
-    page.view._scene.begin_freehand(strokes.append)
+    page.view.page._scene.begin_freehand(strokes.append)
     base = next(iter(stage_of(rigid_five_bar()).bases.values()))
     page.scribble("/freehand/sheet", lambda k: base + around(k))
     page.assert_bounded()
@@ -116,18 +116,18 @@ def test_an_endless_freehand_stroke_is_drawn_ten_times_a_second_of_few_points(pa
 
 
 def test_an_endless_sketch_too(page: Page) -> None:
-    course = page.session.lessons.course
+    course = page.lab.lessons.course
     name, step = next(
         (name, number)
         for name in course.lessons
         for number, step in enumerate(course.lesson(name, "en").steps)
         if any(isinstance(block, Sketch) for block in step.blocks)
     )
-    page.session.post(c.OpenLesson(name))
+    page.lab.post(c.OpenLesson(name))
     for _ in range(step):
-        page.session.post(c.GoToStep(step))
+        page.lab.post(c.GoToStep(step))
     wait_for(lambda: page.shown("/board/sheet"))
-    (board,) = wait_for(lambda: [p._board for p in page.view._parts if hasattr(p, "_board")])
+    (board,) = wait_for(lambda: [p._board for p in page.view.page._parts if hasattr(p, "_board")])
     page.scribble("/board/sheet", lambda k: board._world(0.3 * sideways(k)[None])[0])
     page.assert_bounded()
     page.end()

@@ -72,7 +72,7 @@ class Guest:
         (self.id,) = wait_for(lambda: set(server._views) - before)
         self.client = server.server.get_clients()[self.id]
         entries = server.sessions._entries.values()
-        self.lab = next(entry.lab for entry in entries if entry.client == self.id)
+        self.scheduled = next(entry.scheduled for entry in entries if entry.client == self.id)
 
     def send(self, kind: str, **fields: Any) -> None:
         self.socket.send(packed(kind, **fields))
@@ -196,7 +196,7 @@ NO_VALUES: list[Any] = [
 def test_no_widget_of_the_lab_takes_what_it_cannot_hold(
     server: LabServer, attacker: Guest, witness: Witness
 ) -> None:
-    session = attacker.lab.session
+    lab = attacker.scheduled.lab
     handles = attacker.handles
     assert len(handles) > 50
     with witness.served():
@@ -204,8 +204,8 @@ def test_no_widget_of_the_lab_takes_what_it_cannot_hold(
             for value in NO_VALUES:
                 attacker.update(uuid, value)
                 time.sleep(1 / 450)
-    wait_for(lambda: not session._inbox)
-    assert_sound(session)
+    wait_for(lambda: not lab._inbox)
+    assert_sound(lab)
     for handle in handles.values():
         value = getattr(handle, "value", 0.0)
         if isinstance(value, (int, float)):
@@ -222,15 +222,15 @@ def test_another_s_widgets_do_not_move(
 ) -> None:
     victim = Guest(server)
     before = {uuid: handle.value for uuid, handle in victim.handles.items()}
-    parameters = victim.lab.session.parameters
+    parameters = victim.scheduled.session.parameters
     with witness.served():
         for uuid in before:
             for value in (True, 1, 1.0, "ellipse"):
                 attacker.update(uuid, value)
                 time.sleep(1 / 450)
         time.sleep(0.2)
-    assert victim.lab.session.parameters == parameters and victim.lab.session.asked == 0
-    assert victim.lab.session.editor.design.name == "circle"
+    assert victim.scheduled.session.parameters == parameters and victim.scheduled.lab.asked == 0
+    assert victim.scheduled.session.editor.design.name == "circle"
     moving = ("GuiProgressBarHandle",)
     after = victim.handles
     changed = [u for u in before if after[u].value != before[u]]
@@ -260,7 +260,7 @@ def test_long_work_asked_for_all_the_time_is_the_asker_s_to_wait_for(
         for k in range(600):
             attacker.update(uuid, values[k % len(values)])
             time.sleep(1 / 450)
-    assert len(attacker.lab.session._inbox) <= 500
+    assert len(attacker.scheduled.lab._inbox) <= 500
 
 
 def test_5000_messages_a_second_close_the_sender(
@@ -473,8 +473,8 @@ def test_a_clock_that_jumps_is_not_noticed(
             monkeypatch.setattr(time, "time", lambda jump=jump: genuine() + jump)
             time.sleep(0.3)
             newcomer = Guest(server)
-            begun = newcomer.lab.session.time
-            wait_for(lambda n=newcomer, b=begun: n.lab.session.time > b + 0.1)
+            begun = newcomer.scheduled.session.time
+            wait_for(lambda n=newcomer, b=begun: n.scheduled.session.time > b + 0.1)
             newcomer.socket.close()
     assert labs <= set(server.simulation.labs)
 

@@ -15,7 +15,7 @@ from onpath.app.server.lab_registry import (
     RegisteredLab,
 )
 from onpath.app.simulation.simulation_thread import SimulationThread
-from tests.support.lab import new_session
+from tests.support.lab import new_lab
 
 
 class Desk:
@@ -24,7 +24,7 @@ class Desk:
     def __init__(self) -> None:
         self.now = 1000.0
         self.simulation = SimulationThread()
-        self.sessions = LabRegistry(self.simulation, new_session, lambda: self.now)
+        self.sessions = LabRegistry(self.simulation, new_lab, lambda: self.now)
         self.storage: dict[str, str | None] = {}
         self._clients = 0
 
@@ -33,13 +33,13 @@ class Desk:
         self._clients += 1
         known = self.storage.get(browser)
         entry = self.sessions.join(self._clients, known)
-        entry.lab.view = _View()
+        entry.scheduled.view = _View()
         self.storage[browser] = self.sessions.remembered(entry.code, known)
         return self._clients, entry
 
 
 class _View:
-    def show(self, session: object, achieved: float, frame: int, stride: float) -> None:
+    def show(self, lab: object, achieved: float, frame: int, stride: float) -> None:
         pass
 
     def send(self) -> None:
@@ -56,16 +56,16 @@ def test_reload_comes_back_to_the_same_lab(desk: Desk) -> None:
     for _ in range(5):
         left = desk.sessions.leave(client)
         assert left is entry and entry.client is None
-        assert entry.lab.view is None  # time waits
+        assert entry.scheduled.view is None  # time waits
         client, again = desk.open("a")
-        assert again is entry and entry.client == client and entry.lab.view is not None
-    assert len(desk.sessions) == 1 and desk.simulation.labs == [entry.lab]
+        assert again is entry and entry.client == client and entry.scheduled.view is not None
+    assert len(desk.sessions) == 1 and desk.simulation.labs == [entry.scheduled]
 
 
 def test_two_tabs_are_two_labs_and_each_reload_finds_its_own(desk: Desk) -> None:
     first, one = desk.open("a")
     second, two = desk.open("a")
-    assert one is not two and one.lab.session is not two.lab.session and one.code != two.code
+    assert one is not two and one.scheduled.lab is not two.scheduled.lab and one.code != two.code
     desk.sessions.leave(first)
     assert desk.open("a")[1] is one
     desk.sessions.leave(second)
@@ -118,12 +118,12 @@ def test_abandoned_lab_is_kept_for_a_while_and_then_dropped(desk: Desk) -> None:
     desk.sessions.leave(client)
     desk.now += KEPT - 1
     desk.sessions.leave(desk.open("b")[0])
-    assert entry.lab in desk.simulation.labs
+    assert entry.scheduled in desk.simulation.labs
     desk.now += 2
     desk.open("b")
-    assert entry.lab not in desk.simulation.labs
+    assert entry.scheduled not in desk.simulation.labs
     assert desk.open("a")[1] is not entry
-    assert used.lab in desk.simulation.labs  # somebody looks at it, however long
+    assert used.scheduled in desk.simulation.labs  # somebody looks at it, however long
 
 
 def test_no_more_than_so_many_wait(desk: Desk) -> None:

@@ -11,8 +11,8 @@ import pytest
 
 from onpath.app.common.access_codes import new_code
 from onpath.app.common.throttle import TRIES
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import on_slow_press
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.lab_server import LabServer
@@ -95,7 +95,7 @@ def ends(act: Callable[[], Any]) -> bool:
 
 def new_sessions(held: Held) -> LabRegistry:
     leases: Any = held
-    make = lambda: Session(store())  # noqa: E731
+    make = lambda: Lab(store())  # noqa: E731
     return LabRegistry(SimulationThread(), make, load=held.load, leases=leases)
 
 
@@ -149,8 +149,8 @@ def test_two_who_want_the_same_lab_at_once_get_it_once() -> None:
 def test_codes_that_nobody_has_make_no_session_and_soon_are_refused_unasked() -> None:
     made, asked = [], []
 
-    def make() -> Session:
-        made.append(Session(store()))
+    def make() -> Lab:
+        made.append(Lab(store()))
         return made[-1]
 
     sessions = LabRegistry(SimulationThread(), make, load=asked.append)  # type: ignore[arg-type]

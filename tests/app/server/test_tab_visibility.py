@@ -16,8 +16,8 @@ from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server import tab_visibility as onlooker
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.tab_visibility import PATIENCE, QUESTION_INTERVAL, TICK, TabVisibility
-from onpath.app.simulation.simulation_thread import Lab
-from tests.support.lab import new_session
+from onpath.app.simulation.simulation_thread import ScheduledLab
+from tests.support.lab import new_lab
 from tests.support.student import Student
 
 QUIET = QUESTION_INTERVAL + PATIENCE + 2 * TICK  # [s] after which nothing more is sent
@@ -37,10 +37,10 @@ class Browser:
         )
         self._websock_connection = SimpleNamespace(queue_message=self._take)
         self.onlooker = TabVisibility(self, lambda: self.now)  # type: ignore[arg-type]
-        self.lab = Lab(new_session())
-        self.onlooker.watch(self.lab, self)
+        self.scheduled = ScheduledLab(new_lab())
+        self.onlooker.watch(self.scheduled, self)
 
-    def show(self, session: object, achieved: float, frame: int, stride: float) -> None:
+    def show(self, lab: object, achieved: float, frame: int, stride: float) -> None:
         self.told += 1
 
     def send(self) -> None:
@@ -57,10 +57,10 @@ class Browser:
         """Time passes, and the lab is shown as long as somebody looks."""
         for _ in range(round(seconds / TICK)):
             self.now += TICK
-            if tells and self.lab.view is not None:
-                self.lab.drain()
-                self.lab.advance(TICK)
-                self.lab.show(0, 1)
+            if tells and self.scheduled.view is not None:
+                self.scheduled.drain()
+                self.scheduled.advance(TICK)
+                self.scheduled.show(0, 1)
             before = self.asked
             self.onlooker.look()
             if answers and self.asked > before:
@@ -72,28 +72,28 @@ def test_who_answers_late_is_looked_for_and_not_taken_for_gone() -> None:
     browser.wait(60.0, answers=True)
     assert 60 / (QUESTION_INTERVAL + TICK) - 1 <= browser.asked <= 60 / QUESTION_INTERVAL
     browser.wait(QUESTION_INTERVAL + PATIENCE - TICK)
-    assert browser.lab.view is browser
+    assert browser.scheduled.view is browser
 
 
 def test_a_lab_waits_for_who_does_not_answer_and_goes_on() -> None:
     browser = Browser()
-    session = browser.lab.session
+    lab = browser.scheduled.lab
     browser.wait(QUIET)
-    assert browser.lab.view is None
-    told, asked, simulated = browser.told, browser.asked, session.time
+    assert browser.scheduled.view is None
+    told, asked, simulated = browser.told, browser.asked, lab.session.time
     browser.wait(100.0)
-    assert (browser.told, session.time) == (told, simulated) and simulated > 0
+    assert (browser.told, lab.session.time) == (told, simulated) and simulated > 0
     assert browser.asked - asked <= 100 / QUESTION_INTERVAL
     browser.answer()
-    assert browser.lab.view is browser
+    assert browser.scheduled.view is browser
     browser.wait(10.0, answers=True)
-    assert browser.told > told and session.time > simulated
+    assert browser.told > told and lab.session.time > simulated
 
 
 def test_who_is_told_nothing_is_asked_nothing() -> None:
     browser = Browser()
     browser.wait(100.0, tells=False)
-    assert browser.asked == 0 and browser.lab.view is browser
+    assert browser.asked == 0 and browser.scheduled.view is browser
 
 
 def test_who_has_left_does_not_come_back_by_a_late_answer() -> None:
@@ -101,14 +101,14 @@ def test_who_has_left_does_not_come_back_by_a_late_answer() -> None:
     browser.wait(QUIET)
     browser.onlooker.leave()
     browser.answer()
-    assert browser.lab.view is None
+    assert browser.scheduled.view is None
     other = Browser()
     other.wait(QUIET)
-    other.lab.view = browser  # somebody else has the lab by now
+    other.scheduled.view = browser  # somebody else has the lab by now
     other.answer()
-    assert other.lab.view is browser
+    assert other.scheduled.view is browser
     other.onlooker.leave()
-    assert other.lab.view is browser
+    assert other.scheduled.view is browser
 
 
 class Tab(Student):
@@ -158,25 +158,25 @@ def tab(server: LabServer) -> Iterator[Tab]:
 
 
 def test_a_hidden_tab_gets_nothing_and_then_the_present_whole(server: LabServer, tab: Tab) -> None:
-    (lab,) = server.simulation.labs
+    (scheduled,) = server.simulation.labs
     visible = tab.rate(2 * GONE)
-    assert lab.view is not None
+    assert scheduled.view is not None
     tab.hidden = True
     tab.rate(GONE)
-    simulated, moving = lab.session.time, tab.moving
+    simulated, moving = scheduled.session.time, tab.moving
     hidden = tab.rate(2.0)
     assert hidden * SOON["QUESTION_INTERVAL"] / QUESTION_INTERVAL < min(HIDDEN, 0.01 * visible)
-    assert lab.session.time == simulated and tab.moving == moving
-    lab.session.post(c.ChoosePath("clover"))  # a teacher does, say
+    assert scheduled.session.time == simulated and tab.moving == moving
+    scheduled.lab.post(c.ChoosePath("clover"))  # a teacher does, say
     tab.show()
     tab.read(lambda: tab.find("Path")["value"] == "clover" and tab.moving > moving + 10)
-    assert lab.session.time > simulated
+    assert scheduled.session.time > simulated
 
 
 def test_a_paused_lab_sends_nothing(server: LabServer, tab: Tab) -> None:
-    (lab,) = server.simulation.labs
+    (scheduled,) = server.simulation.labs
     running = tab.rate(2.0)
-    lab.session.post(c.SetRunning(False))
+    scheduled.lab.post(c.SetRunning(False))
     tab.rate(GONE)
     paused = tab.rate(2.0)
     assert paused < min(PAUSED, 0.05 * running)

@@ -21,6 +21,7 @@ from onpath.app.viser_adapter import secure_server as hardening
 from onpath.app.viser_adapter.sockets import PortInUse, listen, reserve
 from tests.support.student import Student
 from tests.support.supervisor import Supervisor
+from tests.support.waiting import wait_for
 
 linux_only = pytest.mark.skipif(sys.platform != "linux", reason="tried on Linux only")
 
@@ -51,8 +52,8 @@ def test_a_lab_survives_its_worker_on_a_shared_port(supervisor: Supervisor) -> N
         assert student.find("K2")["value"] == 44.0 and student.code == code
         assert student.find("Path")["value"] == "clover"
     supervisor.wait_for(r"worker . has ended")
-    while len(after := supervisor.workers()) < 2 or serving in after:
-        time.sleep(0.1)
+    wait_for(lambda: len(set(supervisor.workers()) - {serving}) == 2, 60.0)
+    after = supervisor.workers()
     supervisor.process.send_signal(signal.SIGINT)
     assert supervisor.process.wait(15) == 0
     assert not any(Path(f"/proc/{worker}").exists() for worker in after)

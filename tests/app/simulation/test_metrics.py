@@ -14,6 +14,7 @@ from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.metrics import LONGEST, Metrics, asked_vitals, vitals
 from onpath.app.simulation.simulation_thread import SimulationThread
+from tests.support.waiting import wait_for
 
 
 @pytest.fixture
@@ -53,7 +54,7 @@ def test_nonsense_is_answered_as_if_it_were_not_there(query: str, thread: Simula
 def test_a_server_tells_its_vitals() -> None:
     server = LabServer("127.0.0.1", 0, LoopCache())
     try:
-        time.sleep(0.5)
+        wait_for(lambda: server.simulation.frames, 30.0)
         address = f"http://127.0.0.1:{server.server.get_port()}/health"
         for query in ("", "?seconds=3"):
             with urllib.request.urlopen(address + query, timeout=9) as reply:

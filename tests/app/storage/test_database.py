@@ -31,7 +31,7 @@ from onpath.app.storage.schema import labs, metadata
 from onpath.app.storage.write_behind import WriteBehind
 from tests.support import waiting
 from tests.support.checkout import ROOT
-from tests.support.lab import new_session
+from tests.support.lab import new_lab
 
 NOON = 1_800_000_000.0
 
@@ -116,7 +116,7 @@ def test_any_states_under_any_codes(labs: dict[str, dict[str, Any]]) -> None:
 
 
 def test_a_lab_comes_back(file: Path) -> None:
-    session, other = new_session(), new_session()
+    session, other = new_lab().session, new_lab().session
     session.editor.commit(session.presets["clover"])
     with opened(file) as records:
         records.save("a", {"setup": to_data(capture(session))})
@@ -398,10 +398,9 @@ def test_kill_9_in_the_middle_of_writes(file: Path) -> None:
     for attempt in range(4):
         process = child(WRITER, str(file), "a", "1000000")
         assert process.stdout is not None and process.stdout.readline() == "open\n"
-        time.sleep(0.05 + 0.04 * attempt)
+        told = [process.stdout.readline() for _ in range(4 + 20 * attempt)]
         process.kill()
-        told = process.communicate(timeout=30)[0].split()
-        assert len(told) > 3
+        told += process.communicate(timeout=30)[0].split()
         with opened(file) as records:
             state = records.load("a")
             assert state is not None and records.warning == ""
@@ -482,17 +481,19 @@ class Memory:
     def __init__(self) -> None:
         self.saved: list[tuple[str, Any]] = []
         self.fault: Exception | None = None
+        self.tries = 0
         self.gate = threading.Event()
         self.gate.set()
 
     def save(self, code: str, state: dict[str, Any]) -> None:
-        self.gate.wait(5.0)
+        self.gate.wait(60.0)
+        self.tries += 1
         if self.fault is not None:
             raise self.fault
         self.saved.append((code, state["n"]))
 
 
-until = partial(waiting.wait_for, seconds=5.0)
+until = partial(waiting.wait_for, seconds=60.0)
 
 
 def number(n: int) -> Callable[[], dict[str, Any]]:
@@ -513,14 +514,13 @@ def test_only_the_latest_state_is_written_and_the_rest_on_close() -> None:
 
 
 def test_states_are_written_every_few_seconds() -> None:
-    store = Memory()
-    keeper = WriteBehind(store, interval=0.05)
-    began, n = time.monotonic(), 0
-    while time.monotonic() - began < 0.5:
+    store, interval, n = Memory(), 0.05, 0
+    keeper = WriteBehind(store, interval)
+    begun = time.monotonic()
+    while len(store.saved) < 5:
         keeper.submit("a", number(n))
         n += 1
-        time.sleep(0.001)
-    assert 3 <= len(store.saved) <= 11
+    assert time.monotonic() - begun >= 4 * interval
     keeper.close()
     assert store.saved[-1] == ("a", n - 1)
     assert [value for _, value in store.saved] == sorted({value for _, value in store.saved})
@@ -530,11 +530,9 @@ def test_a_database_that_hangs_keeps_nobody_waiting() -> None:
     store = Memory()
     store.gate.clear()
     keeper = WriteBehind(store, interval=0.0)
-    began = time.perf_counter()
     for n in range(2000):
         keeper.submit(f"code{n % 60}", number(n))
-    assert time.perf_counter() - began < 2.0  # the store hangs for 5 s
-    assert not store.saved
+    assert not store.saved  # the store still hangs
     store.gate.set()
     keeper.close()
     assert {code for code, _ in store.saved} == {f"code{i}" for i in range(60)}
@@ -566,8 +564,9 @@ def test_what_could_not_be_kept_is_tried_again_and_told_once(caplog: Any) -> Non
     until(lambda: keeper.warning)
     assert keeper.warning == "the disk is full"
     for n in range(2, 20):
+        tries = store.tries
         keeper.submit("b", number(n))
-        time.sleep(0.005)
+        until(lambda tries=tries: store.tries > tries)
     store.fault = None
     until(lambda: len(store.saved) == 2)
     until(lambda: not keeper.warning)

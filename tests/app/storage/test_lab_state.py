@@ -9,7 +9,7 @@ import pytest
 
 from onpath.app.common.access_codes import normalised, shown
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.records import Records, file_url
@@ -34,7 +34,7 @@ class Server:
         self.keeper = WriteBehind(self.records, interval=0.0)
         self.sessions = LabRegistry(
             SimulationThread(),
-            lambda: Session(store(), FIVE_BAR, course),
+            lambda: Lab(store(), FIVE_BAR, course),
             load=self.records.load,
             keeper=self.keeper,
         )
@@ -61,23 +61,23 @@ def test_path_gains_and_lesson_survive_a_restart(
     servers: list[Server], tmp_path: Path, course: Course
 ) -> None:
     entry = servers[0].sessions.join(1, None)
-    session = entry.lab.session
-    do(session, c.SetParameter("K2", 33), c.ChoosePath("clover"), c.OpenLesson("01-a"))
-    do(session, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), c.GoToStep(1))
-    do(session, c.SetParameter("K1", 444))
-    run(session, 2.5)
+    lab = entry.scheduled.lab
+    do(lab, c.SetParameter("K2", 33), c.ChoosePath("clover"), c.OpenLesson("01-a"))
+    do(lab, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), c.GoToStep(1))
+    do(lab, c.SetParameter("K1", 444))
+    run(lab, 2.5)
     again = restart(servers, tmp_path, course).sessions.join(1, entry.code)
-    other = again.lab.session
-    assert again.code == entry.code and other is not session
-    assert other.lessons.progress == session.lessons.progress
-    assert other.parameters == session.parameters and other.parameters.K1 == 444
+    other = again.scheduled.lab
+    assert again.code == entry.code and other is not lab
+    assert other.lessons.progress == lab.lessons.progress
+    assert other.session.parameters == lab.session.parameters and other.session.parameters.K1 == 444
     do(other, c.CloseLesson())
-    assert other.parameters.K2 == 33 and other.editor.design.name == "clover"
+    assert other.session.parameters.K2 == 33 and other.session.editor.design.name == "clover"
 
 
 def test_a_visit_that_did_nothing_leaves_nothing(servers: list[Server]) -> None:
     entry = servers[0].sessions.join(1, None)
-    run(entry.lab.session, 3.0)
+    run(entry.scheduled.lab, 3.0)
     servers[0].keeper.close()
     assert servers[0].records.load(entry.code) is None
 
@@ -86,13 +86,13 @@ def test_a_code_that_was_noted_down_opens_the_lab_elsewhere(
     servers: list[Server], tmp_path: Path, course: Course
 ) -> None:
     entry = servers[0].sessions.join(1, None)
-    do(entry.lab.session, c.ChoosePath("clover"))
-    run(entry.lab.session, 1.5)
+    do(entry.scheduled.lab, c.ChoosePath("clover"))
+    run(entry.scheduled.lab, 1.5)
     server = restart(servers, tmp_path, course)
     own = server.sessions.join(7, None)
     typed = f" {shown(entry.code).upper()} "
     found = server.sessions.enter(7, normalised(typed))
-    assert found.code == entry.code and found.lab.session.editor.design.name == "clover"
+    assert found.code == entry.code and found.scheduled.session.editor.design.name == "clover"
     assert found.client == 7 and own.client is None
     with pytest.raises(ValueError, match="another window"):
         server.sessions.enter(8, entry.code)
@@ -105,9 +105,9 @@ def test_what_cannot_be_read_is_said_and_not_overwritten(servers: list[Server]) 
     records = servers[0].records
     records.save("222222222222", {"setup": {"robot": "hexapod"}, "lessons": {}})
     entry = servers[0].sessions.join(1, "222222222222")
-    assert entry.code != "222222222222" and "cannot be read" in entry.lab.session.message
-    do(entry.lab.session, c.ChoosePath("clover"))
-    run(entry.lab.session, 1.5)
+    assert entry.code != "222222222222" and "cannot be read" in entry.scheduled.lab.message
+    do(entry.scheduled.lab, c.ChoosePath("clover"))
+    run(entry.scheduled.lab, 1.5)
     servers[0].keeper.close()
     assert records.load("222222222222") == {"setup": {"robot": "hexapod"}, "lessons": {}}
     assert records.load(entry.code) is not None

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.leases import FORGOTTEN, NONSENSE, RENEWAL, TERM, Leases
@@ -154,7 +154,7 @@ class Worker:
 
     def __init__(self, records: Records, leases: Leases) -> None:
         self.keeper = WriteBehind(leases, interval=0.0)
-        make = lambda: Session(store())  # noqa: E731
+        make = lambda: Lab(store())  # noqa: E731
         self.sessions = LabRegistry(
             SimulationThread(), make, load=records.load, keeper=self.keeper, leases=leases
         )
@@ -173,11 +173,11 @@ def test_a_lab_goes_to_and_fro_between_processes_as_it_was_left(workers: list[Wo
     entry = one.join(1, None)
     code = entry.code
     for gain, (here, there) in enumerate([(one, two), (two, one), (one, two)], start=41):
-        do(entry.lab.session, c.SetParameter("K2", gain))
-        run(entry.lab.session, 1.1)
+        do(entry.scheduled.lab, c.SetParameter("K2", gain))
+        run(entry.scheduled.lab, 1.1)
         here.leave(1)
         entry = there.join(1, code)
-        assert (entry.code, entry.lab.session.parameters.K2) == (code, gain)
+        assert (entry.code, entry.scheduled.session.parameters.K2) == (code, gain)
     assert one.held() == [] and two.held() == [code]
 
 
@@ -186,8 +186,8 @@ def test_a_lab_that_is_open_elsewhere_is_not_opened_again(
 ) -> None:
     one, two = (worker.sessions for worker in workers)
     entry = one.join(1, None)
-    do(entry.lab.session, c.SetParameter("K2", 44))
-    run(entry.lab.session, 1.1)
+    do(entry.scheduled.lab, c.SetParameter("K2", 44))
+    run(entry.scheduled.lab, 1.1)
     workers[0].keeper.flush(entry.code)
     owners[0].renew(one.held())
     clock.meanwhile = lambda: owners[0].renew(one.held())
@@ -196,6 +196,6 @@ def test_a_lab_that_is_open_elsewhere_is_not_opened_again(
         two.enter(1, entry.code)
     clock.meanwhile = lambda: None  # one is dead now
     found = two.join(2, entry.code)
-    assert found.code == entry.code and found.lab.session.parameters.K2 == 44
+    assert found.code == entry.code and found.scheduled.session.parameters.K2 == 44
     assert owners[0].renew(one.held()) == [entry.code]
     assert one.lose(entry.code) == 1 and one.held() == [] and one.find(entry.code) is None

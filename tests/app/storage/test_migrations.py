@@ -19,7 +19,7 @@ from onpath.app.storage.migrations import HEAD
 from onpath.app.storage.records import Records, file_url
 from onpath.app.storage.schema import metadata
 from tests.support.checkout import ROOT
-from tests.support.lab import new_session
+from tests.support.lab import new_lab
 
 BEFORE_MIGRATIONS = ROOT / "tests" / "data" / "database_0_1.sql"
 
@@ -44,7 +44,7 @@ def test_nothing_of_an_old_database_is_lost(old: Path) -> None:
     before = rows(old)
     records = Records(file_url(old))
     assert records.warning == ""
-    state, session = records.load("c0de01"), new_session()
+    state, session = records.load("c0de01"), new_lab().session
     assert state is not None
     restore(session, from_data(state["setup"]))
     assert (session.parameters.K1, session.editor.design.name) == (900.0, "clover")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Event, Thread
-from time import sleep
 from typing import Any
 
 import msgspec
@@ -20,6 +19,7 @@ from websockets.typing import Subprotocol
 from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, packed, unpacked
 from onpath.app.viser_adapter.frame_channel import FrameChannel, _wire, update_gui, update_node
 from onpath.app.viser_adapter.secure_server import make_server
+from tests.support.waiting import wait_for
 
 
 @pytest.fixture
@@ -98,8 +98,7 @@ def browser(server: viser.ViserServer) -> Iterator[tuple[viser.ClientHandle, Any
         address, subprotocols=[Subprotocol(SUBPROTOCOL)], compression=None
     ) as socket:
         socket.send(packed("ViewerCameraMessage", **CAMERA))
-        while not server.get_clients():
-            sleep(0.01)
+        wait_for(server.get_clients, 30.0)
         (client,) = server.get_clients().values()
         yield client, socket
 
@@ -151,8 +150,7 @@ def test_nobody_is_told_anything_when_he_is_gone(
         channel = FrameChannel(client)
         node = client.scene.add_point_cloud("/node", np.zeros((1, 3)), (0, 0, 0))
         assert not channel.closed
-    while server.get_clients():
-        sleep(0.01)
+    wait_for(lambda: not server.get_clients(), 30.0)
     assert channel.closed
     with channel:
         update_node(node, points=np.ones((1, 3)))
@@ -193,13 +191,12 @@ def test_a_page_is_not_told_what_it_has_just_said(server: viser.ViserServer) -> 
         FrameChannel(client)
         said = {"uuid": slider._impl.uuid, "updates": {"value": 4.0}}
         socket.send(packed("GuiUpdateMessage", **said))
-        while slider.value != 4.0:
-            sleep(0.01)
+        wait_for(lambda: slider.value == 4.0, 30.0)
         slider.value = 5.0
         told: list[Any] = []
         while not told:
             told = [m for m in unpacked(socket.recv(timeout=10)) if "value" in m.get("updates", ())]
         assert [m["updates"]["value"] for m in told] == [5.0]
         buffer = client._websock_connection._state.message_buffer
-        while buffer.message_from_id:  # a picture need not wait for what nobody gets
-            sleep(0.01)
+        # A picture need not wait for what nobody gets.
+        wait_for(lambda: not buffer.message_from_id, 30.0)

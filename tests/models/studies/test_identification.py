@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from onpath.app.exports.exporter import replay
+from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.identify import MOST_TICKS, last_record
-from onpath.app.lab.session import Session
+from onpath.app.lab.lab import Lab
 from onpath.models.arrays import Array
 from onpath.models.paths.curves import Curve, circle
 from onpath.models.studies.identification import (
@@ -27,7 +27,7 @@ from onpath.models.studies.identification import (
     smooth_velocities,
 )
 from onpath.models.systems.five_bar_robot import RigidFiveBar
-from tests.support.lab import FOLLOWER, do, new_session, run
+from tests.support.lab import FOLLOWER, do, new_lab, run
 from tests.support.rig import FOLLOWING, Rig, jacobian
 
 COULOMB = 0.04
@@ -171,103 +171,103 @@ def test_takes_no_more_terms_than_the_data_ask_for(rig: Rig) -> None:
 # In the lab
 
 
-def lab(seconds: float = 5.0, **parameters: Any) -> Session:
+def made_lab(seconds: float = 5.0, **parameters: Any) -> Lab:
     """A lab that has run with some parameters and changed its speed on the way."""
-    session = new_session()
-    do(session, *[c.SetParameter(name, value) for name, value in parameters.items()])
-    run(session, seconds * 0.6)
-    do(session, c.SetParameter("speed", 9.0))
-    run(session, seconds * 0.4)
-    return session
+    lab = new_lab()
+    do(lab, *[c.SetParameter(name, value) for name, value in parameters.items()])
+    run(lab, seconds * 0.6)
+    do(lab, c.SetParameter("speed", 9.0))
+    run(lab, seconds * 0.4)
+    return lab
 
 
-def errors(session: Session) -> Array:
-    return np.array([getattr(session.parameters, f"error_{name}") for name in INERTIA])
+def errors(lab: Lab) -> Array:
+    return np.array([getattr(lab.session.parameters, f"error_{name}") for name in INERTIA])
 
 
-def five_bar(session: Session) -> RigidFiveBar:
-    assert isinstance(session.robot, RigidFiveBar)
-    return session.robot
+def five_bar(lab: Lab) -> RigidFiveBar:
+    assert isinstance(lab.session.robot, RigidFiveBar)
+    return lab.session.robot
 
 
-def worst(session: Session) -> float:
+def worst(lab: Lab) -> float:
     """Largest distance of the follower from the same start, held back and sent back, [m]."""
-    do(session, c.Reset(), c.SetParameter("speed", 6.0))
-    run(session, 2)
-    do(session, c.Hold(True))
-    run(session, 0.5)
-    do(session, c.Hold(False), c.SetParameter("speed", -6.0))
-    run(session, 2)
-    return session.runs[FOLLOWER].max_distance
+    do(lab, c.Reset(), c.SetParameter("speed", 6.0))
+    run(lab, 2)
+    do(lab, c.Hold(True))
+    run(lab, 0.5)
+    do(lab, c.Hold(False), c.SetParameter("speed", -6.0))
+    run(lab, 2)
+    return lab.session.runs[FOLLOWER].max_distance
 
 
 @pytest.mark.parametrize("encoder", [0, 2000])
 def test_lab_finds_its_robot_and_follows_better(encoder: int) -> None:
-    session = lab(error_M11=30, error_b1=-50, encoder_counts=encoder)
-    do(session, c.Identify())
-    assert session.message_level == "info" and "M11 = 0.0226" in session.message
-    assert np.abs(errors(session)).max() < 1.0
-    after = worst(session)
-    do(session, c.SetParameter("error_M11", 30), c.SetParameter("error_b1", -50))
-    assert after < 0.8 * worst(session)
+    lab = made_lab(error_M11=30, error_b1=-50, encoder_counts=encoder)
+    do(lab, c.Identify())
+    assert lab.message_level == "info" and "M11 = 0.0226" in lab.message
+    assert np.abs(errors(lab)).max() < 1.0
+    after = worst(lab)
+    do(lab, c.SetParameter("error_M11", 30), c.SetParameter("error_b1", -50))
+    assert after < 0.8 * worst(lab)
 
 
 def test_lab_takes_what_was_pushed_into_account() -> None:
-    session = new_session()
-    do(session, c.SetParameter("error_M22", 40))
-    run(session, 1)
-    do(session, c.Hold(True))
-    run(session, 0.7)
-    do(session, c.Hold(False), c.MoveHand(0.05, 0.0))
-    run(session, 1)
-    do(session, c.Release())
-    run(session, 1)
-    do(session, c.Identify())
-    assert np.abs(errors(session)).max() < 0.1
+    lab = new_lab()
+    do(lab, c.SetParameter("error_M22", 40))
+    run(lab, 1)
+    do(lab, c.Hold(True))
+    run(lab, 0.7)
+    do(lab, c.Hold(False), c.MoveHand(0.05, 0.0))
+    run(lab, 1)
+    do(lab, c.Release())
+    run(lab, 1)
+    do(lab, c.Identify())
+    assert np.abs(errors(lab)).max() < 0.1
 
 
 def test_lab_says_what_the_model_has_no_place_for() -> None:
-    session = lab(payload=0.1, coulomb=0.05)
-    do(session, c.Identify())
+    lab = made_lab(payload=0.1, coulomb=0.05)
+    do(lab, c.Identify())
     plant = dict(
         zip(
-            session.robot.system.parameter_names,
-            session.robot.plant(session.parameters),
+            lab.session.robot.system.parameter_names,
+            lab.session.robot.plant(lab.session.parameters),
             strict=True,
         )
     )
-    model = session.robot.model(session.parameters)
+    model = lab.session.robot.model(lab.session.parameters)
     assert model[0] == pytest.approx(plant["M11"], rel=1e-3)
-    assert "c1 = 0.05" in session.message and "G1 = 0.19" in session.message
-    heavier = lab(payload=0.3)
+    assert "c1 = 0.05" in lab.message and "G1 = 0.19" in lab.message
+    heavier = made_lab(payload=0.3)
     do(heavier, c.Identify())
     assert errors(heavier).max() == 50 and "as far as" in heavier.message
 
 
 def test_lab_learns_from_the_robot_as_it_is_now() -> None:
-    session = lab(error_M11=30)
-    do(session, c.SetParameter("payload", 0.05), c.SetParameter("speed", 5.0))
-    run(session, 0.5)
-    before = errors(session)
-    do(session, c.Identify())
-    assert session.message_level == "warning" and "only 0.5 s" in session.message
-    np.testing.assert_array_equal(errors(session), before)
-    do(session, c.Reset(), c.Identify())
-    assert session.message_level == "warning" and "let it run" in session.message
+    lab = made_lab(error_M11=30)
+    do(lab, c.SetParameter("payload", 0.05), c.SetParameter("speed", 5.0))
+    run(lab, 0.5)
+    before = errors(lab)
+    do(lab, c.Identify())
+    assert lab.message_level == "warning" and "only 0.5 s" in lab.message
+    np.testing.assert_array_equal(errors(lab), before)
+    do(lab, c.Reset(), c.Identify())
+    assert lab.message_level == "warning" and "let it run" in lab.message
 
 
 def test_lab_looks_at_a_bounded_past_and_that_of_the_follower() -> None:
-    session = lab(8.0)
-    history = session.history.all()
-    record = last_record(five_bar(session), history)
+    lab = made_lab(8.0)
+    history = lab.session.history.all()
+    record = last_record(five_bar(lab), history)
     n = len(record.q)
     assert MOST_TICKS - 20 < n <= MOST_TICKS
-    fields = replay(session.robot, history)[FOLLOWER].fields
+    fields = replay(lab.session.robot, history)[FOLLOWER].fields
     for name, values in (("q", record.q), ("v", record.v), ("u", record.torque)):
         np.testing.assert_allclose(values, fields[name][-n:], atol=1e-12)
 
 
 def test_flexible_robot_is_not_identified() -> None:
-    session = new_session()
-    do(session, c.ChooseRobot("flexible"), c.Identify())
-    assert session.message_level == "warning" and "five-bar linkage" in session.message
+    lab = new_lab()
+    do(lab, c.ChooseRobot("flexible"), c.Identify())
+    assert lab.message_level == "warning" and "five-bar linkage" in lab.message

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import casadi as ca
 
 MARKER_DEPTHS = (-0.008, -0.0095)
@@ -15,9 +17,9 @@ def waist_angle(bars: ca.SX, away: tuple[float, float] = (0.0, 1.0)) -> ca.SX:
         bars: begins and ends of link 1, link 2 and others as columns, shape (3, 2 n), [m].
         away: to which side of it the plane's normal (-sin, cos) shall look.
     """
-    if bars.shape[1] < 4:  # a single bar lies in every vertical plane through it
-        x, y = ca.SX(away[0]), ca.SX(away[1])
-        return ca.atan2(-x, y)
+    single, is_upright = bars.shape[1] < 4, bars[1, :].is_zero() and away[0] == 0
+    if single or is_upright:  # then the normal is known, and nothing is left to compute
+        return ca.SX(math.atan2(-away[0], away[1]))
     a, b = bars[:, 1] - bars[:, 0], bars[:, 3] - bars[:, 2]
     x, y = b[1] * a[2] - b[2] * a[1], b[2] * a[0] - b[0] * a[2]  # normal of the plane
     stretched = ca.hypot(x, y) < 1e-9
@@ -39,7 +41,9 @@ def bar_quaternions(along: ca.SX, waist: ca.SX) -> ca.SX:
     outward = along[0, :] * c + along[1, :] * s
     across = along[1, :] * c - along[0, :] * s
     pitch = ca.atan2(along[2, :], outward) / 2
-    bend = ca.atan2(across, ca.hypot(outward, along[2, :])) / 2
+    bend = 0 * across
+    if not across.is_zero():
+        bend = ca.atan2(across, ca.hypot(outward, along[2, :])) / 2
     cw, sw, cp, sp = ca.cos(waist / 2), ca.sin(waist / 2), ca.cos(pitch), ca.sin(pitch)
     cb, sb = ca.cos(bend), ca.sin(bend)
     w, x, y, z = cw * cp, sw * sp, -cw * sp, sw * cp  # about z by the waist, about -y by the pitch

@@ -1,4 +1,4 @@
-"""What one session shows at one instant: everything the scene and the plots read, nothing else."""
+"""What one lab shows at one instant: all that its scene reads, as plain data."""
 
 from __future__ import annotations
 
@@ -136,14 +136,14 @@ class PathView:
     """The path as it is drawn, in the robot's own frame, [m]. The same for both robots.
 
     Attributes:
-        version: changes whenever anything here does.
+        version: changes whenever anything here does; bytes while the past is looked at.
         points: samples of the curve, shape (n, 3); a closed curve repeats its first point.
         control_points: shape (k, 3); empty when the curve has none.
         selected: index of the selected control point, or None.
         refused: places where the last refused edit was wrong, shape (n, 3); usually empty.
     """
 
-    version: object
+    version: int | bytes
     points: np.ndarray
     control_points: np.ndarray
     selected: int | None
@@ -151,8 +151,30 @@ class PathView:
 
 
 @dataclass(frozen=True, slots=True)
+class PageKey:
+    """What a whole page depends on: when it changes, the page is built anew.
+
+    Attributes:
+        robot: name of the robot.
+        fields: names and sizes of what there is to plot; see `app.lab.plot_samples`.
+        language: of all that is written.
+        in_lesson: whether a lesson is open.
+        presenting: large type for a projector.
+        student: number in the class of the student whose lab it is, for a teacher who looks at
+            it; 0 for one's own lab.
+    """
+
+    robot: str = "five_bar"
+    fields: tuple[tuple[str, int], ...] = ()
+    language: str = "en"
+    in_lesson: bool = False
+    presenting: bool = False
+    student: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class Snapshot:
-    """A session at one instant.
+    """A lab at one instant: all that its scene shows. Plain data, see `app.lab.snapshot_codec`.
 
     Attributes:
         time: simulated, [s].
@@ -165,6 +187,7 @@ class Snapshot:
         message: what the lab says now (a divergence, a refusal), plain text, or "".
         message_level: "info", "warning" or "error".
         note: what the drawing itself must say of its scale, or "".
+        key: see `PageKey`.
     """
 
     time: float
@@ -177,3 +200,4 @@ class Snapshot:
     message: str
     message_level: str
     note: str = ""
+    key: PageKey = PageKey()

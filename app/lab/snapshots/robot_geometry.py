@@ -14,10 +14,10 @@ import casadi as ca
 import numpy as np
 
 from onpath.app.common.per_thread import per_thread
-from onpath.app.lab.history import Instant
-from onpath.app.lab.part_poses import MARKER_DEPTHS, bar_quaternions, waist_angle
 from onpath.app.lab.plot_samples import sample_layout
-from onpath.app.lab.snapshot import END, Counts, FollowerName, RobotView, TrackerName
+from onpath.app.lab.segments import Instant
+from onpath.app.lab.snapshots.part_poses import MARKER_DEPTHS, bar_quaternions, waist_angle
+from onpath.app.lab.snapshots.snapshot import END, Counts, FollowerName, RobotView, TrackerName
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.control.laws import NAMES
@@ -45,17 +45,19 @@ def robot_views(
         exaggeration: of a deflection, in the bars and the drawn end-point.
     """
     geometry = _geometry_of(robot, curve.closed)
-    points, poses = geometry(instant, curve, exaggeration)
+    drawn, size = geometry(instant, curve, exaggeration), 3 * geometry.counts.points
+    points = [each[:size].reshape(-1, 3) for each in drawn]
     trails = UNTRACED
     if traces is not None:
-        trails = np.concatenate([robot.place(traces), points[None, :, END]])
+        ends = np.stack([each[END] for each in points])
+        trails = np.concatenate([robot.place(traces), ends[None]])
     sample, slices = instant.sample, sample_layout(robot).slices
     speeds, distances = (sample[:, slices[name].start].tolist() for name in ("speed", "distance"))
     bent = slices.get("deflection")
     return {
         name: RobotView(
             points=points[i],
-            poses=poses[i],
+            poses=drawn[i][size:],
             counts=geometry.counts,
             trace=trails[:, i],
             distance=distances[i],
@@ -77,14 +79,12 @@ class RobotGeometry:
         self._joints = robot.system.n
         self._seen = np.array(_seen(robot))
 
-    def __call__(self, instant: Instant, curve: Curve, exaggeration: float) -> tuple[Array, Array]:
-        """As `RobotView.points`, shape (robots, n, 3), and `RobotView.poses`, (robots, k)."""
+    def __call__(self, instant: Instant, curve: Curve, exaggeration: float) -> list[Array]:
+        """For each robot `RobotView.points`, flat, and then `RobotView.poses`."""
         q = [state[: self._joints] for state in instant.states]
         seen = instant.sample.take(self._seen)
         flat = self._draw(np.concatenate(q), seen, curve.table(), exaggeration)[0]
-        both = flat.reshape(len(NAMES), -1).copy()
-        size = 3 * self.counts.points
-        return both[:, :size].reshape(len(NAMES), -1, 3), both[:, size:]
+        return list(flat.copy().reshape(len(NAMES), -1))
 
 
 @per_thread

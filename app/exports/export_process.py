@@ -1,0 +1,124 @@
+"""A process that makes files while the lab goes on: started when needed, ended when idle."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+IDLE = 60.0  # [s] after which the process is ended: it takes some 200 MB
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
+
+
+class ExportError(Exception):
+    """A file could not be made."""
+
+
+class ExportProcess:
+    """Calls functions in a process of low priority, one at a time.
+
+    A process that dies, or takes too long and is killed, fails one call; the next call starts
+    another.
+
+    Args:
+        idle: after how long without a call the process is ended, [s].
+    """
+
+    def __init__(self, idle: float = IDLE) -> None:
+        self._idle = idle
+        self._process: subprocess.Popen[bytes] | None = None
+        self._calls = threading.Lock()
+        self._rest: threading.Timer | None = None
+
+    @property
+    def pid(self) -> int | None:
+        """Of the process, if there is one."""
+        return None if self._process is None else self._process.pid
+
+    def call(self, seconds: float, work: Callable[..., Any], *arguments: Any) -> Any:
+        """What `work(*arguments)` returns; other calls wait meanwhile.
+
+        Args:
+            seconds: after which it is given up.
+            work: a function of a module; arguments and result can be pickled.
+
+        Raises:
+            ExportError: it has failed, taken too long, or its process has died.
+        """
+        if seconds <= 0:
+            raise ExportError("given up before its turn")
+        with self._calls:
+            self._stop_resting()
+            process = self._started()
+            limit = threading.Timer(seconds, process.kill)
+            limit.start()
+            try:
+                succeeded, result = _ask(process, work, arguments)
+            except (EOFError, OSError, pickle.UnpicklingError) as error:
+                self._end()
+                why = "the export process has died, or has been ended after its time"
+                raise ExportError(f"{why}: {process.returncode}") from error
+            finally:
+                limit.cancel()
+                self._begin_resting()
+        if not succeeded:
+            raise ExportError(result)
+        return result
+
+    def stop(self) -> None:
+        """End the process; a call under way fails."""
+        if (process := self._process) is not None:
+            process.kill()
+        with self._calls:
+            self._stop_resting()
+            self._end()
+
+    def _started(self) -> subprocess.Popen[bytes]:
+        if self._process is None or self._process.poll() is not None:
+            self._end()
+            path = os.pathsep.join(filter(None, sys.path))
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-m", "onpath.app.exports.worker"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                env={**os.environ, **ONE_THREAD, "PYTHONPATH": path},
+            )
+        return self._process
+
+    def _end(self) -> None:
+        process, self._process = self._process, None
+        if process is not None:
+            process.kill()
+            for pipe in (process.stdin, process.stdout):
+                with suppress(OSError):
+                    pipe and pipe.close()
+            process.wait()
+
+    def _begin_resting(self) -> None:
+        if self._process is not None:
+            self._rest = threading.Timer(self._idle, self._retire)
+            self._rest.daemon = True
+            self._rest.start()
+
+    def _retire(self) -> None:
+        with self._calls:
+            if self._rest is threading.current_thread():  # no call has come in between
+                self._end()
+
+    def _stop_resting(self) -> None:
+        if self._rest is not None:
+            self._rest.cancel()
+
+
+def _ask(
+    process: subprocess.Popen[bytes], work: Callable[..., Any], arguments: tuple[Any, ...]
+) -> tuple[bool, Any]:
+    assert process.stdin is not None and process.stdout is not None
+    pickle.dump((work, arguments), process.stdin, protocol=pickle.HIGHEST_PROTOCOL)
+    process.stdin.flush()
+    return pickle.load(process.stdout)

@@ -1,0 +1,60 @@
+"""The files that a user takes home, as bytes, made from plain data in any process."""
+
+from __future__ import annotations
+
+import io
+from datetime import datetime
+
+from onpath.app.exports.replay import replay
+from onpath.app.lab.lesson_state import LessonState
+from onpath.app.lab.segments import HistoryCopy, Segment
+from onpath.lessons.course import Course
+from onpath.lessons.progress import Progress
+from onpath.lessons.words import Words
+from onpath.models.closed_loop.trajectory import write_csv
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import Robot
+
+FILM = 10.0  # [s]
+
+
+def csv_file(robot: str, parameters: Parameters, history: HistoryCopy) -> bytes:
+    """Every millisecond of the history as CSV; a robot is given by its name and parameters."""
+    return csv_bytes(ROBOTS[robot].make(parameters), history.segments())
+
+
+def picture_file(robot: str, parameters: Parameters, history: HistoryCopy, language: str) -> bytes:
+    """The plots of the history as PNG."""
+    from onpath.app.exports.figures import draw_history  # only this file needs Matplotlib
+
+    runs = replay(ROBOTS[robot].make(parameters), history.segments())
+    return draw_history(runs, Words(language))
+
+
+def film_file(robot: str, parameters: Parameters, history: HistoryCopy, language: str) -> bytes:
+    """A standalone page with the scene of the last seconds."""
+    from onpath.app.exports.recording import record_scene  # only this file needs viser
+
+    made, segments = ROBOTS[robot].make(parameters), last_seconds(history.segments(), FILM)
+    return record_scene(made, segments, Words(language))
+
+
+def report_file(course: Course, progress: Progress, code: str, made: datetime) -> bytes:
+    """The record of the lessons as a page."""
+    from onpath.app.exports.report import report
+
+    return report(LessonState(course, progress), code, made)
+
+
+def csv_bytes(robot: Robot, history: list[Segment]) -> bytes:
+    """Every millisecond of the history as CSV."""
+    file = io.StringIO()
+    write_csv(file, robot, replay(robot, history).values())
+    return file.getvalue().encode()
+
+
+def last_seconds(history: list[Segment], seconds: float) -> list[Segment]:
+    """The end of a history."""
+    end = history[-1].time
+    return [s for s in history if s.time >= end - seconds]

@@ -1,0 +1,75 @@
+"""The last minute of a session computed again, tick by tick."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import lru_cache
+from itertools import groupby
+
+import numpy as np
+
+from onpath.app.lab.segments import Segment
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loops import InterpretedLoop, Loop
+from onpath.models.closed_loop.simulation import kernel_of
+from onpath.models.closed_loop.trajectory import Trajectory, join, record
+from onpath.models.closed_loop.translated_loop import translate_loop
+from onpath.models.systems.robots import Robot
+
+
+def replay(robot: Robot, history: list[Segment]) -> dict[str, Trajectory]:
+    """The history computed again, tick by tick, from its checkpoints and inputs.
+
+    While a robot stands still after a divergence there is nothing of it.
+
+    Raises:
+        ValueError: all of them stood still all the time.
+    """
+    found = {name: _replayed(robot, name, history) for name in history[0].drives}
+    runs = {name: join(name, parts) for name, parts in found.items() if parts}
+    if not runs:
+        raise ValueError("both robots stood still: there is nothing to show")
+    return runs
+
+
+def _replayed(robot: Robot, name: str, history: list[Segment]) -> list[Trajectory]:
+    parts: list[Trajectory] = []
+    runs = groupby(history, key=lambda s: (id(s.curve), s.dt, s.drives[name].kind))
+    for (_, dt, kind), group in runs:
+        stretches = [s for s in group if not s.drives[name].frozen]
+        if not stretches:
+            continue
+        loop = _fast_loop(robot, kind)
+        segments = [(rows, s.curve, held) for s, rows, held in _rows(loop, name, stretches)]
+        times = np.concatenate([s.time + dt * np.arange(s.ticks, dtype=float) for s in stretches])
+        parts.append(record(robot, loop.kernel.log, name, merged(segments), dt, times).thinned())
+    return parts
+
+
+@lru_cache(maxsize=8)
+def _fast_loop(robot: Robot, kind: Kind) -> Loop:
+    """The loop in machine code where that can be made: a minute takes less than a second then."""
+    kernel = kernel_of(robot, kind)
+    try:
+        return translate_loop(kernel)
+    except (NotImplementedError, RuntimeError):
+        return InterpretedLoop(kernel)
+
+
+def _rows(loop: Loop, name: str, stretches: list[Segment]) -> Iterable[tuple[Segment, Array, bool]]:
+    for stretch in stretches:
+        drive = stretch.drives[name]
+        table = stretch.curve.table()
+        rows = loop.run(drive.state, drive.settings, table, stretch.ticks)[1]
+        held = loop.kernel.settings.unpack(drive.settings)["hold_active"][0] > 0
+        yield stretch, rows, bool(held)
+
+
+def merged(segments: list) -> list:
+    """Consecutive segments of one curve and hold as one, so that distances are found at once."""
+    result: list = []
+    for (_, held), group in groupby(segments, key=lambda s: (id(s[1]), s[2])):
+        members = list(group)
+        result.append((np.concatenate([rows for rows, _, _ in members]), members[0][1], held))
+    return result

@@ -1,0 +1,116 @@
+"""From what a lesson's text or script says to commands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from onpath.app.lab.commands.forces import Release
+from onpath.app.lab.commands.parameters import ChooseRobot, Identify, SetParameter
+from onpath.app.lab.commands.path import ChoosePath, MovePoint
+from onpath.app.lab.commands.time import Reset, SetRunning
+from onpath.app.lab.external_forces import displaced
+from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.script_player import ScriptPlayer
+from onpath.lessons.record import ROLES
+from onpath.lessons.schema import Action, RobotName, Script
+from onpath.models.control.laws import NAMES
+from onpath.models.errors import CodedError
+
+CONTROLLERS = {role: controller for controller, role in ROLES.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class ScriptHold(Command):
+    """Hold end-points back or let them go, whatever `SetCopy` says.
+
+    Attributes:
+        only: one robot; empty for both.
+    """
+
+    on: bool
+    only: RobotName | Literal[""] = ""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.session.grips.hold(_controllers(self.only), self.on, lab.session.editor.curve)
+
+
+@dataclass(frozen=True, slots=True)
+class ScriptPull(Command):
+    """Pull end-points away from where one is, whatever `SetCopy` says.
+
+    Attributes:
+        by: along the path's plane, [mm].
+        only: one robot; empty for both, each by the follower's displacement.
+    """
+
+    by: tuple[float, float]
+    only: RobotName | Literal[""] = ""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        session, name = lab.session, CONTROLLERS[self.only or "follower"]
+        there = displaced(
+            session.robot.frame, session.runs[name].shown()["y"], np.array(self.by) / 1e3
+        )
+        session.grips.grab(name, there, _controllers(self.only))
+
+
+@dataclass(frozen=True, slots=True)
+class ScriptMove(Command):
+    """Move a control point by so much, [mm]."""
+
+    index: int
+    right: float
+    up: float
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        points = lab.session.editor.design.points
+        if not 0 <= self.index < len(points):
+            raise CodedError("error.no_point", index=self.index, count=len(points))
+        by = np.array([self.right, self.up]) / 1e3
+        MovePoint(self.index, points[self.index] + by).apply(lab)
+
+
+def commands_of(action: Action) -> list[Command]:
+    """What an action asks for."""
+    return _COMMANDS[action.what](action)
+
+
+def player_of(script: Script) -> ScriptPlayer[Command]:
+    """What plays a script."""
+    timed = [(action.at, command) for action in script.do for command in commands_of(action)]
+    return ScriptPlayer(timed, script.until)
+
+
+def _controllers(only: RobotName | Literal[""]) -> list[str]:
+    return [CONTROLLERS[only]] if only else list(NAMES)
+
+
+def _move(action: Action) -> list[Command]:
+    assert action.move is not None
+    return [ScriptMove(*action.move)]
+
+
+def _pull(action: Action) -> list[Command]:
+    assert action.pull is not None
+    return [ScriptPull(action.pull, action.only)]
+
+
+_COMMANDS: dict[str, Callable[[Action], list[Command]]] = {
+    "hold": lambda action: [ScriptHold(bool(action.hold), action.only)],
+    "pull": _pull,
+    "release": lambda _: [Release()],
+    "set": lambda action: [SetParameter(*item) for item in (action.set or {}).items()],
+    "path": lambda action: [ChoosePath(action.path or "")],
+    "move": _move,
+    "robot": lambda action: [ChooseRobot(action.robot or "")],
+    "reset": lambda _: [Reset()],
+    "run": lambda action: [SetRunning(action.run)],
+    "identify": lambda _: [Identify()],
+}

@@ -1,0 +1,206 @@
+"""One user's lab: the simulation and, around it, what is asked of it, the lessons and messages.
+
+Commands come in through `post` from any thread and are applied by the simulation thread at the
+beginning of its next frame.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from math import inf
+from time import perf_counter
+from typing import ClassVar
+
+from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.script_player import ScriptPlayer
+from onpath.app.lab.session import Session
+from onpath.app.lab.setup import Setup, restore
+from onpath.lessons.course import NO_LESSONS, Course
+from onpath.lessons.words import Words
+from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
+
+MOST_COMMANDS = 500  # waiting at once; a flood beyond is dropped
+
+
+class Command:
+    """Something that is asked of a lab: a frozen record that knows how to apply itself.
+
+    Widgets, keys, the mouse and the teacher's page make commands in any thread; `Lab.post` takes
+    them. What a command carries is checked when it is applied, and not again later.
+
+    Attributes:
+        from_teacher: whether a teacher asks it of a student's lab, which is possible even while
+            that is frozen.
+        lets_time_run: whether it is refused while a prediction is to be made.
+    """
+
+    __slots__ = ()
+    from_teacher: ClassVar[bool] = False
+    lets_time_run: ClassVar[bool] = False
+
+    def apply(self, lab: Lab) -> None:
+        """Do it; in the simulation thread.
+
+        Raises:
+            ValueError: it makes no sense now; the message tells the user why.
+        """
+        raise NotImplementedError
+
+
+class Lab:
+    """A simulated lab and its user.
+
+    Args:
+        store: where the closed loops come from.
+        entry: the robot to begin with.
+        course: the lessons there are.
+
+    Attributes:
+        session: the simulated lab.
+        lessons: the way through the lessons.
+        script: what is being done by itself, or None.
+        message, message_level: what the user is told, and "info", "warning" or "error".
+        shared: the share code asked for last.
+        frozen: whether the teacher has stopped this lab.
+        asked: how many commands the user has given.
+        watch: called at every frame, or None.
+    """
+
+    def __init__(
+        self, store: LoopCache, entry: RobotEntry = FIVE_BAR, course: Course = NO_LESSONS
+    ) -> None:
+        self._inbox: deque[Command] = deque(maxlen=MOST_COMMANDS)
+        self.session = Session(store, entry)
+        self.lessons = LessonRun(course)
+        self.script: ScriptPlayer[Command] | None = None
+        self.message, self.message_level = "", "info"
+        self.shared = ""
+        self.frozen, self.asked = False, 0
+        self.watch: Callable[[Lab], None] | None = None
+
+    @property
+    def words(self) -> Words:
+        """Of the user's language."""
+        return self.lessons.words
+
+    @property
+    def locked(self) -> str:
+        """Why time must not run now; empty when it may."""
+        return self.lessons.locked
+
+    # Commands
+
+    def post(self, command: Command) -> None:
+        """Ask for something; from any thread."""
+        self._inbox.append(command)
+
+    def drain(self, most: float = inf) -> float:
+        """Apply what has been asked for. A command that makes no sense is answered in words.
+
+        Args:
+            most: of computing, after which the rest waits, [s].
+
+        Returns:
+            How long the commands took, [s].
+        """
+        begun = perf_counter()
+        while self._inbox and perf_counter() - begun < most:
+            command = self._inbox.popleft()
+            if not command.from_teacher:
+                self.asked += 1
+                if refusal := self._refusal(command):
+                    self.show_message(refusal, "warning")
+                    continue
+            self._apply(command)
+        taken = perf_counter() - begun
+        if not self.frozen:
+            self._play()
+        self.lessons.follow(self)
+        if self.watch is not None:
+            self.watch(self)
+        return taken
+
+    def _refusal(self, command: Command) -> str:
+        """Why a command of the user's is not applied now; empty when it is."""
+        if self.frozen:
+            return self.words("class.frozen")
+        return self.locked if command.lets_time_run else ""
+
+    def _apply(self, command: Command) -> None:
+        try:
+            command.apply(self)
+        except ValueError as error:
+            self.show_message(self.words.sentence(error), "warning")
+        self.show_faults()
+
+    def _play(self) -> None:
+        """Ask for what a script says."""
+        if self.script is None:
+            return
+        try:
+            if self.script.play(self.session, lambda command: command.apply(self)):
+                self.script = None
+        except ValueError as error:
+            self.script = None
+            self.show_message(self.words.sentence(error), "warning")
+
+    # The simulated lab
+
+    def advance(self, seconds: float) -> None:
+        """Simulate `seconds` of simulated time, if running and not frozen."""
+        if not self.frozen:
+            self.session.advance(seconds)
+            self.show_faults()
+
+    def set_up(self, setup: Setup) -> None:
+        """Set the lab up, both robots at the start of the path; the old path is one undo away.
+
+        Raises:
+            ValueError: something in it is impossible; then the lab is as it was.
+        """
+        restore(self.session, setup)
+        self.show_message("")
+
+    def return_to_present(self) -> None:
+        """Look at the present again, if not already; nothing is forgotten."""
+        if self.session.viewing is not None:
+            self.session.viewing = None
+            self.remark(self.words("say.present"))
+
+    # Messages
+
+    def show_message(self, message: str, level: str = "info") -> None:
+        """Show a sentence to the user."""
+        self.message, self.message_level = message, level
+
+    def clear_message(self) -> None:
+        """Show nothing more, but that robots still stand still."""
+        self.show_message("")
+        for name in self.session.runs:
+            self._show_fault(name)
+
+    def remark(self, message: str) -> None:
+        """Show something less important than that a robot stands still."""
+        self.clear_message()
+        if not self.message:
+            self.show_message(message)
+
+    def show_faults(self) -> None:
+        """Tell of robots that have just stopped."""
+        faults = self.session.faults
+        while faults:
+            self._show_fault(faults.pop(0))
+
+    def _show_fault(self, name: str) -> None:
+        fault = self.session.runs[name].diverged
+        if fault is None:
+            return
+        said = self.words(
+            "say.stopped",
+            robot=self.words(f"controller.{name}.title"),
+            time=f"{fault.time:.2f}",
+            reason=self.words.sentence(fault.reason),
+        )
+        self.show_message(said, "error")

@@ -1,0 +1,1 @@
+"""What is shown of a lab, as data: its parts, their geometry, and their bytes."""

@@ -1,0 +1,206 @@
+"""From a lab to what is shown of it."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import (
+    LessonSnapshot,
+    PageSnapshot,
+    ParameterValues,
+    PathEdit,
+    PlotSamples,
+    RunState,
+)
+from onpath.app.lab.snapshots.robot_geometry import robot_views
+from onpath.app.lab.snapshots.snapshot import FollowerName, PageKey, PathView, Snapshot
+from onpath.lessons.progress import Truth
+from onpath.lessons.schema import Sketch
+from onpath.lessons.words import Words
+from onpath.models.arrays import Array
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.path_design import PathDesign
+from onpath.models.systems.parameters import Parameters, specs
+
+TRACE = 1.6  # [s]
+TRACE_POINTS = 120
+CURVE_POINTS = 160
+PLOT_WINDOW = 10.0  # [s]
+PLOT_POINTS = 160
+DESIGN_POINTS = 32
+
+
+def take_snapshot(
+    lab: Lab,
+    achieved_speed: float,
+    traces: bool = True,
+    before: Snapshot | None = None,
+    student: int = 0,
+) -> Snapshot:
+    """What the scene shows of a lab, now or at the past instant it looks at.
+
+    Args:
+        traces: whether the end-points' traces are wanted.
+        before: the last one of the same lab; what has not changed since is shared with it.
+        student: see `PageKey`.
+    """
+    return Snapshot(**_scene(lab, achieved_speed, traces, before, student))
+
+
+def take_page_snapshot(
+    lab: Lab,
+    achieved_speed: float,
+    before: Snapshot | None = None,
+    student: int = 0,
+    nickname: str = "",
+) -> PageSnapshot:
+    """What the whole page shows of a lab; see `take_snapshot`.
+
+    Args:
+        nickname: the student's in the class; empty for none.
+    """
+    scene, session = _scene(lab, achieved_speed, True, before, student), lab.session
+    follower = session.runs[FollowerName]
+    return PageSnapshot(
+        **scene,
+        parameters=_values(session.parameters),
+        joints=follower.row[follower.log.slices["q"]].copy(),
+        run=RunState(
+            now=session.time,
+            viewing=session.viewing,
+            can_undo_going_on=session.put_aside is not None,
+            rate=session.rate,
+            copy=session.copy,
+            exaggeration=session.exaggeration,
+        ),
+        edit=_path_edit(session),
+        lesson=_lesson(lab),
+        plots=_plots(session, scene["time"], scene["key"], before),
+        shared=lab.shared,
+        nickname=nickname,
+    )
+
+
+def _scene(
+    lab: Lab, achieved: float, traces: bool, before: Snapshot | None, student: int
+) -> dict[str, Any]:
+    """The fields of `Snapshot`."""
+    session, run = lab.session, lab.lessons
+    past = None if session.viewing is None else session.history.at(session.viewing)
+    curve = session.editor.curve if past is None else past.curve
+    time = session.time if session.viewing is None else session.viewing
+    key = PageKey(
+        robot=session.entry.name,
+        fields=session.sample_layout.fields,
+        language=run.words.language,
+        in_lesson=run.lesson is not None,
+        presenting=run.progress.presenting,
+        student=student,
+    )
+    return {
+        "time": time,
+        "running": session.running,
+        "achieved_speed": achieved,
+        "robots": robot_views(
+            session.robot,
+            curve,
+            session.instant() if past is None else past.instant(),
+            _traces(session, time) if traces else None,
+            session.exaggeration,
+        ),
+        "path": _path_view(session, curve, key, before),
+        "held": bool(session.grips.held),
+        "grabbed": session.grips.grabbed,
+        "message": lab.message,
+        "message_level": lab.message_level,
+        "note": scale_note(session, lab.words),
+        "key": key,
+    }
+
+
+def scale_note(session: Session, words: Words) -> str:
+    """A drawing that is not true to scale says so."""
+    if session.exaggeration == 1.0 or not session.robot.extra_fields:
+        return ""
+    return words("scene.larger", factor=f"{session.exaggeration:g}")
+
+
+def _traces(session: Session, time: float) -> Array:
+    """End-points of both robots lately, shape (n, robots, p)."""
+    y = session.sample_layout.slices["y"]
+    _, samples = session.history.samples(time - TRACE, time, TRACE_POINTS, y)
+    return samples if samples.size else np.zeros((0, len(session.runs), session.robot.system.p))
+
+
+def _path_view(session: Session, curve: Curve, key: PageKey, before: Snapshot | None) -> PathView:
+    """The path as it is now, or without its control points as it was when it was `curve`."""
+    editor, robot = session.editor, session.robot
+    is_present = curve is editor.curve
+    version = editor.version if is_present else curve.series.tobytes()
+    if before is not None and before.key.robot == key.robot and before.path.version == version:
+        return before.path
+
+    def placed(z: Array) -> Array:
+        return robot.place(robot.frame.lift(z))
+
+    wrong = [fault.points for fault in editor.faults] if is_present else []
+    return PathView(
+        version=version,
+        points=placed(curve.at(np.linspace(-np.pi, np.pi, CURVE_POINTS))),
+        control_points=placed(editor.points() if is_present else np.zeros((0, 2))),
+        selected=editor.selected if is_present else None,
+        refused=placed(np.concatenate(wrong) if wrong else np.zeros((0, 2))),
+    )
+
+
+def _path_edit(session: Session) -> PathEdit:
+    editor = session.editor
+    return PathEdit(
+        version=editor.version,
+        name=editor.design.name,
+        sampled=_sampled(editor.design),
+        points=editor.points(),
+        selected=editor.selected,
+    )
+
+
+@lru_cache(maxsize=128)
+def _sampled(design: PathDesign) -> Array:
+    return design.curve.at(design.curve.sample(DESIGN_POINTS))
+
+
+@lru_cache(maxsize=128)
+def _values(parameters: Parameters) -> ParameterValues:
+    """The same object for the same parameters."""
+    return {name: getattr(parameters, name) for name in specs(parameters)}
+
+
+def _lesson(lab: Lab) -> LessonSnapshot:
+    run = lab.lessons
+    return LessonSnapshot(
+        version=run.version,
+        progress=run.progress,
+        playing=run.playing,
+        verdicts=dict(run.verdicts),
+        truth=_truth(lab),
+    )
+
+
+def _truth(lab: Lab) -> Truth | None:
+    """While it still happens, only what is drawn meanwhile: a curve."""
+    run, found = lab.lessons, lab.lessons.prediction()
+    if found is None or (run.playing and not isinstance(found[1], Sketch)):
+        return None
+    return run.truth(lab.session)
+
+
+def _plots(session: Session, time: float, key: PageKey, before: Snapshot | None) -> PlotSamples:
+    if isinstance(before, PageSnapshot) and before.time == time and before.key == key:
+        return before.plots
+    history = session.history
+    return PlotSamples(*history.samples(time - PLOT_WINDOW, time, PLOT_POINTS))

@@ -1,0 +1,30 @@
+"""A student's lessons as a page draws them: a snapshot's state, with the course's texts."""
+
+from __future__ import annotations
+
+from onpath.app.lab.lesson_state import LessonState
+from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
+from onpath.lessons.course import Course
+from onpath.lessons.schema import StepSetup
+from onpath.lessons.words import Words
+
+NO_SETUP = StepSetup()
+
+
+class LessonView(LessonState):
+    """Where a student stands in the lessons, and what the lab says of the open step.
+
+    Attributes:
+        playing, verdicts, truth: see `LessonSnapshot`.
+    """
+
+    def __init__(self, course: Course, words: Words, shown: LessonSnapshot) -> None:
+        super().__init__(course, shown.progress, words)
+        self.version, self.playing = shown.version, shown.playing
+        self.verdicts, self.truth = shown.verdicts, shown.truth
+
+    @property
+    def setup(self) -> StepSetup:
+        """Of the open step."""
+        lesson = self.lesson
+        return NO_SETUP if lesson is None else lesson.scene_at(self.index)

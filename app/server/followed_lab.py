@@ -1,0 +1,43 @@
+"""The student's lab that a teacher looks at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from onpath.app.classroom.classroom import Classroom
+from onpath.app.page.teacher_context import TeacherChoices
+from onpath.app.simulation.simulation_thread import ScheduledLab
+from onpath.lessons.words import Words
+
+
+@dataclass(frozen=True, slots=True)
+class FollowedLab:
+    """As chosen on one teacher's page.
+
+    Attributes:
+        lab: of a session code, here or mirrored; None when there is nothing to show.
+    """
+
+    classroom: Classroom
+    chosen: TeacherChoices
+    lab: Callable[[str], ScheduledLab | None]
+
+    def find(self) -> tuple[ScheduledLab, int] | None:
+        """The lab and its student's number, if the student is still in the class."""
+        code = self.chosen.followed
+        member = self.classroom.member(code) if code else None
+        lab = None if member is None else self.lab(code)
+        return None if member is None or lab is None else (lab, member.number)
+
+    def why_still(self, words: Words) -> str:
+        """Why the lab is not there or stands still; empty if it runs."""
+        member = self.classroom.member(self.chosen.followed)
+        if member is None:
+            return ""
+        if not member.connected:
+            return words("class.absent")
+        found = self.find()
+        if found is None:
+            return words("class.fetching")
+        return "" if found[0].is_seen else words("class.hidden")

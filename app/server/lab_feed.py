@@ -1,0 +1,88 @@
+"""From labs to a page: takes a snapshot of the lab to be shown whenever it is the page's turn.
+
+The one place where a lab and a page meet: what draws is given snapshots, and nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot, take_snapshot
+from onpath.app.page.page import Page
+from onpath.app.server.followed_lab import FollowedLab
+from onpath.app.simulation.display_rate import STRIDES, is_turn
+
+AT_EASE = STRIDES[0]  # the stride of a thread that has time
+SLOW, SLOWER = 6, 12  # frames or so per update of traces, plots, readouts: 10 Hz, 5 of many labs
+
+
+class LabFeed:
+    """Shows a lab on a page; see `app.simulation.simulation_thread.Display`.
+
+    Args:
+        offset: spreads the pages' slow updates over the frames.
+        nickname: the student's in the class; empty for none.
+        followed: on a teacher's page, which student's lab to show instead; else None.
+    """
+
+    def __init__(
+        self,
+        page: Page,
+        offset: int,
+        nickname: Callable[[], str] = str,
+        followed: FollowedLab | None = None,
+    ) -> None:
+        self.page = page
+        self._offset, self._nickname, self._followed = offset, nickname, followed
+        self._lab: Lab | None = None
+        self._shown: tuple[object, ...] = ()
+        self._last: Snapshot | None = None
+
+    def show(self, lab: Lab, achieved: float, frame: int, stride: float) -> None:
+        """See `app.simulation.simulation_thread.Display`."""
+        student, other = 0, self._followed.find() if self._followed is not None else None
+        if other is not None:
+            lab, achieved, student = other[0].lab, other[0].achieved, other[1]
+        if lab.session.grips.grabbed and stride == AT_EASE:
+            stride = 1.0  # the hand feels every frame of delay
+        count = frame + self._offset
+        if not is_turn(count, stride) or not self.page.is_ready:
+            return
+        every = stride * round((SLOW if stride <= AT_EASE else SLOWER) / stride)
+        whole = is_turn(count, every) or self.page.is_outdated
+        if self._has_news(lab) or whole:
+            self._show(lab, achieved, student, whole)
+
+    def _has_news(self, lab: Lab) -> bool:
+        """Whether anything is otherwise in the scene than it was shown last."""
+        session, shown = lab.session, self._shown
+        self._shown = (
+            *(session.instant(), session.viewing, session.editor.version),
+            *(session.exaggeration, lab.lessons.progress),
+        )
+        return self._shown != shown
+
+    def _show(self, lab: Lab, achieved: float, student: int, whole: bool) -> None:
+        before = self._last if lab is self._lab else None
+        self._lab = lab
+        if whole:
+            name = self._nickname()
+            snapshot = take_page_snapshot(lab, achieved, before, student, name)
+        else:
+            snapshot = take_snapshot(lab, achieved, False, before, student)
+        self._last = snapshot
+        self.page.show(snapshot)
+        if isinstance(snapshot, PageSnapshot):
+            self.page.exporter.serve(lab)
+
+    def send(self) -> None:
+        """See `app.simulation.simulation_thread.Display`."""
+        self.page.send()
+
+    @property
+    def told(self) -> int:
+        """See `app.server.tab_visibility.CountingDisplay`."""
+        return self.page.told

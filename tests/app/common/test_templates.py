@@ -1,0 +1,319 @@
+"""HTML is made in templates only, and no text that is put into one becomes markup."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from datetime import datetime
+from html.parser import HTMLParser
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from markupsafe import Markup
+from msgspec.structs import replace
+
+from onpath.app.classroom import class_html
+from onpath.app.classroom.classroom import Member
+from onpath.app.classroom.results import distribution
+from onpath.app.common.templates import environment, phrase, render
+from onpath.app.exports.report import report
+from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.page import lesson_html
+from onpath.app.page.panels import readout
+from onpath.app.page.panels.flexible_panel import alpha_bar
+from onpath.assets import asset_path
+from onpath.lessons.checks import Verdict
+from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.progress import Answer, Notes, Progress
+from onpath.lessons.schema import Choice, Lesson, Option, Quiz, Sketch, Task, Text
+from onpath.lessons.words import ENGLISH, Words, languages
+from tests.support.checkout import ROOT
+
+TAG = re.compile(r"</?(?!br\b)[a-zA-Z][a-zA-Z0-9]*(\s[a-z-]+=|\s*/?>)")  # markdown may have <br/>
+BYTES_ALONE = "app/viser_adapter/page_scripts.py"  # puts our files into viser's page, no values
+VOID = {"br", "img", "meta", "line", "polyline"}
+HOSTILE = ["<img src=x onerror=alert(1)>", '"><script>alert(2)</script>', "'{0}{{ 7 }}{% x %}&lt;"]
+DAY = datetime(2025, 3, 2)
+COURSE = read_course([BUILT_IN])[0]
+NAME = next(iter(COURSE.lessons))
+
+
+@dataclass
+class Parsed(HTMLParser):
+    """A piece of HTML whose tags are all closed.
+
+    Attributes:
+        shape: tags with the names of their attributes, in order.
+        said: all that is text, of attributes too.
+    """
+
+    content: str
+    shape: list[tuple[str, ...]] = field(default_factory=list)
+    said: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        super().__init__()
+        self._open: list[str] = []
+        self.feed(self.content)
+        self.close()
+        assert self._open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.handle_startendtag(tag, attrs)
+        if tag not in VOID:
+            self._open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.shape.append((tag, *(name for name, _ in attrs)))
+        self.said += [value or "" for _, value in attrs]
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self._open.pop() == tag
+        self.shape.append(("/", tag))
+
+    def handle_data(self, data: str) -> None:
+        self.said.append(data)
+
+
+def titled(text: str) -> tuple[Lesson, LessonRun]:
+    """A lesson with a text for its titles and summary, and the way through it."""
+    lesson = COURSE.lesson(NAME, "en")
+    front = replace(lesson.front, title=text, summary=text)
+    steps = tuple(replace(step, title=text) for step in lesson.steps)
+    lesson = replace(lesson, front=front, steps=steps)
+    return lesson, LessonRun(Course({NAME: {"en": lesson}}), Progress(lesson=NAME))
+
+
+def heading(text: str) -> str:
+    lesson, run = titled(text)
+    return lesson_html.heading(lesson, lesson.steps[0], run)
+
+
+def entry(text: str) -> str:
+    lesson, run = titled(text)
+    return lesson_html.entry(lesson, run, 1)
+
+
+def place(text: str) -> str:
+    _, run = titled(text)
+    member = Member(1, "Ada", Progress(lesson=NAME))
+    return class_html.table([member], run.course, 0.0, ENGLISH)
+
+
+def nickname(text: str) -> str:
+    return class_html.table([Member(1, text)], COURSE, 0.0, ENGLISH)
+
+
+def quiz(text: str) -> str:
+    asked = Quiz(text, (Option(text, text), Option(text, text, right=True)))
+    return lesson_html.question(asked, 0, True, ENGLISH)
+
+
+def choices(text: str) -> str:
+    block = Choice(text, (Option(text, text), Option(text, text, right=True)))
+    found = distribution(block, NAME, 0, [])
+    return class_html.prediction_view(block, found, None, True, ENGLISH)
+
+
+def task(text: str) -> str:
+    block = Task("a", text, (), hints=(text,))
+    notes = {NAME: Notes(hints={"a": 1})}
+    run = LessonRun(COURSE, Progress(lesson=NAME, notes=notes))
+    return lesson_html.task(block, [Verdict(True, text), Verdict(False, text)], run)
+
+
+def message(text: str) -> str:
+    return shown(ENGLISH, text or " ")
+
+
+def shown(words: Words, text: str) -> str:
+    """The readout with a message, as a browser is given it."""
+    view = SimpleNamespace(distance=0.001, max_distance=float("nan"))
+    robots = {"trajectory_tracking": view, "path_following": view}
+    snapshot = SimpleNamespace(
+        robots=robots,
+        running=True,
+        time=1.0,
+        achieved_speed=1.0,
+        message=text,
+        message_level="error",
+    )
+    sent: list[str] = []
+    gui: Any = SimpleNamespace(add_html=lambda content: None)
+    session: Any = SimpleNamespace(lessons=SimpleNamespace(words=words))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(readout, "update_gui", lambda handle, name, content: sent.append(content))
+        readout.Readout(gui, session).follow(snapshot)  # type: ignore[arg-type]
+    return sent[0]
+
+
+def gone(text: str) -> str:
+    run = LessonRun(COURSE, Progress(notes={text: Notes()}))
+    return report(run, "x" + text, DAY).decode()
+
+
+PLACES: dict[str, Callable[[str], str]] = {
+    "heading": heading,
+    "entry": entry,
+    "place": place,
+    "nickname": nickname,
+    "member": lambda text: render("panel/member.html", name=text, words=ENGLISH, small=True),
+    "quiz": quiz,
+    "choices": choices,
+    "task": task,
+    "message": message,
+    "note": lambda text: render("panel/note.html", said=text, small=False),
+    "text": lesson_html.text,
+    "remark": lambda text: lesson_html.remark(text, italic=True),
+    "code": lambda text: render("panel/code.html", label=text, code=text),
+    "robot": lambda text: render("panel/robot.html", label=text, text=text, picture=text),
+    "class code": lambda text: class_html.class_code(text, 1, ENGLISH),
+    "report": gone,
+}
+texts = st.sampled_from(HOSTILE) | st.text(max_size=40)
+
+
+@pytest.mark.parametrize("place", PLACES)
+@settings(max_examples=30, deadline=None)
+@given(texts)
+def test_no_text_changes_what_a_page_is_made_of(place: str, text: str) -> None:
+    page, plain = Parsed(PLACES[place](text)), Parsed(PLACES[place]("x"))
+    assert page.shape == plain.shape
+    if place not in ("report", "class code"):  # there a code is written in another way
+        assert any(text in said for said in page.said)
+
+
+@given(texts, texts)
+def test_only_markup_among_the_values_of_a_phrase_stays_markup(name: str, other: str) -> None:
+    def words(key: str, **values: object) -> str:
+        return "{a} & {b}".format(**values)
+
+    made = phrase(words, "any", a=Markup("<b>{}</b>").format(name), b=other)  # type: ignore[arg-type]
+    page = Parsed(made)
+    assert page.shape == [("b",), ("/", "b")]
+    assert "".join(page.said) == f"{name} & {other}"
+
+
+class HostileWords(Words):
+    """A catalogue whose every entry is full of markup."""
+
+    def __call__(self, key: str, **values: Any) -> str:
+        return super().__call__(key, **values) + HOSTILE[0] + "'\""
+
+
+def test_no_catalogue_changes_what_a_page_is_made_of() -> None:
+    lesson = COURSE.lesson(NAME, "en")
+
+    def pages(words: Words) -> Iterator[str]:
+        run = LessonRun(COURSE, Progress(lesson=NAME))
+        run.words = words
+        yield from pieces(run, words)
+        yield shown(words, "a")
+        yield alpha_bar(0.5, 0.2, True, words)
+        yield class_html.table([Member(1, "Ada")], COURSE, 0.0, words)
+        yield class_html.class_code("a", 1, words)
+        yield lesson_html.entry(lesson, run, 1)
+
+    ours, theirs = pages(ENGLISH), pages(HostileWords())
+    for plain, hostile in zip(ours, theirs, strict=True):
+        assert Parsed(hostile).shape == Parsed(plain).shape
+
+
+def pieces(run: LessonRun, words: Words) -> Iterator[str]:
+    """The open step on the student's page and on the teacher's, each block in all its states."""
+    lesson, step = run.lesson, run.step
+    assert lesson is not None and step is not None
+    yield lesson_html.heading(lesson, step, run)
+    for block in step.blocks:
+        if isinstance(block, Text):
+            yield lesson_html.text(block.html)
+        elif isinstance(block, Task):
+            yield lesson_html.task(block, [Verdict(True, "a"), Verdict(False, "b")], run)
+        elif isinstance(block, Sketch):
+            yield lesson_html.asked(block)
+        else:
+            for chosen in (None, *range(len(block.options))):
+                yield lesson_html.question(block, chosen, True, words)
+        if isinstance(block, Choice | Sketch):
+            sketch = Answer(times=(0.0, 1.0), values=(0.0, 1.0))
+            ways = [Progress(notes={lesson.name: Notes(answers={str(run.index): sketch})})]
+            found = distribution(block, lesson.name, run.index, ways)
+            for revealed in (True, False):
+                yield class_html.prediction_view(block, found, None, revealed, words)
+
+
+@pytest.mark.parametrize("language", languages())
+@pytest.mark.parametrize("name", COURSE.lessons)
+def test_every_step_of_every_lesson_is_well_formed(name: str, language: str) -> None:
+    """An undefined value in a template raises."""
+    lesson = COURSE.lesson(name, language)
+    tasks = {task.id: 1.5 for task in lesson.tasks()}
+    for index in range(len(lesson.steps)):
+        notes = {name: Notes(step=index, tasks=tasks, hints=dict.fromkeys(tasks, 9))}
+        run = LessonRun(COURSE, Progress(lesson=name, language=language, notes=notes))
+        for piece in pieces(run, run.words):
+            assert type(piece) is str  # viser's messages hold nothing else
+            assert Parsed(piece).shape
+
+
+# Where HTML is made.
+
+
+def strings(tree: ast.AST) -> Iterator[str]:
+    """All strings of a module but docstrings."""
+    told = {
+        id(node.value)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and id(node) not in told:
+            yield node.value.decode("latin-1") if isinstance(node.value, bytes) else str(node.value)
+
+
+def hand_made(source: str) -> bool:
+    """Whether a module writes HTML, escapes it, or calls something markup."""
+    tree = ast.parse(source)
+    imported = {
+        f"{node.module}.{alias.name}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    } | {
+        alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Import)
+        for alias in node.names
+    }
+    return bool(imported & {"html", "html.escape", "markupsafe.Markup"}) or any(
+        TAG.search(text) for text in strings(tree)
+    )
+
+
+def test_html_is_made_in_templates_only() -> None:
+    allowed = {BYTES_ALONE, "app/common/templates.py"}
+    found = {
+        str(file.relative_to(ROOT))
+        for file in (ROOT / "app").rglob("*.py")
+        if hand_made(file.read_text("utf-8"))
+    }
+    assert found <= allowed
+    for source in ("import html", "from html import escape", "a = f'<div>{b}'", "a = '</p>'"):
+        assert hand_made(source)
+
+
+TEMPLATES = sorted(file for file in asset_path("templates").rglob("*.*"))
+
+
+@pytest.mark.parametrize("file", TEMPLATES, ids=lambda file: file.name)
+def test_templates_trust_nothing_and_take_colours_from_the_palette(file: Path) -> None:
+    source = file.read_text("utf-8")
+    environment().parse(source)
+    assert not re.search(r"\|\s*safe\b|\bautoescape\b|\bMarkup\b", source)
+    assert not re.search(r"#[0-9a-fA-F]{3,8}\b", source)

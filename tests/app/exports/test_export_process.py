@@ -1,0 +1,114 @@
+"""The process that makes files may fail, die and hang: the next file is made all the same."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from onpath.app.exports.export_process import ExportError, ExportProcess
+from onpath.app.exports.files import csv_bytes, csv_file
+from onpath.app.exports.worker import NICENESS
+from tests.support.export_jobs import die
+from tests.support.lab import new_lab
+from tests.support.waiting import wait_for
+
+LONG = 240.0  # [s]; only ends a test that would hang
+
+
+@pytest.fixture(scope="module")
+def process() -> Iterator[ExportProcess]:
+    process = ExportProcess()
+    yield process
+    process.stop()
+
+
+def test_a_file_from_the_process_is_the_same_to_the_byte(process: ExportProcess) -> None:
+    session = new_lab(0.4).session
+    made = process.call(
+        LONG, csv_file, session.entry.name, session.parameters, session.history.copy()
+    )
+    assert made == csv_bytes(session.robot, session.history.all())
+
+
+def test_it_is_another_process_and_gives_way_to_the_lab(process: ExportProcess) -> None:
+    pid = process.call(LONG, os.getpid)
+    assert pid == process.pid != os.getpid()
+    assert process.call(LONG, os.nice, 0) == min(os.nice(0) + NICENESS, 19)
+    assert process.call(LONG, os.getpid) == pid  # it stays for the next file
+
+
+def test_what_fails_is_told_and_the_process_stays(process: ExportProcess) -> None:
+    pid = process.call(LONG, os.getpid)
+    with pytest.raises(ExportError, match="ValueError"):
+        process.call(LONG, int, "no number")
+    assert process.call(LONG, os.getpid) == pid
+
+
+def test_what_is_printed_there_is_no_result(process: ExportProcess) -> None:
+    assert process.call(LONG, print, "hello") is None
+
+
+def test_a_crash_fails_one_call(process: ExportProcess) -> None:
+    with pytest.raises(ExportError, match="died"):
+        process.call(LONG, die)
+    assert process.call(LONG, abs, -1) == 1
+
+
+def test_a_killed_process_fails_one_call(process: ExportProcess) -> None:
+    pid = process.call(LONG, os.getpid)
+    killer = threading.Timer(0.0, os.kill, [pid, signal.SIGKILL])
+    killer.start()
+    with pytest.raises(ExportError, match="died"):
+        process.call(LONG, time.sleep, LONG)
+    assert process.call(LONG, os.getpid) != pid
+
+
+def test_what_takes_too_long_is_given_up(process: ExportProcess) -> None:
+    process.call(LONG, abs, -1)  # it has been started
+    with pytest.raises(ExportError, match="after its time"):
+        process.call(0.1, time.sleep, LONG)
+    with pytest.raises(ExportError, match="before its turn"):
+        process.call(0.0, abs, -1)
+    assert process.call(LONG, abs, -1) == 1
+
+
+def test_calls_of_many_threads_wait_for_each_other(process: ExportProcess) -> None:
+    found: list[int] = []
+    threads = [
+        threading.Thread(target=lambda n=n: found.append(process.call(LONG, abs, -n)))
+        for n in range(8)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(LONG)
+    assert sorted(found) == list(range(8))
+
+
+def test_an_idle_process_is_ended_and_started_again() -> None:
+    process = ExportProcess(idle=0.0)
+    assert process.pid is None  # nothing is started before it is needed
+    for _ in range(2):
+        assert process.call(LONG, abs, -1) == 1
+        wait_for(lambda: process.pid is None, LONG)
+
+
+def test_stopping_ends_the_call_that_is_under_way() -> None:
+    process, failed = ExportProcess(), threading.Event()
+    process.call(LONG, abs, -1)
+
+    def call() -> None:
+        with pytest.raises(ExportError):
+            process.call(LONG, time.sleep, LONG)
+        failed.set()
+
+    thread = threading.Thread(target=call)
+    thread.start()
+    wait_for(process._calls.locked, LONG)
+    process.stop()
+    assert failed.wait(LONG) and process.pid is None

@@ -1,0 +1,201 @@
+"""What draws a lab needs nothing but data: a snapshot that was sent as bytes draws the same."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+import viser
+from viser import _gui_api, _gui_handles
+from viser.infra import Message
+
+from onpath.app.exports.exporter import Exporter
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot, take_snapshot
+from onpath.app.page.page import Page
+from onpath.app.page.page_context import ClassSeat, PageContext
+from onpath.app.server.lab_server import LabServer
+from onpath.app.viser_adapter.frame_channel import FrameChannel
+from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.schema import Sketch
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
+from tests.support import waiting
+from tests.support.lab import FOLLOWER, FRAME, store
+from tests.support.student import Student
+
+wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that would hang
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[viser.ClientHandle]:
+    """A browser's tab that nobody else draws in."""
+    server = LabServer("127.0.0.1", 0, LoopCache())
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+        student.open()
+        student.read(lambda: student.may("Path") and server._views)
+        server.simulation.stop()
+        (number,) = wait_for(lambda: list(server._views))
+        yield server.server.get_clients()[number]
+    server.stop()
+
+
+@pytest.fixture(scope="module")
+def course() -> Course:
+    return read_course([BUILT_IN])[0]
+
+
+class Drawing:
+    """A page whose work is done at once, and all that its browser is told of it."""
+
+    def __init__(
+        self, client: viser.ClientHandle, course: Course, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        self._client, self._course, self._patch = client, course, monkeypatch
+        self.posted: list[c.Command] = []
+
+    def of(self, snapshots: list[Snapshot]) -> list[tuple[str, object]]:
+        """What is told while a page is built from the first one, and shows the others.
+
+        The camera is not of the lab: where it is now decides whether it must be moved.
+        """
+        told: list[tuple[str, object]] = []
+        numbers, this = itertools.count(), threading.get_ident()
+
+        def take(_: FrameChannel, message: Message) -> None:
+            kind = type(message).__name__
+            if threading.get_ident() == this and not kind.startswith("SetCamera"):
+                content = {k: v for k, v in vars(message).items() if k != "counter"}
+                told.append((kind, plain(content)))
+
+        self._client.scene.reset()
+        self._client.gui.reset()
+        with self._patch.context() as patch:
+            patch.setattr(FrameChannel, "_take", take)
+            patch.setattr(Exporter, "submit", lambda _, work: work())
+            patch.setattr(_gui_api, "_global_order_counter", 0)
+            for module in (_gui_api, _gui_handles):
+                patch.setattr(module, "_make_uuid", lambda: f"widget {next(numbers)}")
+            seat = ClassSeat(lambda *_: None, lambda: None, lambda _: None)
+            desk = PageContext("k" * 12, self.posted.append, self._course, True, print, seat)
+            first, *others = snapshots
+            assert isinstance(first, PageSnapshot)
+            page = Page(self._client, first, desk)
+            for snapshot in others:
+                assert page.is_ready
+                page.show(snapshot)
+            page.close()
+        return told.copy()
+
+
+@pytest.fixture
+def drawing(client: viser.ClientHandle, course: Course, monkeypatch: pytest.MonkeyPatch) -> Drawing:
+    return Drawing(client, course, monkeypatch)
+
+
+def plain(value: Any) -> object:
+    """As something that can be compared."""
+    if isinstance(value, np.ndarray):
+        return value.dtype.str, value.shape, value.tobytes()
+    if isinstance(value, dict):
+        return {key: plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(each) for each in value]
+    if is_dataclass(value):
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+    return value if isinstance(value, bytes) else repr(value)
+
+
+def filmed(lab: Lab, *commands: c.Command) -> Iterator[Snapshot]:
+    """A lab that does something, and what is to be shown of it."""
+    yield take_page_snapshot(lab, 1.0)
+    for number, command in enumerate(commands):
+        lab.post(command)
+        for _ in range(15):
+            lab.drain()
+            lab.advance(lab.session.rate * FRAME)
+        yield take_snapshot(lab, 0.9, traces=False)
+        yield take_page_snapshot(lab, 0.9, nickname="Ada <b>" if number else "")
+
+
+def sent(snapshot: Snapshot) -> Snapshot:
+    """The same, by way of bytes."""
+    again = from_bytes(to_bytes(snapshot))
+    assert type(again) is type(snapshot) and to_bytes(again) == to_bytes(snapshot)
+    return again
+
+
+def assert_draws_the_same(drawing: Drawing, snapshots: list[Snapshot]) -> None:
+    told, again = drawing.of(snapshots), drawing.of([sent(each) for each in snapshots])
+    assert len(told) > 100
+    for one, other in zip(told, again, strict=True):
+        assert one == other
+    assert drawing.posted == []  # what draws asks for nothing
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_lab_is_drawn_from_data(robot: str, drawing: Drawing, course: Course) -> None:
+    lab = Lab(store(), ROBOTS[robot], course)
+    y = lab.session.runs[FOLLOWER].shown()["y"].copy()
+    film = filmed(
+        lab,
+        *(c.Hold(True), c.SetCopy(False), c.Hold(False), c.SetParameter("K1", 90.0)),
+        *(c.Grab(FOLLOWER, y + 0.02), c.Release(), c.SelectPoint(1), c.Arrow(0.002, 0.001)),
+        *(c.ChoosePath("figure of eight"), c.ChoosePath("ellipse"), c.Share()),
+        *(c.SetParameter("torque_limit", 0.5), c.LookAt(1.0), c.GoOn(), c.SetRate(0.5)),
+        *(c.SetExaggeration(3.0), c.SetRunning(False)),
+    )
+    assert_draws_the_same(drawing, list(film))
+
+
+def test_a_lesson_is_drawn_from_data(drawing: Drawing, course: Course) -> None:
+    name, step = next(
+        (name, number)
+        for name in course.lessons
+        for number, step in enumerate(course.lesson(name, "en").steps)
+        if any(isinstance(block, Sketch) for block in step.blocks)
+    )
+    lab = Lab(store(), FIVE_BAR, course)
+    lab.post(c.OpenLesson(name))
+    lab.drain()
+    on = [c.GoToStep(1)] * step
+    answer = c.Predict(times=(0.0, 4.0, 8.0), values=(0.0, 20.0, 5.0))
+    film = filmed(lab, *on, answer, c.GoToStep(1), c.PlayStep(), *on, c.SetLanguage("en"))
+    assert_draws_the_same(drawing, list(film))
+
+
+def test_a_snapshot_holds_nothing_but_data() -> None:
+    lab = Lab(store())
+    snapshot = take_page_snapshot(lab, 1.0)
+    with pytest.raises(NotImplementedError, match="Lab"):
+        to_bytes(Snapshot(**{**shallow(snapshot), "message": lab}))
+    with pytest.raises(ValueError):
+        from_bytes(to_bytes(snapshot)[:-9])
+
+
+def shallow(snapshot: Snapshot) -> dict[str, Any]:
+    return {field.name: getattr(snapshot, field.name) for field in fields(Snapshot)}
+
+
+def test_what_has_not_changed_is_shared_with_the_snapshot_before() -> None:
+    lab = Lab(store())
+    lab.drain()
+    lab.advance(FRAME)
+    one = take_page_snapshot(lab, 1.0)
+    assert take_page_snapshot(lab, 1.0, one).plots is one.plots
+    lab.advance(FRAME)
+    two = take_page_snapshot(lab, 1.0, one)
+    assert two.path is one.path and two.plots is not one.plots
+    lab.post(c.SelectPoint(2))
+    lab.drain()
+    assert take_page_snapshot(lab, 1.0, two).path.selected == 2

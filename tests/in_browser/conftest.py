@@ -1,0 +1,35 @@
+"""One Chromium for all tests in a browser, and one lab for each file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.server.lab_server import LabServer
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+
+@pytest.fixture(scope="package")
+def browser() -> Iterator[Browser]:
+    """Ends with this folder: while it is open, no other test can use asyncio in this thread."""
+    from playwright.sync_api import sync_playwright
+
+    from tests.support.browser import CHROMIUM, PLAIN
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[LabServer]:
+    """A lab for all who come, without a class and a database."""
+    server = LabServer("127.0.0.1", 0, LoopCache())
+    yield server
+    server.stop()
