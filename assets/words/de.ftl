@@ -659,6 +659,10 @@ error-stroke_not_finite = ein Strich braucht Punkte
 error-stroke_without_points = ein Strich braucht Punkte
 error-points_coincide = eine Bahn braucht mindestens { $least } Punkte, die auseinander liegen
 error-path_too_short = die Bahn ist zu kurz: { $length } mm, mindestens { $least } mm
+error-path_takes_no_numbers = die Bahn { $name } nimmt keine Zahlen
+error-half_a_point = ein halber Punkt: Eine Bahn braucht so viele x wie y
+error-points_out_of_bounds = 2 bis { $most } Punkte, höchstens { $reach } m von der Mitte
+error-coefficients = eine gezeichnete Bahn hat { $wanted } Koeffizienten, nicht { $count }
 error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
 
 ## Refusals: numbers and names
