@@ -212,17 +212,17 @@ def _design(path: Path, paths: Mapping[str, PathDesign]) -> PathDesign:
         if path.name not in paths:
             raise unknown_name(path.name, [*paths, EDITED, DRAWN], "path")
         if path.numbers:
-            raise ValueError(f"the path {path.name!r} takes no numbers")
+            raise CodedError("error.path_takes_no_numbers", name=repr(path.name))
         return paths[path.name]
     if len(path.numbers) % 2:
-        raise ValueError("half a point: a path needs as many x as y")
+        raise CodedError("error.half_a_point")
     z = UNIT * np.array(path.numbers, dtype=float).reshape(-1, 2)
     if path.name == EDITED:
         if not 2 <= len(z) <= MOST_POINTS or np.abs(z).max(initial=0.0) > REACH + UNIT / 2:
-            raise ValueError(f"2 to {MOST_POINTS} points, within {REACH:g} m of the middle")
+            raise CodedError("error.points_out_of_bounds", most=MOST_POINTS, reach=f"{REACH:g}")
         return PathDesign(EDITED, (closed_through if path.closed else open_through)(z), z)
     if len(z) != terms_of(path.closed):
-        raise ValueError(f"a drawn path has {terms_of(path.closed)} coefficients, not {len(z)}")
+        raise CodedError("error.coefficients", wanted=terms_of(path.closed), count=len(z))
     curve = from_terms(path.closed, z)
     return PathDesign(DRAWN, curve, control_points(curve, DRAWN_POINTS[path.closed]))
 

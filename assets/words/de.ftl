@@ -471,6 +471,9 @@ machine-five_bar-text = Zwei Motoren, starre Glieder, ein Stift in einer senkrec
 machine-flexible-label = Fünfgelenk mit biegsamem Glied
 machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spitze ist nicht dort, wo die Motoren sie haben wollen.
 
+machine-two_link_arm-label = Zweigelenkarm
+machine-two_link_arm-text = Zwei Motoren, einer an der Schulter und einer am Ellbogen, gegen die Schwerkraft.
+
 parameter-K1-label = K1 quer
 parameter-K1-help = Feder, die auf die Bahn zurückzieht
 
@@ -517,6 +520,12 @@ parameter-coulomb-help = trockene Reibung in den Gelenken; 0: keine
 
 parameter-control_rate-label = Reglertakt
 parameter-control_rate-help = wie oft der Regler eingreift, Hz
+
+parameter-error_inertia-label = Trägheit falsch
+parameter-error_inertia-help = um so viel liegen die Trägheiten a1, a2 und a3 im Modell des Reglers daneben
+
+parameter-error_gravity-label = Gewicht falsch
+parameter-error_gravity-help = um so viel liegen die Gewichte g1 und g2 im Modell des Reglers daneben
 
 parameter-error_M11-label = M11 falsch
 parameter-error_M11-help = um so viel liegt M11 im Modell des Reglers daneben
@@ -650,6 +659,10 @@ error-stroke_not_finite = ein Strich braucht Punkte
 error-stroke_without_points = ein Strich braucht Punkte
 error-points_coincide = eine Bahn braucht mindestens { $least } Punkte, die auseinander liegen
 error-path_too_short = die Bahn ist zu kurz: { $length } mm, mindestens { $least } mm
+error-path_takes_no_numbers = die Bahn { $name } nimmt keine Zahlen
+error-half_a_point = ein halber Punkt: Eine Bahn braucht so viele x wie y
+error-points_out_of_bounds = 2 bis { $most } Punkte, höchstens { $reach } m von der Mitte
+error-coefficients = eine gezeichnete Bahn hat { $wanted } Koeffizienten, nicht { $count }
 error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
 
 ## Refusals: numbers and names

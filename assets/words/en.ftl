@@ -522,6 +522,10 @@ error-stroke_not_finite = a stroke needs finite points
 error-stroke_without_points = a stroke needs points
 error-points_coincide = a path needs at least { $least } points apart from each other
 error-path_too_short = the path is too short: { $length } mm, at least { $least } mm
+error-path_takes_no_numbers = the path { $name } takes no numbers
+error-half_a_point = half a point: a path needs as many x as y
+error-points_out_of_bounds = 2 to { $most } points, within { $reach } m of the middle
+error-coefficients = a drawn path has { $wanted } coefficients, not { $count }
 error-cannot_follow = { $robot } cannot follow this path: { $reasons }
 
 ## Refusals: numbers and names

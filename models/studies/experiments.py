@@ -27,6 +27,7 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.closed_loop.trajectory import Trajectory, record
 from onpath.models.control.laws import NAMES
+from onpath.models.errors import Message
 from onpath.models.paths.curves import Curve, circle
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
@@ -224,7 +225,7 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
     start = robot.rest(experiment.start(experiment.schedule.r))
     state = first_state(robot, kernel, curve, start)
     segments: list[tuple[Array, Curve, bool]] = []
-    fault: tuple[int, str] | None = None
+    fault: tuple[int, Message] | None = None
     done = 0
     for rows, held in _segments(experiment, kernel, curve, state):
         fields = kernel.log.unpack(rows)
@@ -271,7 +272,7 @@ def _finished(
     controller: str,
     segments: list[tuple[Array, Curve, bool]],
     experiment: Experiment,
-    fault: tuple[int, str] | None,
+    fault: tuple[int, Message] | None,
 ) -> Trajectory:
     """The trajectory of a run, cut off at the fault if there was one."""
     dt = time_step(experiment.parameters)

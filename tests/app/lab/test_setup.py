@@ -182,9 +182,9 @@ BAD: dict[str, tuple[Setup, str]] = {
     "option": (Setup(benches={RIGID: RobotSetup({"control_rate": 3})}), "not one of"),
     "script": (Setup(benches={RIGID: RobotSetup({"<script>": 3})}), "matching"),
     "list": (Setup(benches={RIGID: RobotSetup({"K1": [1.0]})}), "Expected"),  # pyright: ignore[reportArgumentType]
-    "rate": (Setup(rate=9.0), "speed 9"),
-    "no rate": (Setup(rate=math.nan), "speed nan"),
-    "exaggeration": (Setup(exaggeration=0.0), "exaggeration 0"),
+    "rate": (Setup(rate=9.0), "speed: 9"),
+    "no rate": (Setup(rate=math.nan), "speed: nan"),
+    "exaggeration": (Setup(exaggeration=0.0), "exaggeration: 0"),
     "path": (own(name="spiral"), "unknown path"),
     "preset with numbers": (own(name="circle", numbers=(1, 2)), "no numbers"),
     "no points": (own(name="edited"), "2 to 24 points"),

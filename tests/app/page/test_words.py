@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jinja2 import Environment, nodes
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
@@ -158,8 +159,37 @@ def asked_for() -> Iterator[str]:
                 yield from (text for node in branches if (text := text_of(node)))
 
 
+def asked_for_in_templates() -> Iterator[tuple[str, dict[str, nodes.Expr]]]:
+    """What the templates ask for, and the arguments that they give.
+
+    A key with a part that varies stands for those that the template's other strings make of it.
+    """
+    for file in sorted((ROOT / "assets" / "templates").rglob("*.html")):
+        tree = Environment().parse(file.read_text(encoding="utf-8"))
+        strings = {str(const.value) for const in tree.find_all(nodes.Const)}
+        for call in tree.find_all(nodes.Call):
+            name = getattr(call.node, "name", "")
+            if name in ("words", "phrase"):
+                first = call.args[1 if name == "phrase" else 0]
+                both = isinstance(first, nodes.CondExpr)
+                given = {keyword.key: keyword.value for keyword in call.kwargs}
+                for node in [first.expr1, first.expr2] if both else [first]:
+                    key = key_of(node)
+                    made = {key.replace("{}", string) for string in strings}
+                    found = {each for each in made if identifier(each) in messages("en")}
+                    keys = found if "{}" in key and found else {key}
+                    yield from ((each, given) for each in keys)
+
+
+def key_of(node: nodes.Node | None) -> str:
+    """A key in a template, "{}" where it has a part that varies."""
+    if isinstance(node, nodes.Concat):
+        return "".join(map(key_of, node.nodes))
+    return str(node.value) if isinstance(node, nodes.Const) else "{}"
+
+
 def test_every_key_that_is_asked_for_exists() -> None:
-    asked = set(asked_for())
+    asked = {*asked_for(), *(key for key, _ in asked_for_in_templates())}
     assert len(asked) > 100
     known = messages("en")
     assert {key for key in asked if "{}" not in key and identifier(key) not in known} == set()
@@ -172,6 +202,7 @@ def test_every_key_that_is_asked_for_exists() -> None:
 
 def test_every_key_is_used() -> None:
     texts = {text_of(node) for file in CODED for node in ast.walk(parsed(file))}
+    texts |= {key for key, _ in asked_for_in_templates()}
     written = {identifier(text) for text in texts if text and len(text) < 80}
     unused = {key for key in messages("en") if key not in written}
     assert {key for key in unused if not key.startswith(PREFIXES)} == set()
@@ -337,22 +368,22 @@ def test_counts_have_plurals_in_every_language() -> None:
 
 def test_a_count_is_given_as_a_number() -> None:
     """A plural of a text would always be the general one."""
-    counted = {
-        key for language in languages() for key, m in messages(language).items() if counts(m)
-    }
-    seen = set[str]()
+    counted: dict[str, set[str]] = {}
+    for language in languages():
+        for key, message in messages(language).items():
+            if counts(message):
+                counted.setdefault(key, set()).update(counts(message))
+    given = list[tuple[str, dict[str, object]]]()
     for file in CODED:
         for _, call in calls(parsed(file)):
-            key = identifier(str(text_of(call.args[0]))) if call.args else ""
-            if key in counted:
-                seen.add(key)
-                names = {
-                    name for language in languages() for name in counts(messages(language)[key])
-                }
-                for keyword in call.keywords:
-                    number = not isinstance(keyword.value, ast.JoinedStr | ast.Constant)
-                    assert keyword.arg not in names or number, (key, file)
-    assert seen == counted
+            if call.args and (key := text_of(call.args[0])):
+                given.append((key, {str(word.arg): word.value for word in call.keywords}))
+    given += [(key, dict(values)) for key, values in asked_for_in_templates()]
+    texts = ast.JoinedStr, ast.Constant, nodes.Const, nodes.Concat
+    for key, values in given:
+        for name in counted.get(identifier(key), set()):
+            assert name not in values or not isinstance(values[name], texts), key
+    assert {identifier(key) for key, _ in given} >= counted.keys()
 
 
 def test_numbers_are_written_plainly_in_every_language() -> None:
