@@ -14,8 +14,6 @@ from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 
 LATER = (
-    "onpath.app.exports.figures",
-    "onpath.app.exports.report",
     "onpath.app.scene.sketch_board",
     "scipy.signal",
 )

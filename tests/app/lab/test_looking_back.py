@@ -201,7 +201,7 @@ def test_going_on_forgets_what_was_done_later_and_undo_brings_it_back() -> None:
     all_of_it = tuple(session.happenings)
     do(session, c.LookBack(1.2), c.GoOn())
     later = [h for h in all_of_it if h.time > session.time]
-    assert {h.name for h in later} >= {"hold", "release"}
+    assert {h.name for h in later} >= {"hold", "let_go"}
     assert all(h.time <= session.time for h in session.happenings)
     do(session, c.UndoGoOn())
     assert tuple(session.happenings) == all_of_it
