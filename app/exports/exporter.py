@@ -31,7 +31,8 @@ class Exporter:
     def __init__(self, client: viser.ClientHandle) -> None:
         self._client = client
         self._wanted: list[Callable[[Lab], None]] = []
-        self._under_way: dict[str, Future[None] | None] = {}
+        self._under_way: set[str] = set()
+        self._latest: dict[str, Future[None]] = {}
 
     def csv(self) -> None:
         """Ask for the CSV of the last minute."""
@@ -67,9 +68,8 @@ class Exporter:
 
     def close(self) -> None:
         """Begin nothing more."""
-        for future in list(self._under_way.values()):
-            if future is not None:
-                future.cancel()
+        for future in list(self._latest.values()):
+            future.cancel()
 
     def _ask(self, name: str, make: Callable[..., bytes], in_words: bool = False) -> None:
         def start(lab: Lab) -> None:
@@ -77,7 +77,7 @@ class Exporter:
             history = session.history.copy()
             if not history:
                 lab.show_message(words("export.nothing"), "warning")
-                del self._under_way[name]
+                self._under_way.discard(name)
                 return
             what = session.entry.name, session.parameters, history
             self._submit(name, words, make, *what, *[words.language] * in_words)
@@ -86,7 +86,7 @@ class Exporter:
 
     def _want(self, name: str, start: Callable[[Lab], None]) -> None:
         if name not in self._under_way:
-            self._under_way[name] = None
+            self._under_way.add(name)
             self._wanted.append(start)
 
     def _submit(self, name: str, words: Words, make: Callable[..., bytes], *what: Any) -> None:
@@ -108,7 +108,7 @@ class Exporter:
                 log_error(error)
                 note.body, note.loading = words("export.failed", name=name), False
             note.with_close_button = True
-            del self._under_way[name]
+            self._under_way.discard(name)
 
         with suppress(RuntimeError):  # Python is about to end
-            self._under_way[name] = _queue.submit(work)
+            self._latest[name] = _queue.submit(work)

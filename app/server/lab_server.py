@@ -114,6 +114,8 @@ class LabServer:
             self._class.stop()
         self.simulation.stop()
         self._store.close()
+        for view in list(self._views.values()):
+            view.close()
         exports.process.stop()
         self.server.stop()
         if self._keeper is not None and self._records is not None:

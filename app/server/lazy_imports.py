@@ -15,8 +15,6 @@ from onpath.app.lab.session import Session
 from onpath.assets.messages import catalogue, languages
 
 LATER = (
-    "onpath.app.exports.figures",
-    "onpath.app.exports.report",
     "onpath.app.scene.sketch_board",
     "scipy.signal",
 )

@@ -166,7 +166,7 @@ def test_pressed_a_hundred_times_it_makes_one_film(lab: Lab) -> None:
             exporter.recording()
             exporter.serve(lab)
         wait_for(lambda: client.notes)
-        wait_for(lambda: exporter._under_way[FILM])
+        wait_for(lambda: exporter._latest.get(FILM))
         others.end()
         wait_for(lambda: client.answered)
         assert (len(client.notes), len(client.files)) == (1, 1)
@@ -180,7 +180,7 @@ def test_nothing_is_made_for_who_has_left_the_queue(
     others = Occupied()
     with tab() as (client, exporter):
         press_at_once(lab, [exporter])
-        wait_for(lambda: exporter._under_way[FILM])
+        wait_for(lambda: exporter._latest.get(FILM))
     others.end()
     assert not made and not client.files
 

@@ -201,7 +201,7 @@ def test_going_on_forgets_what_was_done_later_and_undo_brings_it_back() -> None:
     all_of_it = tuple(session.events)
     do(lab, c.LookBack(1.2), c.GoOn())
     later = [event for event in all_of_it if event.time > session.time]
-    assert {event.name for event in later} >= {"hold", "release"}
+    assert {event.name for event in later} >= {"hold", "let_go"}
     assert all(event.time <= session.time for event in session.events)
     do(lab, c.UndoGoOn())
     assert tuple(session.events) == all_of_it

@@ -59,7 +59,7 @@ def builds(monkeypatch: pytest.MonkeyPatch) -> Builds:
 
 
 def wait_for_views(server: LabServer, count: int) -> None:
-    wait_for(lambda: len(server._views) == count, 15)
+    wait_for(lambda: len(server._views) == count, 60)
 
 
 class Comer(threading.Thread):
@@ -93,7 +93,7 @@ def test_pages_are_built_one_at_a_time_and_who_waits_is_told(
             stay.enter_context(comer.student)
             comer.start()
         for comer in crowd:
-            comer.join(30)
+            comer.join(60)
         wait_for_views(server, CROWD)
         assert builds.done == CROWD and builds.most == 1
         after = sorted(comer.after for comer in crowd)
@@ -102,7 +102,7 @@ def test_pages_are_built_one_at_a_time_and_who_waits_is_told(
         assert after[-1] - after[0] > 2 * (CROWD - 2) * LONG  # with a rest after each
         for lab in server.simulation.labs:  # a teacher opens a lesson for all
             lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
-        wait_for(lambda: builds.done >= 2 * CROWD, 20)
+        wait_for(lambda: builds.done >= 2 * CROWD, 60)
         assert builds.most == 1
 
 
@@ -130,7 +130,7 @@ def test_who_leaves_while_waiting_is_built_nothing(server: LabServer, builds: Bu
         comer.start()
         time.sleep(0.05)
     for comer in crowd:
-        comer.join(30)
+        comer.join(60)
     inside = [comer for comer in crowd if comer.student.moving]
     wait_for_views(server, len(inside))
     assert builds.done == len(inside) < CROWD

@@ -49,7 +49,7 @@ CALM = 0.7  # [s] of looking at it before, and at least during
 
 
 pytestmark = pytest.mark.flaky(reruns=2, only_rerun="Starved")
-wait_for = partial(waiting.wait_for, seconds=WAIT)
+wait_for = partial(waiting.wait_for, seconds=60.0)
 
 
 class Guest:
