@@ -156,7 +156,7 @@ class LabRegistry:
                 self._lock.notify_all()
 
     def _made(self, code: str, state: LabState | None = None) -> RegisteredLab:
-        """A new session, or one as it was kept; one is made at a time, for the simulation's sake.
+        """A new lab, or one as it was kept; one is made at a time, for the simulation's sake.
 
         Raises:
             NotKept: the state cannot be read.
