@@ -18,8 +18,8 @@ from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
 from onpath.app.lab.take_snapshot import take_snapshot
-from onpath.app.page.page import Page
 from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import FRAME, ScheduledLab
 from onpath.models.systems.parameters import time_step
@@ -223,12 +223,10 @@ class Tab:
 
     def is_built(self) -> bool:
         """Whether the page is that of the present robot, and not about to be built anew."""
-        page = getattr(self.view, "page", None)
-        return (
-            isinstance(page, Page)
-            and page.is_ready
-            and page._built[0] == take_snapshot(self.lab, 1.0).key
-        )
+        feed = self.view
+        if not isinstance(feed, LabFeed) or not feed.page.is_ready:
+            return False
+        return feed.page._built == (take_snapshot(self.lab, 1.0).key,)
 
     def press(self, name: str) -> None:
         """Press a button."""
