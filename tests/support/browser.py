@@ -17,7 +17,9 @@ from onpath.app.bench.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
+from onpath.app.lab.take_snapshot import take_snapshot
 from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import FRAME, ScheduledLab
 from onpath.models.systems.parameters import time_step
@@ -221,7 +223,10 @@ class Tab:
 
     def is_built(self) -> bool:
         """Whether the page is that of the present robot, and not about to be built anew."""
-        return getattr(self.view, "_robot", None) is self.session.robot
+        feed = self.view
+        if not isinstance(feed, LabFeed) or not feed.page.is_ready:
+            return False
+        return feed.page._built == (take_snapshot(self.lab, 1.0).key,)
 
     def press(self, name: str) -> None:
         """Press a button."""
