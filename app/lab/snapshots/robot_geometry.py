@@ -81,7 +81,7 @@ class RobotGeometry:
     def __init__(self, robot: Robot, closed: bool) -> None:
         function, self.counts = geometry_function(robot, closed)
         self._draw = Buffered(function)
-        size, middle = function.size1_out(0), 3 * self.counts.points
+        size, middle = function.nnz_out(0) // len(NAMES), 3 * self.counts.points
         begins = range(0, size * len(NAMES), size)
         self.points = [slice(begin, begin + middle) for begin in begins]
         self.poses = [slice(begin + middle, begin + size) for begin in begins]

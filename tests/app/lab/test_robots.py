@@ -180,7 +180,7 @@ def test_one_function_gives_points_and_poses(entry: RobotEntry) -> None:
     function, counts = geometry_function(robot, closed=True)
     assert function.n_out() == 1
     sizes = [int(np.prod(shape)) for shape in counts.pose_shapes]
-    assert function.size_out(0) == (3 * counts.points + sum(sizes), len(NAMES))
+    assert function.nnz_out(0) == len(NAMES) * (3 * counts.points + sum(sizes))
 
 
 def test_bars_and_path_lie_in_what_the_camera_shows(entry: RobotEntry) -> None:
