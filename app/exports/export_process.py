@@ -95,8 +95,9 @@ class ExportProcess:
         if process is not None:
             process.kill()
             for pipe in (process.stdin, process.stdout):
-                with suppress(OSError):
-                    pipe and pipe.close()
+                if pipe is not None:
+                    with suppress(OSError):
+                        pipe.close()
             process.wait()
 
     def _begin_resting(self) -> None:

@@ -50,7 +50,8 @@ def _candidates(squared: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     count = is_lowest.sum(axis=1)
     alone = len(squared) == 1  # BLAS computes one row otherwise, to another last bit
     if not alone and count.min() > 0 and count.max() <= MOST:
-        return np.nonzero(is_lowest)
+        row, column = np.nonzero(is_lowest)
+        return row, column
     column = local_minima(squared, MOST)
     return np.arange(len(squared)).repeat(MOST), column.ravel()
 
