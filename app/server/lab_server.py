@@ -115,7 +115,7 @@ class LabServer:
         self.simulation.stop()
         self._store.close()
         for view in list(self._views.values()):
-            view.close()
+            view.page.close()
         exports.process.stop()
         self.server.stop()
         if self._keeper is not None and self._records is not None:

@@ -85,9 +85,9 @@ def test_frozen_labs_stand_still_and_say_so(tabs: Class) -> None:
     for student in tabs.students:
         wait_for(lambda student=student: "look to the front" in student.said())
         before = student.session.time
-        asked = student.session.asked
+        asked = student.lab.asked
         student.press("Pause")
-        wait_for(lambda student=student, asked=asked: student.session.asked > asked)
+        wait_for(lambda student=student, asked=asked: student.lab.asked > asked)
         assert student.session.running and student.session.time == before
     tabs.teacher.press("Let all labs go on")
     for student in tabs.students:

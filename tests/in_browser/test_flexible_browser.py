@@ -100,7 +100,7 @@ def test_a_divergence_is_caught_said_and_reset(tab: Tab) -> None:
     wait_for(lambda: lab.session.exaggeration == 5.0)
     tab.enter("α", "0.95")
     wait_for(lambda: lab.session.parameters.law == "redefined")  # type: ignore[attr-defined]
-    wait_for(lambda: UNSTABLE in tab.said())
+    wait_for(lambda: str(UNSTABLE) in tab.said())
     assert deflection(tab) > 0.01  # the last instant before: seen at a glance
     bar = tab.page.get_by_text("unstable inside")
     bar.wait_for()

@@ -97,9 +97,9 @@ def test_a_reload_in_the_middle_comes_back_to_the_step(tab: Tab) -> None:
 
 
 def test_a_task_is_failed_then_passed(tab: Tab) -> None:
-    for step in range(tab.session.lessons.index + 1, tab.session.lessons.index + 5):
+    for step in range(tab.lab.lessons.index + 1, tab.lab.lessons.index + 5):
         tab.page.keyboard.press("PageDown")
-        wait_for(lambda step=step: tab.session.lessons.index == step)
+        wait_for(lambda step=step: tab.lab.lessons.index == step)
     heading(tab, "Hold it yourself")
     tab.ask(c.SetRate(2.0), c.SetParameter("K1", 40), c.SetParameter("K2", 12))
     tab.ask(c.SetRunning(False), c.Reset())  # how far it gives way depends on where it is held

@@ -17,7 +17,7 @@ from onpath.app.bench.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
-from onpath.app.lab.take_snapshot import take_snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_snapshot
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
