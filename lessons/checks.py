@@ -230,4 +230,6 @@ def _range_words(below: float | None, above: float | None, unit: str, words: Wor
 
 def _event_words(check: Event, words: Words) -> str:
     key = f"event.{check.event}"
-    return words(key, detail=check.name) if check.name else words.get(f"{key}_any", words(key))
+    if check.name:
+        return words(key, detail=check.name)
+    return words.get(f"{key}_any", "") or words(key)

@@ -39,7 +39,7 @@ MATHEMATICS = ("models", "lessons")
 FOREIGN = {"viser", "threading", "time", "asyncio", "datetime", "random"}
 PRINTING = ("app/cli/", "app/bench/tables.py")
 DRAWING = ("app.page", "app.scene")
-LIVE = ("lab", "session", "history", "lesson_run", "take_snapshot")
+LIVE = ("lab", "session", "history", "lesson_run", "snapshots.take_snapshot")
 """Modules of app.lab that know a lab as it lives: what draws is given snapshots of it."""
 LONGEST = 40
 

@@ -75,7 +75,7 @@ def simulate(
 
     >>> onpath.simulate(law="path_folowing")
     Traceback (most recent call last):
-    ValueError: unknown law 'path_folowing': did you mean path_following?
+    onpath.models.errors.CodedError: unknown law 'path_folowing': did you mean path_following?
     """
     entry = _entry(robot)
     _check_name(law, NAMES, "law")

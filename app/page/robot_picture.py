@@ -21,7 +21,7 @@ def picture_of(entry: RobotEntry) -> str:
     """A data URI."""
     if entry.picture:
         return _data("image/png", asset_path(entry.picture).read_bytes())
-    return _data("image/svg+xml", robot_sketch(entry.make(entry.lab)).encode())
+    return _data("image/svg+xml", robot_sketch(entry.make(entry.parameters())).encode())
 
 
 def _data(kind: str, content: bytes) -> str:

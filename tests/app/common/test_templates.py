@@ -146,10 +146,9 @@ def shown(words: Words, text: str) -> str:
     )
     sent: list[str] = []
     gui: Any = SimpleNamespace(add_html=lambda content: None)
-    session: Any = SimpleNamespace(lessons=SimpleNamespace(words=words))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(readout, "update_gui", lambda handle, name, content: sent.append(content))
-        readout.Readout(gui, session).follow(snapshot)  # type: ignore[arg-type]
+        readout.Readout(gui, words).follow(snapshot)  # type: ignore[arg-type]
     return sent[0]
 
 

@@ -15,7 +15,6 @@ import viser
 from viser import _gui_api, _gui_handles
 from viser.infra import Message
 
-from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
@@ -25,6 +24,7 @@ from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot, take_snapshot
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import ClassSeat, PageContext
+from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.frame_channel import FrameChannel
 from onpath.lessons.course import BUILT_IN, Course, read_course
@@ -82,7 +82,7 @@ class Drawing:
         self._client.gui.reset()
         with self._patch.context() as patch:
             patch.setattr(FrameChannel, "_take", take)
-            patch.setattr(Exporter, "submit", lambda _, work: work())
+            patch.setattr(RebuildThread, "submit", lambda _, work: work())
             patch.setattr(_gui_api, "_global_order_counter", 0)
             for module in (_gui_api, _gui_handles):
                 patch.setattr(module, "_make_uuid", lambda: f"widget {next(numbers)}")

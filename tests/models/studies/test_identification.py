@@ -241,7 +241,7 @@ def test_lab_says_what_the_model_has_no_place_for() -> None:
     assert "c1 = 0.05" in lab.message and "G1 = 0.19" in lab.message
     heavier = made_lab(payload=0.3)
     do(heavier, c.Identify())
-    assert errors(heavier).max() == 50 and "as far as" in heavier.message
+    assert errors(heavier).max() == 50 and "limited by the range" in heavier.message
 
 
 def test_lab_learns_from_the_robot_as_it_is_now() -> None:
