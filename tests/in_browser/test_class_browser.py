@@ -116,7 +116,7 @@ def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None
     teacher, (first, _) = tabs.teacher, tabs.students
     teacher.ask(c.SetParameter("K2", 33.0))
     teacher.press("Send my set-up to all")
-    wait_for(lambda: "“Set up again” brings" in first.said())
+    wait_for(lambda: "“Set up again” restores" in first.said())
     assert first.session.parameters.K2 == 33.0 and first.lab.lessons.index == 1
     assert first.page.get_by_role("heading", name="Draw what the tracker does").is_visible()
     first.press("Next")

@@ -79,7 +79,7 @@ def camera(tab: Tab) -> np.ndarray:
 
 def settled_camera(tab: Tab) -> np.ndarray:
     """The same, once the lab places it no more by itself."""
-    wait_for(lambda: not tab.view._settling)  # type: ignore[attr-defined]
+    wait_for(lambda: not tab.view.page._settling)  # type: ignore[attr-defined]
     tab.settle()
     return camera(tab)
 

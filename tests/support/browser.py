@@ -17,7 +17,7 @@ from onpath.app.bench.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
-from onpath.app.lab.snapshots.take_snapshot import take_snapshot
+from onpath.app.lab.snapshots.take_snapshot import page_key
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
@@ -226,7 +226,7 @@ class Tab:
         feed = self.view
         if not isinstance(feed, LabFeed) or not feed.page.is_ready:
             return False
-        return feed.page._built == (take_snapshot(self.lab, 1.0).key,)
+        return feed.page._built == (page_key(self.lab),)
 
     def press(self, name: str) -> None:
         """Press a button."""

@@ -90,18 +90,11 @@ def _scene(
     lab: Lab, achieved: float, traces: bool, before: Snapshot | None, student: int
 ) -> dict[str, Any]:
     """The fields of `Snapshot`."""
-    session, run = lab.session, lab.lessons
+    session = lab.session
     past = None if session.viewing is None else session.history.at(session.viewing)
     curve = session.editor.curve if past is None else past.curve
     time = session.time if session.viewing is None else session.viewing
-    key = PageKey(
-        robot=session.entry.name,
-        fields=session.sample_layout.fields,
-        language=run.words.language,
-        in_lesson=run.lesson is not None,
-        presenting=run.progress.presenting,
-        student=student,
-    )
+    key = page_key(lab, student)
     return {
         "time": time,
         "running": session.running,
@@ -121,6 +114,19 @@ def _scene(
         "note": scale_note(session, lab.words),
         "key": key,
     }
+
+
+def page_key(lab: Lab, student: int = 0) -> PageKey:
+    """What the page of a lab depends on; see `PageKey`."""
+    run = lab.lessons
+    return PageKey(
+        robot=lab.session.entry.name,
+        fields=lab.session.sample_layout.fields,
+        language=run.words.language,
+        in_lesson=run.lesson is not None,
+        presenting=run.progress.presenting,
+        student=student,
+    )
 
 
 def scale_note(session: Session, words: Words) -> str:
