@@ -9,6 +9,8 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from onpath.lessons.problems import line_of
+
 T = TypeVar("T")
 Complain = Callable[[int, str], None]
 """Told the line of the file and what is wrong there."""
@@ -22,7 +24,7 @@ def read_toml(content: str, line: int, kind: type[T], complain: Complain) -> T |
         place = re.search(r"at line (\d+)", str(error))
         complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}")
     except msgspec.ValidationError as error:
-        complain(_line_of(str(error), content, line), str(error))
+        complain(line_of(str(error), content, line), str(error))
     except RecursionError:
         complain(line, "nested too deeply")
     return None
@@ -45,34 +47,5 @@ def read_checked(
         return None
     found = list(faults(read))
     for fault in found:
-        complain(_line_of(fault, content, line), fault)
+        complain(line_of(fault, content, line), fault)
     return None if found else read
-
-
-def _line_of(fault: str, content: str, first: int) -> int:
-    """Where in a block of TOML a fault is.
-
-    It names a place such as `$.check[1].below`, or a word: a field, a value, a parameter.
-    """
-    lines = content.split("\n")
-    _, _, place = fault.partition("`$")
-    here = 0
-    for name, index in re.findall(r"\.(\w+)(?:\[(\d+)\])?", place):
-        found = _lines_with(name, lines, here)
-        if found:
-            here = found[min(int(index or 0), len(found) - 1)]
-    for word in re.findall(r"field `(\w+)`|'([^']+)'|^(\w+)", fault):
-        found = _lines_with("".join(word), lines, here)
-        if found:
-            return first + found[0]
-    return first + here
-
-
-def _lines_with(word: str, lines: list[str], begin: int) -> list[int]:
-    """Which lines from `begin` on give a name a value; if none does, which have the word."""
-    name = rf"(?<!\w){re.escape(word)}(?!\w)"
-    for pattern in (name + r"\s*=", name):
-        found = [i for i in range(begin, len(lines)) if re.search(pattern, lines[i])]
-        if found:
-            return found
-    return []
