@@ -1,4 +1,4 @@
-"""Pages are built one at a time, with rests: sixty at once would stop those who are inside."""
+"""Builds pages one at a time with pauses, so that a burst of arrivals does not stall open pages."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from onpath.app.page.notice import show_notice
 from onpath.lessons.words import Words
 
 one_at_a_time = threading.Lock()
-"""Held while a page is built, or built anew; never while a browser is waited for."""
-MOST_REST = 0.5  # [s] after a newcomer's page; else as long as that took
-FEW = 2  # so many pages are built while a newcomer looks at nothing
+"""Held while a page is built or rebuilt, but never while waiting for a browser."""
+MOST_REST = 0.5  # [s], longest pause after a page; the pause is as long as the build, up to this
+FEW = 2  # pages that are built at once for clients that have none yet
 
 
 class BuildQueue:
-    """Builds the pages of those who come, in the order in which they have come.
+    """Builds the pages of new clients in order of arrival.
 
-    In a thread of its own: viser's, which many waiting for their page would take up, are for
-    those inside who press a button.
+    Uses its own thread, because viser's thread pool must stay free for the callbacks of clients
+    that already have a page.
     """
 
     def __init__(self, server: viser.ViserServer) -> None:
@@ -34,10 +34,10 @@ class BuildQueue:
         self._ahead = 0
 
     def submit(self, client: viser.ClientHandle, build: Callable[[], None]) -> None:
-        """Build a page soon; a client that has to wait is told so meanwhile.
+        """Queue the build of a page. A client that has to wait is shown a notice.
 
         Args:
-            build: called even if the client has left by then.
+            build: called even if the client has disconnected by then.
         """
         with self._lock:
             told = _tell(client) if self._ahead >= FEW else None
@@ -46,7 +46,7 @@ class BuildQueue:
             self._pool.submit(self._build, client.client_id, told, build)
 
     def stop(self) -> None:
-        """Finish the page that is being built, and no other."""
+        """Finish the page under construction and discard the queue."""
         self._pool.shutdown(cancel_futures=True)
 
     def _build(
@@ -65,6 +65,6 @@ class BuildQueue:
 
 
 def _tell(client: viser.ClientHandle) -> Callable[[], None]:
-    """Returns what takes it away again."""
+    """Show the waiting notice; returns a function that removes it."""
     words = Words()
     return show_notice(client, words("coming.title"), words("coming.text"))

@@ -40,17 +40,17 @@ class PredictionChart:
         )
 
     def show(self, truth: Truth | None) -> None:
-        """Draw what has happened so far."""
+        """Plot the data up to now."""
         if truth is not None and truth != self._shown:
             self._shown = truth
             self._handle.data = self._data(truth)
 
     def remove(self) -> None:
-        """Take it off the page."""
+        """Remove the chart from the page."""
         self._handle.remove()
 
     def _data(self, truth: Truth | None) -> tuple[np.ndarray, ...]:
-        """Times and three curves, NaN where there is nothing yet."""
+        """Times and three curves, NaN where a curve has no data yet."""
         answer = self._answer
         return together(
             self._sketch.seconds,
@@ -65,7 +65,7 @@ Curve = tuple[tuple[float, ...], tuple[float, ...]]
 
 
 def together(seconds: float, *curves: Curve) -> tuple[np.ndarray, ...]:
-    """Curves at the times of all of them and the axis's ends: each has all its own points."""
+    """Resample curves on the union of their times and the ends of the axis; no point is lost."""
     at = np.unique(np.concatenate([[0.0, seconds], *[times for times, _ in curves]]))
     return (at, *[_resampled(at, times, values) for times, values in curves])
 

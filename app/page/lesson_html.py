@@ -16,7 +16,7 @@ LETTERS = "ABCDEFGH"
 
 
 def heading(lesson: Lesson, step: Step, run: LessonState) -> str:
-    """Where one is: lesson, progress bar, kind and title of the step."""
+    """Header of a step: lesson, progress bar, kind and title."""
     return render(
         "lesson/heading.html",
         lesson=lesson,
@@ -39,12 +39,12 @@ def remark(said: str, italic: bool = False) -> str:
 
 
 def asked(block: Sketch) -> str:
-    """A question that is answered by a sketch."""
+    """A question answered by a sketch."""
     return render("lesson/box.html", title=block.question, colour=BORDER.hex)
 
 
 def question(block: Choice | Quiz, chosen: int | None, revealed: bool, words: Words) -> str:
-    """A question with lettered options; once revealed, with what is right and why.
+    """A question with lettered options and, once revealed, the correct one and the explanation.
 
     Args:
         chosen: index of the student's answer; None when there is none.
@@ -61,7 +61,7 @@ def question(block: Choice | Quiz, chosen: int | None, revealed: bool, words: Wo
 
 
 def task(block: Task, verdicts: list[Verdict], run: LessonState) -> str:
-    """What to do, how far it is done, and the hints shown so far."""
+    """A task: instructions, progress, and the hints shown so far."""
     words, best = run.words, run.notes.tasks.get(block.id)
     passed = ""
     if best is not None:
@@ -72,7 +72,7 @@ def task(block: Task, verdicts: list[Verdict], run: LessonState) -> str:
     return _task(block.text, tuple(verdicts), hints, passed)
 
 
-@lru_cache(maxsize=256)  # every page asks ten times a second
+@lru_cache(maxsize=256)  # called by every page at 10 Hz
 def _task(title: str, verdicts: tuple[Verdict, ...], hints: tuple[str, ...], passed: str) -> str:
     return render(
         "lesson/task.html",
@@ -85,7 +85,7 @@ def _task(title: str, verdicts: tuple[Verdict, ...], hints: tuple[str, ...], pas
 
 
 def entry(lesson: Lesson, run: LessonState, number: int) -> str:
-    """A line of the overview."""
+    """One line of the lesson overview."""
     notes = run.progress.notes.get(lesson.name)
     tasks = lesson.tasks()
     done = sum(task.id in notes.tasks for task in tasks) if notes else 0

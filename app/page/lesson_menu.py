@@ -1,4 +1,4 @@
-"""The overview of all lessons, with ticks; language, and large type for a projector."""
+"""The lesson menu: an overview with progress, the language, and large type for a projector."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from onpath.lessons.words import Words, languages
 
 
 class LessonMenu:
-    """The button near the top, and its window."""
+    """The button near the top and the window that it opens."""
 
     def __init__(
         self, gui: viser.GuiApi, words: Words, post: Post, course: Course, first: PageSnapshot
@@ -27,7 +27,7 @@ class LessonMenu:
         on_press(button, self._open)
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Remember how far the student is, for the window."""
+        """Store the student's progress for the window."""
         self._run = LessonView(self._course, self._words, snapshot.lesson)
 
     def _open(self) -> None:

@@ -1,4 +1,4 @@
-"""The open lesson's page, docked on the left: text, prediction, tasks, and the way on."""
+"""The panel of the open lesson, docked on the left: text, prediction, tasks and navigation."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ NUMBERS = 6  # sliders that draw a sketch
 
 
 class LessonPanel:
-    """Shows the open step; draws it anew when the lab's lessons have changed.
+    """Shows the open step, and redraws it when the state of the lessons has changed.
 
     Args:
         submit: runs something in another thread.
-        tab: where to put it; a panel of its own on the left if there is none.
+        tab: parent of the widgets; without one, a separate panel on the left.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class LessonPanel:
         self._build(self._view(first))
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Draw anew what has changed; what is measured, always."""
+        """Redraw what has changed; measured values are always updated."""
         if self._busy:
             return
         run = self._view(snapshot)
@@ -81,7 +81,7 @@ class LessonPanel:
                 handle.content = content
         if self._chart is not None and run.playing:
             self._chart.show(run.truth)
-        board = self._board  # another thread may take it away
+        board = self._board  # another thread may remove it
         if board is not None:
             board.draw()
 
@@ -125,7 +125,7 @@ class LessonPanel:
             self._add_ways(step, run)
 
     def _add_reading(self, run: LessonView) -> None:
-        """The text tells what happens; who wants to read it first, may."""
+        """A button that shows the text before the experiment has run."""
 
         def read() -> None:
             self._reading, self._version = run.index, -1
@@ -193,7 +193,7 @@ class LessonPanel:
         return group
 
     def _add_sketching(self, block: Sketch) -> None:
-        """The board, its keyboard twin, and the button that commits."""
+        """The sketch board, its keyboard alternative, and the button that submits the sketch."""
         words = self._words
         said = self._html(page.remark(words("lesson.draw_first")))
         from onpath.app.scene.sketch_board import SketchBoard  # see app/server/lazy_imports.py
@@ -236,7 +236,7 @@ class LessonPanel:
                 sliders.append(slider)
 
     def _add_run(self, run: LessonView) -> None:
-        """What was predicted beside what happens, and the button that lets it happen."""
+        """The prediction next to the measured result, and the button that runs the experiment."""
         found, truth = run.prediction(), run.truth
         if run.playing:
             self._html(page.remark(run.words("lesson.playing"), italic=True))
@@ -263,7 +263,7 @@ class LessonPanel:
         self._chart.show(run.truth)
 
     def _add_ways(self, step: Step, run: LessonView) -> None:
-        """Back, on, set up again, away."""
+        """Navigation buttons: back, next, restore the set-up, close."""
         lesson = run.lesson
         assert lesson is not None
         last = run.index == len(lesson.steps) - 1

@@ -1,4 +1,4 @@
-"""A student's lessons as a page draws them: a snapshot's state, with the course's texts."""
+"""View of a student's lessons: the state of a snapshot combined with the course's texts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ NO_SETUP = StepSetup()
 
 
 class LessonView(LessonState):
-    """Where a student stands in the lessons, and what the lab says of the open step.
+    """A student's position in the lessons and the lab's results for the open step.
 
     Attributes:
         playing, verdicts, truth: see `LessonSnapshot`.
@@ -25,6 +25,6 @@ class LessonView(LessonState):
 
     @property
     def setup(self) -> StepSetup:
-        """Of the open step."""
+        """Set-up of the open step."""
         lesson = self.lesson
         return NO_SETUP if lesson is None else lesson.scene_at(self.index)

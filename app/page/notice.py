@@ -1,4 +1,4 @@
-"""A window for a browser that has no page yet: it says why, and what happens next."""
+"""A notice for a browser that has no page yet: the reason and what happens next."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import viser
 
 
 def show_notice(client: viser.ClientHandle, title: str, text: str) -> Callable[[], None]:
-    """Show a window. Returns what takes it away again."""
+    """Show a notice. Returns a function that removes it."""
     client.gui.set_panel_label("OnPath")
     window = client.gui.add_modal(title)
     with window:

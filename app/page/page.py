@@ -1,4 +1,4 @@
-"""One browser tab: scene, panels and plots around what is shown of one lab."""
+"""One browser tab: the scene, panels and plots of one lab."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ CONTROL_WIDTH = 330  # [px]
 
 
 class Page:
-    """What one client sees. Built in a thread of its own, then used by the simulation thread.
+    """The page of one client. Built in a separate thread, then updated by the simulation thread.
 
     Args:
-        first: what it shows at first.
+        first: the initial snapshot.
 
     Attributes:
-        is_outdated: whether a whole snapshot is wanted, to build the page anew.
-        exporter: makes the files that are asked for on it.
+        is_outdated: whether the page needs a complete snapshot to be rebuilt from.
+        exporter: creates the files requested on this page.
     """
 
     def __init__(self, client: viser.ClientHandle, first: PageSnapshot, desk: PageContext) -> None:
@@ -64,17 +64,17 @@ class Page:
             self._build(first)
 
     def close(self) -> None:
-        """The tab is gone."""
+        """Release resources after the tab has closed."""
         self.exporter.close()
         self._rebuilds.close()
 
     @property
     def is_ready(self) -> bool:
-        """Whether anything can be shown: the page stands, and somebody is there."""
+        """Whether the page is built and its client is connected."""
         return not self._building and not self._channel.closed
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show what is; on the simulation thread, while the page is ready."""
+        """Show a snapshot. Called on the simulation thread while the page is ready."""
         if self._key(snapshot) != self._built:
             self._renew(snapshot)
             return
@@ -88,7 +88,7 @@ class Page:
                     part.follow(snapshot)
 
     def reset_view(self) -> None:
-        """Put the camera back where it was at first, soon; from any thread."""
+        """Schedule a reset of the camera to its initial pose. Thread-safe."""
         self._framed = 0.0
 
     def send(self) -> None:
@@ -101,7 +101,7 @@ class Page:
         return self._channel.frames
 
     def _renew(self, snapshot: Snapshot) -> None:
-        """The page is to be built anew; until it stands, nothing is shown."""
+        """Rebuild the page; nothing is shown until it is complete."""
         self.is_outdated = True
         if isinstance(snapshot, PageSnapshot):
             self._building = True
@@ -115,11 +115,11 @@ class Page:
             self._build(first)
 
     def _key(self, snapshot: Snapshot) -> tuple[object, ...]:
-        """What the whole page depends on: when it is another, all is built anew."""
+        """Key of everything the page layout depends on; a change triggers a rebuild."""
         return (snapshot.key,)
 
     def _post_for(self, snapshot: PageSnapshot) -> Post:
-        """What takes the commands of this page."""
+        """The function that receives the commands of this page."""
         return self._desk.post
 
     def _build(self, first: PageSnapshot) -> None:
@@ -142,7 +142,7 @@ class Page:
             return
         submit = self._rebuilds.submit
         tab = None
-        if self._is_narrow():  # one panel for all: the lesson first, the lab behind its tab
+        if self._is_narrow():  # a single panel with tabs: the lesson first, then the lab
             tabs = gui.add_tab_group()
             tab = tabs.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
             own = tabs.add_tab(words("lesson.lab"), viser.Icon.ROBOT)
@@ -173,7 +173,7 @@ class Page:
         )
 
     def _build_head(self, first: PageSnapshot, words: Words, post: Post) -> None:
-        """What is always there: numbers, the way to the lessons, the distance."""
+        """Build the permanent widgets: readout, lesson menu and distance plot."""
         gui = self._client.gui
         self._build_numbers(words)
         if self._desk.course.lessons:
@@ -186,7 +186,7 @@ class Page:
         self._parts.append(Readout(self._client.gui, words))
 
     def _build_distance(self, first: PageSnapshot, words: Words) -> None:
-        """The plot that tells the story."""
+        """Build the plot of the distance from the path."""
         plot = LivePlot(self._client.gui, words, first.key.fields, DISTANCE, height=190)
         self._parts.append(plot)
 
@@ -195,10 +195,10 @@ class Page:
         return camera.image_width < NARROW * camera.image_height
 
     def _frame_camera(self) -> None:
-        """Both robots fill the view again whenever its shape has changed.
+        """Refit the camera to both robots when the aspect ratio of the view changes.
 
-        Not its size, in device pixels: a slow browser changes that all by itself. While panels
-        settle, a browser may not tell its last shape before it is given a camera again.
+        The size in device pixels is ignored, because slow browsers change it on their own. While
+        panels settle, a browser may not report its final shape until it is sent a camera again.
         """
         if self._settling:
             self._settling -= 1

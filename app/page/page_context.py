@@ -1,4 +1,4 @@
-"""What a page must know of the server: how to ask its lab for something, the course, the class."""
+"""The services that a page needs from the server: its lab's commands, the course and the class."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ class ClassSeat:
     """A lab's place in the class.
 
     Attributes:
-        join: with the class code and a nickname; raises ValueError with words.
-        leave: the class, not the lab.
-        teach: open the teacher's page, with the key; raises ValueError with words.
+        join: joins with the class code and a nickname; raises ValueError with a message.
+        leave: leaves the class but stays in the lab.
+        teach: opens the teacher's page, given the key; raises ValueError with a message.
     """
 
     join: Callable[[str, str], object]
@@ -26,15 +26,15 @@ class ClassSeat:
 
 @dataclass(frozen=True, slots=True)
 class PageContext:
-    """For one client.
+    """The context of one client's page.
 
     Attributes:
-        code: of its lab.
-        post: takes the commands for its lab.
-        course: all lessons there are.
-        keeps: whether labs outlive the server.
-        enter: go to the lab of a code; raises ValueError with words.
-        seat: in the class, or None where there is no class.
+        code: session code of its lab.
+        post: receives the commands for its lab.
+        course: all lessons.
+        keeps: whether labs persist across server restarts.
+        enter: opens the lab of a code; raises ValueError with a message.
+        seat: the lab's place in the class, or None without a class.
     """
 
     code: str

@@ -1,4 +1,4 @@
-"""The panels on the right: all of them, or only those that a lesson's step speaks of."""
+"""The panels on the right: all of them, or only those that a lesson's step uses."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ ALL = (
 
 
 class Part(Protocol):
-    """Something on the page that shows what a lab is like."""
+    """A part of the page that shows the state of a lab."""
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show what is."""
+        """Show a snapshot."""
         ...
 
 
@@ -46,8 +46,8 @@ class PanelFactory:
 
     Args:
         submit: runs something in another thread.
-        scene: what drawing, pulling and shading act on.
-        reset_view: puts the camera back.
+        scene: target of drawing, pulling and shading.
+        reset_view: resets the camera.
     """
 
     def __init__(
@@ -67,14 +67,14 @@ class PanelFactory:
         self._scene, self._desk = scene, desk
 
     def everything(self, first: PageSnapshot) -> list[Part]:
-        """All there is."""
+        """Build all panels."""
         parts = [part for name in ALL for part in self._add(name, first)]
         helping = self._gui.add_button(self._words("controls.help"), icon=viser.Icon.HELP)
         on_press(helping, self._help)
         return parts
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Run and hold, and what a lesson's scene names."""
+        """Build the run panel and the controls listed by a lesson's step."""
         self._scene.path_first = "editor" in scene.controls
         parts = list(self._add("hold", first))
         known = first.parameters
@@ -156,4 +156,4 @@ class PanelFactory:
 
 
 def _silent(_: object) -> None:
-    """A part that never changes."""
+    """A part that ignores snapshots."""

@@ -1,4 +1,4 @@
-"""Live plots of one client: the distance, always there, and one more on demand."""
+"""Live plots of one client: a permanent distance plot and a selectable second plot."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and t
 
 
 Fields = tuple[tuple[str, int], ...]
-"""What there is to plot; see `PageKey.fields`."""
+"""Data available for plotting; see `PageKey.fields`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """What is drawn over time.
+    """Description of a plot over time.
 
     Attributes:
-        name: in the catalogue and in lessons.
-        field: of a snapshot's samples.
-        scale: from SI to what is shown.
-        lines: names of the field's entries; one name for a single line.
-        least: what is shown at least, of what is nearly nothing when all goes well: a ripple of a
-            micrometre is not to look like a swing. None for as much as there is.
+        name: identifier in the message catalogue and in lessons.
+        field: name of the field in a snapshot's samples.
+        scale: factor from SI to displayed units.
+        lines: names of the field's components; one name for a single line.
+        least: smallest range of the value axis, so that a ripple of a micrometre is not magnified to
+            full height. None to fit the data.
     """
 
     name: str
@@ -75,7 +75,7 @@ MORE = {
 
 
 def _at_least(limits: tuple[float, float] | None) -> uplot.Scale:
-    """Grows with the data, but shows no less than this."""
+    """Axis range that grows with the data but has a minimum extent."""
     if limits is None:
         return uplot.Scale()
     low, high = ({"pad": 0.1, "soft": limit, "mode": 1} for limit in limits)
@@ -111,7 +111,7 @@ class LivePlot:
         )
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Draw the last seconds, up to the instant that is shown."""
+        """Plot the last seconds up to the displayed time."""
         if snapshot.time == self._shown:
             return
         self._shown, times = snapshot.time, snapshot.plots.times
@@ -123,18 +123,18 @@ class LivePlot:
         update_gui(self._handle, "data", tuple(finite))
 
     def remove(self) -> None:
-        """Take it off the page."""
+        """Remove the chart from the page."""
         self._handle.remove()
 
 
 def _shown(fields: Fields, words: Words) -> dict[str, Plot | None]:
-    """What this robot has something for, by name as shown; first of all none."""
+    """Plots available for this robot by displayed name; the first entry is "none"."""
     some = {words(f"plot.{p.name}"): p for p in MORE.values() if p.field in dict(fields)}
     return {words("plots.none"): None, **some}
 
 
 class MorePlots:
-    """A plot to choose."""
+    """A selectable plot."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, fields: Fields) -> None:
         self._gui, self._words, self._fields = gui, words, fields
@@ -148,7 +148,7 @@ class MorePlots:
         self._drawn: Plot | None = None
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Draw the chosen plot."""
+        """Update the selected plot."""
         chosen = self._plots[self._choice.value]
         if chosen is not self._drawn:
             self._drawn = chosen

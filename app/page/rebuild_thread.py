@@ -1,4 +1,4 @@
-"""The thread in which one page is built anew: not the simulation's, nor that of exports."""
+"""Thread that rebuilds one page, separate from the simulation and export threads."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from onpath.app.common.error_log import log_error
 
 
 class RebuildThread:
-    """Changes a page in the order in which changes are asked for."""
+    """Runs the changes of one page in the order in which they were submitted."""
 
     def __init__(self) -> None:
         self._pool = ThreadPoolExecutor(1, "rebuild")
 
     def submit(self, work: Callable[[], None]) -> None:
-        """Do something soon; what fails is logged."""
+        """Queue a function. Exceptions are logged."""
 
         def guarded() -> None:
             try:
@@ -24,9 +24,9 @@ class RebuildThread:
             except Exception as error:
                 log_error(error)
 
-        with suppress(RuntimeError):  # the tab is gone
+        with suppress(RuntimeError):  # the tab has closed
             self._pool.submit(guarded)
 
     def close(self) -> None:
-        """Begin nothing more."""
+        """Start no further work."""
         self._pool.shutdown(wait=False, cancel_futures=True)

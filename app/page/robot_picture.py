@@ -1,4 +1,4 @@
-"""A picture of a robot for the menu: an asset, or else a sketch of its bars and joints."""
+"""A picture of a robot for the menu: an asset, or otherwise a sketch of its bars and joints."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def _data(kind: str, content: bytes) -> str:
 
 
 def robot_sketch(robot: Robot) -> str:
-    """An SVG of the robot from the front, its end-point in the middle of its paths."""
+    """An SVG front view of the robot with its end-point in the centre of the path region."""
     q = ca.SX.sym("q", robot.system.n)
     drawn = ca.Function("drawn", [q], [ca.densify(x) for x in robot.skeleton(q, ca.SX(1))])
     home = robot.rest(robot.frame.lift(np.zeros(2)))

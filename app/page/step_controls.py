@@ -1,4 +1,4 @@
-"""The controls that the open step speaks of; others are made when another step is opened."""
+"""The controls of the open lesson step, rebuilt whenever another step is opened."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from onpath.lessons.words import Words
 
 
 class StepControls:
-    """A folder that is filled anew for every step.
+    """A folder whose contents are rebuilt for every step.
 
     Args:
         submit: runs something in another thread.
@@ -39,7 +39,7 @@ class StepControls:
         self._fill(self._setup_of(first), first)
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show the open step's controls, and what they stand at."""
+        """Show the open step's controls and their current values."""
         scene = self._setup_of(snapshot)
         if scene != self._scene:
             self._scene, self._parts = scene, []
@@ -57,5 +57,5 @@ class StepControls:
             self._parts = self._controls.of_step(scene, first)
 
     def _setup_of(self, snapshot: PageSnapshot) -> StepSetup:
-        """Of the open step."""
+        """Set-up of the open step."""
         return LessonView(self._course, self._words, snapshot.lesson).setup

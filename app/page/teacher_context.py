@@ -1,4 +1,4 @@
-"""What the teacher's page must know of the class, and what is chosen on it."""
+"""The services and the selections of the teacher's page."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from onpath.lessons.words import Words
 
 @dataclass(slots=True)
 class TeacherChoices:
-    """On one teacher's page; outlives its rebuilding.
+    """Selections on one teacher's page, kept when the page is rebuilt.
 
     Attributes:
-        lesson, step: whose prediction is shown.
-        revealed: with the truth.
-        followed: session code of the student whose lab is shown; empty for one's own.
+        lesson, step: where the displayed prediction is asked.
+        revealed: whether the truth is shown as well.
+        followed: session code of the student whose lab is shown; empty for the teacher's own lab.
     """
 
     lesson: str = ""
@@ -28,15 +28,14 @@ class TeacherChoices:
 
 @dataclass(frozen=True, slots=True)
 class TeacherContext:
-    """For one teacher's page.
+    """The context of one teacher's page.
 
     Attributes:
-        progress: the teacher's own way through the lessons.
-        why_still: why the lab that the teacher looks at is not there or stands still; empty if it
-            runs.
-        send_setup: send the set-up of the teacher's own lab to all.
-        forget: delete all that is kept, and end the class; returns how many labs there were.
-        stop: back to a lab's own page.
+        progress: the teacher's own progress through the lessons.
+        why_still: why the displayed lab is missing or stopped; empty if it runs.
+        send_setup: sends the set-up of the teacher's own lab to all students.
+        forget: deletes all stored data and ends the class; returns the number of labs deleted.
+        stop: returns to the ordinary lab page.
     """
 
     classroom: Classroom

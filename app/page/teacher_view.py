@@ -1,4 +1,4 @@
-"""The teacher's tab: the class on the left, one's own lab or a student's in the scene."""
+"""The teacher's tab: the class on the left; in the scene, the teacher's or a student's lab."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from onpath.lessons.words import Words
 
 
 class TeacherView(Page):
-    """What a teacher sees; a followed lab is shown and not touched.
+    """The teacher's view. A followed lab is read-only.
 
     Args:
-        first: of the teacher's own lab, whose language the class is shown in.
+        first: initial snapshot of the teacher's own lab, which also sets the language of the page.
     """
 
     def __init__(
@@ -57,4 +57,4 @@ class TeacherView(Page):
 
 
 def _ignore(_: c.Command) -> None:
-    """Nobody's hands but the student's."""
+    """Discard a command, since a followed lab is read-only."""

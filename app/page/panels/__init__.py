@@ -1,1 +1,1 @@
-"""The widgets of one client, a panel a module. They only post commands and show what is."""
+"""The widgets of one client, one panel per module. They post commands and show snapshots."""

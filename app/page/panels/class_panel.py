@@ -1,4 +1,4 @@
-"""A student's way into the class, and a teacher's to the teacher's page."""
+"""Panel for joining the class and for opening the teacher's page."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from onpath.lessons.words import Words
 
 
 class ClassPanel:
-    """A folder: class code and nickname, or who one is in the class."""
+    """A folder with inputs for class code and nickname, or with the student's name once joined."""
 
     def __init__(
         self, gui: viser.GuiApi, words: Words, seat: ClassSeat, first: PageSnapshot
@@ -54,7 +54,7 @@ class ClassPanel:
         def tried() -> None:
             self._said.content = ""
             try:
-                act()  # may build the page anew, without this panel
+                act()  # may rebuild the page without this panel
             except (ValueError, OSError) as error:
                 self._said.content = note(self._words.sentence(error), small=True)
 

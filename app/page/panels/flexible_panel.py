@@ -1,4 +1,4 @@
-"""The flexible link: what the controller sees of it, how it bends, how it is drawn and pulled."""
+"""Panel of the flexible link: controlled output, alpha, beam, drawing and pulling."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from onpath.models.systems.flexible_five_bar import RIGID
 from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
 
-LEAST, MOST = -1.0, 1.0  # of alpha on its bar
+LEAST, MOST = -1.0, 1.0  # range of alpha on its bar
 BEAM = ["plant", "modes", "rho", "frequency", "zeta"]
 COMPOSITE = ["tip_damping", "tip_prediction", "tip_shaping", "tip_yielding"]
-TURNED = 0.03  # [rad], of a joint; less changes the critical alpha too little to see
+TURNED = 0.03  # [rad], joint change below which the critical alpha is not recomputed
 
 
 def critical_alpha(parameters: FlexibleParameters, joints: np.ndarray) -> float:
-    """Alpha from which the inside is unstable, at rest at these joint angles, (3,); or infinity."""
+    """Alpha from which the internal dynamics at rest at joints (3,) are unstable; or infinity."""
     robot = robot_for(parameters)
     q = np.concatenate([joints, np.zeros(robot.modes)])
     zero = flexible_zero_dynamics(parameters.modes, parameters.plant)
@@ -34,13 +34,13 @@ def critical_alpha(parameters: FlexibleParameters, joints: np.ndarray) -> float:
 
 
 class CriticalAlpha:
-    """The follower's critical alpha, computed elsewhere and only when it may have changed.
+    """The follower's critical alpha, computed in another thread when it may have changed.
 
     Args:
         submit: runs something in another thread.
 
     Attributes:
-        value: the latest, infinity if there is none up to 1, NaN while unknown.
+        value: the latest result; infinity if there is none up to 1, NaN while unknown.
     """
 
     def __init__(self, submit: Callable[[Callable[[], None]], None]) -> None:
@@ -51,7 +51,7 @@ class CriticalAlpha:
         self.value = math.nan
 
     def follow(self, parameters: FlexibleParameters, q: np.ndarray) -> None:
-        """Ask for it anew if parameters or joints, (n,), are others."""
+        """Recompute if the parameters or joint angles, (n,), have changed."""
         key = replace(FlexibleParameters(), **{name: getattr(parameters, name) for name in BEAM})
         joints = q[:RIGID].copy()
         moved = np.abs(joints - self._joints).max() > TURNED
@@ -68,10 +68,10 @@ class CriticalAlpha:
 
 
 def alpha_bar(alpha: float, critical: float, used: bool, words: Words) -> str:
-    """A line from -1 to 1, red where the inside is unstable, with alpha marked.
+    """A line from -1 to 1, red where the internal dynamics are unstable, with alpha marked.
 
     Args:
-        used: whether the controller looks at alpha at all.
+        used: whether the controller uses alpha.
     """
 
     def percent(value: float) -> float:
@@ -102,8 +102,8 @@ class FlexiblePanel:
     """Output, alpha with its limit, the beam, and how it is drawn and pulled.
 
     Args:
-        pulls: names of the planes in which an end-point can be pulled, the present one first.
-        choose_pull: called with the name chosen.
+        pulls: names of the planes in which an end-point can be pulled, the current one first.
+        choose_pull: called with the selected name.
         submit: runs something in another thread.
     """
 
@@ -145,7 +145,7 @@ class FlexiblePanel:
         on_user_update(self._larger, lambda factor: post(c.SetExaggeration(factor)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show the lab's values and where the limit lies now."""
+        """Show the lab's values and the current limit of alpha."""
         own = parameters_of(snapshot)
         assert isinstance(own, FlexibleParameters)
         for widgets in self._widgets:
@@ -161,14 +161,14 @@ class FlexiblePanel:
             self._numbers.content = numbers
 
     def _set(self, command: c.Command) -> None:
-        """Alpha belongs to output redefinition: who moves it wants that."""
+        """Post a command; changing alpha also selects output redefinition, which uses it."""
         self._post(command)
         if isinstance(command, c.SetParameter) and command.name == "alpha":
             self._post(c.SetParameter("law", "redefined"))
 
 
 def deflections(snapshot: PageSnapshot, words: Words) -> str:
-    """How far each tip is bent aside, in words."""
+    """Tip deflection of each robot as text."""
     tracking, following = (
         f"{snapshot.robots[name].deflection * 1e3:.1f}" for name in (TrackerName, FollowerName)
     )

@@ -1,4 +1,4 @@
-"""Gains and task, with what they mean: how each channel settles, and a warning when it does not."""
+"""Gains and task, with the settling behaviour of each channel and a warning if it is unstable."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LAST_OF_MODEL = "error_b2"
 
 
 class GainsPanel:
-    """The controls that a first-time user sees, and the rest in folders."""
+    """The basic controls, with the remaining ones in folders."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         self._words = words
@@ -43,7 +43,7 @@ class GainsPanel:
                     add_identify(gui, words, post)
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show the lab's values and what follows from them."""
+        """Show the lab's values and the resulting settling behaviour."""
         if snapshot.parameters == self._shown:
             return
         self._shown = snapshot.parameters
@@ -54,7 +54,7 @@ class GainsPanel:
 
 
 def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
-    """The button that fits the controllers' model to what was measured."""
+    """Add the button that identifies the controllers' model from measurements."""
     label, hint = words("gains.identify"), words("gains.identify_hint")
     button = gui.add_button(label, icon=viser.Icon.RULER_MEASURE, hint=hint)
     on_press(button, lambda: post(Identify()))

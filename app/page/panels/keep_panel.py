@@ -1,4 +1,4 @@
-"""Keep and share: the lab's code, share codes, the record of the lessons."""
+"""Saving and sharing: the session code, share codes and the lesson report."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from onpath.lessons.words import Words
 
 
 class KeepPanel:
-    """A folder with codes to note down, to send and to type in."""
+    """A folder that shows the codes and accepts typed ones."""
 
     def __init__(
         self, gui: viser.GuiApi, words: Words, post: Post, exporter: Exporter, desk: PageContext
@@ -38,7 +38,7 @@ class KeepPanel:
         on_press(report, lambda: exporter.report(desk.code if desk.keeps else ""))
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show the share code that was asked for."""
+        """Show the requested share code."""
         if snapshot.shared != self._code:
             self._code = snapshot.shared
             self._share.content = _code(self._words("keep.shared"), snapshot.shared)
@@ -46,7 +46,7 @@ class KeepPanel:
     def _enter(self) -> None:
         self._say(self._words("keep.moment"))
         try:
-            self._desk.enter(self._typed.value)  # builds the page anew, without this panel
+            self._desk.enter(self._typed.value)  # rebuilds the page without this panel
         except (ValueError, OSError) as error:
             self._say(self._words.sentence(error))
 

@@ -1,4 +1,4 @@
-"""Keys for all that a mouse can do, and the window that lists them."""
+"""Keyboard shortcuts for all mouse actions, and the window that lists them."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from onpath.app.lab import commands as c
 from onpath.app.page.panels.widgets import Post
 from onpath.lessons.words import Words
 
-NUDGE = 0.001  # [m], of a control point
-TUG = 0.005  # [m], of the hand
+NUDGE = 0.001  # [m], step of a control point
+TUG = 0.005  # [m], step of the pulling hand
 
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """One key.
+    """One keyboard shortcut.
 
     Attributes:
-        name: of what it does, in the catalogue.
+        name: of its action in the message catalogue.
         hotkey: viser's name for it.
-        written: how it is written, key by key.
-        command: to the lab; without one it resets the view, which is the tab's own.
+        written: names of its keys, for display.
+        command: sent to the lab; None for the key that resets the view of this tab.
     """
 
     name: str
@@ -34,11 +34,11 @@ class Key:
     modifier: KeyModifier | None = None
 
     def does(self, words: Words) -> str:
-        """What it does."""
+        """Description of the action."""
         return words(f"key.{self.name}")
 
     def shown(self, words: Words) -> str:
-        """How it is written on a keyboard of that language."""
+        """Name of the shortcut on a keyboard of the given language."""
         return " ".join(words.get(f"keyname.{key}", key) for key in self.written.split())
 
 
@@ -70,7 +70,7 @@ KEYS = (
 
 
 def add_keys(gui: viser.GuiApi, words: Words, post: Post, reset_view: Callable[[], None]) -> None:
-    """Make the keys work; they are also in viser's command palette."""
+    """Register the shortcuts, which also appear in viser's command palette."""
     for key in KEYS:
         handle = gui.add_command(key.does(words), hotkey=key.hotkey, modifier=key.modifier)
 
@@ -84,6 +84,6 @@ def add_keys(gui: viser.GuiApi, words: Words, post: Post, reset_view: Callable[[
 
 
 def help_text(words: Words) -> str:
-    """The help window's text."""
+    """Text of the help window."""
     rows = [f"| **{key.shown(words)}** | {key.does(words)} |" for key in KEYS]
     return "\n".join([words("help.text"), *rows])

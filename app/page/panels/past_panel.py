@@ -1,4 +1,4 @@
-"""The last minute: look back, go on from there, take it home as files."""
+"""The last minute: look back, resume from there, export files."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class PastPanel:
         on_press(film, exporter.recording)
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """The slider stands at the instant that is shown, however one has come there."""
+        """Move the slider to the displayed time, even if it was changed by other means."""
         run = snapshot.run
         for button, useless in (
             (self._go_on, run.viewing is None),

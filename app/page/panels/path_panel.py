@@ -1,4 +1,4 @@
-"""The path: presets, freehand, control points with their keyboard twins, undo and redo."""
+"""The path: presets, freehand drawing, control points by mouse or keyboard, undo and redo."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from onpath.models.paths.path_design import presets
 
 
 class PathChoice:
-    """The preset in use; one of the first controls a user sees."""
+    """Selects the preset path."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         self._shown = {name: words.get(f"path.{name}", name) for name in presets()}
@@ -33,14 +33,14 @@ class PathChoice:
         )
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show which one it is."""
+        """Show the current preset."""
         shown = self._shown.get(snapshot.edit.name, self._own)
         if self._choice.value != shown:
             self._choice.value = shown
 
 
 class PathPanel:
-    """Everything else about the path."""
+    """All other controls of the path."""
 
     def __init__(
         self,
@@ -68,11 +68,11 @@ class PathPanel:
         self._sampled: np.ndarray | None = None
         self._rank = gui.add_markdown("")
         zone = gui.add_checkbox(words("design.zone"), False, hint=words("design.zone_hint"))
-        zone.visible = planar  # it is drawn about the base pivot, in the robot's own plane
+        zone.visible = planar  # the zone is drawn about the base pivot in the robot's plane
         on_user_update(zone, show_zone)
 
     def _add_coordinates(self, gui: viser.GuiApi, post: Post, names: tuple[str, str]) -> None:
-        """The selected point, by number."""
+        """Add number inputs for the selected point's coordinates."""
         words = self._words
         self._which = gui.add_number(
             words("design.selected"), 0.0, min=0, max=24, step=1, hint=words("design.selected_hint")

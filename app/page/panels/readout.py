@@ -1,4 +1,4 @@
-"""How far each robot is from the path, now and at most, and what the lab has to say."""
+"""Current and maximum distance of each robot from the path, and the lab's message."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LEVELS = {"info": BLUE.hex, "warning": AMBER.hex, "error": WARNING.hex}
 
 
 class Readout:
-    """Two lines of numbers, a clock, and the message."""
+    """Two lines of numbers, a clock and the message."""
 
     def __init__(self, gui: viser.GuiApi, words: Words) -> None:
         self._words = words
@@ -43,11 +43,11 @@ class Readout:
 
 
 def _frame(words: Words, names: tuple[str, ...], level: str) -> str:
-    """All but what changes ten times a second, where it has a {}.
+    """Template of the readout, with {} for the values updated at 10 Hz.
 
     Args:
         names: of the controllers.
-        level: of the message; empty without one.
+        level: severity of the message; empty without one.
     """
     return render(
         "panel/readout.html",

@@ -1,4 +1,4 @@
-"""Which robot: a button that opens a menu of pictures."""
+"""Selection of the robot: a button that opens a menu of pictures."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 
 
 class RobotPanel:
-    """The button near the top, and its menu."""
+    """The button near the top and its menu."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, robot: str) -> None:
         self._gui, self._words = gui, words
@@ -50,10 +50,10 @@ class RobotPanel:
 
 
 def label_of(entry: RobotEntry, words: Words) -> str:
-    """A robot's name as shown."""
+    """Displayed name of a robot."""
     return words.get(f"machine.{entry.name}.label", entry.label)
 
 
 def _card(picture: str, label: str, text: str) -> str:
-    """Picture and a sentence."""
+    """Picture and one-sentence description of a robot."""
     return render("panel/robot.html", label=label, text=text, picture=picture)

@@ -1,4 +1,4 @@
-"""Run, pause, step, reset, hold: what a first-time user reaches for."""
+"""Run, pause, step, reset and hold."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RATE_LABELS = {f"{rate:g}×": rate for rate in c.RATES}
 
 
 class RunPanel:
-    """Transport and hold."""
+    """Buttons that control time, and the brake."""
 
     def __init__(
         self, gui: viser.GuiApi, words: Words, post: Post, reset_view: Callable[[], None]
@@ -52,7 +52,7 @@ class RunPanel:
         on_hold(press, lambda: post(c.Hold(True)), lambda: post(c.Hold(False)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show what is."""
+        """Show a snapshot."""
         held = snapshot.held
         label = self._words("run.let_both_go" if held else "run.hold_both")
         if not snapshot.run.copy:

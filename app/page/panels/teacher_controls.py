@@ -1,4 +1,4 @@
-"""What a teacher does to all labs at once: freeze, send a set-up."""
+"""Teacher's controls for all labs: freeze, send a set-up."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from onpath.lessons.words import Words
 
 
 class TeacherControls:
-    """Above the teacher's own lab."""
+    """Controls above the teacher's own lab."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, teaching: TeacherContext) -> None:
         self._class, self._words, self._teaching = teaching.classroom, words, teaching
@@ -49,7 +49,7 @@ class TeacherControls:
 
 
 class FollowedStudent:
-    """Above a student's lab."""
+    """Controls above a student's lab."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, teaching: TeacherContext) -> None:
         self._words, self._class = words, teaching.classroom

@@ -1,4 +1,4 @@
-"""The class on the teacher's left: who is where, what was predicted, what is taken home."""
+"""The class panel of the teacher's page: progress, predictions and exports."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 
 WIDTH, WIDE = 480, 760  # [px]; wide for a projector
-REFRESH_INTERVAL = 1.0  # [s] between two looks at the class
+REFRESH_INTERVAL = 1.0  # [s], refresh period
 
 Submit = Callable[[Callable[[], None]], None]
 
 
 class TeacherPanel:
-    """Three tabs; the second one names nobody, for the projector.
+    """Three tabs. The second one shows no names and suits a projector.
 
     Args:
-        post: takes the commands for the teacher's own lab.
+        post: receives the commands for the teacher's own lab.
         submit: runs something in another thread.
     """
 
@@ -58,7 +58,7 @@ class TeacherPanel:
         self._panel = panel
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Once a second, in another thread: the class may be large."""
+        """Refresh once a second in another thread, since the class may be large."""
         now = self._class.clock()
         if now >= self._next and not self._busy:
             self._next, self._busy = now + REFRESH_INTERVAL, True
@@ -80,7 +80,7 @@ class TeacherPanel:
         finally:
             self._busy = False
 
-    # Who is where
+    # Progress
 
     def _build_class(self) -> None:
         self._codes.append(self._gui.add_html(""))
@@ -97,7 +97,7 @@ class TeacherPanel:
         self._show_standing()
 
     def _followable(self) -> dict[str, str]:
-        """Session codes by what is shown of them."""
+        """Session codes by displayed label."""
         members = self._class.members().items()
         return {f"{member.number}. {member.name}": code for code, member in members}
 
@@ -111,7 +111,7 @@ class TeacherPanel:
             self._names.value = shown
 
     def _show_standing(self) -> None:
-        """What whoever joins now gets, and the button that ends it."""
+        """Show the set-up that new members receive and the button that clears it."""
         push = self._class.orders.push
         self._clear.visible = push is not None
         if push is None:
@@ -127,7 +127,7 @@ class TeacherPanel:
         self._chosen.followed = self._followable().get(name, "")
         self._look_again()
 
-    # What was predicted
+    # Predictions
 
     def _build_predictions(self) -> None:
         words, gui, chosen = self._words, self._gui, self._chosen
@@ -152,7 +152,7 @@ class TeacherPanel:
         on_press(push, self._push_step)
 
     def _lessons(self) -> dict[str, str]:
-        """Names by titles."""
+        """Lesson names by title."""
         course, language = self._course, self._words.language
         return {
             f"{number}. {course.lesson(name, language).front.title}": name
@@ -208,7 +208,7 @@ class TeacherPanel:
         missing = chosen.revealed and not counted.counts and truth is None
         return view + note(words("class.no_truth")) if missing else view
 
-    # What is taken home, and what is forgotten
+    # Export and deletion
 
     def _build_record(self) -> None:
         words, gui = self._words, self._gui
@@ -246,7 +246,7 @@ class TeacherPanel:
         self._look_again()
 
     def _ask(self, title: str, question: str, act: Callable[[], None]) -> None:
-        """Do it only after a yes."""
+        """Run an action after confirmation."""
         with self._gui.add_modal(title) as modal:
             self._gui.add_html(note(question))
             yes = self._gui.add_button(self._words("class.yes"), color="red")

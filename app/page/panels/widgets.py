@@ -1,4 +1,4 @@
-"""Widgets built from parameter metadata, and small helpers that every panel uses."""
+"""Widgets built from parameter metadata, and helpers shared by all panels."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Spec, specs
 
 Post = Callable[[Command], None]
-PRESS_ENDS = 0.35  # [s] without a message that the button is held down: it was let go
+PRESS_ENDS = 0.35  # [s] without a "held" message after which the button counts as released
 
 
 def on_user_update(handle: Any, act: Callable[[Any], None]) -> None:
@@ -43,9 +43,9 @@ def on_press(handle: Any, act: Callable[[], None]) -> None:
 
 
 def on_hold(handle: Any, begin: Callable[[], None], end: Callable[[], None]) -> None:
-    """Call `begin()` when the button is pressed, and `end()` when it is let go.
+    """Call `begin()` when the button is pressed and `end()` when it is released.
 
-    The browser tells ten times a second that it is held down, and nothing when it no longer is.
+    The browser reports a held button ten times a second, but sends nothing on release.
     """
     ending: asyncio.TimerHandle | None = None
 
@@ -66,12 +66,14 @@ def on_hold(handle: Any, begin: Callable[[], None], end: Callable[[], None]) -> 
 
 
 _slow_presses: WeakKeyDictionary[Any, threading.Lock] = WeakKeyDictionary()
-"""By tab, on viser's event loop."""
+"""Per tab; accessed on viser's event loop."""
 
 
 def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
-    """Call `act()` when the button is pressed, in a thread of its own: it may wait, or build the
-    page anew. Presses of the same tab while it is under way are dropped: nothing piles up."""
+    """Call `act()` in a separate thread when the button is pressed.
+
+    It may block or rebuild the page. Presses from the same tab are dropped while it runs.
+    """
 
     def run(under_way: threading.Lock) -> None:
         try:
@@ -90,31 +92,31 @@ def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
 
 
 def note(said: str, small: bool = False) -> str:
-    """A sentence between widgets."""
+    """Add a line of text between widgets."""
     return render("panel/note.html", said=said, small=small)
 
 
 def label_of(words: Words, name: str, spec: Spec) -> str:
-    """A parameter's name on a widget."""
+    """Displayed label of a parameter."""
     return words.get(f"parameter.{name}.label", spec.label)
 
 
 def help_of(words: Words, name: str, spec: Spec) -> str:
-    """A line about a parameter."""
+    """Help text of a parameter."""
     return words.get(f"parameter.{name}.help", spec.help)
 
 
 def option_of(words: Words, name: str, option: Any) -> str:
-    """One of a parameter's options, as a list shows it."""
+    """Displayed name of one of a parameter's options."""
     return words.get(f"parameter.{name}.option.{option}", str(option))
 
 
 class ParameterWidgets:
-    """Widgets of some parameters: they post changes and follow the lab's values.
+    """Widgets for parameters that post changes and follow the lab's values.
 
     Args:
-        gui: where to put them.
-        post: takes the commands.
+        gui: parent of the widgets.
+        post: receives the commands.
         names: fields of the robot's parameters, in order.
     """
 
@@ -163,7 +165,7 @@ class ParameterWidgets:
         return handle
 
     def _shown(self, name: str, parameters: ParameterValues) -> Any:
-        """As the widget holds it: options in words, numbers to the slider's step or finer."""
+        """Value for the widget: the option's name, or a number rounded to the step or finer."""
         spec, value = self._specs[name], parameters[name]
         if spec.options:
             return option_of(self._words, name, value)
@@ -172,7 +174,7 @@ class ParameterWidgets:
 
 
 class SwitchedParameter(ParameterWidgets):
-    """A parameter that is off at 0: a checkbox that shows its slider while on."""
+    """A parameter that 0 switches off: a checkbox that shows a slider while checked."""
 
     def __init__(
         self, gui: viser.GuiApi, words: Words, post: Post, name: str, first: PageSnapshot
@@ -189,7 +191,7 @@ class SwitchedParameter(ParameterWidgets):
         on_user_update(self._switch, self._turn)
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show the lab's value, and the slider only while on."""
+        """Show the lab's value, and the slider only while checked."""
         super().follow(snapshot)
         on = snapshot.parameters[self._name] != 0
         if self._switch.value != on:
