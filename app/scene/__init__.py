@@ -1,1 +1,1 @@
-"""The 3D scene, and what the mouse does in it."""
+"""The 3D scene and its mouse interaction."""

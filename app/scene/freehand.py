@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     import viser
 
 CLOSEST = 0.002
-"""Two points of a stroke are at least this far apart [m]."""
+"""Minimum distance between consecutive points of a stroke [m]."""
 
 
 class Freehand:
-    """Sheets that take one stroke. Removes itself at the stroke's end.
+    """Sheets that record one stroke and are removed when it ends.
 
     Args:
         scene: the client's scene.
@@ -39,7 +39,7 @@ class Freehand:
         self._bases = stage.origins
         self._plane = stage.path_plane
         self._on_stroke = on_stroke
-        self._base = self._bases[0]  # of the robot before which is drawn
+        self._base = self._bases[0]  # of the robot in front of which the stroke is drawn
         look = (palette.INK, 0.003)
         self._ink = Ink(scene, "/freehand/ink", look, CLOSEST, self._before_the_robot)
         self.active = True
@@ -50,14 +50,14 @@ class Freehand:
         self._sheets.on_drag("left")(self._dragged)
 
     def cancel(self) -> None:
-        """Takes the sheets away; without effect when they are gone."""
+        """Removes the sheets. Idempotent."""
         if self.active:
             self.active = False
             self._sheets.remove()
             self._ink.remove()
 
     def draw(self) -> None:
-        """Show how far the stroke is; at about 10 Hz."""
+        """Redraw the stroke; called at about 10 Hz."""
         self._ink.draw()
 
     async def _dragged(self, event: viser.SceneNodeDragEvent[viser.BatchedMeshHandle]) -> None:

@@ -1,7 +1,7 @@
-"""A line that a hand is drawing: of few points however long it takes, and drawn now and then.
+"""A line drawn by hand, with a bounded number of points and a limited redraw rate.
 
-The mouse tells its way up to 500 times a second, on the event loop of all; there points are only
-noted. The line is sent by the simulation thread, with the other slow things of a page.
+The mouse reports up to 500 positions a second on the shared event loop, where points are only
+stored. The simulation thread sends the line together with the other slow updates of a page.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
     import viser
 
 MOST = 1000
-"""Points of a line; at more, every second one is left out, and from then on fewer are taken."""
+"""Maximum number of points; beyond it, every second one is dropped and the spacing doubles."""
 
 
 class Ink:
-    """A line on the screen. From any thread.
+    """A line in the scene. Thread-safe.
 
     Args:
-        scene: where it is.
-        name: of its node.
-        look: colour, and thickness [m].
-        closest: two points are at least this far apart.
-        place: from points, shape (n, k), to the world, shape (n, 3), [m].
+        scene: the scene that contains it.
+        name: name of its node.
+        look: colour and thickness [m].
+        closest: minimum distance between two points.
+        place: maps points, shape (n, k), to the world, shape (n, 3), [m].
     """
 
     def __init__(
@@ -49,18 +49,18 @@ class Ink:
 
     @property
     def points(self) -> np.ndarray:
-        """Of the line, shape (n, k)."""
+        """Points of the line, shape (n, k)."""
         with self._lock:
             return np.array(self._points)
 
     def begin(self, points: np.ndarray | None = None) -> None:
-        """Anew, with some points or none."""
+        """Start a new line with the given points."""
         with self._lock:
             self._points = [] if points is None else list(points)
             self._apart, self._changed = self._closest, True
 
     def add(self, point: np.ndarray) -> None:
-        """The line goes on to a point, unless that is very near its end."""
+        """Append a point unless it is too close to the end of the line."""
         with self._lock:
             if self._points and np.linalg.norm(point - self._points[-1]) <= self._apart:
                 return
@@ -70,7 +70,7 @@ class Ink:
                 self._points, self._apart = self._points[::2], 2 * self._apart
 
     def draw(self) -> None:
-        """Show what has been added; without effect if nothing has."""
+        """Redraw the line if points have been added."""
         with self._lock:
             if self._removed or not self._changed:
                 return
@@ -89,7 +89,7 @@ class Ink:
                 self._handle.points = segments
 
     def remove(self) -> None:
-        """Take it away for good."""
+        """Remove the line permanently."""
         with self._lock:
             self._removed = True
             self._erase()

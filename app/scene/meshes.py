@@ -16,7 +16,7 @@ ROUND = 40  # points of a full circle
 
 LINK_THICKNESS = 0.012
 GRIP = (0.02, 0.009, 0.02)  # half-axes of the area at an end-point that can be grabbed [m]
-FLOOR_DEPTH = 0.17  # of the floor below the base pivot [m]
+FLOOR_DEPTH = 0.17  # depth of the floor below the base pivot [m]
 
 
 def loft(rings: np.ndarray) -> trimesh.Trimesh:
@@ -119,9 +119,9 @@ def bearing() -> trimesh.Trimesh:
 
 @lru_cache
 def grip() -> trimesh.Trimesh:
-    """A lens about an end-point, deep enough to be hit before a control point inside it.
+    """A lens about an end-point, deep enough to be picked before a control point inside it.
 
-    The scene then decides which of the two is meant.
+    The scene then decides which of the two is selected.
     """
     return ball(1.0).apply_scale(GRIP)
 
@@ -181,7 +181,7 @@ def ball(radius: float) -> trimesh.Trimesh:
 
 @lru_cache
 def cross() -> trimesh.Trimesh:
-    """An x of size 1 m in the plane y = 0, which marks a refused place; to be scaled down."""
+    """An x of size 1 m in the plane y = 0, which marks a rejected position; to be scaled down."""
     arm = np.array([(0.5, 0.09), (-0.5, 0.09), (-0.5, -0.09), (0.5, -0.09)])
     turn = np.sqrt(0.5) * np.array([[1.0, 1.0], [-1.0, 1.0]])
     return crisp(*(extruded(arm @ r, -0.06, 0.06, 0.02) for r in (turn, turn.T)))

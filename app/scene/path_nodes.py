@@ -1,4 +1,4 @@
-"""The path at every robot: its curve, its control points, and where an edit was refused."""
+"""The path at every robot: its curve, its control points, and the place of a rejected edit."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class PathNodes:
     Args:
         scene: the client's scene.
         bases: origins of the robots' frames in the world, shape (k, 3), [m].
-        connect: given the control points' node whenever there is a new one, to add callbacks. Its
+        connect: called with every new node of the control points, to add callbacks. Its
             instances are all points of the first robot, then all of the next.
     """
 
@@ -44,7 +44,7 @@ class PathNodes:
         self._marks: viser.BatchedMeshHandle | None = None
 
     def draw(self, path: PathView) -> None:
-        """Makes the nodes show this path."""
+        """Update the nodes to show a path."""
         self._draw_curve(path.points)
         self._draw_points(path)
         self._draw_marks(path.refused)

@@ -95,7 +95,7 @@ def pointer_on_plane(
     plane: DragPlane,
     box: Box = REACHABLE,
 ) -> np.ndarray | None:
-    """What the pointer means on a robot's plane.
+    """Project the pointer onto a robot's plane.
 
     A drag reports the pointer on a plane that faces the camera, not on the robot's own; both lie
     on one ray from the camera.
@@ -105,7 +105,7 @@ def pointer_on_plane(
         pointer: any point of the world under the pointer, shape (3,), [m].
         base: origin of the robot's frame in the world, shape (3,), [m].
         plane: the robot's plane.
-        box: what the answer is clamped to.
+        box: the result is clamped to it.
 
     Returns:
         The point in the robot's frame, shape (3,), [m], or None if there is none.

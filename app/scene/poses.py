@@ -1,4 +1,4 @@
-"""Where every moving part of all machines goes: robots' poses, on their stage, as arrays."""
+"""World poses of all moving parts of all robots, as arrays."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from onpath.app.scene.stage import Stage
 
 UNSEEN = 1e-5
 PLACED = ("bars", "parts", "tips")
-"""Fields that are places, in the world: the others are directions, lengths and forces."""
+"""Fields that are world positions; the others are directions, lengths and forces."""
 
 
 @dataclass(frozen=True, slots=True)
 class Poses:
-    """Everything that moves, for all robots, in the world; float32, as browsers take it.
+    """Poses of everything that moves, for all robots, in the world; float32, as sent to browsers.
 
     Attributes:
-        whole: all that follows in one, flat.
-        bars: where the link meshes begin, shape (n, 3), [m].
-        quaternions: how they are turned, scalar first, shape (n, 4).
+        whole: all following fields in one flat array.
+        bars: origins of the link meshes, shape (n, 3), [m].
+        quaternions: their orientations, scalar first, shape (n, 4).
         lengths: of the bars, shape (n,), [m].
         parts: for each robot its bearings, pen, two marker discs and extra points, (m, 3), [m].
-        turns: how these are turned about the vertical, scalar first, shape (m, 4).
+        turns: rotations of these parts about the vertical, scalar first, shape (m, 4).
         tips: end-points, shape (k, 3), [m].
         forces: on the end-points, shape (k, 3), [N].
     """
@@ -42,33 +42,33 @@ class Poses:
     forces: np.ndarray
 
     def is_news(self, drawn: Poses) -> bool:
-        """Whether it can be drawn, and somebody could see the difference: 10 µm, 10 µN."""
-        return UNSEEN < difference(self.whole, drawn.whole) < np.inf  # not if it is NaN
+        """Whether it is finite and differs visibly from the last pose: by 10 µm or 10 µN."""
+        return UNSEEN < difference(self.whole, drawn.whole) < np.inf  # false for NaN
 
 
 def difference(a: np.ndarray, b: np.ndarray) -> float:
-    """Euclidean norm of a - b, of all their numbers together."""
+    """Euclidean norm of a - b over all entries."""
     d = (a - b).ravel()
     return sqrt(d.dot(d))
 
 
 def poses_of(stage: Stage, robots: list[RobotView]) -> Poses:
-    """The poses of robots that are all alike, on their stage, at one instant."""
+    """World poses of robots of the same kind at one instant."""
     layout = _layout(stage, robots[0].counts)
     flat = np.concatenate([robot.poses for robot in robots])
-    with np.errstate(over="ignore"):  # what is not finite then is not drawn
+    with np.errstate(over="ignore"):  # non-finite values are then not drawn
         whole = (flat.take(layout.order) + layout.offsets).astype(np.float32)
     return Poses(whole, *[whole[place].reshape(shape) for place, shape in layout.fields])
 
 
 @dataclass(frozen=True, slots=True)
 class _Layout:
-    """From poses robot by robot in their own frames to `Poses.whole`.
+    """Mapping from the poses of each robot in its own frame to `Poses.whole`.
 
     Attributes:
-        order: where each number of `Poses.whole` comes from.
-        offsets: what is added to it, the origins of the robots' frames.
-        fields: where each field of `Poses` lies in it, and its shape.
+        order: source index of each entry of `Poses.whole`.
+        offsets: added to each entry; the origins of the robots' frames.
+        fields: position and shape of each field of `Poses` within `whole`.
     """
 
     order: np.ndarray
@@ -96,17 +96,17 @@ def _layout(stage: Stage, counts: Counts) -> _Layout:
 
 
 def trace_segments(trace: np.ndarray, count: int) -> np.ndarray:
-    """A trace as exactly `count` segments, shape (count, 2, 3); the missing ones have no length.
+    """A trace as exactly `count` segments, shape (count, 2, 3), padded with zero-length segments.
 
-    A constant count lets their colours stay as they are. A trace is thinned evenly, never at its
-    newest end.
+    With a constant count the colours need no update. A trace is thinned evenly and always keeps
+    its newest point.
     """
     return trace[_kept(len(trace), count)] if len(trace) else np.zeros((count, 2, 3))
 
 
 @lru_cache(maxsize=512)
 def _kept(length: int, count: int) -> np.ndarray:
-    """Which points of a trace the segments begin and end at, shape (count, 2)."""
+    """Indices of the first and last point of each segment, shape (count, 2)."""
     step = max(1, -(-(length - 1) // count))
     line = np.arange(length)[::-1][::step][: count + 1][::-1]
     line = np.concatenate([np.repeat(line[:1], count + 1 - len(line)), line])

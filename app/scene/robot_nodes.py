@@ -1,4 +1,4 @@
-"""The nodes of both machines that move: links, bearings, pens, markers, grips, forces, traces."""
+"""Moving nodes of all robots: links, bearings, pens, markers, grips, forces, traces."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     import viser
 
 FORCE_SHOWN = 0.05
-"""Smallest force that is drawn [N]."""
+"""Forces below this are not drawn [N]."""
 TRACE_SEGMENTS = 120
 TRACE_DEPTHS = (0.012, 0.002)
-"""Behind the path, and older laps behind newer ones [m]."""
+"""Depth of the trace behind the path, and of older laps behind newer ones [m]."""
 
 # Scales of the bearing's mesh, which also serves as pen and as the discs of a marker.
 BEARING = (1.0, 1.0, 1.0)
@@ -48,9 +48,9 @@ def link_scales(lengths: np.ndarray) -> np.ndarray:
 
 
 def bar_colours(name: str, counts: Counts) -> np.ndarray:
-    """Linear colours of a robot's bars, shape (n, 3): every other link lies behind, and is darker.
+    """Linear colours of a robot's bars, shape (n, 3): every other link is behind and darker.
 
-    Pieces of a strip are in front.
+    Pieces of a flexible strip are in front.
     """
     front = palette.CONTROLLERS[name]
     back = front.toward(palette.INK, 0.25)
@@ -63,8 +63,8 @@ def part_looks(
     """Scales and linear colours of a robot's bearings, pen, marker and extra points.
 
     Joints in `motors` are drawn as motors.
-    The tracker's moving reference is a ring, the follower's closest point a dot with a white rim:
-    either is two discs, one before the other.
+    The tracker's moving reference is a ring and the follower's closest point a dot with a white
+    rim; each consists of two discs, one in front of the other.
     """
     extras = counts.marks
     dark = palette.CONTROLLERS[name].toward(palette.INK, 0.45)
@@ -88,7 +88,7 @@ def _add_traces(scene: viser.SceneApi, names: list[str]) -> viser.LineSegmentsHa
 
 
 def _trace_origins(origins: np.ndarray) -> np.ndarray:
-    """Where the segments of all robots' traces have their origins, shape (count, 1, 3), [m]."""
+    """Origins of the segments of all robots' traces, shape (count, 1, 3), [m]."""
     depths = np.zeros((TRACE_SEGMENTS, 3))
     depths[:, 1] = np.linspace(*TRACE_DEPTHS, TRACE_SEGMENTS)
     return (origins[:, None] + depths).reshape(-1, 1, 3)
@@ -98,8 +98,8 @@ class Bars:
     """Some of the bars as copies of one mesh along x from 0 to 1.
 
     Args:
-        which: of all bars: booleans, shape (n,), or a slice.
-        colours: of those, linear, shape (k, 3).
+        which: selects from all bars: booleans, shape (n,), or a slice.
+        colours: linear colours of the selected bars, shape (k, 3).
     """
 
     def __init__(
@@ -117,7 +117,7 @@ class Bars:
         self._node = add_copies(scene, name, mesh, poses.bars[which], colours, scales=scales)
 
     def update(self, poses: Poses) -> None:
-        """One message."""
+        """Update the bars; sends one message."""
         which, lengths = self._which, poses.lengths[self._which]
         arrays = {"batched_positions": poses.bars[which], "batched_wxyzs": poses.quaternions[which]}
         if difference(lengths, self._lengths) > 1e-4:
@@ -127,14 +127,14 @@ class Bars:
 
 
 class RobotNodes:
-    """Nodes for all robots together, as few as can be.
+    """Nodes shared by all robots, to keep the number of messages small.
 
     Args:
         scene: the client's scene.
         stage: where the robots stand.
-        robots: as they are at first, in the same order.
-        poses: of them.
-        words: for what is written beside them.
+        robots: their initial states, in the same order.
+        poses: their initial poses.
+        words: message catalogue for the labels.
     """
 
     def __init__(
@@ -193,7 +193,7 @@ class RobotNodes:
         )
 
     def update(self, poses: Poses) -> None:
-        """Three messages, one more with a force, one with a strip, none when nothing has moved."""
+        """Sends three messages, plus one each for forces and strips; none if nothing has moved."""
         if poses.is_news(self._drawn):
             self._drawn = poses
             self._draw(poses)
@@ -215,17 +215,17 @@ class RobotNodes:
             self._arrows.visible = acts
 
     def update_traces(self, robots: list[RobotView]) -> None:
-        """Redraws the traces if they are others, and says how large each force is."""
+        """Redraws the traces if they have changed, and updates the force labels."""
         lines = [trace_segments(robot.trace, TRACE_SEGMENTS) for robot in robots]
         points = np.concatenate(lines) + self._trace_origins
-        if 0.0 < difference(points, self._traced) < np.inf:  # not if there is a NaN
+        if 0.0 < difference(points, self._traced) < np.inf:  # false if there is a NaN
             self._traced = points
             update_node(self._traces, points=points)
         for robot, label in zip(robots, self._force_labels, strict=True):
             set_text(label, self._force_words(hypot(*robot.force.tolist())))
 
     def _force_words(self, force: float) -> str:
-        """How large a force is, [N]; empty when none is drawn."""
+        """Label with the magnitude of a force, [N]; empty when none is drawn."""
         if force > FORCE_SHOWN:
             return self._words("scene.force", force=f"{force:.{int(force < 1.0)}f}")
         return ""

@@ -1,7 +1,7 @@
-"""The 3D scene of one client: what it shows of a lab, and what its mouse tells.
+"""The 3D scene of one client: display of a lab, and callbacks for the mouse.
 
-Cost follows the number of property assignments, not their size, so both robots share their nodes
-(machine.py, path_nodes.py).
+Cost depends on the number of property assignments, not their size, so robots share their nodes
+(robot_nodes.py, path_nodes.py).
 """
 
 from __future__ import annotations
@@ -41,25 +41,25 @@ if TYPE_CHECKING:
 ZONE_DEPTH = 0.052
 """y of the shading of singular places [m]: behind the links."""
 ZONE_WIDTH = 0.02
-"""How wide the shading at a singular circle is [m]."""
+"""Width of the shading at a singular circle [m]."""
 WITHIN = 0.01
-"""How near a control point [m] one must press to take it, where the end-point covers it."""
+"""Picking radius of a control point that the end-point covers [m]."""
 
 
 def _ignore(*_: object) -> None:
-    """A hook that nobody set."""
+    """Default callback; does nothing."""
 
 
 @dataclass(frozen=True, slots=True)
 class SceneCallbacks:
-    """What the scene tells; called on viser's event loop, so they must only enqueue.
+    """Callbacks of the scene. They run on viser's event loop, so they must only enqueue.
 
     Attributes:
         on_grab: the end-point of the named robot is pulled to a target, shape (3,), in the robot's
             frame [m]; called again whenever the target moves.
-        on_release: the named robot is let go.
-        on_point_dragged: a control point is at a new place, shape (3,), in the robot's frame [m].
-        on_point_drag_end: the control point is let go.
+        on_release: the named robot is released.
+        on_point_dragged: a control point has a new position, shape (3,), in the robot's frame [m].
+        on_point_drag_end: the control point is released.
         on_point_selected: a control point was clicked or grabbed.
     """
 
@@ -74,14 +74,14 @@ class Scene:
     """The 3D scene of one client.
 
     Args:
-        client: whose scene it is; nothing here touches another client or the server's scene.
+        client: owner of the scene; no other client and no shared scene is modified.
         stage: where the robots stand.
-        hooks: what the scene tells.
-        words: for what is written in it.
+        hooks: callbacks of the scene.
+        words: message catalogue for the labels.
 
     Attributes:
         pull: name of the plane in which an end-point is pulled, one of the stage's.
-        path_first: whether a press where an end-point covers a control point takes that; the
+        path_first: whether a press where an end-point covers a control point takes the latter; the
             selected one is always taken.
     """
 
@@ -114,7 +114,7 @@ class Scene:
         return self._stage
 
     def build(self, snapshot: Snapshot) -> None:
-        """Creates every node, once, with as many bars, joints and points as the snapshot has."""
+        """Creates all nodes once, with the snapshot's numbers of bars, joints and points."""
         robots = self._robots(snapshot)
         self._titles = build_stage(self._client.scene, self._stage, self._words)
         poses = poses_of(self._stage, robots)
@@ -130,14 +130,14 @@ class Scene:
         self.update_traces(snapshot)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Moves everything that moves; at about 30 Hz. What is not finite is not drawn."""
+        """Updates all poses; called at about 30 Hz. Non-finite poses are not drawn."""
         self._snapshot = snapshot
         self._machine.update(poses_of(self._stage, self._robots(snapshot)))
 
     def update_traces(self, snapshot: Snapshot) -> None:
-        """Redraws the end-points' traces, the forces' labels and a stroke; at 5 to 10 Hz."""
+        """Redraws end-point traces, force labels and a stroke; called at 5 to 10 Hz."""
         self._machine.update_traces(self._robots(snapshot))
-        freehand = self._freehand  # another thread may end it
+        freehand = self._freehand  # another thread may end the stroke
         if freehand is not None:
             freehand.draw()
         for note in self._notes:
@@ -151,7 +151,7 @@ class Scene:
             self._path_nodes.draw(path)
 
     def show_singular_zone(self, visible: bool = True) -> None:
-        """Shades what lies at the singular circles about the base pivot."""
+        """Shades the neighbourhood of the singular circles about the base pivot."""
         if self._zone is not None:
             self._zone.remove()
             self._zone = None
@@ -170,12 +170,12 @@ class Scene:
         )
 
     def show_titles(self, visible: bool) -> None:
-        """The robots' names; they would be seen through whatever is before them."""
+        """Shows or hides the robots' names, which are drawn on top of everything else."""
         for title in self._titles:
             title.visible = visible
 
     def frame_camera(self, insets: Insets | None = None) -> None:
-        """Points the client's camera so that both robots fill what panels leave of the canvas."""
+        """Points the client's camera so that both robots fill the canvas left free by panels."""
         camera = self._client.camera
         size = (max(camera.image_width, 1), max(camera.image_height, 1))
         pose = view_of(self._stage, size, insets or Insets())
@@ -190,7 +190,7 @@ class Scene:
         self._freehand = Freehand(self._client.scene, self._stage, on_stroke)
 
     def end_freehand(self) -> None:
-        """Gives up drawing; without effect when nothing is being drawn."""
+        """Cancels drawing; without effect when no stroke is active."""
         if self._freehand is not None:
             self._freehand.cancel()
             self._freehand = None
@@ -198,7 +198,7 @@ class Scene:
     def _robots(self, snapshot: Snapshot) -> list[RobotView]:
         return [snapshot.robots[name] for name in self._names]
 
-    # What the mouse does. Coroutines without await: viser runs those in order.
+    # Mouse callbacks. Coroutines without await, because viser runs those in order.
 
     async def _tip_dragged(self, event: DragEvent) -> None:
         if event.instance_index is None:
@@ -220,14 +220,14 @@ class Scene:
             self._hooks.on_grab(name, target + offset)
 
     def _grip_of(self, name: str) -> tuple[DragPlane, np.ndarray]:
-        """The plane of a pull that begins, and from the drawn end-point to the actual one, [m]."""
+        """Plane of a new pull, and offset from the drawn end-point to the actual one, [m]."""
         assert self._snapshot is not None
         robot = self._snapshot.robots[name]
         normal = self._stage.pulls[self.pull].normal
         return DragPlane(robot.tip, normal), robot.end - robot.tip
 
     def _covered_point(self, event: DragEvent, name: str) -> int | None:
-        """The control point that a press on an end-point means instead of it, if any."""
+        """The control point to select when an end-point that covers it is pressed, if any."""
         path, pressed = self._path, self._on_plane(event, event.start_position, name)
         if path is None or pressed is None or not len(path.control_points):
             return None
@@ -248,7 +248,7 @@ class Scene:
         self._drag_point(event, self._names[robot], index)
 
     def _drag_point(self, event: DragEvent, name: str, index: int) -> None:
-        if event.phase == "start":  # pressed beside the centre: keep that offset, do not jump
+        if event.phase == "start":  # keep the press's offset from the centre, so no jump
             assert self._path is not None
             pressed = self._on_plane(event, event.start_position, name)
             centre = self._path.control_points[index]
@@ -271,6 +271,6 @@ class Scene:
         name: str,
         plane: DragPlane | None = None,
     ) -> np.ndarray | None:
-        """Where a pointer is, in a robot's frame, on the path's plane unless another is given."""
+        """Pointer position in a robot's frame on a plane, by default the path's plane."""
         camera, base = event.client.camera.position, self._stage.bases[name]
         return pointer_on_plane(camera, np.array(pointer), base, plane or self._stage.path_plane)

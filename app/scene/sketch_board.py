@@ -1,4 +1,4 @@
-"""A board in front of the robots, on which a prediction is drawn with the mouse."""
+"""A board in front of the robots for drawing a prediction with the mouse."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     import viser
 
 FORM = 0.62  # height to width
-MARGIN = 0.09  # between the board's edge and the axes, of its width
-PIXELS = 900  # of the picture's width
-CLOSEST = 0.002  # between two points of a curve, of the board's width
+MARGIN = 0.09  # margin between the board's edge and the axes, as a fraction of its width
+PIXELS = 900  # fraction of the picture's width
+CLOSEST = 0.002  # spacing of two points of a curve, as a fraction of the board's width
 
 
 class SketchBoard:
@@ -32,10 +32,10 @@ class SketchBoard:
 
     Args:
         scene: the client's scene.
-        stage: where the robots stand; the board is before them.
-        sketch: which axes.
-        title: written above.
-        on_drawn: called with times [s] and values, shape (n,) each, when the mouse is let go.
+        stage: where the robots stand; the board is in front of them.
+        sketch: description of the axes.
+        title: text above the board.
+        on_drawn: called with times [s] and values, shape (n,) each, when the mouse is released.
     """
 
     def __init__(
@@ -67,19 +67,19 @@ class SketchBoard:
         self._sheet = handle
 
     def show(self, times: np.ndarray, values: np.ndarray) -> None:
-        """Have a curve given by numbers, shape (n,) each."""
+        """Set the curve from arrays, shape (n,) each."""
         self._ink.begin(self._from_axes(np.column_stack([times, values])))
 
     def draw(self) -> None:
-        """Show the curve as it is now; at about 10 Hz."""
+        """Redraw the curve; called at about 10 Hz."""
         self._ink.draw()
 
     def remove(self) -> None:
-        """Take it away."""
+        """Remove the board."""
         self._sheet.remove()
         self._ink.remove()
 
-    # Between the axes' units, places on the board (fractions from its middle) and the world.
+    # Conversions between axis units, board coordinates (fractions from its centre) and the world.
 
     def _from_axes(self, points: np.ndarray) -> np.ndarray:
         low, span = self._axes()
@@ -111,7 +111,7 @@ class SketchBoard:
             self._on_drawn(times, values)
 
     def _place(self, camera: np.ndarray, pointer: np.ndarray) -> np.ndarray | None:
-        """Where on the board a pointer is, or None."""
+        """Board coordinates of a pointer, or None if it is off the board."""
         normal = np.cross(self._right, self._up)
         hit = intersect_ray_plane(camera, pointer - camera, self._middle, normal)
         if hit is None:
@@ -135,17 +135,17 @@ def _picture(sketch: Sketch, title: str) -> np.ndarray:
     axes.grid(color=palette.PATH.toward(palette.WHITE, 0.7).hex)
     axes.spines[["top", "right"]].set_visible(False)
     canvas.draw()
-    return np.asarray(canvas.buffer_rgba())[::-1, :, :3].copy()  # the scene's y goes up
+    return np.asarray(canvas.buffer_rgba())[::-1, :, :3].copy()  # the scene's y axis points up
 
 
 def _facing(right: np.ndarray, up: np.ndarray) -> np.ndarray:
-    """Quaternion, w first, of a picture with these axes."""
+    """Orientation of a picture with these axes as a quaternion, scalar first."""
     turn = Rotation.from_matrix(np.stack([right, up, np.cross(right, up)], axis=1))
     return turn.as_quat(scalar_first=True)
 
 
 def _placed(stage: Stage) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """The board's axes, its middle and its width [m]: before all robots, square to the camera."""
+    """Axes, centre and width [m] of the board: in front of all robots, facing the camera."""
     ca, sa = np.cos(stage.azimuth), np.sin(stage.azimuth)
     ce, se = np.cos(stage.elevation), np.sin(stage.elevation)
     right, up = np.array([ca, sa, 0.0]), np.array([-sa * se, ca * se, ce])

@@ -1,4 +1,4 @@
-"""Where the two robots stand: floor, machine parts that never move, labels, and the camera."""
+"""The static surroundings of the robots: floor, fixed parts, labels, and the camera."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ if TYPE_CHECKING:
     import viser
 
 FIELD_OF_VIEW = np.radians(15.0)
-NARROW = 0.6  # width to height: a telephone, where the panel lies over the lower part
+NARROW = 0.6  # width to height; for phones, where the panel covers the lower part
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 TITLE = (("title", 0.0, 0.036), ("does", 0.047, 0.026))
-"""Words of a controller, how far below the title's place, and how high, [m]."""
+"""Title lines of a controller: message, offset below the title's position, and height, [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stage:
-    """Where a kind of robot stands and how it is looked at. Points in the robot's own frame, [m].
+    """Placement of a kind of robot, and its view. Points are in the robot's own frame, [m].
 
     Attributes:
         bases: origins of the robots' frames in the world, [m], by controller name.
-        low, high: opposite corners of what the camera shows of a robot, shape (3,).
+        low, high: opposite corners of the box that the camera shows of a robot, shape (3,).
         floor: height of the floor, negative.
-        elevation, azimuth: the camera looks down, and comes from the right, by these, [rad].
-        path_plane: where the path lies and control points are dragged.
-        pulls: planes through the end-point in which it is pulled, by name, the usual one first;
+        elevation, azimuth: angles of the camera above the horizontal and to the right, [rad].
+        path_plane: plane of the path, in which control points are dragged.
+        pulls: planes through the end-point in which it is pulled, by name, the default first;
             their own points do not matter.
         reach: radii of the circles about the base pivot at which the robot is singular.
-        title: where the title is, and the second line below it by a third of its height.
-        note: where the drawing says that it is not to scale.
-        force: where the force's size is written.
+        title: position of the title; the second line is lower by a third of its height.
+        note: position of the note that the drawing is not to scale.
+        force: position of the label with the magnitude of the force.
         force_scale: length of the force's arrow [m/N].
-        sheet: low and high corner (x, z), and y, of the sheet that takes a freehand stroke.
+        sheet: low and high corner (x, z), and y, of the sheet for a freehand stroke.
         motors: joints that are drawn as motors.
-        parts: what never moves, with colours.
+        parts: fixed parts, with colours.
     """
 
     bases: dict[str, np.ndarray]
@@ -65,19 +65,19 @@ class Stage:
 
     @property
     def origins(self) -> np.ndarray:
-        """The bases, shape (k, 3), [m]."""
+        """Origins of the robots' frames, shape (k, 3), [m]."""
         return np.stack(list(self.bases.values()))
 
     @property
     def corners(self) -> np.ndarray:
-        """Of all robots' boxes, in the world, shape (8 k, 3), [m]."""
+        """Corners of all robots' boxes in the world, shape (8 k, 3), [m]."""
         box = np.array(list(product(*np.stack([self.low, self.high], axis=1))))
         return (self.origins[:, None] + box).reshape(-1, 3)
 
 
 @dataclass(frozen=True, slots=True)
 class Insets:
-    """How much of the canvas panels cover at each side [px]."""
+    """Width of the canvas covered by panels at each side [px]."""
 
     left: float = 0.0
     right: float = 0.0
@@ -98,7 +98,7 @@ def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
 
     Args:
         size: width and height of the canvas [px].
-        insets: what panels cover.
+        insets: margins covered by panels.
     """
     width, height = size
     ce, se = np.cos(stage.elevation), np.sin(stage.elevation)
@@ -123,7 +123,7 @@ def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
 
 
 def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
-    """Makes a new client open on the robots, before its own size is known."""
+    """Sets the camera with which new clients open, before their canvas size is known."""
     pose = view_of(stage, (1400, 800), Insets())
     server.initial_camera.fov = FIELD_OF_VIEW
     server.initial_camera.position = pose.position
@@ -175,7 +175,7 @@ def add_text(
     size: float = 0.026,
     below: float = 0.0,
 ) -> viser.LabelHandle:
-    """Words in the scene, `size` high and `below` lower than a position, [m]."""
+    """Adds text of height `size`, `below` lower than a position, [m]."""
     return scene.add_label(
         name,
         text,
@@ -187,7 +187,7 @@ def add_text(
 
 
 def set_text(label: viser.LabelHandle, text: str) -> None:
-    """Other words in the scene, or none."""
+    """Replaces or removes a text in the scene."""
     if text and label.text != text:
         label.text = text
     if label.visible != bool(text):
@@ -205,9 +205,9 @@ def add_copies(
     opacity: float | None = None,
     shadow: bool = True,
 ) -> viser.BatchedMeshHandle:
-    """Copies of one mesh at positions, shape (n, 3), [m], as one node, turned as it is.
+    """Adds copies of one mesh at positions, shape (n, 3), [m], as one node, without rotation.
 
-    `colour` is one for all, or linear colours of shape (n, 3), uint8.
+    `colour` is shared by all copies, or linear colours of shape (n, 3), uint8.
     """
     return scene.add_batched_meshes_simple(
         name,

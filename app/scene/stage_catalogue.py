@@ -1,4 +1,4 @@
-"""The stage of a robot: from its own bars, reach and plane, and from what its drawing overrides."""
+"""The stage of a robot, derived from its bars, reach and plane unless its drawing overrides it."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from onpath.models.systems.robots import Robot
 
 IN_PATH_PLANE, HORIZONTAL = "path's plane", "horizontal plane"
 LARGEST_PATH = 0.1
-"""Paths usually stay within this of the middle [m]; the drawing makes room for so much."""
+"""Usual extent of paths from their centre, for which the view leaves room [m]."""
 ASIDE, ABOVE, BELOW = 0.045, 0.11, 0.05
-"""Room beside the bars, above them for the title, and between them and the floor [m]."""
+"""Margins beside the bars, above them for the title, and between them and the floor [m]."""
 THIN = 0.03
 """Half of the depth of robots in the vertical plane [m]."""
 
@@ -31,7 +31,7 @@ Parts = list[tuple[str, trimesh.Trimesh, palette.Colour]]
 
 @lru_cache(maxsize=64)
 def stage_of(robot: Robot) -> Stage:
-    """Where a robot stands."""
+    """The stage of a robot."""
     drawing = robot.drawing
     low, high = (np.array(corner) for corner in drawing.box or _box(robot))
     floor = min(-meshes.FLOOR_DEPTH, float(low[2]) + 0.02)
@@ -63,7 +63,7 @@ def stage_of(robot: Robot) -> Stage:
 
 
 def _side_by_side(apart: float, azimuth: float) -> dict[str, np.ndarray]:
-    """As seen by a camera from the right by an angle, [rad]."""
+    """Frame origins side by side, as seen by a camera at this angle to the right, [rad]."""
     half = apart / 2 * np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
     return {TrackerName: -half, FollowerName: half}
 
@@ -89,7 +89,7 @@ def _box(robot: Robot) -> tuple[Array, Array]:
 
 
 def _parts(drawing: Drawing, floor: float) -> Parts:
-    """What carries the robot and never moves."""
+    """Fixed parts that support the robot."""
     if drawing.base == "pedestal":
         return [
             ("pedestal", meshes.pedestal(), palette.FRAME),
