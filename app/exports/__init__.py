@@ -1,1 +1,1 @@
-"""What a user takes home: data, pictures, videos, reports."""
+"""Export of data, pictures, recordings and reports."""

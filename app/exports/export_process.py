@@ -1,4 +1,4 @@
-"""A process that makes files while the lab goes on: started when needed, ended when idle."""
+"""A process that creates files in the background: started on demand, ended when idle."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-IDLE = 60.0  # [s] after which the process is ended: it takes some 200 MB
+IDLE = 60.0  # [s] idle after which the process, which takes some 200 MB, is ended
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
 
 
 class ExportError(Exception):
-    """A file could not be made."""
+    """A file could not be created."""
 
 
 class ExportProcess:
@@ -37,18 +37,18 @@ class ExportProcess:
 
     @property
     def pid(self) -> int | None:
-        """Of the process, if there is one."""
+        """Process id, if the process is running."""
         return None if self._process is None else self._process.pid
 
     def call(self, seconds: float, work: Callable[..., Any], *arguments: Any) -> Any:
-        """What `work(*arguments)` returns; other calls wait meanwhile.
+        """Return `work(*arguments)`. Concurrent calls wait for each other.
 
         Args:
-            seconds: after which it is given up.
-            work: a function of a module; arguments and result can be pickled.
+            seconds: time-out.
+            work: a module-level function whose arguments and result can be pickled.
 
         Raises:
-            ExportError: it has failed, taken too long, or its process has died.
+            ExportError: the call failed, timed out, or its process died.
         """
         if seconds <= 0:
             raise ExportError("given up before its turn")
@@ -71,7 +71,7 @@ class ExportProcess:
         return result
 
     def stop(self) -> None:
-        """End the process; a call under way fails."""
+        """End the process; a running call fails."""
         if (process := self._process) is not None:
             process.kill()
         with self._calls:
@@ -108,7 +108,7 @@ class ExportProcess:
 
     def _retire(self) -> None:
         with self._calls:
-            if self._rest is threading.current_thread():  # no call has come in between
+            if self._rest is threading.current_thread():  # no call has arrived in between
                 self._end()
 
     def _stop_resting(self) -> None:

@@ -1,4 +1,4 @@
-"""What a user can take home: the last minute as CSV, the plots as a picture, a film, a report."""
+"""Export requests: the last minute as CSV, the plots as a picture, a recording, a report."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from onpath.app.exports.files import csv_file, film_file, picture_file, report_f
 from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words
 
-PATIENCE = 120.0  # [s] that somebody waits for a file, and for those of others before it
+PATIENCE = 120.0  # [s], time-out of a file, including the files queued before it
 process = ExportProcess()
-_queue = ThreadPoolExecutor(1, "exports")  # hands the process one file at a time, of all tabs
+_queue = ThreadPoolExecutor(1, "exports")  # passes one file at a time to the process, for all tabs
 
 
 class Exporter:
-    """Has files made in another process, from copies that the simulation thread makes.
+    """Creates files in another process from copies made by the simulation thread.
 
-    One of each kind at a time: pressed again meanwhile, a button does nothing.
+    Only one file of each kind is made at a time; further requests for it are ignored meanwhile.
     """
 
     def __init__(self, client: viser.ClientHandle) -> None:
@@ -35,22 +35,22 @@ class Exporter:
         self._latest: dict[str, Future[None]] = {}
 
     def csv(self) -> None:
-        """Ask for the CSV of the last minute."""
+        """Request the CSV file of the last minute."""
         self._ask("onpath.csv", csv_file)
 
     def picture(self) -> None:
-        """Ask for a picture of the plots."""
+        """Request a picture of the plots."""
         self._ask("onpath.png", picture_file, in_words=True)
 
     def recording(self) -> None:
-        """Ask for a standalone page with the scene of the last seconds."""
+        """Request a standalone page with the scene of the last seconds."""
         self._ask("onpath.html", film_file, in_words=True)
 
     def report(self, code: str = "") -> None:
-        """Ask for the record of the lessons as a page.
+        """Request the lesson report as a page.
 
         Args:
-            code: of the session, for the page to bear; empty for none.
+            code: session code shown on the page; empty for none.
         """
         name = "onpath-report.html"
 
@@ -62,12 +62,12 @@ class Exporter:
         self._want(name, start)
 
     def serve(self, lab: Lab) -> None:
-        """Start what was asked for; from the simulation thread."""
+        """Start the requested exports. Called on the simulation thread."""
         while self._wanted:
             self._wanted.pop(0)(lab)
 
     def close(self) -> None:
-        """Begin nothing more."""
+        """Start no further exports."""
         for future in list(self._latest.values()):
             future.cancel()
 
@@ -104,11 +104,11 @@ class Exporter:
                 self._client.send_file_download(name, content, save_immediately=True)
                 note.body, note.loading = words("export.ready", name=name), False
                 note.auto_close_seconds = 3.0
-            except Exception as error:  # the user is told, the lab goes on
+            except Exception as error:  # reported to the user; the lab continues
                 log_error(error)
                 note.body, note.loading = words("export.failed", name=name), False
             note.with_close_button = True
             self._under_way.discard(name)
 
-        with suppress(RuntimeError):  # Python is about to end
+        with suppress(RuntimeError):  # the interpreter is shutting down
             self._latest[name] = _queue.submit(work)

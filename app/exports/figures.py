@@ -1,4 +1,4 @@
-"""Pictures of runs, in the manner of the paper's figures 2, 3 and 5, by matplotlib."""
+"""Figures of runs in the style of the paper's figures 2, 3 and 5, drawn with Matplotlib."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ class ShownFigure(Figure):
 
 
 def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) -> None:
-    """`experiment_figure` as a file."""
+    """Write `experiment_figure` to a file."""
     save(experiment_figure(experiment, runs), path)
 
 
 def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
-    """End-point in output space, and distance, xi, eta, speed and torque over time."""
+    """Plot the end-point in output space, and distance, xi, eta, speed and torque over time."""
     panels = _panels()
     robot = experiment.robot()
     if isinstance(robot, FlexibleFiveBar):
@@ -55,13 +55,13 @@ def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """To a file, the same bytes for the same figure."""
-    with matplotlib.rc_context({"svg.hashsalt": "onpath"}):  # else its names are drawn by lot
+    """Write a figure to a file; the same figure gives the same bytes."""
+    with matplotlib.rc_context({"svg.hashsalt": "onpath"}):  # otherwise its identifiers are random
         figure.savefig(path, metadata=_reproducible(path), dpi=110)
 
 
 def draw_history(runs: dict[str, Trajectory], words: Words = ENGLISH) -> bytes:
-    """The lab's plots over the last minute, as PNG."""
+    """Draw the lab's plots over the last minute as PNG."""
     panels = _panels(words)
     figure = Figure(figsize=(11, 2.2 * len(panels)), layout="constrained")
     axes = figure.subplots(len(panels), 1, sharex=True)
@@ -99,7 +99,7 @@ def _deflection(robot: FlexibleFiveBar):
 
 
 def _wrapped(theta: np.ndarray) -> np.ndarray:
-    """Angles in (-pi, pi], broken where they jump."""
+    """Angles in (-pi, pi], with NaN inserted at jumps."""
     wrapped = np.angle(np.exp(1j * theta))
     jumps = np.abs(np.diff(wrapped, axis=0)) > np.pi
     wrapped[1:][jumps] = np.nan

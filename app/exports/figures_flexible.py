@@ -1,4 +1,4 @@
-"""Pictures of the zero dynamics: exponents against alpha and number of modes, critical alpha."""
+"""Figures of the zero dynamics: exponents against alpha and number of modes, critical alpha."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _draw_exponents(axes: Axes, fine: Study) -> None:
     for modes, colour in enumerate(colours, start=1):
         critical = fine.critical[modes - 1]
         label = f"{modes} mode{'s' if modes > 1 else ''}, critical α = {critical:.3f}"
-        width = 1.2 + 0.7 * (MOST_MODES - modes)  # later ones lie over the earlier
+        width = 1.2 + 0.7 * (MOST_MODES - modes)  # later curves cover earlier ones
         axes.plot(fine.alphas, fine.fastest[modes - 1], color=colour, lw=width, label=label)
         axes.plot([critical], [0], "o", color=colour, markersize=7)
     axes.axhline(0, color="0.3", linewidth=0.8)

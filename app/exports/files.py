@@ -1,4 +1,4 @@
-"""The files that a user takes home, as bytes, made from plain data in any process."""
+"""Exported files as bytes, created from plain data in any process."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def film_file(robot: str, parameters: Parameters, history: HistoryCopy, language
 
 
 def report_file(course: Course, progress: Progress, code: str, made: datetime) -> bytes:
-    """The record of the lessons as a page."""
+    """The lesson report as a page."""
     from onpath.app.exports.report import report
 
     return report(LessonState(course, progress), code, made)

@@ -29,15 +29,15 @@ RATE = 30.0  # [Hz]
 
 
 class FilmServer(viser.ViserServer):
-    """The scene of a server without the server: no socket, no thread, nobody is connected.
+    """The scene of a server without the server: no socket, no thread, no clients.
 
-    What the scene is told is kept in the queue that nobody empties, and can be serialized.
+    Scene messages accumulate in a queue, from which they can be serialized.
     Written against viser 1.1.1; a test plays a film made with it.
     """
 
     def __init__(self) -> None:
         loop = asyncio.new_event_loop()
-        loop.close()  # there is nobody to wake
+        loop.close()  # no consumer to wake
         self._websock_server = WebsockServer("", 0, wire.Message)
         self._websock_server._broadcast_buffer = AsyncMessageBuffer(loop, persistent_messages=True)
         self._initial_camera = InitialCameraConfig(self._websock_server.queue_message)
@@ -52,13 +52,13 @@ def record_scene(
 ) -> bytes:
     """A standalone page that replays the history.
 
-    The scene is built once more in a studio of its own.
+    The scene is rebuilt in a `FilmServer`.
 
     Args:
-        until: when to give up, by `time.monotonic`, [s].
+        until: deadline by `time.monotonic`, [s].
 
     Raises:
-        TimeoutError: it takes longer.
+        TimeoutError: the deadline has passed.
     """
     frames = _frames(history)
     studio, stage = FilmServer(), stage_of(robot)
@@ -79,7 +79,7 @@ def record_scene(
 
 
 def _frames(history: list[Segment]) -> list[Segment]:
-    """Stretches at about the film's rate."""
+    """Sample the history at about the recording's rate."""
     times = np.array([s.time for s in history])
     wanted = np.arange(times[0], times[-1] + 1e-9, 1 / RATE)
     return [history[i] for i in np.searchsorted(times, wanted).clip(max=len(times) - 1)]

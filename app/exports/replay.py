@@ -1,4 +1,4 @@
-"""The last minute of a session computed again, tick by tick."""
+"""Recomputation of the last minute of a session, tick by tick."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from onpath.models.systems.robots import Robot
 
 
 def replay(robot: Robot, history: list[Segment]) -> dict[str, Trajectory]:
-    """The history computed again, tick by tick, from its checkpoints and inputs.
+    """Recompute the history, tick by tick, from its checkpoints and inputs.
 
-    While a robot stands still after a divergence there is nothing of it.
+    A robot that is stopped after a divergence has no data for that time.
 
     Raises:
-        ValueError: all of them stood still all the time.
+        ValueError: all robots were stopped all the time.
     """
     found = {name: _replayed(robot, name, history) for name in history[0].drives}
     runs = {name: join(name, parts) for name, parts in found.items() if parts}
@@ -49,7 +49,7 @@ def _replayed(robot: Robot, name: str, history: list[Segment]) -> list[Trajector
 
 @lru_cache(maxsize=8)
 def _fast_loop(robot: Robot, kind: Kind) -> Loop:
-    """The loop in machine code where that can be made: a minute takes less than a second then."""
+    """The compiled loop if available; it computes a minute in less than a second."""
     kernel = kernel_of(robot, kind)
     try:
         return translate_loop(kernel)
@@ -67,7 +67,7 @@ def _rows(loop: Loop, name: str, stretches: list[Segment]) -> Iterable[tuple[Seg
 
 
 def merged(segments: list) -> list:
-    """Consecutive segments of one curve and hold as one, so that distances are found at once."""
+    """Merge consecutive segments of one curve and hold, so that distances take a single call."""
     result: list = []
     for (_, held), group in groupby(segments, key=lambda s: (id(s[1]), s[2])):
         members = list(group)

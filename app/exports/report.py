@@ -1,6 +1,6 @@
-"""A student's record of the lessons as one page: what was predicted, what happened, what is done.
+"""A student's lesson report as one page: predictions, results and progress.
 
-The page is made from the templates in assets/templates/report.
+The page is rendered from the templates in assets/templates/report.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from onpath.lessons.words import DEFAULT, Words
 
 @dataclass(frozen=True, slots=True)
 class SketchFigure:
-    """A sketch beside what happened.
+    """A sketched prediction compared with the result.
 
     Attributes:
-        picture: an address that holds all of it.
-        caption: the peaks in words.
+        picture: the image as a data URI.
+        caption: text that states the peaks.
     """
 
     name: str
@@ -37,12 +37,12 @@ class SketchFigure:
 
 @dataclass(frozen=True, slots=True)
 class AskedPrediction:
-    """A prediction that was asked for.
+    """A prediction requested by a step.
 
     Attributes:
         step: index of the step that asks.
         chosen: index of the option chosen, if any.
-        figure: of a sketch, once there is anything to draw.
+        figure: figure of a sketch, if there is anything to draw.
     """
 
     step: int
@@ -55,13 +55,13 @@ class AskedPrediction:
 
 @dataclass(frozen=True, slots=True)
 class ChapterRecord:
-    """What the page says of a lesson.
+    """Contents of the report for one lesson.
 
     Attributes:
-        counts: done and possible: steps, tasks, predictions, right choices.
-        foreign: whether it is not written in the student's language.
-        tasks: with what is said of each that is passed, else nothing.
-        questions: with the index of the option chosen, if any.
+        counts: completed and total steps, tasks, predictions, correct choices.
+        foreign: whether the lesson is unavailable in the student's language.
+        tasks: each with the message of a passed task, otherwise empty.
+        questions: each with the index of the option chosen, if any.
     """
 
     chapter: Chapter
@@ -73,11 +73,11 @@ class ChapterRecord:
 
 
 def report(run: LessonState, code: str, made: datetime) -> bytes:
-    """The record as a page that stands alone; the same record gives the same bytes.
+    """The report as a standalone page; the same record gives the same bytes.
 
     Args:
-        code: of the session, as it is kept; empty for none.
-        made: the date it bears.
+        code: session code as stored; empty for none.
+        made: the date shown on the report.
     """
     words = Words(run.progress.language)
     page = render(
@@ -129,7 +129,7 @@ def _passed(task: Task, best: float | None, words: Words) -> str:
 def _figure(
     block: Sketch, answer: Answer | None, truth: Truth | None, words: Words
 ) -> SketchFigure | None:
-    """What was drawn and what happened, on the same axes, and the peaks in words."""
+    """Figure of the sketch and the result on the same axes, with the peaks as text."""
     unit, said = QUANTITIES[block.quantity], list[str]()
     if answer is not None and answer.times:
         value, time = _peak(answer.times, answer.values, words)
@@ -149,6 +149,6 @@ def _figure(
 
 
 def _peak(times: tuple[float, ...], values: tuple[float, ...], words: Words) -> tuple[str, str]:
-    """The value furthest from zero and its time, as they are written."""
+    """The value furthest from zero and its time, formatted."""
     at = int(np.argmax(np.abs(values)))
     return number(values[at], words), number(times[at], words)

@@ -1,4 +1,4 @@
-"""What is kept of a student's lessons, as far as it still fits the lessons."""
+"""A student's stored lesson record, restricted to entries that match the current lessons."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from onpath.lessons.schema import Choice, Lesson, Prediction, Quiz, Sketch
 
 @dataclass(frozen=True, slots=True)
 class Chapter:
-    """One lesson and what the student has done in it.
+    """One lesson and the student's work on it.
 
     Attributes:
-        number: in the course, from 1.
-        notes: those that fit the lesson.
+        number: position in the course, from 1.
+        notes: entries that match the lesson.
         opened: whether the student has opened it.
-        strange: how many notes do not fit it.
+        strange: number of entries that do not match it.
     """
 
     number: int
@@ -32,11 +32,11 @@ class Chapter:
     strange: int
 
     def happened(self, key: str) -> bool:
-        """Whether what a prediction is about has been seen."""
+        """Whether the predicted experiment has been observed."""
         return key in self.notes.truths
 
     def chosen(self) -> list[bool]:
-        """Whether it was right, of each choice whose truth has been seen."""
+        """Correctness of each choice whose result has been observed."""
         asked = predictions(self.lesson)
         return [
             block.options[answer.option].right
@@ -48,7 +48,7 @@ class Chapter:
 
 
 def chapters(run: LessonState) -> list[Chapter]:
-    """All lessons of the course, in the student's language where they are written in it."""
+    """All lessons of the course, in the student's language where available."""
     progress, found = run.progress, list[Chapter]()
     for number, name in enumerate(run.course.lessons, start=1):
         lesson = run.course.lesson(name, progress.language)
@@ -58,13 +58,13 @@ def chapters(run: LessonState) -> list[Chapter]:
 
 
 def predictions(lesson: Lesson) -> dict[str, Prediction]:
-    """By the keys of the notes: a step asks for its first one."""
+    """Predictions by note key; a step asks for its first one."""
     steps = ((str(i), step.predictions()) for i, step in enumerate(lesson.steps))
     return {key: asked[0] for key, asked in steps if asked}
 
 
 def quizzes(lesson: Lesson) -> dict[str, Quiz]:
-    """By the keys of the notes: step and block."""
+    """Quizzes by note key: step and block."""
     return {
         f"{i}.{j}": block
         for i, step in enumerate(lesson.steps)
@@ -74,7 +74,7 @@ def quizzes(lesson: Lesson) -> dict[str, Quiz]:
 
 
 def fitting(lesson: Lesson, notes: Notes) -> tuple[Notes, int]:
-    """The notes that fit a lesson, which may have been changed since, and how many do not."""
+    """Notes that match a lesson, which may have changed since, and the number that do not."""
     asked, questions = predictions(lesson), quizzes(lesson)
     tasks = {task.id for task in lesson.tasks()}
     kept: dict[str, dict[str, Any]] = {
@@ -109,6 +109,6 @@ def _is_true_of(prediction: Prediction, truth: Truth) -> bool:
 
 
 def _are_curves(*columns: tuple[float, ...]) -> bool:
-    """Equally many points, two at least, all of them numbers."""
+    """Whether all curves have the same number of points, at least two, all numeric."""
     lengths = {len(column) for column in columns}
     return len(lengths) == 1 and min(lengths) > 1 and bool(np.isfinite(columns).all())

@@ -1,4 +1,4 @@
-"""A sketched prediction and the truth on the same axes, as a picture for a page."""
+"""A sketched prediction and the truth on the same axes, as an image for a page."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from onpath.lessons.schema import Sketch
 from onpath.lessons.words import Words
 
 SIZE = (6.6, 2.9)  # [in]
-ONE_AT_A_TIME = Lock()  # rc_context changes what all threads see
+ONE_AT_A_TIME = Lock()  # rc_context changes global state shared by all threads
 
 
 def number(value: float, words: Words) -> str:
-    """Three digits, as they are written in a language."""
+    """Format a number with three digits in the style of a language."""
     text = f"{float(f'{value:.3g}') + 0.0:g}"
     return text.replace("-", "−").replace(".", words("report.point"))
 
@@ -32,7 +32,7 @@ def number(value: float, words: Words) -> str:
 def draw_prediction(
     sketch: Sketch, answer: Answer | None, truth: Truth | None, words: Words
 ) -> str:
-    """A data URI of an SVG: what was drawn, thick; both robots, full and dashed."""
+    """Data URI of an SVG: the sketch as a thick line, the robots as solid and dashed lines."""
     figure = Figure(figsize=SIZE, layout="constrained")
     axes = figure.subplots()
     if answer is not None and answer.times:
@@ -53,7 +53,7 @@ def draw_prediction(
 def _draw(
     axes: Axes, sketch: Sketch, times: Sequence[float], values: Sequence[float], **style: Any
 ) -> None:
-    """A curve; what lies far outside of the axes is brought nearer, as it is not seen anyway."""
+    """Plot a curve, with values far outside the axes clipped."""
     span = sketch.top - sketch.bottom
     shown = np.clip(values, sketch.bottom - span, sketch.top + span)
     axes.plot(np.clip(times, -sketch.seconds, 2 * sketch.seconds), shown, **style)

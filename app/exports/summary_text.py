@@ -1,4 +1,4 @@
-"""The summary of a run for a reader."""
+"""The summary of a run as text."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROWS: tuple[tuple[str, str, Callable[[float], str]], ...] = (
 
 
 def summary_lines(values: Mapping[str, Any]) -> list[str]:
-    """One line a quantity; those that a run does not have are left out.
+    """One line per quantity; quantities that a run lacks are omitted.
 
     Args:
         values: of one controller, from `models.studies.experiments.summary`.

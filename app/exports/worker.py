@@ -1,7 +1,7 @@
-"""The process that makes files: reads jobs from its input, writes what they give to its output.
+"""The process that creates files: reads jobs from stdin and writes their results to stdout.
 
-Started by export_process.py as `python -m onpath.app.exports.worker`. It ends when its input does,
-so it does not outlive the lab.
+Started by export_process.py as `python -m onpath.app.exports.worker`. It ends when its input
+is closed, so it does not outlive the lab.
 """
 
 from __future__ import annotations
@@ -14,31 +14,31 @@ import traceback
 from contextlib import suppress
 from typing import BinaryIO
 
-NICENESS = 5  # the frames come first, but a third of their share is left on a busy machine
-MOST_MEMORY = 2 << 30  # [B] of data; more is a MemoryError here, and not the lab's
+NICENESS = 5  # the simulation has priority, but a third of its share remains on a busy machine
+MOST_MEMORY = 2 << 30  # [B], data limit; more raises MemoryError here instead of exhausting the lab
 
 
 def main() -> None:
-    """Serve until the input ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the lab
+    """Serve jobs until the input ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is handled by the lab
     _limit()
     jobs, results = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what a library prints is no result
+    os.dup2(2, 1)  # library output must not corrupt the results
     with suppress(EOFError, BrokenPipeError):
         while True:
             serve(jobs, results)
 
 
 def serve(jobs: BinaryIO, results: BinaryIO) -> None:
-    """One job: a function and its arguments. The answer is (whether it succeeded, what it gave).
+    """Run one job, a function and its arguments. The reply is (success, result).
 
     Raises:
-        EOFError: there are no more.
+        EOFError: there are no more jobs.
     """
     work, arguments = pickle.load(jobs)
     try:
         answer = True, work(*arguments)
-    except Exception:  # told to whoever asked
+    except Exception:  # reported to the caller
         answer = False, traceback.format_exc()
     pickle.dump(answer, results, protocol=pickle.HIGHEST_PROTOCOL)
     results.flush()
@@ -47,7 +47,7 @@ def serve(jobs: BinaryIO, results: BinaryIO) -> None:
 def _limit() -> None:
     if hasattr(os, "nice"):
         os.nice(NICENESS)
-    with suppress(ImportError, ValueError, OSError):  # where there are no such limits
+    with suppress(ImportError, ValueError, OSError):  # platforms without resource limits
         import resource
 
         resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, MOST_MEMORY))

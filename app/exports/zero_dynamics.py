@@ -1,4 +1,4 @@
-"""What `onpath zero-dynamics` computes and prints: exponents against alpha and number of modes."""
+"""Results of `onpath zero-dynamics`: exponents against alpha and number of modes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from onpath.models.systems.zero_dynamics import HIGHEST_ALPHA, flexible_zero_dyn
 TABLE_ALPHAS = (-1.0, 0.0, 0.5, 0.7, 0.8, 0.9, 1.0)
 REACH = 0.1  # [m], half-width of the map of critical alpha
 SETTABLE = ("plant", "rho", "frequency", "zeta")
-"""What the internal dynamics depend on; the table is over alpha and modes."""
+"""Parameters of the internal dynamics; the table is over alpha and modes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,7 +24,7 @@ class Study:
     """Internal dynamics of the flexible link with the controlled output held still.
 
     Attributes:
-        parameters: plant, rho, frequency, zeta; their alpha and modes do not matter.
+        parameters: plant, rho, frequency, zeta; their alpha and modes are ignored.
         at: (y2, y3) of the straight link's tip, [m].
         unit: sqrt(EI / rho) / l^2, [1/s].
         alphas: shape (a,).
@@ -41,10 +41,10 @@ class Study:
 
 
 def changed_all(assignments: dict[str, str]) -> FlexibleParameters:
-    """The default parameters with values set by name.
+    """Return the default parameters with the given values replaced.
 
     Raises:
-        ValueError: an unknown name, one that would change nothing, or a bad value; the message
+        ValueError: an unknown name, one without effect, or a bad value; the message
             says which.
     """
     parameters: Any = FlexibleParameters()
@@ -61,10 +61,10 @@ def study(
     at: tuple[float, float],
     alphas: np.ndarray | None = None,
 ) -> Study:
-    """For every number of modes.
+    """Compute the study for every number of modes.
 
     Raises:
-        ValueError: the tip cannot be there.
+        ValueError: the tip cannot reach the position.
     """
     alphas = np.array(TABLE_ALPHAS) if alphas is None else alphas
     rows, critical = list[np.ndarray](), list[float]()
@@ -81,7 +81,7 @@ def study(
 
 
 def critical_alpha(parameters: FlexibleParameters, at: tuple[float, float]) -> float:
-    """Alpha from which the inside is unstable at rest; infinity if it never is."""
+    """Alpha from which the internal dynamics are unstable at rest; infinity if they never are."""
     robot = robot_for(parameters)
     zero = flexible_zero_dynamics(parameters.modes, parameters.plant)
     q = robot.rest(robot.frame.lift(np.array(at)))
@@ -89,7 +89,7 @@ def critical_alpha(parameters: FlexibleParameters, at: tuple[float, float]) -> f
 
 
 def highest(parameters: FlexibleParameters) -> float:
-    """Up to where alpha is looked at: unit_modes act as if it were rho times alpha."""
+    """Upper limit of alpha in the search; unit_modes act as if alpha were rho times as large."""
     return HIGHEST_ALPHA / (parameters.rho if parameters.plant == "unit_modes" else 1.0)
 
 
@@ -97,7 +97,7 @@ def critical_map(parameters: FlexibleParameters, count: int = 13) -> tuple[np.nd
     """Critical alpha over the path's plane.
 
     Returns:
-        y2 and y3 of a grid's lines, (count,), [m]; alpha, (count, count), rows along y3.
+        y2 and y3 of the grid lines, (count,), [m]; alpha, (count, count), rows along y3.
     """
     lines = np.linspace(-REACH, REACH, count)
     values = [[critical_alpha(parameters, (y2, y3)) for y2 in lines] for y3 in lines]
@@ -105,7 +105,7 @@ def critical_map(parameters: FlexibleParameters, count: int = 13) -> tuple[np.nd
 
 
 def as_json(result: Study) -> dict[str, Any]:
-    """For `--json`; numbers to nine digits, null where nothing is unstable."""
+    """Data for `--json`; numbers to nine digits, null where nothing is unstable."""
 
     def finite(value: float) -> float | None:
         return float(f"{value:.9g}") if math.isfinite(value) else None
@@ -130,7 +130,7 @@ def as_json(result: Study) -> dict[str, Any]:
 
 
 def as_table(result: Study) -> str:
-    """For a reader."""
+    """The study as a text table."""
     own, (y2, y3) = result.parameters, result.at
     lines = [
         f"internal dynamics of the flexible link, output held at y2 = {y2 * 1e3:g} mm,"
