@@ -20,14 +20,14 @@ from onpath.lessons.schema import Choice, Prediction, Sketch
 from onpath.lessons.thinning import peaks
 from onpath.lessons.words import Words
 
-IDLE = 60.0  # [s] without a command
-WIDTH, HEIGHT, LEFT, BELOW = 640, 380, 50, 36  # of a plot, [px]
-FLOOR = HEIGHT - BELOW - 10  # where its lowest value is drawn, [px]
+IDLE = 60.0  # [s] without a command after which a student counts as idle
+WIDTH, HEIGHT, LEFT, BELOW = 640, 380, 50, 36  # size of a plot, [px]
+FLOOR = HEIGHT - BELOW - 10  # y of its lowest value, [px]
 MOST_POINTS = 40  # of a sketch on it
 
 
 def class_code(code: str, count: int, words: Words) -> str:
-    """Large, for the projector."""
+    """The class code in large type for the projector."""
     return render("class/code.html", code=code, count=count, words=words)
 
 
@@ -44,10 +44,10 @@ class MemberLine:
 
 
 def table(members: Iterable[Member], course: Course, now: float, words: Words) -> str:
-    """Who is where.
+    """Table of the members and their progress.
 
     Args:
-        now: by the class's clock, [s].
+        now: time by the class's clock, [s].
     """
     rows = [_row(member, course, now, words) for member in members]
     return render("class/table.html", rows=rows, words=words)
@@ -64,7 +64,7 @@ def _row(member: Member, course: Course, now: float, words: Words) -> MemberLine
 
 
 def _place(way: Progress, course: Course, words: Words) -> tuple[str, str, str]:
-    """Lesson, step, tasks."""
+    """A student's lesson, step and tasks."""
     if way.lesson not in course.lessons:
         return words("class.free"), "", ""
     lesson = course.lesson(way.lesson, words.language)
@@ -86,10 +86,10 @@ def prediction_view(
     words: Words,
     large: bool = False,
 ) -> str:
-    """How the class has answered, without names; the truth too, when it is revealed.
+    """The answers of the class without names, and the truth once revealed.
 
     Args:
-        large: for a projector.
+        large: whether to use large type for a projector.
     """
     given = sum(found.counts) + len(found.sketches)
     facts = words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
@@ -125,7 +125,7 @@ class PlottedLine:
     """A curve on the plot.
 
     Attributes:
-        points: as SVG wants them, [px].
+        points: the `points` attribute of an SVG polyline, [px].
         width: [px].
     """
 
@@ -137,7 +137,7 @@ class PlottedLine:
 
 @dataclass(frozen=True, slots=True)
 class AxisMark:
-    """A time at x and a value at y, [px], as they are written beside both axes."""
+    """Labels of a time at x and a value at y, [px], beside the axes."""
 
     x: int
     y: int
@@ -148,7 +148,7 @@ class AxisMark:
 def _sketches(
     block: Sketch, found: Distribution, truth: Truth | None, words: Words
 ) -> tuple[list[PlottedLine], list[tuple[str, str]]]:
-    """All curves, and what their colours mean."""
+    """All curves with a colour legend."""
     lines = [
         PlottedLine(_points(block, sketch.times, sketch.values, MOST_POINTS), SLATE.hex, 2, 0.5)
         for sketch in found.sketches
@@ -171,7 +171,7 @@ def _marks(block: Sketch) -> list[AxisMark]:
     return marks
 
 
-@lru_cache(maxsize=1024)  # a class looks at the same curves again every second
+@lru_cache(maxsize=1024)  # the same curves are redrawn every second
 def _points(block: Sketch, times: tuple[float, ...], values: tuple[float, ...], most: int) -> str:
     kept = peaks([np.array(values)], most)
     places = [_at(block, times[i], values[i]) for i in kept]
@@ -179,7 +179,7 @@ def _points(block: Sketch, times: tuple[float, ...], values: tuple[float, ...], 
 
 
 def _at(block: Sketch, time: float, value: float) -> tuple[float, float]:
-    """Where on the plot, [px]; what is outside the axes is drawn at their edge."""
+    """Position on the plot, [px]; points outside the axes are clamped to their edge."""
     across = min(max(time / block.seconds, 0.0), 1.0)
     up = min(max((value - block.bottom) / (block.top - block.bottom), 0.0), 1.0)
     return LEFT + across * (WIDTH - LEFT - 20), 10 + (1.0 - up) * (HEIGHT - BELOW - 20)

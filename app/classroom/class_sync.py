@@ -1,7 +1,7 @@
-"""Between the class and the labs of this process: who stands where, and what the teacher wants.
+"""Synchronizes the class with the labs of this process: progress and the teacher's orders.
 
-It looks several times a second; labs are asked by commands, and only immutable parts of them are
-read, so it may do so from a thread of its own.
+It runs several times a second in a separate thread. This is safe because labs are changed only by
+commands and only their immutable parts are read.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ SYNC_INTERVAL = 0.25  # [s]
 
 
 Find = Callable[[str], tuple[Lab, bool] | None]
-"""The lab of a session code, and whether somebody looks at it; None when it is not here."""
+"""The lab of a session code and whether a browser is connected; None if it is not here."""
 
 
 class ClassSync:
-    """Keeps a class and its students' labs together.
+    """Keeps a class and its students' labs synchronized.
 
     Args:
-        find: labs of this process.
+        find: looks up a lab of this process.
 
     Attributes:
-        rounds: looks, from their start to their stop.
+        rounds: the periodic synchronization.
     """
 
     def __init__(self, classroom: Classroom, find: Find) -> None:
@@ -37,7 +37,7 @@ class ClassSync:
         self.rounds = Periodic("class", SYNC_INTERVAL, self.look)
 
     def look(self) -> None:
-        """Once: take orders to the labs, and news of them to the class."""
+        """Synchronize once: send orders to the labs and report their state to the class."""
         self._class.look()
         members = self._class.members()
         for code in [code for code in self._bound if code not in members]:
@@ -46,7 +46,7 @@ class ClassSync:
             self._follow(code)
 
     def _let_go(self, code: str) -> None:
-        """Who has left is not held."""
+        """Unfreeze a lab whose student has left the class."""
         lab = self._bound.pop(code)
         self._asked.pop(code, None)
         if lab.frozen:

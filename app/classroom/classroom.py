@@ -1,6 +1,7 @@
-"""A class as pages and labs see it: records of it, and what can be asked of one that is somewhere.
+"""Records of a class and the interface through which pages and labs use it.
 
-`app.classroom.local_classroom` has it in one process, `app.classroom.shared_classroom` in several.
+`app.classroom.local_classroom` implements it for one process, `app.classroom.shared_classroom`
+for several.
 """
 
 from __future__ import annotations
@@ -21,15 +22,15 @@ NOTHING_DONE = Progress()
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A student as the class knows it.
+    """A student's record in the class.
 
     Attributes:
-        number: counts up as students join; unlike the session's code it may be shown.
+        number: serial number by order of joining; unlike the session code it may be shown.
         name: the nickname; may hold any printable characters, so it must be escaped.
-        progress: the way through the lessons when last looked at.
-        connected: whether somebody looks at the lab.
-        active: when something was last done in the lab, by the class's clock, [s].
-        taken: number of the last push that the lab has taken; 0 for none.
+        progress: progress through the lessons at the last update.
+        connected: whether a browser is connected to the lab.
+        active: time of the last command in the lab, by the class's clock, [s].
+        taken: number of the last push applied by the lab; 0 for none.
     """
 
     number: int
@@ -42,12 +43,12 @@ class Member:
 
 @dataclass(frozen=True, slots=True)
 class Orders:
-    """What the teacher wants now.
+    """The teacher's current orders.
 
     Attributes:
-        frozen: all labs stand still.
-        pushes: how many there have been; 0 for none.
-        push: the last one, which whoever joins takes as well; None if there is none to take.
+        frozen: whether all labs are stopped.
+        pushes: number of pushes so far.
+        push: the last one, which later joiners receive as well; None if there is none.
     """
 
     frozen: bool = False
@@ -56,48 +57,48 @@ class Orders:
 
 
 class Classroom(Protocol):
-    """A class. From any thread.
+    """A class. Thread-safe.
 
-    What is read is at hand; who waits for a database: `look`, `admit`, `is_pass`, `revoke`,
-    `join`, `leave` and `end`, which then may raise OSError.
+    Reads are cached. `look`, `admit`, `is_pass`, `revoke`, `join`, `leave` and `end` may block on
+    a database and may raise OSError.
     """
 
     @property
     def clock(self) -> Callable[[], float]:
-        """Seconds since whenever; what time does to the computer's clock does not matter."""
+        """Monotonic time with an arbitrary origin, [s]; independent of the system clock."""
         ...
 
     @property
     def code(self) -> str:
-        """What students type to join."""
+        """The class code that students type to join."""
         ...
 
     @property
     def orders(self) -> Orders:
-        """What holds now."""
+        """The current orders."""
         ...
 
     def admit(self, typed: str, who: str) -> str:
-        """A pass for a teacher's browser, for the key.
+        """Issue a pass for a teacher's browser in exchange for the key.
 
         Args:
-            who: who types it: a session code.
+            who: session code of the browser.
 
         Raises:
-            ValueError: this is not the key, or there have been too many that were not.
+            ValueError: a wrong key, or too many wrong keys.
         """
         ...
 
     def is_pass(self, shown: str | None) -> bool:
-        """Whether a browser may teach."""
+        """Whether a browser's pass is valid."""
         ...
 
     def revoke(self, shown: str | None) -> None:
-        """A browser teaches no more."""
+        """Revoke a browser's pass."""
         ...
 
     def join(self, session: str, typed: str, name: str) -> Member:
-        """A student comes in; one who is in already takes another nickname.
+        """Add a student, or change the nickname of one who has already joined.
 
         Args:
             session: code of the student's lab.
@@ -109,57 +110,57 @@ class Classroom(Protocol):
         ...
 
     def leave(self, session: str) -> None:
-        """A student goes, and with it all that the class knew."""
+        """Remove a student and all of the student's data from the class."""
         ...
 
     def member(self, session: str) -> Member | None:
-        """The student of a lab."""
+        """The member of a session code, if any."""
         ...
 
     def members(self) -> dict[str, Member]:
-        """All students by session code, in the order in which they joined."""
+        """All members by session code, in order of joining."""
         ...
 
     def look(self) -> None:
-        """Bring what is known here up to date, and what is known only here to the others."""
+        """Synchronize this process's state of the class with the other processes."""
         ...
 
     def is_elsewhere(self, session: str) -> bool:
-        """Whether another process had a lab last: what is here of it is old."""
+        """Whether another process last owned the lab, so that the local state is outdated."""
         ...
 
     def note(self, session: str, **changes: object) -> None:
-        """What has changed of a student; nothing happens when it has left."""
+        """Update a member; without effect if the student has left."""
         ...
 
     def freeze(self, on: bool) -> None:
-        """All labs stand still, or go on."""
+        """Stop or resume all labs."""
         ...
 
     def push(self, push: Push | None) -> None:
-        """Send all who are in the class a set-up or a step, once; it stands for those who join.
+        """Send a set-up or a step to all members once, and to those who join later.
 
-        It stands until another is sent, until None is sent (then nobody's lab changes, and who
-        joins begins on one's own), or until the class ends.
+        It remains in effect until another is sent or the class ends. Sending None clears it
+        without changing any lab; later joiners then keep their own set-up.
         """
         ...
 
     def end(self) -> int:
-        """The class is over: nobody is in it, and another code opens the next one.
+        """End the class: remove all members and choose a new code for the next class.
 
-        Returns how many were in it.
+        Returns the number of members removed.
         """
         ...
 
 
 def seated(members: Mapping[str, Member], session: str, name: str, new: Member) -> Member:
-    """A student with a name of its own.
+    """Create or rename a member with a unique name.
 
     Args:
-        members: who is in the class.
+        members: current members of the class.
         session: code of the student's lab.
-        name: as it was typed.
-        new: what a student is who was not in it.
+        name: nickname as typed.
+        new: initial record of a student who has not joined yet.
 
     Raises:
         ValueError: no nickname, or the class is full.
@@ -172,5 +173,5 @@ def seated(members: Mapping[str, Member], session: str, name: str, new: Member) 
 
 
 def noted(member: Member, changes: Mapping[str, object]) -> Member:
-    """A student of whom something is known anew; see `Classroom.note`."""
+    """An updated copy of a member; see `Classroom.note`."""
     return replace(member, **changes)  # pyright: ignore[reportArgumentType]

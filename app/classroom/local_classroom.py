@@ -1,4 +1,4 @@
-"""The class of a server with one process, forgotten when that ends. No viser in it; any thread."""
+"""The class of a single-process server, kept in memory only. Independent of viser; thread-safe."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class LocalClassroom:
     """See `app.classroom.classroom.Classroom`.
 
     Attributes:
-        key: what the teacher types, as `app.common.access_codes` keeps it.
+        key: the teacher's key, as stored by `app.common.access_codes`.
     """
 
     clock: Callable[[], float] = time.monotonic
@@ -35,7 +35,7 @@ class LocalClassroom:
         self.code = self.code or new_class_code()
         self._door = Admission(self.clock)
 
-    # Who may teach
+    # Teachers
 
     def admit(self, typed: str, who: str) -> str:
         """See `Classroom.admit`."""
@@ -56,7 +56,7 @@ class LocalClassroom:
         with self._lock:
             self._passes.discard(shown or "")
 
-    # Who is in it
+    # Members
 
     def join(self, session: str, typed: str, name: str) -> Member:
         """See `Classroom.join`."""
@@ -82,10 +82,10 @@ class LocalClassroom:
             return dict(self._members)
 
     def look(self) -> None:
-        """Everything is here."""
+        """Does nothing: all state is local."""
 
     def is_elsewhere(self, session: str) -> bool:
-        """There is no elsewhere."""
+        """Always False: there is only one process."""
         return False
 
     def note(self, session: str, **changes: object) -> None:
@@ -95,7 +95,7 @@ class LocalClassroom:
             if old is not None:
                 self._members[session] = noted(old, changes)
 
-    # What the teacher wants
+    # Orders
 
     @property
     def orders(self) -> Orders:

@@ -1,4 +1,4 @@
-"""What a class has predicted and done: as numbers for the projector, and as CSV."""
+"""Predictions and results of a class: as numbers for the projector and as CSV."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ LETTERS = "ABCDEFGH"
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """How a class has answered a prediction.
+    """The answers of a class to a prediction.
 
     Attributes:
-        counts: by option; empty for a sketch.
-        sketches: the curves.
-        skipped: how many have skipped it.
-        waiting: how many have not answered.
+        counts: number of answers per option; empty for a sketch.
+        sketches: the sketched curves.
+        skipped: number of students who skipped it.
+        waiting: number of students who have not answered.
     """
 
     counts: tuple[int, ...]
@@ -35,7 +35,7 @@ class Distribution:
 
 
 def prediction_at(lesson: Lesson, index: int) -> tuple[int, Prediction] | None:
-    """The prediction of a step, or the one whose truth the step shows, and the step it is in."""
+    """The prediction that a step asks or whose truth it shows, and the step that asks it."""
     before = index - 1 if lesson.steps[index].kind == "run" else index
     for at in dict.fromkeys((index, before)):
         if at >= 0:
@@ -47,11 +47,11 @@ def prediction_at(lesson: Lesson, index: int) -> tuple[int, Prediction] | None:
 def distribution(
     prediction: Prediction, lesson: str, step: int, ways: Sequence[Progress]
 ) -> Distribution:
-    """How the class has answered.
+    """Count the answers of the class.
 
     Args:
-        step: the prediction's.
-        ways: of all students.
+        step: index of the step that asks the prediction.
+        ways: progress of all students.
     """
     answers = [_notes(way, lesson).answers.get(str(step)) for way in ways]
     given = [answer for answer in answers if answer is not None]
@@ -65,21 +65,21 @@ def distribution(
 
 
 def truth_of(lesson: str, step: int, ways: Iterable[Progress]) -> Truth | None:
-    """What really happens, from the first lab in which it has happened."""
+    """The truth, taken from the first lab in which it has been measured."""
     found = (_notes(way, lesson).truths.get(str(step)) for way in ways)
     return next((truth for truth in found if truth is not None and truth.times), None)
 
 
 def tasks_passed(way: Progress, lesson: Lesson) -> tuple[int, int]:
-    """How many tasks of a lesson are passed, and how many there are."""
+    """Number of passed tasks of a lesson, and number of all its tasks."""
     tasks, passed = lesson.tasks(), _notes(way, lesson.name).tasks
     return sum(task.id in passed for task in tasks), len(tasks)
 
 
 def class_csv(members: Iterable[Member], course: Course, language: str) -> bytes:
-    """One row per student and prediction, task or question of the lessons that were opened.
+    """One row per student and prediction, task or question of the opened lessons.
 
-    Text that a spreadsheet would take for a formula begins with an apostrophe.
+    Text that a spreadsheet would interpret as a formula is prefixed with an apostrophe.
     """
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\r\n")
@@ -90,11 +90,11 @@ def class_csv(members: Iterable[Member], course: Course, language: str) -> bytes
                 for row in _rows(course.lesson(name, language), notes):
                     cells = (member.number, member.name, name, *row)
                     writer.writerow([_harmless(cell) for cell in cells])
-    return b"\xef\xbb\xbf" + file.getvalue().encode()  # so that spreadsheets see it is UTF-8
+    return b"\xef\xbb\xbf" + file.getvalue().encode()  # UTF-8 mark for spreadsheets
 
 
 def _rows(lesson: Lesson, notes: Notes) -> Iterator[tuple[object, ...]]:
-    """Step, kind, item, result, whether it is right, value."""
+    """Rows of step, kind, item, result, correctness and value."""
     for index, step in enumerate(lesson.steps):
         for prediction in step.predictions():
             answer = notes.answers.get(str(index))
