@@ -1,1 +1,1 @@
-"""What `import onpath` gives in Python, a notebook for example."""
+"""The Python interface of `import onpath`, for notebooks and scripts."""

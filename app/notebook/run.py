@@ -89,22 +89,22 @@ class Run:
 
     @property
     def distance(self) -> Array:
-        """From the actual end-point to the path, found apart from any law, shape (n,), [m]."""
+        """Distance of the actual end-point from the path, for any law, shape (n,), [m]."""
         return self.trajectory.distance
 
     @property
     def speed(self) -> Array:
-        """Along the path, shape (n,), [m/s]."""
+        """Speed along the path, shape (n,), [m/s]."""
         return self.trajectory.speed
 
     @property
     def torque(self) -> Array:
-        """Of the motors, shape (n, m), [N m]."""
+        """Motor torques, shape (n, m), [N m]."""
         return self.trajectory.fields["u"]
 
     @property
     def force(self) -> Array:
-        """On the end-point from outside, by brake and hand, shape (n, p), [N]."""
+        """External force on the end-point, by brake and hand, shape (n, p), [N]."""
         return self.trajectory.fields["force"]
 
     @property
@@ -114,29 +114,29 @@ class Run:
 
     @property
     def diverged_at(self) -> float | None:
-        """When the simulation stopped because the motion had diverged, [s]; None: it did not."""
+        """Time at which the simulation stopped because the motion diverged, [s], or None."""
         return self.trajectory.diverged_at
 
     @property
     def reason(self) -> str:
-        """Why it counts as diverged, or ""."""
+        """Reason why the motion counts as diverged, or ""."""
         return self.trajectory.reason
 
     def summary(self) -> dict[str, Any]:
-        """What `onpath experiment --json` says of one law; units are in the names."""
+        """Summary of the run, as in `onpath experiment --json`; units are in the names."""
         return summary(self.experiment, [self.trajectory])["controllers"][self.law]
 
     def plot(self, *others: Run, file: str | Path | None = None) -> Figure:
-        """End-point and path, and distance, xi, theta, its rate and torque over time.
+        """Plot the end-point and path, and distance, xi, theta, its rate and torque over time.
 
         Args:
             others: runs of the same robot and path, drawn in the same picture.
-            file: where to write it, with a name ending in .png, .svg or .pdf.
+            file: file to write, with a name ending in .png, .svg or .pdf.
 
         Raises:
             ValueError: another robot or path, nothing to draw, or a file that cannot be written.
         """
-        from onpath.app.exports.figures import experiment_figure, save  # takes long to import
+        from onpath.app.exports.figures import experiment_figure, save  # slow to import
 
         path = None if file is None else Path(file)
         check_plot(path, "plot")
@@ -147,7 +147,7 @@ class Run:
         return figure
 
     def to_csv(self, file: str | Path, *others: Run) -> None:
-        """One row per millisecond and run, the file of `onpath experiment --csv`.
+        """Write one row per millisecond and run, as `onpath experiment --csv` does.
 
         Args:
             others: runs of the same robot and path, written after this one.
@@ -162,7 +162,7 @@ class Run:
             write_csv(opened, self.experiment.robot(), trajectories)
 
     def _with(self, others: tuple[Run, ...]) -> list[Trajectory]:
-        """The trajectories of all."""
+        """The trajectories of this run and others."""
         robot, series = self.experiment.robot(), self.experiment.curve().series
         for other in others:
             own = other.experiment

@@ -1,4 +1,4 @@
-"""`onpath.simulate`, and what it can be given: robots, control laws, paths, parameters."""
+"""`onpath.simulate` and its possible arguments: robots, control laws, paths, parameters."""
 
 from __future__ import annotations
 
@@ -42,22 +42,23 @@ def simulate(
 
     Args:
         robot: one of `onpath.robots()`.
-        path: a curve, of `onpath.ellipse` for example, or one of `onpath.paths()`. It lies in the
+        path: a curve, such as `onpath.ellipse(...)`, or one of `onpath.paths()`. It lies in the
             robot's path plane, [m].
         law: one of `onpath.laws()`.
-        duration: [s].
-        start: where the end-point is at rest at the start, shape (2,) in the path's plane or (p,)
-            in the output space, [m]; None: on the path, where theta is 0.
-        hold: (from, to): when a brake along the path's tangent holds the end-point back, [s].
-        push: (from, to, place): when a hand, a spring and a damper, pulls the end-point towards a
-            place in the path's plane, [s], shape (2,), [m]; see models/systems/forces.py.
-        reverse_at: when the wanted speed changes its sign, [s]; 0: never.
+        duration: simulated time, [s].
+        start: initial position of the end-point, at rest, shape (2,) in the path's plane or (p,)
+            in the output space, [m]; None: the point of the path at theta = 0.
+        hold: (from, to): interval in which a brake along the path's tangent acts, [s].
+        push: (from, to, place): interval, [s], in which a hand, modelled as a spring and a damper,
+            pulls the end-point towards a place in the path's plane, shape (2,), [m]; see
+            models/systems/forces.py.
+        reverse_at: time at which the desired speed changes sign, [s]; 0: never.
         parameters: any of `onpath.parameters(robot)` by name, such as K1=900; others keep their
             defaults. What `--set law=` sets for the flexible robot is called `output` here.
 
     Raises:
-        ValueError: an unknown name, with the nearest ones, or a value that cannot be, with what
-            it may be.
+        ValueError: an unknown name (the message lists the nearest ones) or an invalid value (the
+            message lists the valid ones).
 
     Held back for a second, the follower stays near its ellipse:
 
@@ -101,7 +102,7 @@ def simulate(
 
 
 def robots() -> dict[str, str]:
-    """Names of the robots, and a sentence about each.
+    """Names of the robots with a one-sentence description of each.
 
     >>> import onpath
     >>> onpath.robots()["five_bar"]
@@ -111,7 +112,7 @@ def robots() -> dict[str, str]:
 
 
 def laws() -> dict[str, str]:
-    """Names of the control laws, and what each does.
+    """Names of the control laws with a description of each.
 
     >>> import onpath
     >>> onpath.laws()["path_following"]
@@ -121,7 +122,7 @@ def laws() -> dict[str, str]:
 
 
 def paths() -> dict[str, str]:
-    """Names of the ready-made paths, and how long each is.
+    """Names of the preset paths with the length of each.
 
     >>> import onpath
     >>> onpath.paths()["circle"]
@@ -134,7 +135,7 @@ def paths() -> dict[str, str]:
 
 
 def parameters(robot: str = "five_bar") -> dict[str, str]:
-    """Names of a robot's parameters: default, range and unit, or options, and what each does.
+    """Names of a robot's parameters with default, range and unit, or options, and description.
 
     Raises:
         ValueError: an unknown robot, with the nearest names.
@@ -152,10 +153,10 @@ def parameters(robot: str = "five_bar") -> dict[str, str]:
 
 
 def circle(radius: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:
-    """A circle; theta is the angle. [m]. Source: eq. (15).
+    """A circle with its dimensions in [m]; theta is the angle. Source: eq. (15).
 
     Raises:
-        ValueError: no finite numbers, or a radius that is not positive.
+        ValueError: non-finite numbers, or a radius that is not positive.
     """
     (length,) = _lengths("radius", radius)
     return curves.circle(length, _point("centre", centre))
@@ -167,7 +168,7 @@ def ellipse(a: float, b: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:
     theta is its eccentric anomaly. Source: eq. (15).
 
     Raises:
-        ValueError: no finite numbers, or a half axis that is not positive.
+        ValueError: non-finite numbers, or a half axis that is not positive.
 
     >>> import numpy as np, onpath
     >>> (onpath.ellipse(0.07, 0.04).at(np.pi / 2) + 0.0).round(3)
@@ -181,7 +182,7 @@ def segment(start: ArrayLike, end: ArrayLike) -> Curve:
     """A straight path from start (theta = -pi) to end (theta = pi), each shape (2,), [m].
 
     Raises:
-        ValueError: no finite numbers, or nothing between them.
+        ValueError: non-finite numbers, or start and end coincide.
     """
     form = "a point of the plane, shape (2,), [m]"
     ends = _numbers("start", start, 2, form), _numbers("end", end, 2, form)
@@ -189,10 +190,10 @@ def segment(start: ArrayLike, end: ArrayLike) -> Curve:
 
 
 def through(points: ArrayLike, closed: bool = True) -> Curve:
-    """A smooth path through points (nearly: 12 harmonics), shape (n, 2), [m].
+    """A smooth path with 12 harmonics that fits points, shape (n, 2), [m].
 
     Raises:
-        ValueError: too few points, no finite numbers, or all of them in one place.
+        ValueError: too few points, non-finite numbers, or all points coincide.
     """
     given = _array("points", points, "points, shape (n, 2), [m]")
     return closed_through(given) if closed else open_through(given)
@@ -209,7 +210,7 @@ def _check_name(name: Any, known: Iterable[str], what: str) -> None:
 
 
 def _names(entry: RobotEntry) -> dict[str, str]:
-    """Names of parameters here -> as declared: `law` is the control law, here."""
+    """Parameter names here -> declared names; they differ because `law` is the control law here."""
     return {"output" if name == "law" else name: name for name in specs(entry.parameters)}
 
 
@@ -230,7 +231,7 @@ def _curve(path: Curve | str) -> Curve:
 
 
 def _acts(hold: Any, push: Any) -> dict[str, float]:
-    """Values of the schedule for what acts on the end-point."""
+    """Schedule entries for the forces on the end-point."""
     values = dict[str, float]()
     if hold is not None:
         values["hold_from"], values["hold_to"] = _numbers("hold", hold, 2, "(from, to), [s]")
@@ -247,7 +248,7 @@ def _acts(hold: Any, push: Any) -> dict[str, float]:
 
 
 def _start(robot: Robot, curve: Curve, start: ArrayLike | None) -> Array:
-    """The end-point at the start, shape (p,)."""
+    """Initial position of the end-point, shape (p,)."""
     if start is None:
         return robot.frame.lift(curve.at(np.array(0.0)))
     p = robot.system.p
