@@ -9,7 +9,7 @@ def asset_path(name: str) -> Path:
     """Path of a data file or folder in this folder.
 
     Raises:
-        FileNotFoundError: no such file; the message lists those there are.
+        FileNotFoundError: no such file; the message lists the existing ones.
     """
     folder = Path(__file__).parent
     path = folder / name

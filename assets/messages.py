@@ -1,4 +1,4 @@
-"""What is said to users, in every language: Project Fluent's files words/<language>.ftl."""
+"""User-visible messages in every language, from the Fluent files words/<language>.ftl."""
 
 from __future__ import annotations
 
@@ -18,28 +18,28 @@ DEFAULT = "en"
 
 
 def languages() -> list[str]:
-    """Those that there is a catalogue for."""
+    """Languages that have a catalogue."""
     return sorted(path.stem for path in asset_path("words").glob("*.ftl"))
 
 
 @lru_cache
 def catalogue(language: str) -> Catalogue:
-    """Parsed once in a process, which takes about a tenth of a second."""
+    """The catalogue of a language, cached because parsing takes about a tenth of a second."""
     return Catalogue(language)
 
 
 @lru_cache(maxsize=4096)
 def identifier(key: str) -> str:
-    """A key as Fluent's files have it: "lesson.next" -> "lesson-next"."""
+    """The Fluent identifier of a key: "lesson.next" -> "lesson-next"."""
     return re.sub(r"[^A-Za-z0-9_-]", "-", key)
 
 
 class Catalogue:
-    """The messages of one language; those that it lacks are in English.
+    """The messages of one language, with English as the fallback.
 
-    A message that only has places for arguments is filled in by `str.format`, which takes a fifth
-    of the time of Fluent's resolver. One that chooses between forms, as for a plural, is formatted
-    by Fluent. Numbers are written without grouping, text without marks for its direction.
+    Messages that contain only placeholders are formatted by `str.format`, which takes a fifth of
+    the time of Fluent's resolver. Messages with variants, such as plurals, are formatted by
+    Fluent. Numbers are written without grouping, and text without direction marks.
     """
 
     def __init__(self, language: str) -> None:
@@ -57,7 +57,7 @@ class Catalogue:
         return identifier(key) in self._messages
 
     def text(self, key: str, arguments: Mapping[str, object]) -> str:
-        """A message with its arguments.
+        """Format a message with its arguments.
 
         Raises:
             KeyError: no such message, or an argument is missing.
@@ -75,7 +75,7 @@ def _resource(language: str) -> Resource:
 
 @lru_cache
 def _bundle(language: str) -> FluentBundle:
-    from fluent.runtime import FluentBundle  # brings Babel, which takes long
+    from fluent.runtime import FluentBundle  # imports Babel, which is slow
 
     bundle = FluentBundle([language], use_isolating=False)
     bundle.add_resource(_resource(language))
@@ -84,7 +84,7 @@ def _bundle(language: str) -> FluentBundle:
 
 @dataclass(frozen=True)
 class _Choice:
-    """A message of Fluent's that chooses between forms; formatted as a string is."""
+    """A Fluent message with variants, with the same `format` method as a string."""
 
     language: str
     name: str
@@ -106,7 +106,7 @@ class _Choice:
 
 
 def _template(pattern: Pattern) -> str | None:
-    """What `str.format` takes; None if the message chooses between forms."""
+    """Template for `str.format`; None if the message has variants."""
     from fluent.syntax.ast import Placeable, StringLiteral, TextElement, VariableReference
 
     parts = list[str]()
