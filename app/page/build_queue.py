@@ -17,7 +17,7 @@ from onpath.lessons.words import Words
 one_at_a_time = threading.Lock()
 """Held while a page is built or rebuilt, but never while waiting for a browser."""
 MOST_REST = 0.5  # [s], longest pause after a page; the pause is as long as the build, up to this
-FEW = 2  # pages that are built at once for clients that have none yet
+FEW = 2  # from so many clients ahead on, a waiting client is shown a notice
 
 
 class BuildQueue:

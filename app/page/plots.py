@@ -32,8 +32,8 @@ class Plot:
         field: name of the field in a snapshot's samples.
         scale: factor from SI to displayed units.
         lines: names of the field's components; one name for a single line.
-        least: smallest range of the value axis, so that a ripple of a micrometre is not magnified to
-            full height. None to fit the data.
+        least: minimum range of the axis, so that a ripple of a micrometre is not magnified to full
+            height. None to fit the data.
     """
 
     name: str
