@@ -1,4 +1,4 @@
-"""The house's rules, read from the syntax trees."""
+"""The project's architecture rules, checked on the syntax trees."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nobody is told that the paper's equations (20)-(21) are wrong: they are not.
+"""No text claims that the paper's equations (20)-(21) are wrong: they are not.
 
 That they are those of Lagrange with mass-normalised modes is a law of test_flexible_five_bar.
 """

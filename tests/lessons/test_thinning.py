@@ -1,4 +1,4 @@
-"""Fewer points of a curve, and not one peak less."""
+"""Thinning a curve reduces its points but keeps every peak."""
 
 from __future__ import annotations
 

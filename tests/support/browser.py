@@ -1,4 +1,4 @@
-"""A real browser on a lab: what a user does with mouse and keys, and the lab's side of it."""
+"""A real browser connected to a lab: user actions by mouse and keys, and access to the lab."""
 
 from __future__ import annotations
 
@@ -85,11 +85,11 @@ class Tab:
         self._join(lambda: self.page.goto(f"{server.address}/?{COARSE if draws else COARSER}"))
 
     def reload(self) -> None:
-        """As a user does who presses F5."""
+        """Reload the page, as F5 does."""
         self._join(self.page.reload)
 
     def close(self) -> None:
-        """As a user does; returns when the lab knows."""
+        """Close the tab; returns when the lab has noticed."""
         self.page.close()
         wait_for(lambda: self.client.client_id not in self.server.server.get_clients())
         wait_for(lambda: self.scheduled.view is not self.view)
@@ -131,16 +131,16 @@ class Tab:
 
     @property
     def lab(self) -> Lab:
-        """What the tab shows."""
+        """The lab shown in the tab."""
         return self.scheduled.lab
 
     @property
     def session(self) -> Session:
-        """Its simulated part."""
+        """Session of the lab."""
         return self.lab.session
 
     def ask(self, *commands: Command) -> None:
-        """Commands behind the mouse's back; returns when they have been applied."""
+        """Post commands directly to the lab; returns when they have been applied."""
         done: list[bool] = []
         for command in commands:
             self.lab.post(command)
@@ -233,7 +233,7 @@ class Tab:
         self.button(name).click()
 
     def button(self, name: str) -> Locator:
-        """By what is written on it."""
+        """A button by its label."""
         return self.page.get_by_role("button", name=name, exact=True)
 
     def open(self, folder: str) -> None:
@@ -286,5 +286,5 @@ class Tab:
         return named.first.locator("xpath=ancestor::*[.//input][1]")
 
     def said(self) -> str:
-        """What the lab says on the page."""
+        """The message shown on the page."""
         return "".join(self.page.get_by_role("status").all_inner_texts())

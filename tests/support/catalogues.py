@@ -12,14 +12,14 @@ from onpath.assets import asset_path
 
 @lru_cache
 def entries(language: str) -> tuple[ast.EntryType, ...]:
-    """All that a language's file has, in its order; what is no Fluent is `ast.Junk`."""
+    """All entries of a language's file in order; invalid syntax is `ast.Junk`."""
     text = (asset_path("words") / f"{language}.ftl").read_text("utf-8")
     return tuple(FluentParser().parse(text).body)
 
 
 @lru_cache
 def messages(language: str) -> dict[str, ast.Message]:
-    """By identifier."""
+    """Messages by identifier."""
     return {each.id.name: each for each in entries(language) if isinstance(each, ast.Message)}
 
 
@@ -30,7 +30,7 @@ def arguments(message: ast.Message) -> set[str]:
 
 
 def counts(message: ast.Message) -> set[str]:
-    """Names of the arguments of which a message makes a plural."""
+    """Names of the arguments that select a plural form."""
     return {
         node.selector.id.name
         for node in _nodes(message)

@@ -1,4 +1,4 @@
-"""A mouse that drags something in a scene, without a browser."""
+"""Simulated mouse drags in a scene, without a browser."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers from the drawing's geometry, which is written with CasADi's symbols."""
+"""Numerical evaluation of the drawing's geometry, which is symbolic in CasADi."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the process that makes files is asked to do in tests; it imports them by name."""
+"""Jobs for the export process in tests; it imports them by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A beam of Hermite elements: what the assumed modes are checked against."""
+"""A beam of Hermite elements, the reference for the assumed modes."""
 
 from __future__ import annotations
 

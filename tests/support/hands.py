@@ -1,4 +1,4 @@
-"""What a student's hands do at a lab: gestures by mouse, keys or touch, one after the other.
+"""A student's actions in a lab: gestures by mouse, keys or touch, one after the other.
 
 The lab stands still while the hands move, and each gesture waits until the lab has heard of it:
 what comes out does not depend on how busy the machine is.
@@ -84,7 +84,7 @@ class Hands:
 
 @dataclass(frozen=True)
 class Wait:
-    """So many simulated seconds."""
+    """Wait for a number of simulated seconds."""
 
     seconds: float
 

@@ -1,4 +1,4 @@
-"""What the tests of the lab share: a lab driven by hand."""
+"""Helpers for the tests of the lab: a lab that is stepped manually."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
 
 @lru_cache(maxsize=1)
 def store() -> LoopCache:
-    """Loops made once, and for all tests in this process."""
+    """Loops built once for all tests in this process."""
     return LoopCache()
 
 
@@ -34,7 +34,7 @@ def new_lab(seconds: float = 0.0) -> Lab:
 
 
 def run(lab: Lab, seconds: float) -> None:
-    """Frame after frame, as the simulation thread does it."""
+    """Run frame by frame, as the simulation thread does."""
     for _ in range(round(seconds / FRAME)):
         lab.drain()
         lab.advance(lab.session.rate * FRAME)
@@ -58,7 +58,7 @@ def y(session: Session, name: str) -> np.ndarray:
 
 
 def assert_sound(lab: Lab) -> None:
-    """Whatever was asked for: numbers are numbers, settings in range, the path one to follow."""
+    """Assert that all numbers are finite, settings are in range and the path is valid."""
     for run_ in lab.session.runs.values():
         assert np.isfinite(run_.state).all()
         assert np.isfinite(run_.row).all()

@@ -1,4 +1,4 @@
-"""A small lesson for tests, and ways to spoil it."""
+"""A small lesson for tests, and ways to make it invalid."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One robot under one law, driven by hand, with every millisecond kept."""
+"""One robot under one law, stepped manually, with every millisecond recorded."""
 
 from __future__ import annotations
 

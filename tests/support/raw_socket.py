@@ -1,4 +1,4 @@
-"""A browser's end of a websocket, byte by byte, for those who do not behave like one."""
+"""The client end of a websocket at the byte level, for simulating misbehaving clients."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ QUESTIONS = 2  # of a lab to a newcomer
 
 
 def frames(*payloads: bytes, opcode: Opcode = Opcode.BINARY) -> bytes:
-    """What a browser would write to its socket."""
+    """Bytes that a browser would write to its socket."""
     return b"".join(Frame(opcode, payload).serialize(mask=True) for payload in payloads)
 
 
@@ -50,7 +50,7 @@ def is_closed(raw: socket.socket) -> bool:
 
 
 def answer_questions(client: ClientConnection, stored: Mapping[str, str] | None = None) -> None:
-    """What a newcomer is asked, and nothing that comes after."""
+    """Answer the initial questions to a new client, and nothing later."""
     answered = 0
     while answered < QUESTIONS:
         raw = client.recv(WAIT)

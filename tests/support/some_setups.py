@@ -1,4 +1,4 @@
-"""Set-ups at random, such as students make them."""
+"""Random set-ups such as students create."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A folder of somebody else, whose files have the names of OnPath's."""
+"""A foreign folder whose files have the same names as OnPath's."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def fill(folder: Path) -> None:
 
 
 def marks(folder: Path) -> list[Path]:
-    """What their code has left."""
+    """Marks left by the foreign code."""
     return list(folder.rglob(MARK))
 
 

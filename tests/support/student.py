@@ -1,4 +1,4 @@
-"""A simulated browser that remembers its codes, reads its page and comes back when cut off."""
+"""A simulated browser that stores its codes, reads its page and reconnects after a failure."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Student:
 
     @property
     def code(self) -> str:
-        """Of the lab."""
+        """Session code of the lab."""
         return self.kept.get("onpath_sessions", "").partition(",")[0]
 
     def open(self) -> None:
@@ -72,7 +72,7 @@ class Student:
         self._socket.send(packed("ViewerCameraMessage", **CAMERA))
 
     def reopen(self) -> None:
-        """What viser's page does when it is cut off: try until it works."""
+        """Reconnect as viser's page does: retry until it succeeds."""
         end = time.monotonic() + PATIENCE
         while True:
             try:
@@ -83,7 +83,7 @@ class Student:
                 time.sleep(0.2)
 
     def read(self, until: Callable[[], Any]) -> None:
-        """Take in what comes until something holds."""
+        """Read messages until a condition holds."""
         end = time.monotonic() + PATIENCE
         while not until():
             assert time.monotonic() < end, sorted(map(str, self._labels()))
@@ -98,7 +98,7 @@ class Student:
                 self._take(message)
 
     def stay(self, seconds: float) -> None:
-        """Take in what comes, for a while."""
+        """Read messages for a while."""
         end = time.monotonic() + seconds
         self.read(lambda: time.monotonic() > end)
 

@@ -15,7 +15,7 @@ from tests.support.checkout import ROOT
 
 
 class Supervisor:
-    """`onpath --workers`, and what it says."""
+    """`onpath --workers` and its output."""
 
     def __init__(self, folder: Path, *options: str) -> None:
         self.database = f"sqlite:///{folder / 'labs.db'}"
@@ -46,12 +46,12 @@ class Supervisor:
         return found()
 
     def workers(self) -> list[int]:
-        """Process ids of those that live."""
+        """Process ids of the running workers."""
         children = Path(f"/proc/{self.process.pid}/task").glob("*/children")
         return [int(word) for file in children for word in file.read_text().split()]
 
     def sockets(self, worker: int) -> int:
-        """How many connections a worker serves."""
+        """Number of connections of a worker."""
         own: set[str] = set()
         for descriptor in Path(f"/proc/{worker}/fd").iterdir():
             with suppress(OSError):

@@ -1,4 +1,4 @@
-"""What a lesson tells in numbers, and what the lab does, every millisecond.
+"""Comparison of the numbers in a lesson's text with the simulated motion, every millisecond.
 
 A number is taken from the text, so that text and physics cannot drift apart: `said` finds a
 sentence in which each # stands for a number, `agrees` compares to the digits that are written.
@@ -30,7 +30,7 @@ NUMBER = r"([−-]?\d+(?:[.,]\d+)?)"
 
 
 def text(lesson: str, language: str = "en") -> str:
-    """All of a lesson, by its number, as "01"."""
+    """Full text of a lesson, by its number, such as "01"."""
     (home,) = BUILT_IN.glob(f"{lesson}-*")
     return (home / f"{language}.md").read_text(encoding="utf-8")
 
@@ -59,7 +59,7 @@ def value(text: str) -> float:
 
 
 def agrees(text: str, measured: float) -> bool:
-    """Whether what is measured gives, rounded to the digits that are written, what is told."""
+    """Whether a measured value equals the written one when rounded to the same digits."""
     digits = len(re.split("[.,]", text)[1]) if re.search("[.,]", text) else 0
     return abs(measured - value(text)) <= 0.5 * 10.0**-digits + 1e-9
 

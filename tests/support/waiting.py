@@ -8,7 +8,7 @@ from typing import Any
 
 
 def wait_for(condition: Callable[[], Any], seconds: float) -> Any:
-    """Return what `condition` gives as soon as it holds; fail when it never does."""
+    """Return the value of `condition` as soon as it is true; fail on time-out."""
     deadline = time.monotonic() + seconds
     while not (result := condition()):
         assert time.monotonic() < deadline, "waited in vain"

@@ -1,4 +1,4 @@
-"""The bench of a crowd: a real server, real websockets, and numbers that can be."""
+"""The crowd benchmark: a real server, real websockets, and plausible numbers."""
 
 from __future__ import annotations
 

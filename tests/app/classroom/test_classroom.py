@@ -1,4 +1,4 @@
-"""A class without a browser: who may come in, what the teacher sees, what reaches the labs."""
+"""A class without a browser: admission, the teacher's view, and orders to the labs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command line: what it prints and writes, and one clear line for whatever is wrong."""
+"""The command line: its output and files, and one clear line for every error."""
 
 from __future__ import annotations
 

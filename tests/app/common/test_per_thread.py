@@ -1,4 +1,4 @@
-"""What is made for one thread, no other gets."""
+"""Objects created for one thread are never returned to another."""
 
 from __future__ import annotations
 

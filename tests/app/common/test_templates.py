@@ -1,4 +1,4 @@
-"""HTML is made in templates only, and no text that is put into one becomes markup."""
+"""HTML is created only by templates, and text inserted into them is escaped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The process that makes files may fail, die and hang: the next file is made all the same."""
+"""The export process may fail, die or hang: the next file is still created."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recordings: many at once, one that takes too long, one that nobody waits for any more."""
+"""Recordings: many at once, one that takes too long, one that is no longer wanted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The record of the lessons: all that was done is in it, whatever else came in stays text."""
+"""The lesson report is complete, and foreign text in it is escaped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A step runs with exactly its own set-up, whichever way one comes to it."""
+"""A step runs with exactly its own set-up, however it is reached."""
 
 from __future__ import annotations
 

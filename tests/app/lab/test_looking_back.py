@@ -1,4 +1,4 @@
-"""Nothing that is kept is erased without a word: only going on forgets, and that can be undone."""
+"""No history is erased silently: only resuming discards it, and that can be undone."""
 
 from __future__ import annotations
 

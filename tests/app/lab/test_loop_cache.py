@@ -1,4 +1,4 @@
-"""Loops are there at once; compiled ones take over when they are ready, and nobody notices."""
+"""Loops are available at once; compiled ones replace them when ready, without visible effect."""
 
 from __future__ import annotations
 

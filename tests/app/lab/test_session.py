@@ -1,4 +1,4 @@
-"""A lab can be driven into anything, and comes back; both robots get the same of everything."""
+"""A lab recovers from every state, and both robots receive the same inputs."""
 
 from __future__ import annotations
 

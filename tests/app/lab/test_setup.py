@@ -1,4 +1,4 @@
-"""A set-up is captured, put back, and refused as a whole."""
+"""A set-up is captured, restored, and rejected as a whole."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Share codes come back as they went, and nothing else comes back at all."""
+"""Share codes are decoded without loss, and everything else is rejected."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is shown of a session: the past with the path that it had."""
+"""Snapshots of a session show the past with the path of that time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sixty who come at once are let in one after the other, and whoever has to wait is told so."""
+"""Sixty simultaneous clients are admitted one at a time, and waiting clients see a notice."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What draws a lab needs nothing but data: a snapshot that was sent as bytes draws the same."""
+"""Drawing a lab needs only data: a snapshot sent as bytes is drawn identically."""
 
 from __future__ import annotations
 

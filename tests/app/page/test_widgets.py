@@ -1,4 +1,4 @@
-"""A button that is held down, told by nothing but messages that it still is."""
+"""Detecting the release of a held button from repeated "held" messages alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A stroke without end costs no more than a short one, and nothing on the event loop of all."""
+"""An endless stroke costs no more than a short one, and nothing on the shared event loop."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tabs that answer nothing hold no thread and no place, and who answers late is let in."""
+"""Unresponsive tabs occupy no thread and no place, and late answers are accepted."""
 
 from __future__ import annotations
 

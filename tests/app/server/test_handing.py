@@ -1,4 +1,4 @@
-"""Connections handed from process to process: evenly, and to nobody who is not there."""
+"""Connections handed from process to process: evenly, and never to a dead one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Opening a lab keeps no other tab waiting, however long it takes and often it is tried."""
+"""Opening a lab never blocks other tabs, however long it takes or often it is tried."""
 
 from __future__ import annotations
 

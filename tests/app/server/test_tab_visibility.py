@@ -1,4 +1,4 @@
-"""A tab that nobody sees, and one in which nothing moves, cost nearly nothing."""
+"""Hidden tabs and tabs in which nothing moves cost almost nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Several processes behind one address: a lab survives the one that has it, and all end as one."""
+"""Several processes behind one address: a lab survives its process, and all end together."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The display gives way before simulated time does, and comes back."""
+"""Under load the display rate drops before simulated time slows down, and recovers."""
 
 from __future__ import annotations
 

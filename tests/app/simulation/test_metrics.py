@@ -1,4 +1,4 @@
-"""What /health tells is true, short, cheap to make, and about nobody."""
+"""The metrics of /health are true, short, cheap, and contain no personal data."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is kept stays kept, and what cannot be kept never stops the lab."""
+"""Stored data persists, and storage failures never stop the lab."""
 
 from __future__ import annotations
 

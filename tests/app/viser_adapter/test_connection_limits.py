@@ -1,4 +1,4 @@
-"""Whoever holds as many connections as an address may have keeps nobody else out."""
+"""An address that has reached its connection limit does not block other addresses."""
 
 from __future__ import annotations
 

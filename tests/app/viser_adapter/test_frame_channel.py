@@ -1,4 +1,4 @@
-"""The shortcuts to many browsers change nothing of what each is told."""
+"""Batched sending to many browsers does not change what each receives."""
 
 from __future__ import annotations
 

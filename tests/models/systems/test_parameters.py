@@ -1,4 +1,4 @@
-"""Parameters take what they say they take, and nothing else."""
+"""Parameters accept exactly the values that they declare."""
 
 from __future__ import annotations
 
