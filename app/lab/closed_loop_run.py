@@ -69,14 +69,14 @@ class ClosedLoopRun:
         self._fill_row(curve)
 
     def change_path(self, curve: Curve) -> None:
-        """Switch to another path; of the controller's state only the reference point is kept."""
+        """Switch to another path: keep the reference point, search the closest point globally."""
         reference = self.fields()["theta_ref"].copy()
         self.project(curve)
         self.fields()["theta_ref"][:] = reference
         self._fill_row(curve)
 
     def project(self, curve: Curve) -> None:
-        """Move the reference point to the globally closest point, after a jump of the path."""
+        """Search the closest point globally, for instance after a jump; move the reference there."""
         self.state = self.state.copy()  # the history may share it
         fields = self.fields()
         z = self.robot.frame.planar(self.robot.endpoint(fields["q"]))

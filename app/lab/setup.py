@@ -99,7 +99,7 @@ def from_data(data: Any) -> Setup:
     """Inverse of `to_data`, for untrusted data.
 
     Raises:
-        ValueError: it is not a set-up of an existing kind of lab.
+        ValueError: it is not a valid set-up.
     """
     setup = msgspec.convert(data, Setup)
     planned(setup, presets())

@@ -14,7 +14,7 @@ MOST_POINTS = 160
 
 
 def sketched(prediction: Sketch, answer: Answer) -> Answer:
-    """Interpolate a sketch onto the prediction's axes, with rising times, within its range.
+    """Sort a sketch by time, clip it to the prediction's axes and reduce its points.
 
     Raises:
         ValueError: it is not a curve.

@@ -15,7 +15,7 @@ def waist_angle(bars: ca.SX, away: tuple[float, float] = (0.0, 1.0)) -> ca.SX:
 
     Args:
         bars: beginnings and ends of link 1, link 2 and others as columns, shape (3, 2 n), [m].
-        away: selects the sign of the plane's normal (-sin, cos): towards this direction.
+        away: horizontal direction towards which the plane's normal (-sin, cos) must point.
     """
     single, is_upright = bars.shape[1] < 4, bars[1, :].is_zero() and away[0] == 0
     if single or is_upright:  # the normal is known
