@@ -69,7 +69,7 @@ class ClassService:
             if shown is not None and self._class.is_pass(shown):
                 self._teachers[client.client_id] = (shown, TeacherChoices())
         except OSError:
-            return  # a student's page needs no key
+            return  # a student's page is open to everybody
 
     def gone(self, client: int) -> None:
         """Forget a client that has disconnected."""
