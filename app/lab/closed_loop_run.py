@@ -76,7 +76,7 @@ class ClosedLoopRun:
         self._fill_row(curve)
 
     def project(self, curve: Curve) -> None:
-        """Search the closest point globally, for instance after a jump; move the reference there."""
+        """Restart at the globally closest point, after a jump: reference there, integral zero."""
         self.state = self.state.copy()  # the history may share it
         fields = self.fields()
         z = self.robot.frame.planar(self.robot.endpoint(fields["q"]))
