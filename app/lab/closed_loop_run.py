@@ -1,4 +1,4 @@
-"""One robot under one controller, as it runs in a session."""
+"""One robot under one controller, as simulated in a session."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from onpath.models.paths.distance import near_distance
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import NOT_FINITE, Robot
 
-DISTANCE_INTERVAL = 4  # rows between looks at the distance, where the loop does not log it
+DISTANCE_INTERVAL = 4  # rows between evaluations of the distance, where the loop does not log it
 
 
 @dataclass(frozen=True, slots=True)
 class Diverged:
-    """Why a robot stands still, and since when, [s]."""
+    """Why and when a robot stopped, [s]."""
 
     reason: Message
     time: float
@@ -52,7 +52,7 @@ class ClosedLoopRun:
         self.reset(curve, start)
 
     def reset(self, curve: Curve, start: np.ndarray) -> None:
-        """At rest with the end-point at `start`, (p,), closest and reference point on `curve`."""
+        """Place the end-point at `start`, (p,), at rest, and the reference point on `curve`."""
         kernel = kernel_of(self.robot, self.kind)
         self.state = first_state(self.robot, kernel, curve, self.robot.rest(start))
         self.row = np.zeros(kernel.log.size)
@@ -61,7 +61,7 @@ class ClosedLoopRun:
         self.max_distance = self.distance
 
     def restore(self, drive: Drive, curve: Curve) -> None:
-        """The state of a checkpoint, with the path of then."""
+        """Restore the state of a checkpoint, with the path of that time."""
         self.state = drive.state.copy()
         self.max_distance = drive.max_distance
         if not drive.frozen:
@@ -69,15 +69,15 @@ class ClosedLoopRun:
         self._fill_row(curve)
 
     def change_path(self, curve: Curve) -> None:
-        """Another path than the state was made with: only the reference point stays."""
+        """Switch to another path: keep the reference point, search the closest point globally."""
         reference = self.fields()["theta_ref"].copy()
         self.project(curve)
         self.fields()["theta_ref"][:] = reference
         self._fill_row(curve)
 
     def project(self, curve: Curve) -> None:
-        """Search the closest point globally, put the reference there: after a jump of the path."""
-        self.state = self.state.copy()  # history may hold it
+        """Restart at the globally closest point, after a jump: reference there, integral zero."""
+        self.state = self.state.copy()  # the history may share it
         fields = self.fields()
         z = self.robot.frame.planar(self.robot.endpoint(fields["q"]))
         fields["theta"][:] = curve.nearest(z[None])[0]
@@ -87,7 +87,7 @@ class ClosedLoopRun:
         self._fill_row(curve)
 
     def fields(self) -> dict[str, np.ndarray]:
-        """The state by name, as views."""
+        """Views of the state by name."""
         return kernel_of(self.robot, self.kind).state.unpack(self.state)
 
     def shown(self) -> dict[str, np.ndarray]:
@@ -95,7 +95,7 @@ class ClosedLoopRun:
         return self.log.unpack(self.row)
 
     def input(self) -> Input:
-        """What drives it, for the history; the same object while nothing changes."""
+        """Current input, for the history; the same object until something changes."""
         frozen = self.diverged is not None
         if self._input.settings is not self.settings or self._input.frozen != frozen:
             self._input = Input(self.kind, self.settings, frozen)
@@ -112,7 +112,7 @@ class ClosedLoopRun:
         time: float,
         dt: float,
     ) -> None:
-        """Simulate some ticks; on a fault stay at the last good state and say why."""
+        """Simulate some ticks; on a fault stop at the last good state and report why."""
         self._configure(parameters, curve, push)
         if self.diverged is not None:
             return
@@ -133,7 +133,7 @@ class ClosedLoopRun:
         self.max_distance = max(self.max_distance, *distances)
 
     def _distances(self, curve: Curve, rows: np.ndarray) -> list[float]:
-        """Of the actual end-point to the path, of the last row at least, [m]."""
+        """Distances of the end-point to the path, including the last row, [m]."""
         system, slices = self.robot.system, self.log.slices
         seen = system.controlled_output is system.output and not self.kind.encoder
         if seen and not self.kind.level_set and system.p == 2:
@@ -144,7 +144,7 @@ class ClosedLoopRun:
         ).tolist()
 
     def _configure(self, parameters: Parameters, curve: Curve, push: Push) -> None:
-        """New settings vector only when an input changed."""
+        """Pack a new settings vector if an input changed."""
         before, self._inputs = self._inputs, (parameters, curve, push)
         same = before[0] is parameters and before[1] is curve
         if same and before[2] is push:
@@ -158,8 +158,8 @@ class ClosedLoopRun:
             self.settings = settings_vector(self.robot, kernel, parameters, curve, push)
 
     def _fill_row(self, curve: Curve) -> None:
-        """The log row of a robot that has not moved yet."""
-        self.row = self.row.copy()  # the session looks whether it is another
+        """Fill the log row of a robot that has not moved yet."""
+        self.row = self.row.copy()  # the session detects a new row by identity
         row, state = self.shown(), self.fields()
         for name in ("q", "v", "theta", "theta_rate", "theta_ref", "u"):
             row[name][:] = state[name]

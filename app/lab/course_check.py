@@ -1,4 +1,4 @@
-"""Plays lessons without a browser: does each script run, does each task tell right from wrong?"""
+"""Plays lessons without a browser, to check that scripts run and tasks accept their solutions."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from onpath.lessons.schema import Lesson, Script, Step, Task
 from onpath.lessons.words import DEFAULT, Words
 
 FRAME = 1 / 60  # [s]
-LOOKS = 0.1  # [s] between looks at a task's checks
+LOOKS = 0.1  # [s] between evaluations of a task's checks
 
 
 def play_course(course: Course, folder: Path, store: LoopCache) -> Iterator[Problem]:
-    """What is wrong with the scripts, solutions and failures of a folder's lessons.
+    """Find problems in the scripts, solutions and failures of a folder's lessons.
 
     Args:
-        course: what was read from the folder.
-        folder: where the lessons' own folders are.
-        store: where the closed loops come from.
+        course: the lessons read from the folder.
+        folder: contains the lessons' own folders.
+        store: provides the closed loops.
     """
     for name in course.lessons:
         lesson = course.lesson(name, DEFAULT)
@@ -44,10 +44,10 @@ def lab_at(lesson: Lesson, step: Step, store: LoopCache) -> Lab:
 
 
 def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Verdict]]:
-    """Play a script to its end; the verdicts on a task, ten times a second.
+    """Play a script to its end and yield the verdicts on a task, ten times a second.
 
     Raises:
-        ValueError: the lab refuses what the script does; the message says why.
+        ValueError: the lab refuses a command of the script; the message says why.
     """
     session, words = lab.session, Words()
     begin = Beginning.now(session)
@@ -66,7 +66,7 @@ def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Ve
 
 
 def solved(lab: Lab, script: Script, task: Task) -> tuple[bool, list[Verdict]]:
-    """Whether a script ever passes a task, and the last verdicts.
+    """Whether a script passes a task at any time, and the last verdicts.
 
     Raises:
         ValueError: see `play`.
@@ -105,7 +105,7 @@ def _reference_faults(lesson: Lesson, file: Path, store: LoopCache) -> Iterator[
 def _fault(
     lesson: Lesson, step: Step, script: Script, task: Task, store: LoopCache, right: bool
 ) -> str:
-    """Why a script is not the solution, or not the failure, that it should be."""
+    """Why a script is not a valid solution, or not a valid failure."""
     try:
         passed, last = solved(lab_at(lesson, step, store), script, task)
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""What holds the robots of a lab back, and what pulls at them."""
+"""External forces on the robots of a lab: holding them back and pulling at them."""
 
 from __future__ import annotations
 
@@ -18,30 +18,30 @@ from onpath.models.systems.robots import Robot
 
 
 class Note(Protocol):
-    """Told what has begun or ended, and who it concerns."""
+    """Callback for events: what began or ended, and for which controllers."""
 
     def __call__(self, name: str, /, *, controllers: tuple[str, ...]) -> None: ...
 
 
 def displaced(frame: Frame, y: Array, by: Array) -> Array:
-    """A point of the output space, (p,), moved along the path's plane by `by`, (2,), [m]."""
+    """Move a point of the output space, (p,), by `by`, (2,), in the path's plane, [m]."""
     z = frame.planar(y)
     return y + frame.lift(z + by) - frame.lift(z)
 
 
 class ExternalForces:
-    """Of one run, from reset to reset.
+    """The external forces of one run, from reset to reset.
 
     Args:
-        robot: whose end-points are taken.
+        robot: the model of the robots.
         runs: by controller.
         note: see `Note`.
 
     Attributes:
-        held: who is held back.
-        hands: where hands pull, by controller, in output coordinates, [m].
-        grabbed: whose end-point has been taken, or None.
-        pushes: what acts on each robot from outside; the same object while nothing changes.
+        held: controllers whose robots are held back.
+        hands: targets of the pulling hands, by controller, in output coordinates, [m].
+        grabbed: controller of the end-point that was grabbed, or None.
+        pushes: external force on each robot; the same object until something changes.
     """
 
     def __init__(self, robot: Robot, runs: Mapping[str, ClosedLoopRun], note: Note) -> None:
@@ -53,7 +53,7 @@ class ExternalForces:
         self._offsets: dict[str, Array] = {}
 
     def hold(self, names: Sequence[str], on: bool, curve: Curve) -> None:
-        """Begin or end holding robots back, each where it is now along the path."""
+        """Begin or end holding robots back, each at its current position along the path."""
         changed = tuple(name for name in names if on != (name in self.held))
         if changed:
             self._note("hold" if on else "let_go", controllers=changed)
@@ -70,7 +70,7 @@ class ExternalForces:
 
         Args:
             target: shape (p,), [m].
-            together: all of them; what was taken already stays so until it is released.
+            together: all controllers concerned; they stay the same until `release`.
 
         Raises:
             ValueError: the target is not finite.
@@ -89,7 +89,7 @@ class ExternalForces:
             self.pushes[name] = Push(self.hands[name], self.pushes[name].hold)
 
     def release(self) -> None:
-        """Let all end-points go; who is held back stays so."""
+        """Release all end-points; robots that are held back stay so."""
         if self.hands:
             self._note("release", controllers=tuple(self.hands))
         for name in self.hands:

@@ -1,7 +1,7 @@
 """The last minute of a session: checkpoints to rewind to, samples to plot, inputs to replay.
 
-A stretch keeps the states at its beginning and all inputs of the loop, so that every millisecond
-can be computed again, exactly, when somebody wants it as a file.
+A segment stores the states at its beginning and all inputs of the loop, so that every millisecond
+can be recomputed exactly, for instance for an export.
 """
 
 from __future__ import annotations
@@ -16,29 +16,29 @@ import numpy as np
 from onpath.app.lab.segments import HistoryCopy, HistoryFrame, Segment, segment_at
 
 SECONDS = 60.0
-LONGEST = 17  # ticks in a stretch at most
-RECENT = 12.0  # [s], at the full rate; what is older is thinned out
-COARSE = 4 * LONGEST  # ticks in an older stretch at most
+LONGEST = 17  # maximum ticks in a segment
+RECENT = 12.0  # [s] stored at the full rate; older segments are merged
+COARSE = 4 * LONGEST  # maximum ticks in an older segment
 MOST = 7200
-BATCH = 16  # frames that wait at most to be put in together, which is much quicker
-FIRST = 256  # stretches that there is room for at first
-FULL = 0.9  # of the room, when more is needed
+BATCH = 16  # maximum frames to collect before they are stored together, which is much faster
+FIRST = 256  # initial capacity, in segments
+FULL = 0.9  # fraction of the capacity in use after which it is enlarged
 
 
 class History:
-    """Stretches of the last minute, oldest first, as columns: all of one kind in one array.
+    """Segments of the last minute, oldest first, stored as one array per field.
 
-    The columns' rows from `_begin` to `_end` are in use; when they reach the columns' end they
-    move to the front, and older ones are joined, four frames of the lab to one. The latest frames
-    wait outside until somebody looks.
+    The rows from `_begin` to `_end` are in use; when they reach the end of the arrays they are
+    moved to the front, and older ones are merged, four frames of the lab into one. The latest
+    frames are buffered until they are needed.
 
     Args:
-        sample: what the plots show of some frames, shape (frames, robots, fields).
+        sample: computes the plotted values of some frames, shape (frames, robots, fields).
     """
 
     def __init__(self, sample: Callable[[Sequence[HistoryFrame]], np.ndarray]) -> None:
         self._sample = sample
-        self._lock = threading.Lock()  # a page that is being built looks at it, too
+        self._lock = threading.Lock()  # a page that is being built reads it, too
         self.clear()
 
     def __len__(self) -> int:
@@ -46,16 +46,16 @@ class History:
         return self._end - self._begin
 
     def clear(self) -> None:
-        """Forget everything."""
+        """Delete everything."""
         with self._lock:
             self._waiting: list[HistoryFrame] = []
             self._columns: dict[str, np.ndarray] = {}
             self._list: list[Segment] | None = None
             self._begin = self._end = 0
-            self._before = 0  # rows that have been moved out at the front, ever
+            self._before = 0  # number of rows ever removed from the front
 
     def append(self, frame: HistoryFrame) -> None:
-        """Add what has just been simulated; what is older than a minute is dropped in time."""
+        """Add the frame just simulated. Frames older than a minute are dropped eventually."""
         with self._lock:
             waiting = self._waiting
             if waiting and waiting[-1].inputs is frame.inputs:
@@ -68,11 +68,11 @@ class History:
             self.settle()
 
     def settle(self) -> None:
-        """Put in what waits, before anything changes that samples depend on."""
+        """Store the buffered frames, before anything changes that the samples depend on."""
         if self._waiting:
             with self._lock:
                 frames, self._waiting = self._waiting, []
-                if frames:  # no other thread has been here
+                if frames:  # no other thread has stored them
                     self._put(frames)
 
     def _put(self, frames: Sequence[HistoryFrame]) -> None:
@@ -91,32 +91,32 @@ class History:
         self._begin = max(self._begin, reached, self._end - MOST)
 
     def all(self) -> list[Segment]:
-        """Everything, oldest first; the same objects until something changes."""
+        """All segments, oldest first; the same objects until something changes."""
         self.settle()
         if self._list is None:
             self._list = [segment_at(self._columns, row) for row in range(self._begin, self._end)]
         return list(self._list)
 
     def copy(self) -> HistoryCopy:
-        """Everything, to be looked at in another thread or process."""
+        """A copy of everything, for use in another thread or process."""
         self.settle()
         rows = slice(self._begin, self._end)
         return HistoryCopy({name: column[rows].copy() for name, column in self._columns.items()})
 
     def span(self) -> float:
-        """How far back it reaches, [s]."""
+        """Length of the recorded time, [s]."""
         if not len(self):
             return 0.0
         return float(self._ends(self._end - 1) - self._columns["time"][self._begin])
 
     def at(self, time: float) -> Segment | None:
-        """The stretch during which it was `time`, or the nearest one; None if there is none."""
+        """The segment that contains `time`, or the nearest one; None if there is none."""
         if not len(self):
             return None
         return segment_at(self._columns, max(self._find(time, "right") - 1, self._begin))
 
     def before(self, stretch: Segment) -> History:
-        """A copy of what came before `stretch`."""
+        """A copy of everything before `stretch`."""
         self.settle()
         copy = History(self._sample)
         with self._lock:
@@ -134,19 +134,19 @@ class History:
         if low >= high:
             return np.zeros(0), np.zeros((0, 0, 0))
         step = max(1, -(-(high - low) // most))
-        first = low + (-low - self._before) % step  # the same ones from call to call
+        first = low + (-low - self._before) % step  # the same rows from call to call
         chosen, columns = slice(first, high, step), self._columns
         return columns["time"][chosen].copy(), columns["sample"][chosen, :, fields].copy()
 
     def _find(self, time: float, side: Any) -> int:
-        """Where `time` would have to be put in."""
+        """Row at which `time` would be inserted."""
         if self._begin == self._end:
             return self._end
         times = self._columns["time"][self._begin : self._end]
         return self._begin + int(times.searchsorted(time, side))
 
     def _make_room(self, frames: Sequence[HistoryFrame], samples: np.ndarray) -> None:
-        """Columns with free rows at their end: thinned out, and larger if that is not enough."""
+        """Make free rows at the end: merge older rows, and enlarge the arrays if necessary."""
         kept, old, size = self._kept(), self._columns, len(self._columns.get("time", ()))
         if len(kept):
             old["ticks"][kept] = np.add.reduceat(old["ticks"][: self._end], kept)
@@ -163,12 +163,12 @@ class History:
             }
         for name, column in old.items():
             self._columns[name][: len(kept)] = column[kept]
-        self._columns["inputs"][len(kept) :] = None  # let go of what nobody needs
+        self._columns["inputs"][len(kept) :] = None  # release references
         self._before += self._end - len(kept)
         self._begin, self._end = 0, len(kept)
 
     def _kept(self) -> np.ndarray:
-        """Rows that stay: all recent ones, and older ones unless they join the one before."""
+        """Rows to keep: all recent ones, and older ones unless they merge into the previous one."""
         if self._begin == self._end:
             return np.zeros(0, dtype=int)
         inside, inputs = slice(self._begin, self._end), self._columns["inputs"]
@@ -183,10 +183,10 @@ class History:
         return np.array(kept)
 
     def _jumps(self, row: int) -> bool:
-        """Whether a row does not begin where the one before ends."""
+        """Whether there is a gap between a row and the previous one."""
         return abs(self._columns["time"][row] - self._ends(row - 1)) > 1e-6
 
     def _ends(self, row: int) -> float:
-        """When a row ends, [s]."""
+        """Time at which a row ends, [s]."""
         columns = self._columns
         return columns["time"][row] + columns["ticks"][row] * columns["inputs"][row].dt

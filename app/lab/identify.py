@@ -1,4 +1,4 @@
-"""The lab's "identify": the model from what the path follower has just done."""
+"""Identification of the controllers' model from the follower's recent motion."""
 
 from __future__ import annotations
 
@@ -29,27 +29,27 @@ from onpath.models.studies.identification import (
 from onpath.models.systems.parameters import Parameters, specs
 from onpath.models.systems.robots import BalancedLinkage, Robot
 
-MOST_TICKS = 3000  # of the past, so that the lab does not stop for it
+MOST_TICKS = 3000  # maximum ticks to use, to keep the lab responsive
 FOLLOWER = "path_following"
-PLANT = ("plant", "coulomb", "encoder_step")  # as long as these stay, it is the same robot
+PLANT = ("plant", "coulomb", "encoder_step")  # the robot is the same while these are unchanged
 UNITS = {"M": "kg m²", "b": "N m s", "c": "N m", "G": "N m"}
-POOR = 0.05  # of the torque, unexplained: worth a word
+POOR = 0.05  # unexplained share of the torque above which the report warns
 
 
 def identify_model(
     robot: Robot, parameters: Parameters, history: list[Segment], words: Words
 ) -> tuple[Parameters, str]:
-    """The model that the follower's last seconds tell.
+    """Identify the model from the follower's last seconds.
 
     Args:
         history: of the lab, oldest first.
         words: for the report.
 
     Returns:
-        The parameters with the controllers' model as identified, and a report for the user.
+        The parameters with the identified controllers' model, and a report for the user.
 
     Raises:
-        ValueError: another robot, nothing to learn from, or too poor a motion.
+        ValueError: unsuitable robot, no data, or insufficient excitation.
     """
     linkage = robot.linkage
     if linkage is None:
@@ -59,18 +59,18 @@ def identify_model(
     return after, _sentence(robot, parameters, after, found, duration, words)
 
 
-@lru_cache(maxsize=4)  # whoever keeps the button down learns nothing new
+@lru_cache(maxsize=4)  # repeated clicks do not compute again
 def _learned(robot: Robot, stretches: tuple[Segment, ...]) -> tuple[Identified, float]:
-    """What the stretches say, and how long they are, [s]."""
+    """The identified model and the duration of its data, [s]."""
     record = last_record(robot, list(stretches))
     return simplest(record), len(record.q) * record.dt
 
 
 def last_record(robot: Robot, history: list[Segment]) -> JointRecord:
-    """What the follower's sensors saw in the last seconds, while the robot was as it is now.
+    """Sensor data of the follower's last seconds, while the robot was as it is now.
 
     Raises:
-        ValueError: there is nothing, or the robot is no balanced linkage.
+        ValueError: there is no data, or the robot is not a balanced linkage.
     """
     linkage, stretches = robot.linkage, _same_robot(robot, history)
     if linkage is None or not stretches:
@@ -87,7 +87,7 @@ def last_record(robot: Robot, history: list[Segment]) -> JointRecord:
 
 
 def believing(linkage: BalancedLinkage, parameters: Parameters, found: Identified) -> Parameters:
-    """The same with the controllers' model as found, as far as its sliders go."""
+    """The parameters with the controllers' model as identified, limited to the sliders' ranges."""
     built, known = linkage.built, specs(parameters)
     changes = dict[str, float]()
     for name in INERTIA:
@@ -98,7 +98,7 @@ def believing(linkage: BalancedLinkage, parameters: Parameters, found: Identifie
 
 
 def _same_robot(robot: Robot, history: list[Segment]) -> list[Segment]:
-    """The last stretches without a stop or a change of the plant or of its sensors."""
+    """The latest segments without a stop or a change of the plant or its sensors."""
     found, ticks = list[Segment](), 0
     for stretch in reversed(history):
         ticks += stretch.ticks
@@ -125,7 +125,7 @@ def _setting(robot: Robot, drive: Drive, name: str) -> Array:
 
 
 def _rows(robot: Robot, stretches: list[Segment]) -> Array:
-    """Log rows of the follower, computed again; what goes on with the same inputs, at once."""
+    """Recompute the follower's log rows, in one call for segments with the same inputs."""
     rows = list[Array]()
     runs = groupby(stretches, lambda s: (id(s.drives[FOLLOWER].settings), id(s.curve)))
     for _, group in runs:
@@ -139,7 +139,7 @@ def _rows(robot: Robot, stretches: list[Segment]) -> Array:
 
 @lru_cache(maxsize=16)
 def _loop(robot: Robot, kind: Kind) -> InterpretedLoop:
-    """For the simulation thread, the only one that applies commands."""
+    """A loop for the simulation thread, the only one that applies commands."""
     return InterpretedLoop(kernel_of(robot, kind))
 
 
@@ -151,7 +151,7 @@ def _sentence(
     duration: float,
     words: Words,
 ) -> str:
-    """What was found, believed, and left out."""
+    """Report of what was identified, applied and left out."""
     believed = dict(zip(robot.system.parameter_names, robot.model(before), strict=True))
     values = "; ".join(
         words("identified.value", value=_value(found, name), before=f"{believed[name]:.4f}")
@@ -171,7 +171,7 @@ def _sentence(
 
 
 def _value(found: Identified, name: str) -> str:
-    """As in "M11 = 0.0226 (±0.0001) kg m²"; errors are rounded up."""
+    """For instance "M11 = 0.0226 (±0.0001) kg m²"; errors are rounded up."""
     error = math.ceil(found.errors[name] * 1e4 - 1e-3) / 1e4
     return f"{name} = {found.values[name]:.4f} (±{max(error, 1e-4):.4f}) {UNITS[name[0]]}"
 

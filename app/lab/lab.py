@@ -1,4 +1,4 @@
-"""One user's lab: the simulation and, around it, what is asked of it, the lessons and messages.
+"""One user's lab: the simulation, and the commands, lessons and messages around it.
 
 Commands come in through `post` from any thread and are applied by the simulation thread at the
 beginning of its next frame.
@@ -21,19 +21,19 @@ from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 
-MOST_COMMANDS = 500  # waiting at once; a flood beyond is dropped
+MOST_COMMANDS = 500  # maximum in the queue; further ones are dropped
 
 
 class Command:
-    """Something that is asked of a lab: a frozen record that knows how to apply itself.
+    """A command to a lab: a frozen record that knows how to apply itself.
 
-    Widgets, keys, the mouse and the teacher's page make commands in any thread; `Lab.post` takes
-    them. What a command carries is checked when it is applied, and not again later.
+    Widgets, keys, the mouse and the teacher's page make commands in any thread and pass them to
+    `Lab.post`. The contents of a command are checked once, when it is applied.
 
     Attributes:
-        from_teacher: whether a teacher asks it of a student's lab, which is possible even while
-            that is frozen.
-        lets_time_run: whether it is refused while a prediction is to be made.
+        from_teacher: whether it comes from a teacher; such commands are applied even while the lab
+            is frozen.
+        lets_time_run: whether it is refused while a prediction is pending.
     """
 
     __slots__ = ()
@@ -41,31 +41,31 @@ class Command:
     lets_time_run: ClassVar[bool] = False
 
     def apply(self, lab: Lab) -> None:
-        """Do it; in the simulation thread.
+        """Apply the command, in the simulation thread.
 
         Raises:
-            ValueError: it makes no sense now; the message tells the user why.
+            ValueError: it is not possible now; the message tells the user why.
         """
         raise NotImplementedError
 
 
 class Lab:
-    """A simulated lab and its user.
+    """A simulated lab and its user's state.
 
     Args:
-        store: where the closed loops come from.
-        entry: the robot to begin with.
-        course: the lessons there are.
+        store: provides the closed loops.
+        entry: the initial robot.
+        course: the available lessons.
 
     Attributes:
         session: the simulated lab.
-        lessons: the way through the lessons.
-        script: what is being done by itself, or None.
-        message, message_level: what the user is told, and "info", "warning" or "error".
-        shared: the share code asked for last.
+        lessons: the user's progress through the lessons.
+        script: player of the running script, or None.
+        message, message_level: message to the user, and "info", "warning" or "error".
+        shared: the last share code made.
         frozen: whether the teacher has stopped this lab.
-        asked: how many commands the user has given.
-        watch: called at every frame, or None.
+        asked: number of commands given by the user.
+        watch: called in every frame, or None.
     """
 
     def __init__(
@@ -82,28 +82,28 @@ class Lab:
 
     @property
     def words(self) -> Words:
-        """Of the user's language."""
+        """Texts in the user's language."""
         return self.lessons.words
 
     @property
     def locked(self) -> str:
-        """Why time must not run now; empty when it may."""
+        """Why time must not run now; empty if it may."""
         return self.lessons.locked
 
     # Commands
 
     def post(self, command: Command) -> None:
-        """Ask for something; from any thread."""
+        """Queue a command. Thread-safe."""
         self._inbox.append(command)
 
     def drain(self, most: float = inf) -> float:
-        """Apply what has been asked for. A command that makes no sense is answered in words.
+        """Apply the queued commands. If one is refused, the user is told why.
 
         Args:
-            most: of computing, after which the rest waits, [s].
+            most: computing time after which the remaining commands wait, [s].
 
         Returns:
-            How long the commands took, [s].
+            Computing time of the commands, [s].
         """
         begun = perf_counter()
         while self._inbox and perf_counter() - begun < most:
@@ -123,7 +123,7 @@ class Lab:
         return taken
 
     def _refusal(self, command: Command) -> str:
-        """Why a command of the user's is not applied now; empty when it is."""
+        """Why a user's command is refused now; empty if it is not."""
         if self.frozen:
             return self.words("class.frozen")
         return self.locked if command.lets_time_run else ""
@@ -136,7 +136,7 @@ class Lab:
         self.show_faults()
 
     def _play(self) -> None:
-        """Ask for what a script says."""
+        """Queue the commands of the running script."""
         if self.script is None:
             return
         try:
@@ -155,16 +155,16 @@ class Lab:
             self.show_faults()
 
     def set_up(self, setup: Setup) -> None:
-        """Set the lab up, both robots at the start of the path; the old path is one undo away.
+        """Apply a set-up, with both robots at the start of the path. The old path is one undo away.
 
         Raises:
-            ValueError: something in it is impossible; then the lab is as it was.
+            ValueError: the set-up is impossible; the lab is unchanged.
         """
         restore(self.session, setup)
         self.show_message("")
 
     def return_to_present(self) -> None:
-        """Look at the present again, if not already; nothing is forgotten."""
+        """Stop viewing the past; the history is kept."""
         if self.session.viewing is not None:
             self.session.viewing = None
             self.remark(self.words("say.present"))
@@ -172,23 +172,23 @@ class Lab:
     # Messages
 
     def show_message(self, message: str, level: str = "info") -> None:
-        """Show a sentence to the user."""
+        """Show a message to the user."""
         self.message, self.message_level = message, level
 
     def clear_message(self) -> None:
-        """Show nothing more, but that robots still stand still."""
+        """Clear the message, or show again why robots are stopped."""
         self.show_message("")
         for name in self.session.runs:
             self._show_fault(name)
 
     def remark(self, message: str) -> None:
-        """Show something less important than that a robot stands still."""
+        """Show a message, unless a robot is stopped, which is more important."""
         self.clear_message()
         if not self.message:
             self.show_message(message)
 
     def show_faults(self) -> None:
-        """Tell of robots that have just stopped."""
+        """Report robots that have just stopped."""
         faults = self.session.faults
         while faults:
             self._show_fault(faults.pop(0))

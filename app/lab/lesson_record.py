@@ -1,4 +1,4 @@
-"""From a session to the record that the lessons' checks look at."""
+"""Converts a session to the record that the lessons' checks evaluate."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ MOST_SAMPLES = 3600
 
 @dataclass(frozen=True, slots=True)
 class Beginning:
-    """When a step began: the run, and the simulated time in it, [s]."""
+    """The beginning of a step: the run, and its simulated time, [s]."""
 
     run: int
     time: float
 
     @staticmethod
     def now(session: Session) -> Beginning:
-        """At this instant; what has happened before is forgotten."""
+        """The current instant; earlier events are ignored."""
         session.events.clear()
         return Beginning(session.run_number, session.time)
 
 
 def record_of(session: Session, since: Beginning) -> Record:
-    """What has happened since a step began or, if later, since the last reset."""
+    """Record since the beginning of a step or, if later, since the last reset."""
     begin = since.time if since.run == session.run_number else 0.0
     times, samples = session.history.samples(begin, session.time, MOST_SAMPLES)
     return Record(
@@ -49,13 +49,13 @@ def record_of(session: Session, since: Beginning) -> Record:
 
 
 class Trace:
-    """A quantity of both robots since a step began, at every frame.
+    """A quantity of both robots since the beginning of a step, at every frame.
 
-    The lab's own past is thinned out after some seconds, and the peaks with it.
+    The lab's history is thinned out after some seconds and loses its peaks.
 
     Args:
         quantity: one of lessons.record.QUANTITIES.
-        begin: when the step began.
+        begin: beginning of the step.
     """
 
     def __init__(self, quantity: str, begin: Beginning) -> None:
@@ -63,11 +63,11 @@ class Trace:
         self._rows = np.zeros((0, 1 + len(ROBOTS)))
 
     def follow(self, session: Session) -> None:
-        """Take in what has happened since the last time; a reset begins anew."""
+        """Add what has happened since the last call; a reset restarts the trace."""
         until = self._until
         if until.run != session.run_number:
             until, self._rows = Beginning(session.run_number, 0.0), self._rows[:0]
-        begin = min(until.time, session.time)  # the last instant may have been half a one
+        begin = min(until.time, session.time)  # the last frame may have been incomplete
         record = record_of(session, Beginning(until.run, begin))
         nothing = np.zeros(len(record.times))
         curves = [record.values[robot].get(self._quantity, nothing) for robot in ROBOTS]
@@ -76,7 +76,7 @@ class Trace:
         self._until = Beginning(until.run, float(self._rows[-1, 0]) if len(self._rows) else begin)
 
     def truth(self) -> Truth:
-        """What has happened so far."""
+        """The recorded curves so far."""
         times, *curves = self._rows.T
         kept = peaks(curves, MOST_POINTS)
         columns = [tuple(np.round(column[kept], 4).tolist()) for column in (times, *curves)]
@@ -84,7 +84,7 @@ class Trace:
 
 
 def _happening(event: LabEvent) -> Happening:
-    """An event as the checks look at it."""
+    """Convert an event to the form used by the checks."""
     robots = tuple[RobotName, ...](ROLES[name] for name in event.controllers)
     return Happening(event.run, event.time, event.name, event.detail, robots)
 
@@ -94,7 +94,7 @@ def _nothing(session: Session) -> dict[RobotName, dict[str, Array]]:
 
 
 def _values(session: Session, samples: Array) -> dict[RobotName, dict[str, Array]]:
-    """Of samples, shape (n, robots, fields): see lessons.record.QUANTITIES."""
+    """Quantities of samples, shape (n, robots, fields); see lessons.record.QUANTITIES."""
     layout, names = session.sample_layout, list(session.runs)
     timetable = names.index(next(name for name in names if ROLES[name] == "tracker"))
     running = layout.unpack(samples[:, timetable])["theta_ref"][:, 0]

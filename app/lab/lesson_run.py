@@ -1,6 +1,6 @@
-"""Plays the lessons' steps on a student's lab and judges what is done there.
+"""Plays the lessons' steps on a student's lab and evaluates the student's tasks.
 
-No viser in it. Only the simulation thread calls it, by the commands in `app.lab.commands.lessons`.
+Independent of viser. Called by the simulation thread only, from `app.lab.commands.lessons`.
 """
 
 from __future__ import annotations
@@ -24,31 +24,31 @@ from onpath.lessons.words import Words
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameters import unknown_name
 
-CHECK_INTERVAL = 30  # frames between looks at the tasks
+CHECK_INTERVAL = 30  # frames between evaluations of the tasks
 
 
 class LessonLab(Protocol):
-    """What a lesson needs of a lab.
+    """The part of a lab that lessons use.
 
     Attributes:
         session: the simulated lab.
-        script: what is being done by itself, or None.
+        script: player of the running script, or None.
     """
 
     session: Session
     script: ScriptPlayer[Any] | None
 
     def set_up(self, setup: Setup) -> None:
-        """Set the lab up; raises ValueError if it is impossible, and then all is as it was."""
+        """Apply a set-up; raises ValueError if it is impossible, and leaves the lab unchanged."""
         ...
 
 
 class LessonRun(LessonState):
-    """The lessons as one student goes through them on a lab.
+    """One student's progress through the lessons, on a lab.
 
     Attributes:
         verdicts: on the checks of the open step's tasks, by task.
-        before: the lab as it was before any lesson was open.
+        before: set-up of the lab before a lesson was opened.
     """
 
     def __init__(self, course: Course, progress: Progress | None = None) -> None:
@@ -56,20 +56,20 @@ class LessonRun(LessonState):
         self.verdicts: dict[str, list[Verdict]] = {}
         self._begin = Beginning(0, 0.0)
         self._frames = 0
-        self._player: ScriptPlayer[Any] | None = None  # of what the step shows
-        self._trace: Trace | None = None  # of what is played
-        self._passed: dict[str, int] = {}  # the run in which a task was passed
+        self._player: ScriptPlayer[Any] | None = None  # of the step's demonstration
+        self._trace: Trace | None = None  # of the quantity during the demonstration
+        self._passed: dict[str, int] = {}  # the run in which each task was passed
         self.before: Setup | None = None
 
     @property
     def playing(self) -> bool:
-        """Whether the lab does by itself what the step shows."""
+        """Whether the lab is playing the step's demonstration."""
         return self._player is not None
 
-    # What is asked
+    # Requests
 
     def open(self, name: str, lab: LessonLab) -> None:
-        """Open a lesson where it was left.
+        """Open a lesson at the step that was open last.
 
         Raises:
             ValueError: there is no such lesson.
@@ -77,7 +77,7 @@ class LessonRun(LessonState):
         self.open_at(name, self.left_at(name), lab)
 
     def open_at(self, name: str, index: int, lab: LessonLab) -> None:
-        """Open a step of a lesson, from anywhere, with the lab as that step expects to find it.
+        """Open a step of a lesson, and set the lab up for it.
 
         Raises:
             ValueError: there is no such lesson or step.
@@ -93,7 +93,7 @@ class LessonRun(LessonState):
         self._arrive(index, lab)
 
     def resume(self, progress: Progress, before: Setup | None, lab: LessonLab) -> None:
-        """Go on as it was kept, in a lab that is as it was left."""
+        """Restore saved progress, in a lab that has been restored."""
         self.progress, self.before = progress, before
         self.words = Words(progress.language)
         self.version += 1
@@ -101,17 +101,17 @@ class LessonRun(LessonState):
             self._arrive(self.index, lab)
 
     def take(self, setup: Setup, lab: LessonLab) -> None:
-        """Set the lab up otherwise; the open step stays, `begin_anew` brings its own set-up back.
+        """Change the lab's set-up within the open step; `begin_anew` restores the step's own.
 
         Raises:
-            ValueError: see `restore`; then all is as it was.
+            ValueError: see `restore`; nothing is changed.
         """
         lab.set_up(setup)
         self._begin_again(lab, running=True)
         self.version += 1
 
     def close(self, lab: LessonLab) -> None:
-        """No lesson is open; the lab is as it was before."""
+        """Close the lesson and restore the lab as it was before."""
         self.progress = replace(self.progress, lesson="")
         self._begin_again(lab, running=lab.session.running)
         if self.before is not None:
@@ -120,9 +120,9 @@ class LessonRun(LessonState):
         self.version += 1
 
     def go(self, by: int, lab: LessonLab) -> None:
-        """Another step; on the way on, a prediction that is not made is skipped.
+        """Go to another step; a pending prediction is skipped when going forward.
 
-        Where the lab then shows what was asked, only the prediction is skipped.
+        If the step then demonstrates the answer, only the prediction is skipped.
         """
         lesson = self.lesson
         if lesson is None:
@@ -136,15 +136,15 @@ class LessonRun(LessonState):
         self._go(target, lab)
 
     def begin_anew(self, lab: LessonLab) -> None:
-        """Set the lab up again for the open step."""
+        """Set the lab up for the open step again."""
         if self.lesson is not None:
             self._go(self.index, lab)
 
     def predict(self, answer: Answer, session: Session) -> None:
-        """Commit to a prediction.
+        """Submit a prediction.
 
         Raises:
-            ValueError: there is none to make, or this is no answer to it.
+            ValueError: no prediction is pending, or the answer is invalid.
         """
         found = self.prediction()
         if found is None:
@@ -159,13 +159,13 @@ class LessonRun(LessonState):
         self.version += 1
 
     def play(self, player: ScriptPlayer[Any], lab: LessonLab) -> None:
-        """Let the lab do what the open step shows, set up as the step wants it.
+        """Play the open step's demonstration, with the lab set up for the step.
 
         Args:
             player: of the step's script.
 
         Raises:
-            ValueError: a prediction is to be made first.
+            ValueError: a prediction must be made first.
         """
         lesson, found, session = self.lesson, self.prediction(), lab.session
         if lesson is None:
@@ -174,17 +174,17 @@ class LessonRun(LessonState):
             raise ValueError(self.locked)
         rate = session.rate
         _set_up(lab, lesson, self.index)
-        session.rate = rate  # may be slow motion; what happens is the same
+        session.rate = rate  # may be slow motion; the result is the same
         self._begin = Beginning.now(session)
         self._trace = Trace(quantity_of(found[1]), self._begin) if found else None
         self._player = lab.script = player
         session.running = True
         self.version += 1
 
-    # What happens
+    # Updates
 
     def follow(self, lab: LessonLab) -> None:
-        """Look at the tasks now and then, and at the end of what a step shows; every frame."""
+        """Evaluate the tasks periodically and detect the end of a demonstration; every frame."""
         self._frames += 1
         session = lab.session
         if self._player is not None and lab.script is not self._player:
@@ -200,7 +200,7 @@ class LessonRun(LessonState):
             self._judge(session, self.step.tasks())
 
     def truth(self, session: Session) -> Truth | None:
-        """What has happened of the predicted quantity: now, or when the step was last played."""
+        """The actual curve of the predicted quantity, from now or from the last demonstration."""
         found = self.prediction()
         if found is None or self._player is None or self._trace is None:
             return None if found is None else self.notes.truths.get(found[0])
@@ -234,14 +234,14 @@ class LessonRun(LessonState):
         self._arrive(index, lab)
 
     def _arrive(self, index: int, lab: LessonLab) -> None:
-        """A step begins, in a lab that is set up."""
+        """Begin a step, in a lab that is set up."""
         lesson = self.lesson
         assert lesson is not None
         self.note(step=index, seen=max(self.notes.seen, index + 1))
         self._begin_again(lab, lesson.scene_at(index).running)
 
     def _begin_again(self, lab: LessonLab, running: bool) -> None:
-        """Nothing is shown, has been done or can be undone from now on."""
+        """Reset demonstration, tasks and undo for the step."""
         session = lab.session
         lab.script, session.put_aside, session.running = None, None, running
         self._player = self._trace = None
@@ -250,7 +250,7 @@ class LessonRun(LessonState):
         self._lock(session)
 
     def _lock(self, session: Session) -> None:
-        """Time stands still until a prediction has been made or skipped."""
+        """Stop time until a prediction has been made or skipped."""
         if self.waits:
             session.running = False
 
@@ -264,11 +264,11 @@ class LessonRun(LessonState):
 
 
 def setup_of(lesson: Lesson, index: int, exaggeration: float = 1.0) -> Setup:
-    """A step's set-up: of the lesson alone, not of what was done in the lab before.
+    """A step's set-up, which depends on the lesson only, not on earlier changes in the lab.
 
     Args:
         index: of the step.
-        exaggeration: how many times larger a deflection is drawn, as in the lab before.
+        exaggeration: magnification of the drawn deflection, kept from the lab.
     """
     scene = lesson.scene_at(index)
     robot, path = scene.robot or lesson.front.robot, Path(scene.path or Path().name)
@@ -277,11 +277,11 @@ def setup_of(lesson: Lesson, index: int, exaggeration: float = 1.0) -> Setup:
 
 
 def _set_up(lab: LessonLab, lesson: Lesson, index: int) -> None:
-    """Both robots at the start, everything as the step wants it but how large it is drawn."""
+    """Set the lab up for a step, but keep the magnification of the drawn deflection."""
     lab.set_up(setup_of(lesson, index, lab.session.exaggeration))
     lab.session.editor.select(None)
 
 
 def quantity_of(prediction: Prediction) -> str:
-    """What a prediction is about."""
+    """The predicted quantity."""
     return prediction.quantity if isinstance(prediction, Sketch) else "distance"

@@ -1,6 +1,6 @@
-"""Where a student stands in the lessons: the open step, what was predicted, what is passed.
+"""A student's progress through the lessons: the open step, predictions, and passed tasks.
 
-It knows no lab: `app.lab.lesson_run` plays the steps on one.
+It does not depend on a lab; `app.lab.lesson_run` plays the steps on one.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from onpath.models.errors import CodedError
 
 
 class LessonState:
-    """The lessons as one student goes through them.
+    """One student's progress through the lessons.
 
     Attributes:
-        course: all lessons there are.
-        progress: what is kept.
-        words: of the student's language.
-        version: changes whenever the page must be drawn anew.
+        course: all lessons.
+        progress: the part that is saved.
+        words: texts in the student's language.
+        version: changes whenever the page must be redrawn.
     """
 
     def __init__(
@@ -36,7 +36,7 @@ class LessonState:
 
     @property
     def lesson(self) -> Lesson | None:
-        """The open one."""
+        """The open lesson, or None."""
         name = self.progress.lesson
         if name not in self.course.lessons:
             return None
@@ -44,16 +44,16 @@ class LessonState:
 
     @property
     def notes(self) -> Notes:
-        """On the open lesson."""
+        """Saved notes on the open lesson."""
         return self.progress.notes.get(self.progress.lesson, Notes())
 
     @property
     def index(self) -> int:
-        """Of the open step."""
+        """Index of the open step."""
         return self.left_at(self.progress.lesson)
 
     def left_at(self, name: str) -> int:
-        """The step of a lesson that was last open; 0 if there is no such lesson."""
+        """Index of the step of a lesson that was last open; 0 if there is no such lesson."""
         if name not in self.course.lessons:
             return 0
         last = len(self.course.lesson(name, self.progress.language).steps) - 1
@@ -61,12 +61,12 @@ class LessonState:
 
     @property
     def step(self) -> Step | None:
-        """The open one."""
+        """The open step, or None."""
         lesson = self.lesson
         return lesson.steps[self.index] if lesson else None
 
     def prediction(self) -> tuple[str, Prediction] | None:
-        """The one that belongs to the open step, here or in the step before, and its key."""
+        """Key and prediction of the open step, from this step or the previous one."""
         lesson = self.lesson
         if lesson is None:
             return None
@@ -82,31 +82,31 @@ class LessonState:
         return self.step is not None and self.step.kind == kind
 
     def answer(self) -> Answer | None:
-        """To the open step's prediction; None while there is none."""
+        """Answer to the open step's prediction, or None."""
         found = self.prediction()
         return None if found is None else self.notes.answers.get(found[0])
 
     @property
     def waits(self) -> bool:
-        """Whether a prediction is still to be made, or skipped."""
+        """Whether a prediction is pending."""
         return self.prediction() is not None and self.answer() is None
 
     @property
     def locked(self) -> str:
-        """Why time must not run: a prediction is to be made first. Empty when it may."""
+        """Why time must not run (a prediction is pending); empty if it may."""
         return self.words("lesson.locked") if self.waits else ""
 
     def has_played(self) -> bool:
-        """Whether the lab has done what the open step shows, now or earlier."""
+        """Whether the open step's demonstration has been played, now or earlier."""
         return str(self.index) in self.notes.played
 
     def hint(self, task: str) -> None:
-        """One hint more."""
+        """Show one more hint."""
         shown = self.notes.hints.get(task, 0) + 1
         self.note(hints={**self.notes.hints, task: shown})
 
     def answer_quiz(self, block: int, option: int) -> None:
-        """Choose an option of the quiz that is the open step's block.
+        """Choose an option of a quiz, given its index among the open step's blocks.
 
         Raises:
             ValueError: there is no such quiz or option.
@@ -118,24 +118,24 @@ class LessonState:
         self.note(quiz={**self.notes.quiz, f"{self.index}.{block}": option})
 
     def set_language(self, language: str) -> None:
-        """Of texts and interface."""
+        """Set the language of texts and interface."""
         self.words = Words(language)
         self.progress = replace(self.progress, language=self.words.language)
         self.version += 1
 
     def set_presenting(self, on: bool) -> None:
-        """Large type, or not."""
+        """Turn large type on or off."""
         self.progress = replace(self.progress, presenting=on)
         self.version += 1
 
     def note_answer(self, answer: Answer) -> None:
-        """Keep the answer to the open step's prediction."""
+        """Store the answer to the open step's prediction."""
         found = self.prediction()
         assert found is not None
         self.note(answers={**self.notes.answers, found[0]: answer})
 
     def note(self, **changes: Any) -> None:
-        """Change what is kept of the open lesson."""
+        """Change the saved notes on the open lesson."""
         notes = {**self.progress.notes, self.progress.lesson: replace(self.notes, **changes)}
         self.progress = replace(self.progress, notes=notes)
         self.version += 1

@@ -1,7 +1,7 @@
-"""Looking at the past of a lab: returning from it, going on from it, and undoing that.
+"""Viewing the past of a lab, continuing from it, and undoing that.
 
-Only going on forgets anything, and what it forgets is put aside until it is done again, the robots
-are reset or another robot is chosen.
+Only continuing discards history. What it discards can be restored until the next continuation,
+a reset, or a change of the robot.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from onpath.app.lab.timeline import Timeline
 
 
 def look_back(session: Session, ago: float) -> None:
-    """Pause and look at how it was, [s] before now, or at the oldest instant that is kept."""
+    """Pause and view the state [s] before now, or the oldest one stored."""
     session.running = False
     session.grips.release()
     session.viewing = session.time - min(ago, session.history.span())
 
 
 def go_on(session: Session) -> tuple[float, float] | None:
-    """Run on from the instant being looked at; what came after it is put aside.
+    """Continue from the viewed instant; the later history is put aside.
 
     Returns:
-        That instant and how much was put aside, [s]; None if nothing was being looked at.
+        The instant and the duration put aside, [s]; None if the present was being viewed.
     """
     stretch = None if session.viewing is None else session.history.at(session.viewing)
     left = None
@@ -41,10 +41,10 @@ def go_on(session: Session) -> tuple[float, float] | None:
 
 
 def undo_going_on(session: Session) -> bool:
-    """Bring back what was put aside, paused at its end; what was done instead is put aside.
+    """Restore the history that was put aside, paused at its end, and put the current one aside.
 
     Returns:
-        Whether there was anything.
+        Whether there was a history to restore.
     """
     back = session.put_aside
     if back is None:
@@ -58,7 +58,7 @@ def undo_going_on(session: Session) -> bool:
 
 
 def _timeline(session: Session) -> Timeline:
-    session.history.settle()  # its samples are of the parameters of now
+    session.history.settle()  # its samples depend on the current parameters
     return Timeline(
         session.time,
         session.editor.curve,
@@ -70,7 +70,7 @@ def _timeline(session: Session) -> Timeline:
 
 
 def _take(session: Session, timeline: Timeline) -> None:
-    """Be at the end of a timeline, with the path and the parameters of now."""
+    """Switch to the end of a timeline, with the current path and parameters."""
     session.time, session.history = timeline.time, timeline.history
     session.runs, session.grips = timeline.runs, timeline.grips
     session.events = timeline.events
@@ -80,7 +80,7 @@ def _take(session: Session, timeline: Timeline) -> None:
 
 
 def _branch(session: Session, stretch: Segment) -> Timeline:
-    """A timeline that ends where a stretch of this one begins; nobody holds or pulls there."""
+    """A timeline that ends where a segment of the current one begins, without external forces."""
     runs = {name: copy(run) for name, run in session.runs.items()}
     for name, run in runs.items():
         run.restore(stretch.drives[name], stretch.curve)

@@ -1,4 +1,4 @@
-"""Where sessions get their loops: interpreted at once, compiled as soon as that is ready."""
+"""Closed loops for sessions: interpreted at first, compiled in the background."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Key = tuple[Robot, Kind]
 
 
 class LoopCache:
-    """Loops by robot and kind. `get` never waits for one to be compiled."""
+    """Loops by robot and kind. `get` never waits for compilation."""
 
     def __init__(self) -> None:
         self._compiled: dict[Key, CompiledLoop] = {}
@@ -27,7 +27,7 @@ class LoopCache:
         self._lock = threading.Lock()
 
     def get(self, robot: Robot, kind: Kind) -> Loop:
-        """The fastest loop there is now. Call from the simulation thread only."""
+        """The fastest loop available now. Call from the simulation thread only."""
         key = (robot, kind)
         ready = self._compiled.get(key)
         if ready is not None:
@@ -38,14 +38,14 @@ class LoopCache:
         return self._interpreted[key]
 
     def prepare(self, robot: Robot, kind: Kind) -> None:
-        """Compile a loop in the background, unless that has been asked for before."""
+        """Compile a loop in the background, unless that was requested before."""
         key = (robot, kind)
         with self._lock:
             if self._pool is not None and key not in self._wanted:
                 self._wanted[key] = self._pool.submit(self._compile, key)
 
     def close(self) -> None:
-        """Give up what is still to be compiled."""
+        """Cancel pending compilations."""
         with self._lock:
             pool, self._pool = self._pool, None
         if pool is not None:
@@ -54,6 +54,6 @@ class LoopCache:
     def _compile(self, key: Key) -> None:
         try:
             self._compiled[key] = translate_loop(kernel_of(*key))
-        except Exception as error:  # whatever it is, the lab goes on without
+        except Exception as error:  # the lab continues with interpreted loops
             log.warning("cannot compile a loop, the interpreted one goes on: %s", error)
-            self.close()  # the next ones would fail, too
+            self.close()  # further compilations would fail, too

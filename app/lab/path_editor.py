@@ -17,10 +17,10 @@ DEPTH = 100
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blend:
-    """What is followed: `target`, or something between it and `before` while an edit blends in.
+    """The followed path: `target`, or a blend from `before` to `target` after an edit.
 
     Attributes:
-        progress: from 0, `before`, to 1, `target`.
+        progress: from 0 (`before`) to 1 (`target`).
     """
 
     target: Curve
@@ -29,14 +29,14 @@ class Blend:
 
     @property
     def curve(self) -> Curve:
-        """What is followed; between a closed and an open one there is nothing."""
+        """The followed curve; closed and open curves are not blended."""
         if self.before is None:
             return self.target
         return blend(self.before, self.target, self.progress) if self.mixes else self.before
 
     @property
     def mixes(self) -> bool:
-        """Whether there is something between the two."""
+        """Whether the two curves can be blended."""
         return self.before is not None and self.before.closed == self.target.closed
 
 
@@ -44,14 +44,14 @@ class PathEditor:
     """The path as edited, and as followed while an edit blends in.
 
     Attributes:
-        robot: who must be able to follow it.
-        design: the last valid one.
-        proposed: what is being dragged, valid or not; None when nothing is.
-        faults: what is wrong with the last refused edit.
+        robot: must be able to follow the path.
+        design: the last valid design.
+        proposed: the design being dragged, valid or not; None if there is none.
+        faults: errors of the last refused edit.
         selected: index of the selected control point.
-        version: changes with everything that is drawn.
-        blend: what is followed and how it comes about.
-        curve: what the robots follow now.
+        version: changes whenever the drawing does.
+        blend: the followed path and its blend.
+        curve: the curve that the robots follow now.
         table: its coefficients for the loop.
     """
 
@@ -67,7 +67,7 @@ class PathEditor:
         self._follow(Blend(design.curve))
 
     def select(self, index: int | None) -> None:
-        """Select a control point; one that does not exist selects none."""
+        """Select a control point; an invalid index selects none."""
         valid = index is not None and 0 <= index < len(self.design.points)
         self.selected = index if valid else None
         self.version += 1
@@ -82,7 +82,7 @@ class PathEditor:
         return not self.faults
 
     def finish(self) -> bool:
-        """End an edit: keep it if valid, else go back to the last valid path."""
+        """End an edit: keep it if valid, else return to the last valid path."""
         design, self.proposed = self.proposed, None
         self.version += 1
         if design is None:
@@ -97,26 +97,26 @@ class PathEditor:
         return True
 
     def commit(self, design: PathDesign) -> bool:
-        """A whole edit at once."""
+        """Apply a complete edit."""
         self.propose(design)
         return self.finish()
 
     def undo(self) -> bool:
-        """Back by one edit; False if there is none."""
+        """Undo one edit; False if there is none."""
         return self._swap(self._past, self._future)
 
     def redo(self) -> bool:
-        """Forward by one undo; False if there is none."""
+        """Redo one edit; False if there is none."""
         return self._swap(self._future, self._past)
 
     def clear_faults(self) -> None:
-        """Take the marks of the last refusal away."""
+        """Clear the marks of the last refused edit."""
         if self.faults:
             self.faults = []
             self.version += 1
 
     def advance(self, seconds: float) -> bool:
-        """Let an edit blend in; True if the followed curve jumped to another kind."""
+        """Advance the blend; True if the followed curve jumped between open and closed."""
         now = self.blend
         if now.before is None:
             return False
@@ -131,7 +131,7 @@ class PathEditor:
         self._follow(Blend(self.design.curve))
 
     def show(self, shown: PathDesign, followed: Blend, faults: list[Fault]) -> None:
-        """As another editor is: its points and marks, and what is followed there."""
+        """Copy another editor: its points and marks, and the path followed there."""
         self.design, self.proposed, self.faults = shown, None, faults
         self._follow(followed)
 

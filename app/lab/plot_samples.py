@@ -1,4 +1,4 @@
-"""What is kept of each robot at every frame, for plots and for looking back."""
+"""The values stored for each robot at every frame, for plots and for viewing the past."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def sample_layout(robot: Robot) -> Layout:
 
 @lru_cache(maxsize=8)
 def places(robot: Robot) -> np.ndarray:
-    """Where a sample's entries lie in a log row; 0 for those that are not in it."""
+    """Indices of a sample's entries in a log row; 0 for those that are not in it."""
     log, found = log_layout(robot.system), list[int]()
     for name, size in sample_layout(robot).fields:
         where = log.slices.get(name)
@@ -48,7 +48,7 @@ def places(robot: Robot) -> np.ndarray:
 def samples_of(
     robot: Robot, parameters: Parameters, rows: Sequence[Array], distances: Sequence[float]
 ) -> Array:
-    """What is kept of some rows of the log and the distances at them, shape (n, fields)."""
+    """Samples of log rows and their distances, shape (n, fields)."""
     layout = sample_layout(robot)
     samples = np.concatenate(rows).reshape(len(rows), -1).take(places(robot), axis=1)
     samples[:, layout.slices["distance"].start] = distances

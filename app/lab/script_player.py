@@ -1,4 +1,4 @@
-"""Does by itself what a lesson's script says, at its times."""
+"""Plays a lesson's script by posting its commands at their times."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ class ScriptPlayer(Generic[Asked]):
     """A script that is being played; its times count from the session's time zero.
 
     Args:
-        script: what to ask for, and when, [s].
-        until: where the script ends, [s].
-        stop: pause the session at the script's end.
+        script: commands and their times, [s].
+        until: end of the script, [s].
+        stop: pause the session at the end of the script.
 
     Attributes:
-        finished: whether it has come to its end, and not only been given up.
+        finished: whether the script was played to its end, not cancelled.
     """
 
     def __init__(
@@ -29,18 +29,18 @@ class ScriptPlayer(Generic[Asked]):
         self._until = until
         self._waiting = deque(sorted(script, key=lambda timed: timed[0]))
         self._stop = stop
-        self._before = 0.0  # simulated before the last reset, [s]
+        self._before = 0.0  # simulated time before the last reset, [s]
         self._run: int | None = None
         self.finished = False
 
     def play(self, session: Session, ask: Callable[[Asked], None]) -> bool:
-        """Ask for what is due; call it before every frame.
+        """Post the commands that are due; call before every frame.
 
         Returns:
-            Whether it is over, or overtaken: somebody else has begun anew.
+            Whether the script has ended, or was cancelled by a reset from elsewhere.
 
         Raises:
-            ValueError: the lab refuses what is asked; the script is then over.
+            ValueError: the lab refuses a command; the script is then over.
         """
         if self._run is None:
             self._run = session.run_number

@@ -1,4 +1,4 @@
-"""What a history consists of: stretches of ticks with the same inputs, and a copy of them all."""
+"""The parts of a history: segments of ticks with the same inputs, and a copy of all of them."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from onpath.models.paths.curves import Curve
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Input:
-    """What drives one robot; the same object while nothing changes.
+    """The input of one robot; the same object until something changes.
 
     Attributes:
-        kind: which loop.
+        kind: of the loop.
         settings: of the loop.
         frozen: whether the robot has diverged and stands still.
     """
@@ -29,12 +29,12 @@ class Input:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Inputs:
-    """All inputs of some stretches.
+    """All inputs of a segment.
 
     Attributes:
         curve: the path.
         dt: length of a tick, [s].
-        of: each robot's, by controller.
+        of: inputs of the robots, by controller.
     """
 
     curve: Curve
@@ -42,21 +42,21 @@ class Inputs:
     of: dict[str, Input]
 
     def are(self, curve: Curve, dt: float, of: Iterable[Input]) -> bool:
-        """Whether they are these."""
+        """Whether the inputs are the given ones."""
         same = self.curve is curve and self.dt == dt
         return same and all(map(is_, self.of.values(), of))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Drive:
-    """One robot's part of a stretch.
+    """One robot's part of a segment.
 
     Attributes:
-        kind: which loop drives it.
+        kind: of the loop that drives it.
         state: at the beginning.
-        settings: of the loop during the stretch.
+        settings: of the loop during the segment.
         frozen: whether it has diverged and stands still.
-        max_distance: from the path since reset, [m].
+        max_distance: largest distance to the path since reset, [m].
     """
 
     kind: Kind
@@ -72,9 +72,9 @@ class Instant:
 
     Attributes:
         time: [s].
-        states: one for each robot.
+        states: one per robot.
         max_distances: since reset, shape (robots,), [m].
-        sample: what the plots show, shape (robots, fields).
+        sample: plotted values, shape (robots, fields).
     """
 
     time: float
@@ -85,16 +85,16 @@ class Instant:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HistoryFrame:
-    """What has just been simulated.
+    """One simulated frame.
 
     Attributes:
         time: at the beginning, [s].
-        ticks: how many.
-        inputs: the same object while nothing changes.
-        states: of each robot, at the beginning; nobody changes them any more.
-        max_distances: of each, at the beginning, [m].
-        rows: of the log, of each, at the beginning.
-        distances: of each, at the beginning, [m].
+        ticks: number of ticks.
+        inputs: the same object until something changes.
+        states: of each robot, at the beginning; not modified later.
+        max_distances: of each robot, at the beginning, [m].
+        rows: log row of each robot, at the beginning.
+        distances: of each robot, at the beginning, [m].
     """
 
     time: float
@@ -108,14 +108,14 @@ class HistoryFrame:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Segment:
-    """Some ticks with the same inputs.
+    """Consecutive ticks with the same inputs.
 
     Attributes:
         time: at the beginning, [s].
         dt: length of a tick, [s].
-        curve: the path during the stretch.
+        curve: the path during the segment.
         drives: by controller.
-        sample: what the plots show, at the beginning, shape (robots, fields).
+        sample: plotted values, at the beginning, shape (robots, fields).
     """
 
     time: float
@@ -126,7 +126,7 @@ class Segment:
     sample: np.ndarray
 
     def instant(self) -> Instant:
-        """Its beginning."""
+        """The instant at its beginning."""
         drives = self.drives.values()
         states, most = [d.state for d in drives], [d.max_distance for d in drives]
         return Instant(self.time, states, most, self.sample.astype(float))
@@ -134,7 +134,7 @@ class Segment:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HistoryCopy:
-    """The history as it was: arrays of one row per stretch, soon copied and soon pickled.
+    """A copy of a history: arrays with one row per segment, cheap to copy and to pickle.
 
     Attributes:
         columns: see `History`.
@@ -146,12 +146,12 @@ class HistoryCopy:
         return len(self.columns["time"]) if self.columns else 0
 
     def segments(self) -> list[Segment]:
-        """The stretches, oldest first."""
+        """The segments, oldest first."""
         return [segment_at(self.columns, row) for row in range(len(self))]
 
 
 def segment_at(columns: dict[str, np.ndarray], row: int) -> Segment:
-    """One row of the columns."""
+    """Make a segment from one row of the columns."""
     inputs: Inputs = columns["inputs"][row]
     states, most = columns["state"][row].copy(), columns["most"][row]
     drives = {

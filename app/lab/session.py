@@ -1,6 +1,6 @@
-"""The simulated lab: two robots on one path with one clock. No viser in it, one thread at a time.
+"""The simulated lab: two robots on one path with one clock. Not thread-safe; independent of viser.
 
-It knows nothing of its user: commands, lessons, class and messages belong to `app.lab.lab`.
+It does not know its user: commands, lessons, class and messages belong to `app.lab.lab`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 from onpath.models.systems.parameters import TICK, Parameters, time_step
 from onpath.models.systems.robots import Robot
 
-MOST_TICKS = 200  # in one frame
+MOST_TICKS = 200  # per frame
 MOST_EVENTS = 1500  # 0.2 MB
 
 
@@ -36,25 +36,25 @@ class Session:
     """The state of one simulated lab.
 
     Args:
-        store: where the closed loops come from.
-        entry: the robot to begin with.
+        store: provides the closed loops.
+        entry: the initial robot.
 
     Attributes:
-        entry, robot, parameters: the robot in use, as the catalogue has it and as it is made.
+        entry, robot, parameters: catalogue entry, model and parameters of the current robot.
         runs: the two closed loops, by controller.
         editor: the path.
-        grips: external forces: what holds the robots back, and what pulls at them.
+        grips: external forces that hold the robots back or pull at them.
         history: the last minute.
         time: simulated, [s].
         running: whether simulated time advances.
         rate: simulated seconds per second.
-        copy: whether hand and hold act on both robots.
-        exaggeration: of a deflection, in the drawing alone.
-        viewing: the past instant being looked at, [s], or None.
-        put_aside: what going on from the past has forgotten, or None.
-        events: what was done and what came about, oldest first.
-        faults: the controllers whose robots have stopped and of which nobody has been told.
-        run_number: how often the robots have been set back to the start.
+        copy: whether pulling and holding act on both robots.
+        exaggeration: magnification of the drawn deflection.
+        viewing: the past instant being viewed, [s], or None.
+        put_aside: the timeline replaced by continuing from the past, or None.
+        events: user actions and incidents, oldest first.
+        faults: controllers whose robots have stopped and have not been reported yet.
+        run_number: number of resets.
     """
 
     def __init__(self, store: LoopCache, entry: RobotEntry = FIVE_BAR) -> None:
@@ -75,16 +75,16 @@ class Session:
     # The robot
 
     def choose_robot(self, entry: RobotEntry) -> None:
-        """Another robot, with the parameters and the path that it had before."""
+        """Choose another robot, with its previous parameters and path."""
         if entry is not self.entry:
             self._benches[self.entry.name] = (self.parameters, self.editor)
             self._set_up(entry)
             self.note("robot", entry.name)
 
     def set_parameters(self, parameters: Parameters) -> None:
-        """New numbers; a structural one makes another robot, which starts anew."""
+        """Set the parameters; a structural change makes a new robot, which starts anew."""
         if self.robot.extra_fields:
-            self.history.settle()  # their samples depend on parameters
+            self.history.settle()  # its samples depend on the parameters
         self.parameters = parameters
         robot = self.entry.make(parameters)
         if robot is not self.robot:
@@ -101,7 +101,7 @@ class Session:
         self._restart()
 
     def note(self, name: str, detail: str = "", controllers: tuple[str, ...] = NAMES) -> None:
-        """Remember that something has happened."""
+        """Record an event."""
         self.events.append(LabEvent(self.run_number, self.time, name, detail, controllers))
 
     # Time
@@ -121,7 +121,7 @@ class Session:
             self.simulate(ticks)
 
     def simulate(self, ticks: int) -> None:
-        """Both robots by some ticks, with the same path, settings and push."""
+        """Simulate both robots for some ticks, with the same path, settings and external forces."""
         dt = time_step(self.parameters)
         self._bend(ticks * dt)
         curve, runs = self.editor.curve, list(self.runs.values())
@@ -148,19 +148,19 @@ class Session:
             self.faults.append(name)
 
     def _bend(self, seconds: float) -> None:
-        """Let an edit of the path blend in."""
+        """Advance the blend of an edited path."""
         if self.editor.advance(seconds):
             for run in self.runs.values():
                 run.project(self.editor.curve)
 
     def step_once(self) -> None:
-        """One step of a paused lab: the controller's next action, at least a millisecond."""
+        """Make one step of a paused lab: the controller's next sample, at least a millisecond."""
         self.running = False
         dt = time_step(self.parameters)
         self.simulate(max(1, round(max(TICK, 1 / self.parameters.control_rate) / dt)))
 
     def reset(self) -> None:
-        """Both robots to the start, at rest. The past is forgotten; path and parameters stay."""
+        """Put both robots at the start, at rest. Clears the history; keeps path and parameters."""
         self._restart()
         self.note("reset")
 
@@ -181,14 +181,14 @@ class Session:
         self.grips = ExternalForces(self.robot, self.runs, self.note)
 
     def start_point(self, curve: Curve) -> Array:
-        """Where a run begins: on the path, (p,), [m]."""
+        """Start of a run, on the path, (p,), [m]."""
         return self.robot.frame.lift(curve.at(np.array(0.0)))
 
     def targets(self, controller: str) -> list[str]:
-        """Which robots a gesture at `controller` acts on."""
+        """Controllers of the robots that a gesture at `controller` acts on."""
         return list(NAMES) if self.copy else [controller]
 
-    # What is kept of an instant
+    # Samples of an instant
 
     @property
     def sample_layout(self) -> Layout:
@@ -196,7 +196,7 @@ class Session:
         return sample_layout(self.robot)
 
     def instant(self) -> Instant:
-        """Now; the same object until something changes."""
+        """The current instant; the same object until something changes."""
         runs, now = self.runs.values(), self._now
         made_of = [self.editor.curve, self.parameters, *[run.row for run in runs]]
         if now is None or now.time != self.time or not all(map(is_, made_of, self._made_of)):
@@ -206,13 +206,13 @@ class Session:
         return now
 
     def sample(self) -> np.ndarray:
-        """Now, shape (robots, sample_layout.size)."""
+        """The current sample, shape (robots, sample_layout.size)."""
         runs = self.runs.values()
         rows, distances = [run.row for run in runs], [run.distance for run in runs]
         return samples_of(self.robot, self.parameters, rows, distances)
 
     def _samples(self, frames: Sequence[HistoryFrame]) -> np.ndarray:
-        """What the plots show of some frames, shape (frames, robots, sample_layout.size)."""
+        """Plotted values of some frames, shape (frames, robots, sample_layout.size)."""
         rows = [row for frame in frames for row in frame.rows]
         distances = [distance for frame in frames for distance in frame.distances]
         samples = samples_of(self.robot, self.parameters, rows, distances)

@@ -1,7 +1,7 @@
-"""A lab's set-up as plain data: to be kept, shared and put back.
+"""A lab's set-up as plain data, to be stored, shared and restored.
 
-It holds what differs from a new lab, so a new lab is `Setup()`. Lengths of a path are whole
-micrometres and numbers have six digits: what comes back is captured as the same set-up again.
+It holds the differences from a new lab, so a new lab is `Setup()`. Lengths of a path are whole
+micrometres and numbers have six digits, so that capturing a restored set-up gives the same one.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ from onpath.models.systems.parameters import (
     unknown_name,
 )
 
-EXAGGERATIONS = (1.0, 20.0)  # the least and the most
+EXAGGERATIONS = (1.0, 20.0)  # minimum and maximum
 RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)  # simulated seconds per second
 UNIT = 1e-6  # [m]
 DIGITS = 6
-EDITED, DRAWN = "edited", "drawn"  # the names of paths that are no presets
-DRAWN_POINTS = {True: 10, False: 6}  # control points of a closed and an open stroke, as in `drawn`
+EDITED, DRAWN = "edited", "drawn"  # names of paths that are not presets
+DRAWN_POINTS = {True: 10, False: 6}  # control points of closed and open strokes, as in `drawn`
 
 Word = Annotated[str, msgspec.Meta(max_length=40, pattern=r"^[A-Za-z0-9_ -]*$")]
 Length = Annotated[int, msgspec.Meta(ge=-1_000_000, le=1_000_000)]
@@ -44,13 +44,13 @@ Lengths = Annotated[tuple[Length, ...], msgspec.Meta(max_length=2 * max(TERMS, M
 
 
 class Path(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Which path.
+    """Path of a set-up.
 
     Attributes:
         name: of a preset, or "edited" or "drawn".
-        closed: of an edited or drawn one.
-        numbers: x and y in turn, [UNIT]: an edited one's control points, a drawn one's
-            coefficients in the order of `Curve.series`; none for a preset.
+        closed: whether an edited or drawn path is closed.
+        numbers: alternating x and y, [UNIT]: control points of an edited path, coefficients of a
+            drawn path in the order of `Curve.series`; empty for a preset.
     """
 
     name: Word = "circle"
@@ -59,14 +59,14 @@ class Path(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class RobotSetup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One robot's parameters, where they differ from those the lab starts with, and its path."""
+    """One robot's path, and its parameters where they differ from the initial ones."""
 
     parameters: Annotated[dict[Word, int | float | Word], msgspec.Meta(max_length=100)] = {}
     path: Path = Path()
 
 
 class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A whole lab: the robot in use, what is set for each, and the lab's own switches."""
+    """A whole lab: the current robot, the set-up of each robot, and the lab's switches."""
 
     robot: Word = FIVE_BAR.name
     benches: Annotated[dict[Word, RobotSetup], msgspec.Meta(max_length=100)] = {}
@@ -77,7 +77,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Wanted:
-    """A bench as a session takes it."""
+    """Robot, parameters and path in the form that a session uses."""
 
     entry: RobotEntry
     parameters: Parameters
@@ -85,7 +85,7 @@ class Wanted:
 
 
 def to_data(value: Any) -> Any:
-    """A set-up as JSON has it, without what is as in a new lab."""
+    """Convert a set-up to JSON data, without default values."""
     if isinstance(value, msgspec.Struct):
         new = type(value)()
         own = {name: getattr(value, name) for name in value.__struct_fields__}
@@ -96,10 +96,10 @@ def to_data(value: Any) -> Any:
 
 
 def from_data(data: Any) -> Setup:
-    """The inverse of `to_data`, for data that anybody may have written.
+    """Inverse of `to_data`, for untrusted data.
 
     Raises:
-        ValueError: it is no set-up of a lab that exists.
+        ValueError: it is not a valid set-up.
     """
     setup = msgspec.convert(data, Setup)
     planned(setup, presets())
@@ -107,7 +107,7 @@ def from_data(data: Any) -> Setup:
 
 
 def capture(session: Session) -> Setup:
-    """The set-up of a session as it is now; a path being dragged counts when it is let go."""
+    """The current set-up of a session; a path being dragged counts only after the drag."""
     benches = {name: (own, editor.design) for name, (own, editor) in session._benches.items()}
     benches[session.entry.name] = session.parameters, session.editor.design
     found = {
@@ -124,10 +124,10 @@ def capture(session: Session) -> Setup:
 
 
 def restore(session: Session, setup: Setup) -> None:
-    """Set a lab up, both robots at the start of the path; the old path is one undo away.
+    """Apply a set-up, with both robots at the start of the path. The old path is one undo away.
 
     Raises:
-        ValueError: something in it is impossible; then the session is as it was.
+        ValueError: the set-up is impossible; the session is unchanged.
     """
     wanted = planned(setup, session.presets)
     for name in (session.entry.name, *session._benches):
@@ -149,15 +149,15 @@ def restore(session: Session, setup: Setup) -> None:
 
 
 def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
-    """The benches that a set-up names, by robot; whether a robot can follow its path is not asked.
+    """The robots of a set-up, by name; does not check whether a robot can follow its path.
 
     Args:
         paths: the presets.
 
     Raises:
-        ValueError: an unknown name, a number out of range, points that make no path.
+        ValueError: an unknown name, a number out of range, or points that do not form a path.
     """
-    msgspec.convert(to_data(setup), Setup)  # one made by hand was never looked at
+    msgspec.convert(to_data(setup), Setup)  # one made in Python has not been validated
     _within("speed", setup.rate, RATES)
     _within("exaggeration", setup.exaggeration, EXAGGERATIONS)
     names = dict.fromkeys((*setup.benches, setup.robot))
@@ -189,7 +189,7 @@ def _differences(lab: Parameters, own: Parameters) -> dict[str, int | float | st
 
 
 def kept(spec: Spec, value: Any) -> int | float | str:
-    """A parameter's value as a set-up has it."""
+    """A parameter's value in the form stored in a set-up."""
     return value if spec.options else min(max(_rounded(value), spec.low), spec.high)
 
 
@@ -198,7 +198,7 @@ def _rounded(value: float) -> float:
 
 
 def capture_path(design: PathDesign, paths: Mapping[str, PathDesign]) -> Path:
-    """A path as data, given the presets."""
+    """Convert a path to data, given the presets."""
     if design.name in paths:
         return Path(design.name)
     closed = design.curve.closed

@@ -1,7 +1,7 @@
-"""A lab's set-up as a short text that one person sends and another pastes.
+"""Share codes: a lab's set-up as a short text to send and paste.
 
-`ONPATH1-<set-up>-<checksum>`: JSON, deflated, in base 32, so that it survives a chat, a mail and
-a telephone. The checksum's length is fixed, so that the code ends where it ends, whatever follows.
+`ONPATH1-<set-up>-<checksum>`: JSON, deflated, in base 32, so that it survives chat, mail and
+dictation. The checksum has a fixed length, so that the end of the code is found in any text.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from onpath.app.lab.setup import Setup, from_data, to_data
 from onpath.models.errors import CodedError, said_by
 
 VERSION = 1
-LONGEST_TEXT = 50_000  # [characters] that are looked at
-LARGEST = 20_000  # [B], of a set-up when inflated
+LONGEST_TEXT = 50_000  # maximum input, [characters]
+LARGEST = 20_000  # maximum size of an inflated set-up, [B]
 _CODE = re.compile(r"ONPATH([0-9]{1,6})-([A-Z2-7]*)-([A-Z2-7]{7})", re.ASCII | re.IGNORECASE)
 _BEGINNING = re.compile(r"ONPATH([0-9]{1,6})-", re.ASCII | re.IGNORECASE)
-_SPACE = re.compile(r"[\s\u00ad\u200b\ufeff]+")  # with what chats and mails put in to break lines
+_SPACE = re.compile(r"[\s\u00ad\u200b\ufeff]+")  # also what chats and mails insert to break lines
 _encoder = msgspec.json.Encoder(order="sorted")
-# What a code need not spell out. Part of the format: another text is another version.
+# Dictionary for deflate. Part of the format: changing it requires a new version.
 _KNOWN = (
     b'"exaggeration":10.0,"rate":0.5,"copy":false,"robot":"flexible","benches":{"flexible":{'
     b'"five_bar":{"parameters":{"across":"level_set","task":"position","target":"law":"redefined",'
@@ -42,10 +42,10 @@ def encode(setup: Setup) -> str:
 
 
 def decode(text: str) -> Setup:
-    """The set-up in a text that holds a share code, with words around it and breaks inside it.
+    """Find a share code in a text, with line breaks inside and words around it, and decode it.
 
     Raises:
-        ValueError: in words what is wrong with it.
+        ValueError: the message says what is wrong with the code.
     """
     if len(text) > LONGEST_TEXT:
         raise CodedError("error.share_too_long")
@@ -64,7 +64,7 @@ def decode(text: str) -> Setup:
 
 
 def _setup(body: str) -> Setup:
-    """What follows is for those who made the checksum themselves."""
+    """Decode the body. Its checksum is right, so errors here are from hand-made codes."""
     try:
         packed = base64.b32decode(body + "=" * (-len(body) % 8))
         inflate = zlib.decompressobj(wbits=-15, zdict=_KNOWN)
@@ -76,7 +76,7 @@ def _setup(body: str) -> Setup:
         raise CodedError("error.share_empty") from error
     try:
         return from_data(plain)
-    except msgspec.ValidationError as error:  # quotes whatever it met
+    except msgspec.ValidationError as error:  # its message quotes the data
         raise CodedError("error.share_strange") from error
     except ValueError as error:
         raise CodedError("error.share_does_not_fit", error=said_by(error)) from error

@@ -1,4 +1,4 @@
-"""From what a student has drawn to what is kept of it."""
+"""Converts a student's sketch to the form that is stored."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MOST_POINTS = 160
 
 
 def sketched(prediction: Sketch, answer: Answer) -> Answer:
-    """A sketch on the prediction's axes, at rising times, within its range.
+    """Sort a sketch by time, clip it to the prediction's axes and reduce its points.
 
     Raises:
         ValueError: it is not a curve.

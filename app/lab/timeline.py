@@ -1,4 +1,4 @@
-"""What a lab has done since its reset: its events, and all of it as one value to be put aside."""
+"""The events and state of a lab since its last reset, as one value."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from onpath.models.paths.curves import Curve
 
 @dataclass(frozen=True, slots=True)
 class LabEvent:
-    """Something that was done, or that came about.
+    """A user action or an incident.
 
     Attributes:
-        run: how often the robots had been set back to the start before.
-        time: simulated, [s].
+        run: number of resets before it.
+        time: simulated time, [s].
         name: "set", "path", "robot", "reset", "hold", "let_go", "pull", "release", "identify" or
             "diverged".
-        detail: the parameter, the path, the robot; or empty.
-        controllers: whom it concerns.
+        detail: the parameter, the path or the robot; or empty.
+        controllers: the controllers concerned.
     """
 
     run: int
@@ -33,15 +33,15 @@ class LabEvent:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Timeline:
-    """What a lab has done since its reset, and where that has left it; the set-up is no part of it.
+    """The events and state of a lab since its last reset, without its set-up.
 
     Attributes:
         time: at its end, [s].
         curve: the path at its end.
-        history: the last minute of it.
+        history: the last minute.
         runs: the two closed loops at its end, by controller.
-        grips: what holds and pulls at its end.
-        events: what was done and came about.
+        grips: external forces at its end.
+        events: user actions and incidents, oldest first.
     """
 
     time: float

@@ -1,4 +1,4 @@
-"""Between the server and the class: who gets which page."""
+"""Connects the server to the class: decides which page each client gets."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class ClassService:
     """The class of one server process.
 
     Args:
-        records, keeper: what forgets when the teacher says so.
+        records, keeper: delete a student's data when the teacher asks for it.
     """
 
     def __init__(
@@ -54,16 +54,16 @@ class ClassService:
             self._relay.rounds.start()
 
     def stop(self) -> None:
-        """The server ends."""
+        """Stop, with the server."""
         self._attendance.rounds.stop()
         if self._relay is not None:
             self._relay.rounds.stop()
 
     def greet(self, client: viser.ClientHandle, shown: str | None) -> None:
-        """A browser that was a teacher's is one again.
+        """Make a browser that was a teacher's a teacher's again.
 
         Args:
-            shown: what it keeps under `TEACHER_KEY`.
+            shown: the value that it keeps under `TEACHER_KEY`.
         """
         try:
             if shown is not None and self._class.is_pass(shown):
@@ -72,11 +72,11 @@ class ClassService:
             return  # a student's page is open to everybody
 
     def gone(self, client: int) -> None:
-        """A browser has left."""
+        """Forget a client that has disconnected."""
         self._teachers.pop(client, None)
 
     def nickname(self, code: str) -> str:
-        """Of the student of a lab; empty while the student has not joined."""
+        """Nickname of the student of a lab; empty until the student joins."""
         member = self._class.member(code)
         return member.name if member else ""
 
@@ -84,8 +84,8 @@ class ClassService:
         """A lab's place in the class.
 
         Args:
-            code: of its session.
-            reopen: build the client's page anew.
+            code: session code of the lab.
+            reopen: rebuilds the client's page.
         """
 
         def teach(key: str) -> None:
@@ -98,7 +98,7 @@ class ClassService:
         def join(typed: str, nickname: str) -> None:
             self._class.join(code, typed, nickname)
             entry, keeper = self._sessions.find(code), self._keeper
-            if entry is not None and keeper is not None:  # to be found again by another process
+            if entry is not None and keeper is not None:  # so that other processes find it
                 submit = partial(keeper.submit, code)
                 entry.scheduled.lab.post(ReportState(lambda lab: keep(lab, submit)))
 
@@ -109,11 +109,11 @@ class ClassService:
         )
 
     def teaches(self, client: int) -> bool:
-        """Whether a client is a teacher's."""
+        """Whether a client is a teacher."""
         return client in self._teachers
 
     def followed(self, client: int) -> FollowedLab | None:
-        """What a teacher looks at instead of the lab of one's own; None for everybody else."""
+        """The lab that a teacher follows instead of their own; None for other clients."""
         teacher = self._teachers.get(client)
         if teacher is None:
             return None
@@ -122,11 +122,11 @@ class ClassService:
     def teaching(
         self, client: viser.ClientHandle, lab: Lab, reopen: Callable[[], None]
     ) -> TeacherContext | None:
-        """For a teacher's page; None for everybody else.
+        """The teacher's page; None for other clients.
 
         Args:
-            lab: the teacher's own, where no lesson is open from now on.
-            reopen: build the client's page anew.
+            lab: the teacher's own; an open lesson is closed.
+            reopen: rebuilds the client's page.
         """
         teacher, followed = self._teachers.get(client.client_id), self.followed(client.client_id)
         if teacher is None or followed is None:
@@ -159,19 +159,19 @@ class ClassService:
         return None if entry is None else (entry.scheduled.lab, entry.client is not None)
 
     def _lab(self, client: int, code: str) -> ScheduledLab | None:
-        """For a teacher's page."""
+        """The lab with this code, for a teacher's page."""
         here = self._here(code)
         if here is None and self._relay is not None:
             return self._relay.mirror(client, code)
         return here
 
     def _here(self, code: str) -> ScheduledLab | None:
-        """A lab that lives in this process."""
+        """The lab with this code, if it is in this process."""
         entry = self._sessions.find(code)
         return None if entry is None or self._class.is_elsewhere(code) else entry.scheduled
 
     def _wanted(self) -> dict[int, str]:
-        """The labs of others that the teachers in this process look at, by client."""
+        """Codes of the students' labs that teachers in this process follow, by client."""
         chosen = {client: chosen.followed for client, (_, chosen) in [*self._teachers.items()]}
         there = self._class.members()
         return {c: code for c, code in chosen.items() if code in there and not self._here(code)}

@@ -1,4 +1,4 @@
-"""The student's lab that a teacher looks at."""
+"""The student's lab that a teacher follows."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from onpath.lessons.words import Words
 
 @dataclass(frozen=True, slots=True)
 class FollowedLab:
-    """As chosen on one teacher's page.
+    """The lab chosen on one teacher's page.
 
     Attributes:
-        lab: of a session code, here or mirrored; None when there is nothing to show.
+        lab: finds a lab by session code, local or mirrored; None if there is none to show.
     """
 
     classroom: Classroom
@@ -31,7 +31,7 @@ class FollowedLab:
         return None if member is None or lab is None else (lab, member.number)
 
     def why_still(self, words: Words) -> str:
-        """Why the lab is not there or stands still; empty if it runs."""
+        """Why the lab is missing or stopped; empty if it runs."""
         member = self.classroom.member(self.chosen.followed)
         if member is None:
             return ""

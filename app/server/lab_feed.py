@@ -1,6 +1,6 @@
-"""From labs to a page: takes a snapshot of the lab to be shown whenever it is the page's turn.
+"""Feeds a page with snapshots of a lab, whenever the page is due for an update.
 
-The one place where a lab and a page meet: what draws is given snapshots, and nothing else.
+This is the only module that knows both labs and pages: pages receive snapshots only.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from onpath.app.page.page import Page
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.simulation.display_rate import STRIDES, is_turn
 
-AT_EASE = STRIDES[0]  # the stride of a thread that has time
-SLOW, SLOWER = 6, 12  # frames or so per update of traces, plots, readouts: 10 Hz, 5 of many labs
+AT_EASE = STRIDES[0]  # the stride of a thread that is not overloaded
+SLOW, SLOWER = 6, 12  # frames per update of traces, plots, readouts: 10 Hz; 5 Hz with many labs
 
 
 class LabFeed:
@@ -47,7 +47,7 @@ class LabFeed:
         if other is not None:
             lab, achieved, student = other[0].lab, other[0].achieved, other[1]
         if lab.session.grips.grabbed and stride == AT_EASE:
-            stride = 1.0  # the hand feels every frame of delay
+            stride = 1.0  # every frame of delay is felt while dragging
         count = frame + self._offset
         if not is_turn(count, stride) or not self.page.is_ready:
             return
@@ -57,7 +57,7 @@ class LabFeed:
             self._show(lab, achieved, student, whole)
 
     def _has_news(self, lab: Lab) -> bool:
-        """Whether anything is otherwise in the scene than it was shown last."""
+        """Whether anything in the scene has changed since it was last shown."""
         session, shown = lab.session, self._shown
         self._shown = (
             *(session.instant(), session.viewing, session.editor.version),

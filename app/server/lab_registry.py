@@ -1,7 +1,7 @@
-"""Which session belongs to which browser: a reload comes back to the same lab.
+"""Assigns sessions to browsers, so that a reload returns to the same lab.
 
-The browser keeps a short list of session codes. A tab that comes back takes the one of them that
-was left last; a session that nobody looks at is paused, and dropped after a while.
+The browser keeps a short list of session codes. A returning tab takes the session that was left
+most recently. A session without a client is paused, and dropped after a while.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ MOST_ABANDONED = 60
 
 @dataclass(slots=True)
 class RegisteredLab:
-    """A lab and who looks at it.
+    """A lab and its client.
 
     Attributes:
         client: id of the client, or None.
@@ -52,10 +52,10 @@ class LabRegistry:
     """All sessions by code.
 
     Attributes:
-        make: a new lab.
-        load: what was kept under a code, or None.
-        keeper: keeps what changes, or None.
-        leases: says which labs other processes have, or None.
+        make: makes a new lab.
+        load: returns the state stored under a code, or None.
+        keeper: stores changes, or None.
+        leases: tells which labs other processes own, or None.
     """
 
     simulation: SimulationThread
@@ -71,10 +71,10 @@ class LabRegistry:
     _throttle: Throttle = field(default_factory=Throttle)
 
     def join(self, client: int, known: str | None) -> RegisteredLab:
-        """The session for a new client.
+        """The session of a new client.
 
         Args:
-            known: the list of codes that its browser keeps, as `remembered` made it.
+            known: the list of codes that its browser keeps, as returned by `remembered`.
         """
         codes = CODE.findall(known[:200]) if known else []
         if self.leases is not None and codes:
@@ -92,11 +92,11 @@ class LabRegistry:
         return self._give(client, entry)
 
     def enter(self, client: int, code: str) -> RegisteredLab:
-        """The session of a code that somebody typed, for a client that leaves its own.
+        """Join the session of a code that was typed; the client leaves its own.
 
         Raises:
-            ValueError: there is none, it is open elsewhere, or the client has tried too often.
-            NotKept: the database cannot say, or what it has cannot be read.
+            ValueError: no such session, it is open elsewhere, or there were too many attempts.
+            NotKept: the database is unavailable, or the stored state cannot be read.
         """
         with self._throttle.attempt(str(client)):
             entry = self._entries.get(code)
@@ -109,7 +109,7 @@ class LabRegistry:
             return found
 
     def _in_turn(self, codes: list[str]) -> list[str]:
-        """Those of some codes whose lab waits, the one left last first; then those not here."""
+        """Codes whose labs wait here, the most recently left first, then those not here."""
         with self._lock:
             self._drop_old()
             here = {code: self._entries[code] for code in codes if code in self._entries}
@@ -118,10 +118,10 @@ class LabRegistry:
         return [*(entry.code for entry in waiting), *(code for code in codes if code not in here)]
 
     def _open(self, client: int, code: str) -> RegisteredLab | None:
-        """The lab of a code, a client's from now on; None if there is none that it can have.
+        """Give a lab to a client; None if there is no lab that it may have.
 
         Raises:
-            NotKept: the database cannot say, or what it has cannot be read.
+            NotKept: the database is unavailable, or the stored state cannot be read.
         """
         with self._alone(code):
             entry = self._entries.get(code)
@@ -140,10 +140,10 @@ class LabRegistry:
 
     @contextmanager
     def _alone(self, code: str) -> Iterator[None]:
-        """Nobody else opens the lab of a code, or lets it go.
+        """Lock one code, so that nobody else opens or releases its lab.
 
-        This may take as long as the database, or other processes, do; the lock of all sessions is
-        never held meanwhile.
+        This may block on the database or on other processes; the lock of all sessions is never
+        held meanwhile.
         """
         with self._lock:
             self._lock.wait_for(lambda: code not in self._opening)
@@ -156,10 +156,10 @@ class LabRegistry:
                 self._lock.notify_all()
 
     def _made(self, code: str, state: LabState | None = None) -> RegisteredLab:
-        """A new lab, or one as it was kept; one is made at a time, for the simulation's sake.
+        """A new lab, or a restored one. Made one at a time, to spare the simulation.
 
         Raises:
-            NotKept: the state cannot be read.
+            NotKept: the stored state cannot be read.
         """
         with self._making:
             lab = self.make()
@@ -183,11 +183,11 @@ class LabRegistry:
             return entry
 
     def find(self, code: str) -> RegisteredLab | None:
-        """The session of a code, if it is here now."""
+        """Release a lab that another process has taken while this one was suspended."""
         return self._entries.get(code)
 
     def leave(self, client: int) -> RegisteredLab | None:
-        """A client is gone; its session waits, paused, for it to come back, here or elsewhere."""
+        """Pause a client's session when it disconnects; it may return, here or elsewhere."""
         with self._lock:
             entry = self._abandon(client)
             if entry is not None:
@@ -197,12 +197,12 @@ class LabRegistry:
         return entry
 
     def held(self) -> list[str]:
-        """The labs that somebody looks at."""
+        """The codes of the labs that have a client."""
         with self._lock:
             return [entry.code for entry in self._entries.values() if entry.client is not None]
 
     def lose(self, code: str) -> int | None:
-        """Another process has a lab now. Returns the client that looked at it here."""
+        """Remove a lab that another process owns now. Returns the client that it had here."""
         with self._lock:
             entry = self._entries.get(code)
             if entry is not None:
@@ -210,10 +210,10 @@ class LabRegistry:
             return entry.client if entry is not None else None
 
     def _kept(self, code: str) -> LabState | None:
-        """What is kept under a code that no other process has; now this one has it.
+        """Load the stored state of a code and own it, unless another process owns it.
 
         Raises:
-            NotKept: the database cannot say.
+            NotKept: the database is unavailable.
         """
         state = self.load(code)
         if state is None or self.leases is None:
@@ -221,14 +221,14 @@ class LabRegistry:
         return None if self.leases.claim(code) is None else self.load(code)
 
     def _is_up_to_date(self, entry: RegisteredLab) -> bool:
-        """Whether nobody else had a lab that has waited here; then it is not theirs now."""
+        """Whether no other process has owned a waiting lab meanwhile; if so, own it again."""
         try:
             return self.leases is None or self.leases.claim(entry.code) is True
         except NotKept:
             return True
 
     def _let_go(self, entry: RegisteredLab) -> None:
-        """Other processes may have a lab, as it was left."""
+        """Store a lab and release it to other processes."""
         if self.keeper is not None:
             self.keeper.flush(entry.code)
         with self._alone(entry.code):
@@ -248,7 +248,7 @@ class LabRegistry:
         return None
 
     def remembered(self, code: str, known: str | None) -> str:
-        """The list of codes for the browser to keep, the newest first."""
+        """The list of codes for the browser to keep, newest first."""
         codes = [code, *(CODE.findall(known[:200]) if known else [])]
         return ",".join(list(dict.fromkeys(codes))[:MOST_CODES])
 

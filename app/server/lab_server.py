@@ -1,4 +1,4 @@
-"""Composition root: server, simulation thread, and a lab for every browser tab."""
+"""Composition root: the server, the simulation thread, and a lab for every browser tab."""
 
 from __future__ import annotations
 
@@ -54,14 +54,14 @@ class LabServer:
     Args:
         host, port: where to listen; port 0 takes a free one.
         store: where the loops come from.
-        course: the lessons; the built-in ones if there is none.
-        records: where labs are kept; nowhere if there is none.
-        classroom: the class that students may join; none if there is none.
-        most_clients: so many at once; the next are told to wait. A teacher always gets in.
-        listening: what else `make_server` takes.
+        course: the lessons; the built-in ones if None.
+        records: where labs are stored; None stores nothing.
+        classroom: the class that students may join, or None.
+        most_clients: maximum number at once; others wait. A teacher is always admitted.
+        listening: further arguments of `make_server`.
 
     Raises:
-        OSError: the address cannot be had; the message says why and the way out.
+        OSError: the address is not available; the message says why and what to do.
     """
 
     def __init__(
@@ -102,13 +102,13 @@ class LabServer:
 
     @property
     def address(self) -> str:
-        """What to type into a browser."""
+        """URL to open in a browser."""
         host = self.server.get_host()
         shown = "localhost" if host in ("127.0.0.1", "0.0.0.0", "::") else host
         return f"http://{shown}:{self.server.get_port()}"
 
     def stop(self) -> None:
-        """Stop everything."""
+        """Stop the server and all its threads."""
         self._newcomers.stop()
         if self._class is not None:
             self._class.stop()
@@ -134,18 +134,18 @@ class LabServer:
             self._disconnected(client)
 
     def _entered(self, client: viser.ClientHandle, known: str | None) -> None:
-        """There is a place for a client, if it is still there."""
+        """Give a newly admitted client its session, if it is still connected."""
         if client.client_id in self.server.get_clients():
             entry = self.sessions.join(client.client_id, known)
             self._newcomers.submit(client, partial(self._show, client, entry, known))
 
     def _show(self, client: viser.ClientHandle, entry: RegisteredLab, known: str | None) -> None:
-        """A client's page is that of a session, if both are still there."""
+        """Show a session to a client, if both still exist."""
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
             return
         if self.sessions.find(entry.code) is not entry or entry.client != client.client_id:
-            return  # lost to another process meanwhile
+            return  # another process owns it now
         try:
             client.local_storage.set_item(STORAGE_KEY, self.sessions.remembered(entry.code, known))
             view = self._view(client, entry)
@@ -159,7 +159,7 @@ class LabServer:
             self._disconnected(client)
 
     def _view(self, client: viser.ClientHandle, entry: RegisteredLab) -> LabFeed:
-        """The page of a lab, or the teacher's, and what feeds it."""
+        """Build the page of a lab, or of a teacher, and return its feed."""
         number, code, service = client.client_id, entry.code, self._class
         lab = entry.scheduled.lab
         reopen, enter = partial(self._reopen, client, entry), partial(self._enter, client)
@@ -175,22 +175,22 @@ class LabServer:
         return LabFeed(TeacherView(client, first, desk, teaching), number, nickname, followed)
 
     def _enter(self, client: viser.ClientHandle, text: str) -> None:
-        """Another session for a client, by a code that was typed.
+        """Move a client to the session of a code that was typed.
 
         Raises:
-            ValueError: it is no code, there is no such session, or it is in use.
+            ValueError: invalid code, no such session, or it is in use.
         """
         self._reopen(client, self.sessions.enter(client.client_id, normalised(text)))
 
     def _lost(self, code: str) -> None:
-        """Another process has taken a lab: this one must have slept, its student is there."""
+        """Release a lab that another process has taken while this one was suspended."""
         number = self.sessions.lose(code)
         client = self.server.get_clients().get(-1 if number is None else number)
         if client is not None:
             self._reopen(client, self.sessions.join(client.client_id, None))
 
     def _reopen(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:
-        """A client's page anew, with a session that is its own already."""
+        """Rebuild a client's page for a session that it already has."""
         self._onlookers.leave(client.client_id)
         view = self._views.pop(client.client_id, None)
         if view is not None:
@@ -222,13 +222,13 @@ def serve(
     """Serve the lab until Ctrl-C or SIGTERM.
 
     Args:
-        lessons: a folder of lessons of one's own.
-        database: URL of the one that keeps the labs; a file of the user's if there is none.
-        open_class: opens the class that students may join; none if there is none.
-        listening: what else `LabServer` takes.
+        lessons: folder of the user's own lessons.
+        database: URL of the database of labs; by default a file of the user's.
+        open_class: opens the class that students may join; None for no class.
+        listening: further arguments of `LabServer`.
 
     Raises:
-        LessonError: one of those is not all right.
+        LessonError: a lesson has errors.
     """
     course, problems = read_course([BUILT_IN, *([lessons] if lessons else [])])
     if problems:

@@ -1,7 +1,7 @@
-"""How often the labs are drawn: less often, for all alike, when there are too many of them.
+"""Chooses how often the labs are drawn: less often, for all alike, when there are too many.
 
-Simulated time is what must not suffer, so the display gives way first: from 30 Hz to 24, 20, 15
-when the thread is too busy, and further, at once, for as long as its frames are late.
+Simulated time has priority, so the display slows down first: from 30 Hz to 24, 20 and 15 Hz
+while the thread is too busy, and further, at once, while its frames are late.
 """
 
 from __future__ import annotations
@@ -9,16 +9,16 @@ from __future__ import annotations
 from math import inf
 
 STRIDES = (2.0, 2.5, 3.0, 4.0)  # frames of simulation per frame of display
-ENOUGH = (0.5, 0.8, 0.85)  # shares of the time up to which the first, second, third is chosen
-BUSY = (0.8, 0.9, 0.95)  # shares that are too much for the first, second, third; frames are late
-FADING = 1 / 60  # of the measured shares, per frame
-BEHIND, HURRIED = 1 / 60, 8.0  # [s] late, from which on frames are drawn at this stride
-WORTH = 0.1  # share of the time that drawing takes, from which on less of it makes up for something
-PATIENCE, CAUTION = 60, 300  # frames from one change to the next, slower and faster
+ENOUGH = (0.5, 0.8, 0.85)  # load up to which the first, second, third stride is chosen
+BUSY = (0.8, 0.9, 0.95)  # load that is too much for the first, second, third; frames are late
+FADING = 1 / 60  # low-pass gain of the measured load, per frame
+BEHIND, HURRIED = 1 / 60, 8.0  # [s] of lateness from which this stride is used
+WORTH = 0.1  # share of time spent on drawing above which drawing less helps
+PATIENCE, CAUTION = 60, 300  # minimum frames between changes, to slower and to faster
 
 
 class DisplayRate:
-    """Chooses the stride from how busy the simulation thread is."""
+    """Chooses the stride from the load of the simulation thread."""
 
     def __init__(self) -> None:
         self._at = 0
@@ -27,18 +27,18 @@ class DisplayRate:
 
     @property
     def stride(self) -> float:
-        """Frames of simulation per frame of display, while these are in time."""
+        """Frames of simulation per frame of display, while frames are on time."""
         return STRIDES[self._at]
 
     def stride_when(self, late: float) -> float:
-        """The same for a frame that is so late, [s]."""
+        """Stride for a frame that is `late` seconds late."""
         return HURRIED if late > BEHIND and self._drawing > WORTH else self.stride
 
     def note(self, busy: float, drawing: float, frame: float) -> None:
-        """A frame has passed.
+        """Record the time spent on a frame.
 
         Args:
-            busy, drawing, frame: what was spent on it, on its display alone, how long it was, [s].
+            busy, drawing, frame: time spent in total, time spent on drawing, frame length, [s].
         """
         frame = max(frame, 1e-6)
         self._share += FADING * (busy / frame - self._share)
@@ -55,5 +55,5 @@ class DisplayRate:
 
 
 def is_turn(frame: int, stride: float) -> bool:
-    """Whether this frame of simulation is one of the display's."""
+    """Whether a frame of simulation is drawn."""
     return frame // stride != (frame - 1) // stride

@@ -1,4 +1,4 @@
-"""How a server process fares, in numbers: what /health tells. Nothing in it is of a person."""
+"""Performance metrics of a server process, served at /health. Contains no personal data."""
 
 from __future__ import annotations
 
@@ -12,27 +12,26 @@ import msgspec
 
 from onpath.app.simulation.simulation_thread import SimulationThread
 
-WINDOW, LONGEST = 10.0, 60.0  # [s] looked back at: usually, at most
+WINDOW, LONGEST = 10.0, 60.0  # length of the measured interval: default, maximum
 OVERDUE = 0.05  # [s] late
 QUANTILES = (0.5, 0.95, 0.99)
-MEMORY = Path("/proc/self/statm")  # Linux alone
+MEMORY = Path("/proc/self/statm")  # Linux only
 
 
 @dataclass(frozen=True, slots=True)
 class Metrics:
-    """Of one process.
+    """Metrics of one process.
 
     Attributes:
-        pid: which process.
-        clock: when this was, [s]; of use only together with another `clock` of this machine.
-        frames_per_s: of the simulation thread, lately.
-        late_ms: frames, lately: half of them are less late than the first, 95 % than the second,
-            99 % than the third.
-        overdue: share of them that are more than 50 ms late.
-        labs: that somebody looks at now.
-        simulated_s: by each of these since it was set back last, [s], in the order of coming.
-        cpu_s: spent since the process began, [s].
-        rss_mb: of memory, now, [MB]; None where the system does not tell.
+        pid: process id.
+        clock: time of measurement, [s]; comparable only with other `clock` of this machine.
+        frames_per_s: recent frame rate of the simulation thread.
+        late_ms: median, 95th and 99th percentile of the lateness of recent frames, [ms].
+        overdue: share of recent frames that are more than 50 ms late.
+        labs: number of labs that have a viewer now.
+        simulated_s: simulated time of each of these since its last reset, [s], oldest first.
+        cpu_s: CPU time of the process, [s].
+        rss_mb: resident memory, [MB]; None if the system does not report it.
     """
 
     pid: int
@@ -47,10 +46,10 @@ class Metrics:
 
 
 def asked_vitals(simulation: SimulationThread, query: str) -> str:
-    """The vitals as JSON.
+    """The metrics as JSON.
 
     Args:
-        query: of the address: "seconds=20" to look back further; nonsense is ignored.
+        query: query string; "seconds=20" sets the interval; invalid queries are ignored.
     """
     try:
         seconds = float(parse_qs(query)["seconds"][0])
@@ -61,7 +60,7 @@ def asked_vitals(simulation: SimulationThread, query: str) -> str:
 
 
 def vitals(simulation: SimulationThread, seconds: float = WINDOW) -> Metrics:
-    """How this process fares; `seconds` are looked back at."""
+    """Measure this process over the last `seconds`."""
     now = time.perf_counter()
     frames = simulation.frames.copy()
     since = max(now - seconds, frames[0][0]) if frames else now

@@ -1,6 +1,6 @@
-"""THE simulation thread: it owns all labs and advances them at 60 Hz against a deadline.
+"""The simulation thread: it owns all labs and advances them at 60 Hz, frame by frame.
 
-A frame that takes longer than its budget slows simulated time, visibly, and never piles up.
+A frame that exceeds its budget slows simulated time, visibly; late frames never accumulate.
 """
 
 from __future__ import annotations
@@ -20,57 +20,57 @@ from onpath.app.simulation.display_rate import DisplayRate
 log = logging.getLogger(__name__)
 
 FRAME = 1 / 60  # [s]
-FADING = 1 / 60  # of a lab's measured speed, per frame
-LATEST = 0.1  # [s]; further behind, the schedule starts anew
-PAUSE = 1e-3  # [s] at least between frames: when this thread is late, the network is later still
-SELDOM = (1_000, 4, 1_000)  # allocations before a collection: it stops all threads, for 10 ms or so
-COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones are paid for by waiting
+FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
+LATEST = 0.1  # [s]; when further behind, the schedule restarts
+PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not starved
+SELDOM = (1_000, 4, 1_000)  # allocations before a collection, which stops all threads for 10 ms
+COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
 
 
 class Display(Protocol):
-    """Whatever shows a lab; called by the simulation thread only."""
+    """Shows a lab; called by the simulation thread only."""
 
     def show(self, lab: Lab, achieved: float, frame: int, stride: float) -> None:
-        """Show it, in every `stride`-th frame at least; `frame` counts them all."""
+        """Show it, at least in every `stride`-th frame; `frame` is the number of the frame."""
         ...
 
     def send(self) -> None:
-        """Let out what has been shown, once all labs have been simulated."""
+        """Send what has been shown, after all labs have been simulated."""
         ...
 
 
 class ScheduledLab:
-    """A lab, how fast it really runs, and who looks at it.
+    """A lab, its measured speed and its viewer.
 
     Attributes:
         lab: the lab.
         session: its simulated part.
-        view: who looks, or None.
+        view: its viewer, or None.
     """
 
     def __init__(self, lab: Lab) -> None:
         self.lab, self.session = lab, lab.session
         self.view: Display | None = None
-        self._credit = 0.0  # [s] of computing for commands
-        self._simulated = self._passed = 1e-6  # lately, each fading over about a second
+        self._credit = 0.0  # [s] of computing time for commands
+        self._simulated = self._passed = 1e-6  # recent, low-pass filtered over about a second
 
     @property
     def is_seen(self) -> bool:
-        """Whether somebody's browser draws it; otherwise simulated time waits."""
+        """Whether a browser draws it; otherwise simulated time is paused."""
         return self.view is not None
 
     @property
     def achieved(self) -> float:
-        """Simulated seconds per second, lately."""
+        """Recent simulated seconds per second."""
         return self._simulated / self._passed
 
     def drain(self) -> None:
-        """Apply commands; most of a frame's worth at a time."""
+        """Apply commands, within the time budget `COMMANDS`."""
         self._credit = min(self._credit, 0.0) + COMMANDS
         self._credit -= self.lab.drain(self._credit)
 
     def advance(self, seconds: float) -> None:
-        """Simulate a frame, which has taken so long. While nobody looks, simulated time waits."""
+        """Simulate a frame of this length. Simulated time is paused while nobody looks."""
         session = self.session
         if self.view is None:
             return
@@ -81,13 +81,13 @@ class ScheduledLab:
             self._passed += seconds - self._passed * FADING
 
     def show(self, count: int, stride: float) -> None:
-        """Show it to who looks."""
-        view = self.view  # may go at any time
+        """Show it to its viewer."""
+        view = self.view  # another thread may remove it
         if view is not None:
             view.show(self.lab, self.achieved, count, stride)
 
     def send(self) -> None:
-        """Let out what has been shown."""
+        """Send what has been shown."""
         view = self.view
         if view is not None:
             view.send()
@@ -100,7 +100,7 @@ class SimulationThread:
         clock, sleep: passed in for tests.
 
     Attributes:
-        frames: the latest: when each began, and how late, [s].
+        frames: start and lateness of the latest frames, [s].
     """
 
     def __init__(
@@ -116,39 +116,39 @@ class SimulationThread:
         self.frames: deque[tuple[float, float]] = deque(maxlen=3600)
 
     def start(self) -> None:
-        """Begin."""
-        gc.freeze()  # what is loaded by now stays: a full collection would take 0.2 s of it
+        """Start the thread."""
+        gc.freeze()  # excludes loaded modules from collections, which would take 0.2 s longer
         gc.set_threshold(*SELDOM)
         self._thread.start()
 
     def stop(self) -> None:
-        """End after the current frame."""
+        """Stop after the current frame."""
         self._stop.set()
         if self._thread.is_alive():
             self._thread.join(timeout=2.0)
 
     def add(self, lab: ScheduledLab) -> None:
-        """Run one lab more; from any thread."""
+        """Add a lab. Thread-safe."""
         with self._lock:
             self._labs = [*self._labs, lab]
 
     def remove(self, lab: ScheduledLab) -> None:
-        """Run it no more; from any thread."""
+        """Remove a lab. Thread-safe."""
         with self._lock:
             self._labs = [other for other in self._labs if other is not lab]
 
     @property
     def labs(self) -> list[ScheduledLab]:
-        """Those that run now."""
+        """The labs that run now."""
         return self._labs
 
     @property
     def lateness(self) -> list[float]:
-        """Of the latest frames, [s]."""
+        """Lateness of the latest frames, [s]."""
         return [late for _, late in self.frames.copy()]
 
     def run(self) -> None:
-        """Frame after frame, each at its deadline."""
+        """Run frames, each at its deadline, until stopped."""
         last, pace = self._clock(), DisplayRate()
         count, deadline = 0, last + FRAME
         while not self._stop.is_set():
@@ -163,10 +163,10 @@ class SimulationThread:
             last, count = now, count + 1
 
     def _frame(self, seconds: float, count: int, stride: float) -> float:
-        """Step by step for all labs, and not lab by lab: what a step needs stays in the cache.
+        """Run one frame: each step for all labs in turn, which is faster than lab by lab (cache).
 
         Returns:
-            What was spent on the display, [s].
+            Time spent on the display, [s].
         """
         labs = self._labs
         _do(ScheduledLab.drain, labs)

@@ -1,4 +1,4 @@
-"""What can be asked of a lab: frozen records, each of which knows how to apply itself."""
+"""Commands to a lab: frozen records with an `apply` method."""
 
 from onpath.app.lab.commands.classroom import Freeze, ReportState, TakeSetup, TakeStep
 from onpath.app.lab.commands.forces import Grab, Hold, MoveHand, Release, SetCopy

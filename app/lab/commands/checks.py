@@ -1,4 +1,4 @@
-"""Checks of the numbers and names that commands carry."""
+"""Checks of the numbers and names in commands."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from onpath.models.systems.parameters import out_of_range, unknown_name
 
 
 def finite(value: float) -> float:
-    """A finite number.
+    """Check that a number is finite.
 
     Raises:
-        ValueError: it is none.
+        ValueError: it is not.
     """
     try:
         result = float(value)
@@ -29,10 +29,10 @@ def finite(value: float) -> float:
 
 
 def within(what: str, value: float, bounds: Sequence[float]) -> float:
-    """A number between the first and the last of `bounds`.
+    """Check that a number is between the first and the last of `bounds`.
 
     Raises:
-        ValueError: it is not there, or no number.
+        ValueError: it is out of range or not finite.
     """
     number = finite(value)
     if not bounds[0] <= number <= bounds[-1]:
@@ -41,10 +41,10 @@ def within(what: str, value: float, bounds: Sequence[float]) -> float:
 
 
 def point(value: Array, size: int) -> Array:
-    """A finite point, shape (size,).
+    """Check that a point is finite and has shape (size,).
 
     Raises:
-        ValueError: it is none.
+        ValueError: it does not.
     """
     checked = np.asarray(value, dtype=float)
     if checked.shape != (size,) or not np.isfinite(checked).all():
@@ -53,10 +53,10 @@ def point(value: Array, size: int) -> Array:
 
 
 def controller(name: str) -> str:
-    """The name of a controller.
+    """Check the name of a controller.
 
     Raises:
-        ValueError: there is no such one.
+        ValueError: there is no such controller.
     """
     if name not in NAMES:
         raise unknown_name(name, list(NAMES), "robot")

@@ -1,4 +1,4 @@
-"""What a teacher asks of a student's lab. No widget of a student's page makes these."""
+"""Commands from the teacher to a student's lab. A student's page cannot send them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from onpath.app.lab.setup import Setup
 
 @dataclass(frozen=True, slots=True)
 class Freeze(Command):
-    """Stop time and refuse the student's commands; or let all go on."""
+    """Stop time and refuse the student's commands, or resume."""
 
     from_teacher: ClassVar[bool] = True
     on: bool
@@ -33,7 +33,7 @@ class Freeze(Command):
 
 @dataclass(frozen=True, slots=True)
 class TakeSetup(Command):
-    """Set the lab up so, in the free lab or in the step that is open."""
+    """Apply a set-up, in the free lab or in the open step."""
 
     from_teacher: ClassVar[bool] = True
     setup: Setup
@@ -49,7 +49,7 @@ class TakeSetup(Command):
 
 @dataclass(frozen=True, slots=True)
 class TakeStep(Command):
-    """Open a step of a lesson, from wherever the student is."""
+    """Open a step of a lesson, wherever the student is."""
 
     from_teacher: ClassVar[bool] = True
     lesson: str
@@ -66,7 +66,7 @@ class TakeStep(Command):
 
 @dataclass(frozen=True, slots=True)
 class ReportState(Command):
-    """Tell how the lab is now to somebody who must not keep it waiting."""
+    """Report the lab's current state to a callback, which must not block."""
 
     from_teacher: ClassVar[bool] = True
     to: Callable[[Lab], None]
@@ -77,6 +77,6 @@ class ReportState(Command):
 
 
 def _tell(lab: Lab) -> None:
-    """Whoever finds the lab standing still reads why."""
+    """Show why the lab is stopped."""
     if lab.frozen:
         lab.show_message(lab.words("class.frozen"), "warning")

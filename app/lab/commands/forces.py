@@ -15,10 +15,10 @@ from onpath.models.control.laws import NAMES
 
 @dataclass(frozen=True, slots=True)
 class Hold(Command):
-    """Hold end-points back, or let them go; None toggles.
+    """Hold end-points back, or release them; None toggles.
 
     Attributes:
-        controller: whose; None means both robots. See `SetCopy`.
+        controller: whose end-point; None means both. See `SetCopy`.
     """
 
     on: bool | None = None
@@ -39,8 +39,8 @@ class Grab(Command):
     """Pull a robot's end-point towards a target.
 
     Attributes:
-        target: in the robot's output space, shape (p,), [m]. It is not in coordinates of the
-            path's plane, because the flexible arm is pulled in a horizontal plane, too.
+        target: in the robot's output space, shape (p,), [m]; not in the path's plane,
+            because the flexible arm can also be pulled within a horizontal plane.
     """
 
     controller: str
@@ -56,7 +56,7 @@ class Grab(Command):
 
 @dataclass(frozen=True, slots=True)
 class Release(Command):
-    """Let the end-points go; with a name, only if that robot's is the one being pulled."""
+    """Release the end-points; with a name, only if that robot's is being pulled."""
 
     controller: str | None = None
 
@@ -68,7 +68,7 @@ class Release(Command):
 
 @dataclass(frozen=True, slots=True)
 class MoveHand(Command):
-    """Move the hand by a little in the path's plane, [m]; it takes hold first if need be."""
+    """Move the pulling hand by a small step in the path's plane, [m]; grab first if necessary."""
 
     right: float
     up: float
@@ -85,7 +85,7 @@ class MoveHand(Command):
 
 @dataclass(frozen=True, slots=True)
 class SetCopy(Command):
-    """Set whether hand and hold act on both robots."""
+    """Set whether pulling and holding act on both robots."""
 
     on: bool
 

@@ -1,4 +1,4 @@
-"""Commands of a student who goes through the lessons."""
+"""Commands for working through the lessons."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from onpath.lessons.schema import Action
 
 @dataclass(frozen=True, slots=True)
 class OpenLesson(Command):
-    """Open a lesson where it was left."""
+    """Open a lesson at the step that was open last."""
 
     name: str
 
@@ -23,7 +23,7 @@ class OpenLesson(Command):
 
 @dataclass(frozen=True, slots=True)
 class CloseLesson(Command):
-    """Go back to the lab as it was before the lesson."""
+    """Close the lesson and restore the lab as it was before."""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
@@ -32,7 +32,7 @@ class CloseLesson(Command):
 
 @dataclass(frozen=True, slots=True)
 class GoToStep(Command):
-    """Go to another step of the open lesson, `by` so many from the present one."""
+    """Go to another step of the open lesson, `by` steps from the current one."""
 
     by: int
 
@@ -43,7 +43,7 @@ class GoToStep(Command):
 
 @dataclass(frozen=True, slots=True)
 class Predict(Command):
-    """Commit to a prediction: an option, or a curve; with neither, skip it."""
+    """Submit a prediction: an option or a curve; with neither, skip it."""
 
     option: int | None = None
     times: tuple[float, ...] = ()
@@ -56,7 +56,7 @@ class Predict(Command):
 
 @dataclass(frozen=True, slots=True)
 class PlayStep(Command):
-    """Let the lab do what the step shows."""
+    """Play the step's demonstration."""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
@@ -67,7 +67,7 @@ class PlayStep(Command):
 
 @dataclass(frozen=True, slots=True)
 class BeginStepAnew(Command):
-    """Set the lab up again as the step wants it."""
+    """Set the lab up for the step again."""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
@@ -76,7 +76,7 @@ class BeginStepAnew(Command):
 
 @dataclass(frozen=True, slots=True)
 class ShowHint(Command):
-    """Show one hint more."""
+    """Show one more hint."""
 
     task: str
 
@@ -87,7 +87,7 @@ class ShowHint(Command):
 
 @dataclass(frozen=True, slots=True)
 class AnswerQuiz(Command):
-    """Choose an option of a question; `block` is its place in the step."""
+    """Choose an option of a question; `block` is its index in the step."""
 
     block: int
     option: int
@@ -99,7 +99,7 @@ class AnswerQuiz(Command):
 
 @dataclass(frozen=True, slots=True)
 class Act(Command):
-    """Do what a link in the text says."""
+    """Do the action of a link in the text."""
 
     actions: tuple[Action, ...]
 
@@ -126,7 +126,7 @@ class SetLanguage(Command):
 
 @dataclass(frozen=True, slots=True)
 class SetPresenting(Command):
-    """Set large type for a projector, or not."""
+    """Turn large type for a projector on or off."""
 
     on: bool
 

@@ -42,7 +42,7 @@ class ResetParameters(Command):
 
 @dataclass(frozen=True, slots=True)
 class Identify(Command):
-    """Give the controllers the model identified from the follower's last seconds."""
+    """Give the controllers the model identified from the follower's recent motion."""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
@@ -55,7 +55,7 @@ class Identify(Command):
 
 @dataclass(frozen=True, slots=True)
 class ChooseRobot(Command):
-    """Choose another robot; path and parameters are those that it had before, or its defaults."""
+    """Choose another robot; its previous path and parameters, or the defaults, are restored."""
 
     name: str
 

@@ -19,7 +19,7 @@ MOST_STROKE_POINTS = 5000
 
 @dataclass(frozen=True, slots=True)
 class ChoosePath(Command):
-    """Follow a preset."""
+    """Follow a preset path."""
 
     name: str
 
@@ -55,12 +55,12 @@ class SelectNext(Command):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MovePoint(Command):
-    """Move a control point.
+    """Drag a control point.
 
     Attributes:
-        index: which one.
-        target: where to, shape (2,), [m].
-        finished: whether the drag ends here; only then can it be undone as one edit.
+        index: of the control point.
+        target: new position, shape (2,), [m].
+        finished: whether the drag ends here; a drag is undone as one edit.
     """
 
     index: int
@@ -79,7 +79,7 @@ class MovePoint(Command):
 
 @dataclass(frozen=True, slots=True)
 class EndMove(Command):
-    """Let the control point that is being dragged go where it is."""
+    """End the drag of a control point at its current position."""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
@@ -88,7 +88,7 @@ class EndMove(Command):
 
 @dataclass(frozen=True, slots=True)
 class Arrow(Command):
-    """Move the selected control point by a little, [m]; to the right with none: one step."""
+    """Move the selected control point by a step, [m]; with none, right steps simulated time."""
 
     right: float
     up: float
@@ -107,7 +107,7 @@ class Arrow(Command):
 
 @dataclass(frozen=True, slots=True)
 class PlacePoint(Command):
-    """Put the selected control point at coordinates, [m]; None keeps one."""
+    """Move the selected control point to coordinates, [m]; None leaves one unchanged."""
 
     first: float | None = None
     second: float | None = None
@@ -163,7 +163,7 @@ class DrawPath(Command):
 
 @dataclass(frozen=True, slots=True)
 class Undo(Command):
-    """The path as before the last edit."""
+    """Undo the last edit of the path."""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
@@ -173,7 +173,7 @@ class Undo(Command):
 
 @dataclass(frozen=True, slots=True)
 class Redo(Command):
-    """The path as before the last undo."""
+    """Redo the last undone edit of the path."""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
@@ -182,13 +182,13 @@ class Redo(Command):
 
 
 def commit(lab: Lab, design: PathDesign) -> None:
-    """Make a whole edit at once."""
+    """Apply a complete edit."""
     lab.session.editor.propose(design)
     finish(lab)
 
 
 def finish(lab: Lab) -> None:
-    """End an edit of the path and say why if it is refused."""
+    """End an edit of the path; if it is refused, show why."""
     editor = lab.session.editor
     before = editor.design
     if editor.finish():

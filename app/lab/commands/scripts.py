@@ -1,4 +1,4 @@
-"""From what a lesson's text or script says to commands."""
+"""Converts actions of a lesson's text or script to commands."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ CONTROLLERS = {role: controller for controller, role in ROLES.items()}
 
 @dataclass(frozen=True, slots=True)
 class ScriptHold(Command):
-    """Hold end-points back or let them go, whatever `SetCopy` says.
+    """Hold end-points back or release them, regardless of `SetCopy`.
 
     Attributes:
-        only: one robot; empty for both.
+        only: one controller; empty for both.
     """
 
     on: bool
@@ -41,11 +41,11 @@ class ScriptHold(Command):
 
 @dataclass(frozen=True, slots=True)
 class ScriptPull(Command):
-    """Pull end-points away from where one is, whatever `SetCopy` says.
+    """Pull end-points away from their current position, regardless of `SetCopy`.
 
     Attributes:
-        by: along the path's plane, [mm].
-        only: one robot; empty for both, each by the follower's displacement.
+        by: displacement in the path's plane, [mm].
+        only: one controller; empty for both, with the follower's displacement.
     """
 
     by: tuple[float, float]
@@ -62,7 +62,7 @@ class ScriptPull(Command):
 
 @dataclass(frozen=True, slots=True)
 class ScriptMove(Command):
-    """Move a control point by so much, [mm]."""
+    """Move a control point by a displacement, [mm]."""
 
     index: int
     right: float
@@ -78,12 +78,12 @@ class ScriptMove(Command):
 
 
 def commands_of(action: Action) -> list[Command]:
-    """What an action asks for."""
+    """The commands of an action."""
     return _COMMANDS[action.what](action)
 
 
 def player_of(script: Script) -> ScriptPlayer[Command]:
-    """What plays a script."""
+    """A player for a script."""
     timed = [(action.at, command) for action in script.do for command in commands_of(action)]
     return ScriptPlayer(timed, script.until)
 

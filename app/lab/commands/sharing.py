@@ -11,7 +11,7 @@ from onpath.app.lab.share_code import decode, encode
 
 @dataclass(frozen=True, slots=True)
 class Share(Command):
-    """Make a share code of the lab as it is."""
+    """Make a share code of the lab's current set-up."""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
@@ -20,7 +20,7 @@ class Share(Command):
 
 @dataclass(frozen=True, slots=True)
 class UseShared(Command):
-    """Set the lab up as a share code says."""
+    """Set the lab up from a share code."""
 
     text: str
 

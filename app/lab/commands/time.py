@@ -1,4 +1,4 @@
-"""Commands that run, pause, reset and rewind simulated time, and that say how it is drawn."""
+"""Commands that run, pause, reset and rewind simulated time, or change how it is displayed."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class StepOnce(Command):
 
 @dataclass(frozen=True, slots=True)
 class Reset(Command):
-    """Put both robots at the start, at rest; path and parameters stay."""
+    """Put both robots at the start, at rest; path and parameters are kept."""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
@@ -52,7 +52,7 @@ class Reset(Command):
 
 @dataclass(frozen=True, slots=True)
 class SetRate(Command):
-    """Set the simulated seconds per second, one of `RATES` or between them."""
+    """Set the simulated seconds per second, within the range of `RATES`."""
 
     rate: float
 
@@ -63,7 +63,7 @@ class SetRate(Command):
 
 @dataclass(frozen=True, slots=True)
 class LookAt(Command):
-    """Pause and look at how it was, [s] before now; 0 is now."""
+    """Pause and view the state [s] before now; 0 is now."""
 
     ago: float
 
@@ -74,7 +74,7 @@ class LookAt(Command):
 
 @dataclass(frozen=True, slots=True)
 class LookBack(Command):
-    """Look further back, or forward if negative, [s]."""
+    """View a state further back, or forward if negative, [s]."""
 
     by: float
 
@@ -86,7 +86,7 @@ class LookBack(Command):
 
 @dataclass(frozen=True, slots=True)
 class GoOn(Command):
-    """Go on from the instant being looked at; what came after it is put aside."""
+    """Continue from the viewed instant; the later history can be restored by `UndoGoOn`."""
 
     lets_time_run: ClassVar[bool] = True
 
@@ -103,7 +103,7 @@ class GoOn(Command):
 
 @dataclass(frozen=True, slots=True)
 class UndoGoOn(Command):
-    """Bring back what was put aside last, and put aside what was done instead."""
+    """Swap the current history with the one replaced by the last `GoOn`."""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
@@ -115,7 +115,7 @@ class UndoGoOn(Command):
 
 @dataclass(frozen=True, slots=True)
 class SetExaggeration(Command):
-    """Set how many times larger a deflection is drawn; the simulation does not depend on it."""
+    """Set the magnification of the drawn deflection; it does not affect the simulation."""
 
     factor: float
 

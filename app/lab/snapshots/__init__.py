@@ -1,1 +1,1 @@
-"""What is shown of a lab, as data: its parts, their geometry, and their bytes."""
+"""Snapshots of a lab as data: their parts, their geometry, and their encoding."""

@@ -1,4 +1,4 @@
-"""What a whole page shows of one lab at one instant: the scene, the plots and the panels."""
+"""Snapshot for a whole page: the scene, the plots and the panels of one lab at one instant."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class RunState:
     """The clock and the switches of a lab.
 
     Attributes:
-        now: simulated time, also while the past is looked at, [s].
-        viewing: the past instant being looked at, [s], or None.
-        can_undo_going_on: whether what going on from the past has forgotten can be brought back.
-        rate: simulated seconds per second, as wanted.
-        copy: whether hand and hold act on both robots.
-        exaggeration: how many times larger a deflection is drawn.
+        now: simulated time, also while the past is viewed, [s].
+        viewing: the past instant being viewed, [s], or None.
+        can_undo_going_on: whether a timeline put aside can be restored.
+        rate: requested simulated seconds per second.
+        copy: whether pulling and holding act on both robots.
+        exaggeration: magnification of the drawn deflection.
     """
 
     now: float
@@ -40,7 +40,7 @@ class RunState:
 
 @dataclass(frozen=True, slots=True)
 class PathEdit:
-    """The path as it is edited, in its own plane.
+    """The path being edited, in its own plane.
 
     Attributes:
         version: changes whenever anything here does.
@@ -59,14 +59,14 @@ class PathEdit:
 
 @dataclass(frozen=True, slots=True)
 class LessonSnapshot:
-    """The way through the lessons; texts are in the course, which whoever draws has.
+    """Progress through the lessons; the texts are in the course.
 
     Attributes:
-        version: changes whenever the lesson's page must be drawn anew.
-        progress: what is kept.
-        playing: whether the lab does by itself what the step shows.
+        version: changes whenever the lesson's page must be redrawn.
+        progress: the part that is saved.
+        playing: whether the lab is playing the step's demonstration.
         verdicts: on the checks of the open step's tasks, by task.
-        truth: what has happened of the quantity that the open step predicts, or None.
+        truth: actual curves of the quantity that the open step predicts, or None.
     """
 
     version: int
@@ -78,7 +78,7 @@ class LessonSnapshot:
 
 @dataclass(frozen=True, slots=True)
 class PlotSamples:
-    """What there is to plot of the last seconds.
+    """Samples of the last seconds for the plots.
 
     Attributes:
         times: shape (n,), [s].
@@ -91,14 +91,14 @@ class PlotSamples:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PageSnapshot(Snapshot):
-    """A lab at one instant: all that its page shows.
+    """A lab at one instant: everything that its page shows.
 
     Attributes:
         parameters: of the robot and its controllers.
         joints: the follower's joint coordinates, shape (n,), [rad].
-        run, edit, lesson, plots: see there.
-        shared: the share code asked for last.
-        nickname: the student's in the class; empty for none.
+        run, edit, lesson, plots: state of these parts of the page.
+        shared: the last share code made.
+        nickname: the student's nickname in the class, or empty.
     """
 
     parameters: ParameterValues

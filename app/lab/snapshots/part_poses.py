@@ -1,4 +1,4 @@
-"""How bars and bearings of a linkage are turned: formulas with CasADi's symbols. Pure geometry."""
+"""Orientations of a linkage's bars and bearings, as CasADi expressions."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ import math
 import casadi as ca
 
 MARKER_DEPTHS = (-0.008, -0.0095)
-"""y of a marker's two discs [m]: before the path and its control points."""
+"""y of a marker's two discs [m]: in front of the path and its control points."""
 
 
 def waist_angle(bars: ca.SX, away: tuple[float, float] = (0.0, 1.0)) -> ca.SX:
-    """Angle of the linkage's plane, which is vertical, about the vertical, [rad].
+    """Angle of the linkage's vertical plane about the vertical axis, [rad].
 
     Args:
-        bars: begins and ends of link 1, link 2 and others as columns, shape (3, 2 n), [m].
-        away: to which side of it the plane's normal (-sin, cos) shall look.
+        bars: beginnings and ends of link 1, link 2 and others as columns, shape (3, 2 n), [m].
+        away: horizontal direction towards which the plane's normal (-sin, cos) must point.
     """
     single, is_upright = bars.shape[1] < 4, bars[1, :].is_zero() and away[0] == 0
-    if single or is_upright:  # then the normal is known, and nothing is left to compute
+    if single or is_upright:  # the normal is known
         return ca.SX(math.atan2(-away[0], away[1]))
     a, b = bars[:, 1] - bars[:, 0], bars[:, 3] - bars[:, 2]
     x, y = b[1] * a[2] - b[2] * a[1], b[2] * a[0] - b[0] * a[2]  # normal of the plane
@@ -28,7 +28,7 @@ def waist_angle(bars: ca.SX, away: tuple[float, float] = (0.0, 1.0)) -> ca.SX:
 
 
 def bar_quaternions(along: ca.SX, waist: ca.SX) -> ca.SX:
-    """Turns the x axis along each bar and keeps the y axis as near as can be to the plane's normal.
+    """Turn the x axis along each bar, with the y axis as close as possible to the plane's normal.
 
     Args:
         along: vectors, shape (3, n).

@@ -1,8 +1,8 @@
-"""Both robots as they are drawn at one instant: from the state to the pose of every part.
+"""Geometry of both robots at one instant: from the state to the pose of every part.
 
-The geometry is one function of CasADi, made once for a robot: numpy would take ten times as long
-for as few numbers as these. Points are columns in it, and rows of the arrays around it. All is in
-the robot's own frame (x right, y away, z up); where the robots stand is the scene's.
+The geometry is a CasADi function, made once per robot; numpy would take ten times as long for so
+few numbers. Points are columns in the function, and rows of the arrays outside. Everything is in
+the robot's own frame (x right, y away, z up); the scene places the robots.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import Robot
 
 AIMS = {TrackerName: "theta_ref", FollowerName: "theta"}
-"""Where on the path each controller aims."""
+"""Log field of the point that each controller aims at."""
 UNTRACED = np.zeros((0, len(NAMES), 3))
 
 
@@ -38,11 +38,11 @@ def robot_views(
     traces: Array | None = None,
     exaggeration: float = 1.0,
 ) -> dict[str, RobotView]:
-    """Both robots at one instant.
+    """The views of both robots at one instant.
 
     Args:
-        traces: their end-points lately, shape (n, robots, p), [m].
-        exaggeration: of a deflection, in the bars and the drawn end-point.
+        traces: recent positions of their end-points, shape (n, robots, p), [m].
+        exaggeration: magnification of the deflection of the bars and the drawn end-point.
     """
     geometry = _geometry_of(robot, curve.closed)
     drawn = geometry(instant, curve, exaggeration)
@@ -71,11 +71,11 @@ def robot_views(
 
 
 class RobotGeometry:
-    """The drawing of one kind of robot on open or on closed paths. One thread at a time.
+    """The geometry of one kind of robot on open or on closed paths. Not thread-safe.
 
     Attributes:
-        counts: of the parts.
-        points, poses: where each robot's `RobotView.points` and `RobotView.poses` lie.
+        counts: numbers of parts.
+        points, poses: slices of `RobotView.points` and `RobotView.poses` in the result.
     """
 
     def __init__(self, robot: Robot, closed: bool) -> None:
@@ -89,7 +89,7 @@ class RobotGeometry:
         self._seen = np.array(_seen(robot))
 
     def __call__(self, instant: Instant, curve: Curve, exaggeration: float) -> Array:
-        """All robots' points and poses, flat."""
+        """The points and poses of all robots, flat."""
         q = [state[: self._joints] for state in instant.states]
         seen = instant.sample.take(self._seen)
         flat = self._draw(np.concatenate(q), seen, curve.table(), exaggeration)[0]
@@ -102,7 +102,7 @@ def _geometry_of(robot: Robot, closed: bool) -> RobotGeometry:
 
 
 def _seen(robot: Robot) -> list[int]:
-    """Where both robots' end-points, forces and aims lie in a flat sample."""
+    """Indices of both robots' end-points, forces and aims in a flat sample."""
     layout = sample_layout(robot)
     found = list[int]()
     for i, name in enumerate(NAMES):
@@ -114,11 +114,11 @@ def _seen(robot: Robot) -> list[int]:
 
 @lru_cache(maxsize=16)
 def geometry_function(robot: Robot, closed: bool) -> tuple[ca.Function, Counts]:
-    """From the state to points and poses of both robots.
+    """Make the function from the state to points and poses of both robots.
 
     Returns:
-        (q, (n, 2); y, force and aim, (2 p + 1, 2); table of the curve; exaggeration) -> for each
-        robot a column: `RobotView.points`, then `RobotView.poses`.
+        (q, (n, 2); y, force and aim, (2 p + 1, 2); table of the curve; exaggeration) -> one
+        column per robot: `RobotView.points`, then `RobotView.poses`.
     """
     p, both = robot.system.p, len(NAMES)
     q, seen = ca.SX.sym("q", robot.system.n, both), ca.SX.sym("seen", 2 * p + 1, both)
@@ -157,8 +157,8 @@ def _poses(
 ) -> tuple[ca.SX, ...]:
     """One robot's `RobotView.poses`, as columns.
 
-    Links lie in the back layer and the front layer in turn, pieces of a strip in the front one, so
-    that none runs through another; bearings span both.
+    Links alternate between the back and the front layer, pieces of a strip are in the front
+    layer, so that no link intersects another; bearings span both.
     """
     depths = drawing.depths
     waist = waist_angle(ends, drawing.away)
@@ -166,7 +166,7 @@ def _poses(
     begins, along = ends[:, ::2], ends[:, 1::2] - ends[:, ::2]
     layers = ca.DM([depths.back if back else depths.front for back in counts.behind]).T
     turned = ca.vertcat(ca.cos(waist / 2), 0, 0, ca.sin(waist / 2))
-    still = ca.DM([1, 0, 0, 0])  # these face the viewer, however the linkage is turned
+    still = ca.DM([1, 0, 0, 0])  # these face the viewer at any orientation of the linkage
     discs = [marker + ca.DM([0, depth, 0]) for depth in MARKER_DEPTHS]
     further = marks + ca.DM([0, MARKER_DEPTHS[0], 0]) @ ca.DM.ones(1, counts.marks)
     machined = ca.horzcat(joints + depths.boss * normal, tip + depths.pen * normal)
@@ -182,7 +182,7 @@ def _poses(
 
 
 def _affine(place: Callable[[Array], Array], size: int) -> Callable[[ca.SX], ca.SX]:
-    """An affine map of points, (n, size) -> (n, 3), for symbols, (size, 1) -> (3, 1)."""
+    """Extend an affine map of points, (n, size) -> (n, 3), to symbols, (size, 1) -> (3, 1)."""
     origin, *ends = place(np.vstack([np.zeros(size), np.eye(size)]))
     matrix, offset = ca.DM(np.stack(ends, axis=1) - origin[:, None]), ca.DM(origin)
     return lambda point: matrix @ point + offset

@@ -1,4 +1,4 @@
-"""What one lab shows at one instant: all that its scene reads, as plain data."""
+"""Snapshot for the scene: one lab at one instant, as plain data."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ import numpy as np
 
 FollowerName = "path_following"
 TrackerName = "trajectory_tracking"
-MARKER, TIP, END, FORCE = -4, -3, -2, -1  # where a robot's points have these
+MARKER, TIP, END, FORCE = -4, -3, -2, -1  # indices of these in a robot's points
 
 
 class PoseShapes(NamedTuple):
     """Shapes of the fields of `RobotView.poses`, in their order.
 
     Attributes:
-        bars: where the link meshes begin, in their layers, [m].
-        quaternions: how they are turned, scalar first.
+        bars: beginnings of the link meshes, in their layers, [m].
+        quaternions: orientations of the link meshes, scalar first.
         lengths: of the bars, [m].
-        parts: bearings, pen, two marker discs, further points, [m].
-        turns: how these are turned about the vertical, scalar first.
-        tips: end-point as drawn, [m].
+        parts: positions of bearings, pen, two marker discs and further points, [m].
+        turns: rotations of these about the vertical axis, scalar first.
+        tips: drawn end-point, [m].
         forces: on the end-point, [N].
     """
 
@@ -36,7 +36,7 @@ class PoseShapes(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """How many parts a robot's drawing has; the last `strip` bars are pieces of one strip."""
+    """Numbers of parts of a robot; the last `strip` bars are pieces of one flexible strip."""
 
     bars: int
     joints: int
@@ -45,22 +45,22 @@ class Counts:
 
     @property
     def links(self) -> int:
-        """Bars that are links."""
+        """Number of bars that are rigid links."""
         return self.bars - self.strip
 
     @property
     def behind(self) -> list[bool]:
-        """Which bars lie in the back layer: every other link, no piece of a strip."""
+        """Whether each bar is in the back layer: every other link, no piece of a strip."""
         return [i < self.links and i % 2 == 0 for i in range(self.bars)]
 
     @property
     def points(self) -> int:
-        """Bars' begins and ends, joints, marks, marker, drawn tip, end-point and force."""
+        """Number of points: ends of bars, joints, marks, marker, drawn tip, end-point and force."""
         return 2 * self.bars + self.joints + self.marks + 4
 
     @property
     def pose_shapes(self) -> PoseShapes:
-        """What `RobotView.poses` holds: bearings, pen, two discs of a marker, marks are parts."""
+        """Shapes in `RobotView.poses`; parts are bearings, pen, two marker discs, and marks."""
         bars, parts = self.bars, self.joints + 3 + self.marks
         return PoseShapes((bars, 3), (bars, 4), (bars,), (parts, 3), (parts, 4), (1, 3), (1, 3))
 
@@ -70,16 +70,16 @@ class RobotView:
     """One robot as it is drawn; positions in the robot's own frame (x right, y away, z up), [m].
 
     Attributes:
-        points: all that the properties below give, in their order, shape (counts.points, 3).
-        poses: of the meshes, flat, as `Counts.pose_shapes` says.
-        counts: of the parts.
-        trace: the end-point's recent positions, never exaggerated, oldest first, shape (n, 3); of
-            no length when nobody wants to know.
-        distance: of the end-point to the path, [m].
-        max_distance: the same, largest since reset, [m].
+        points: the values of the properties below, in their order, shape (counts.points, 3).
+        poses: of the meshes, flat; see `Counts.pose_shapes`.
+        counts: numbers of parts.
+        trace: the end-point's recent positions, never exaggerated, oldest first, shape (n, 3);
+            empty if not requested.
+        distance: from the end-point to the path, [m].
+        max_distance: largest distance since reset, [m].
         speed: along the path, [m/s].
         torque: shape (m,), [N m].
-        deflection: of the end-point from where rigid links would have it, [m]; NaN for those.
+        deflection: of the end-point from its position with rigid links, [m]; NaN if they are rigid.
     """
 
     points: np.ndarray
@@ -99,7 +99,7 @@ class RobotView:
 
     @property
     def joints(self) -> np.ndarray:
-        """Bearing centres, shape (counts.joints, 3)."""
+        """Centres of the bearings, shape (counts.joints, 3)."""
         begin = 2 * self.counts.bars
         return self.points[begin : begin + self.counts.joints]
 
@@ -117,12 +117,12 @@ class RobotView:
 
     @property
     def tip(self) -> np.ndarray:
-        """Where the last bar ends, a deflection perhaps exaggerated, shape (3,)."""
+        """End of the last bar as drawn, with an exaggerated deflection, shape (3,)."""
         return self.points[TIP]
 
     @property
     def end(self) -> np.ndarray:
-        """The end-point as it is, shape (3,)."""
+        """The actual end-point, shape (3,)."""
         return self.points[END]
 
     @property
@@ -133,14 +133,14 @@ class RobotView:
 
 @dataclass(frozen=True, slots=True)
 class PathView:
-    """The path as it is drawn, in the robot's own frame, [m]. The same for both robots.
+    """The drawn path, in the robot's own frame, [m]. The same for both robots.
 
     Attributes:
-        version: changes whenever anything here does; bytes while the past is looked at.
+        version: changes whenever anything here does; bytes while the past is viewed.
         points: samples of the curve, shape (n, 3); a closed curve repeats its first point.
         control_points: shape (k, 3); empty when the curve has none.
         selected: index of the selected control point, or None.
-        refused: places where the last refused edit was wrong, shape (n, 3); usually empty.
+        refused: positions of the errors of the last refused edit, shape (n, 3); usually empty.
     """
 
     version: int | bytes
@@ -152,16 +152,16 @@ class PathView:
 
 @dataclass(frozen=True, slots=True)
 class PageKey:
-    """What a whole page depends on: when it changes, the page is built anew.
+    """Key of a page: when it changes, the page is rebuilt.
 
     Attributes:
         robot: name of the robot.
-        fields: names and sizes of what there is to plot; see `app.lab.plot_samples`.
-        language: of all that is written.
+        fields: names and sizes of the plotted fields; see `app.lab.plot_samples`.
+        language: of the interface and the texts.
         in_lesson: whether a lesson is open.
-        presenting: large type for a projector.
-        student: number in the class of the student whose lab it is, for a teacher who looks at
-            it; 0 for one's own lab.
+        presenting: whether large type for a projector is on.
+        student: number in the class of the student whose lab a teacher follows; 0 for the user's
+            own lab.
     """
 
     robot: str = "five_bar"
@@ -174,19 +174,19 @@ class PageKey:
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """A lab at one instant: all that its scene shows. Plain data, see `app.lab.snapshot_codec`.
+    """Everything that the scene of a lab shows at one instant; see `snapshot_codec`.
 
     Attributes:
         time: simulated, [s].
         running: whether simulated time advances.
         achieved_speed: simulated seconds per wall second over the last second.
         robots: by controller name, tracker first.
-        path: the path both follow.
+        path: followed by both robots.
         held: whether Hold is on.
-        grabbed: controller name of the robot whose end-point the hand holds, or None.
-        message: what the lab says now (a divergence, a refusal), plain text, or "".
+        grabbed: controller name of the robot whose end-point is being pulled, or None.
+        message: message to the user (a divergence, a refusal), plain text, or "".
         message_level: "info", "warning" or "error".
-        note: what the drawing itself must say of its scale, or "".
+        note: remark on the scale of the drawing, or "".
         key: see `PageKey`.
     """
 

@@ -1,4 +1,4 @@
-"""Snapshots as bytes, and back: a lab shown elsewhere is a stream of these."""
+"""Encodes snapshots as bytes, to show a lab in another process."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from onpath.app.lab.snapshots.snapshot import Snapshot
 
 
 def to_bytes(snapshot: Snapshot) -> bytes:
-    """A snapshot as MessagePack; an array is its type, its shape and its numbers."""
+    """Encode a snapshot as MessagePack; an array is its type, shape and numbers."""
     return _encoder.encode((isinstance(snapshot, PageSnapshot), snapshot))
 
 
 def from_bytes(data: bytes) -> Snapshot:
-    """The inverse of `to_bytes`.
+    """Inverse of `to_bytes`.
 
     Raises:
-        ValueError: this is no snapshot.
+        ValueError: the data is not a snapshot.
     """
     is_whole, content = _head.decode(data)
     return (_whole if is_whole else _scene).decode(content)

@@ -1,4 +1,4 @@
-"""From a lab to what is shown of it."""
+"""Takes snapshots of a lab."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ def take_snapshot(
     before: Snapshot | None = None,
     student: int = 0,
 ) -> Snapshot:
-    """What the scene shows of a lab, now or at the past instant it looks at.
+    """Take a snapshot for the scene, now or at the past instant being viewed.
 
     Args:
-        traces: whether the end-points' traces are wanted.
-        before: the last one of the same lab; what has not changed since is shared with it.
+        traces: whether to include the end-points' traces.
+        before: the previous snapshot of the same lab; unchanged parts are shared with it.
         student: see `PageKey`.
     """
     return Snapshot(**_scene(lab, achieved_speed, traces, before, student))
@@ -59,10 +59,10 @@ def take_page_snapshot(
     student: int = 0,
     nickname: str = "",
 ) -> PageSnapshot:
-    """What the whole page shows of a lab; see `take_snapshot`.
+    """Take a snapshot for the whole page; see `take_snapshot`.
 
     Args:
-        nickname: the student's in the class; empty for none.
+        nickname: the student's nickname in the class, or empty.
     """
     scene, session = _scene(lab, achieved_speed, True, before, student), lab.session
     follower = session.runs[FollowerName]
@@ -117,7 +117,7 @@ def _scene(
 
 
 def page_key(lab: Lab, student: int = 0) -> PageKey:
-    """What the page of a lab depends on; see `PageKey`."""
+    """Make the `PageKey` of a lab."""
     run = lab.lessons
     return PageKey(
         robot=lab.session.entry.name,
@@ -130,21 +130,21 @@ def page_key(lab: Lab, student: int = 0) -> PageKey:
 
 
 def scale_note(session: Session, words: Words) -> str:
-    """A drawing that is not true to scale says so."""
+    """A note if the drawing is not true to scale, else empty."""
     if session.exaggeration == 1.0 or not session.robot.extra_fields:
         return ""
     return words("scene.larger", factor=f"{session.exaggeration:g}")
 
 
 def _traces(session: Session, time: float) -> Array:
-    """End-points of both robots lately, shape (n, robots, p)."""
+    """Recent positions of both end-points, shape (n, robots, p)."""
     y = session.sample_layout.slices["y"]
     _, samples = session.history.samples(time - TRACE, time, TRACE_POINTS, y)
     return samples if samples.size else np.zeros((0, len(session.runs), session.robot.system.p))
 
 
 def _path_view(session: Session, curve: Curve, key: PageKey, before: Snapshot | None) -> PathView:
-    """The path as it is now, or without its control points as it was when it was `curve`."""
+    """The current path, or the past path `curve` without its control points."""
     editor, robot = session.editor, session.robot
     is_present = curve is editor.curve
     version = editor.version if is_present else curve.series.tobytes()
@@ -182,7 +182,7 @@ def _sampled(design: PathDesign) -> Array:
 
 @lru_cache(maxsize=128)
 def _values(parameters: Parameters) -> ParameterValues:
-    """The same object for the same parameters."""
+    """The values; the same object for the same parameters."""
     return {name: getattr(parameters, name) for name in specs(parameters)}
 
 
@@ -198,7 +198,7 @@ def _lesson(lab: Lab) -> LessonSnapshot:
 
 
 def _truth(lab: Lab) -> Truth | None:
-    """While it still happens, only what is drawn meanwhile: a curve."""
+    """The actual curves; while the demonstration runs, only if they are drawn."""
     run, found = lab.lessons, lab.lessons.prediction()
     if found is None or (run.playing and not isinstance(found[1], Sketch)):
         return None
