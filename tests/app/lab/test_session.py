@@ -213,7 +213,7 @@ def test_no_sequence_of_commands_breaks_a_lesson(
         assert_sound(lab)
     put_back(Lab(store(), FIVE_BAR, course), _state(*_now(lab)))  # it can be kept
     do(lab, c.CloseLesson())
-    assert lab.lessons.lesson is None and lab.locked == ""
+    assert lab.lessons.lesson is None and lab.locked is None
     do(lab, c.ChooseRobot("five_bar"), c.ResetParameters(), c.ChoosePath("circle"))
     do(lab, c.SetRate(1.0), c.SetRunning(True))
     run(lab, 0.4)  # the path has blended in

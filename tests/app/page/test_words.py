@@ -10,6 +10,8 @@ import sys
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,14 +21,16 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.page.panels.keys import KEYS, help_text
 from onpath.app.page.panels.robot_panel import label_of as title_of
+from onpath.app.page.panels.teacher_panel import TeacherPanel
 from onpath.app.page.panels.widgets import help_of, label_of, option_of
 from onpath.app.page.plots import MORE
+from onpath.app.storage.records import NotKept
 from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.record import PLOTS
 from onpath.lessons.words import ELSEWHERE, ENGLISH, Words
 from onpath.models import systems
 from onpath.models.control.poles import channels
-from onpath.models.errors import CodedError, Message
+from onpath.models.errors import CodedError, Message, said_by
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
@@ -318,7 +322,7 @@ def said_in_code() -> Iterator[tuple[str, set[str], str]]:
     for file in CODED:
         where = str(file.relative_to(ROOT))
         for name, call in calls(parsed(file)):
-            if name in ("CodedError", "Message") and where not in HANDED_ON:
+            if name in ("CodedError", "Message", "NotKept") and where not in HANDED_ON:
                 first = call.args[0]
                 branches = [first.body, first.orelse] if isinstance(first, ast.IfExp) else [first]
                 given = {keyword.arg or "**" for keyword in call.keywords}
@@ -357,6 +361,30 @@ def test_an_unknown_code_and_a_missing_argument_are_noticed() -> None:
     for message in (Message("error.nobody_wrote_this"), Message("error.no_point", {"index": 3})):
         with pytest.raises(KeyError):
             str(message)
+
+
+def test_what_cannot_be_kept_is_told_in_german_too() -> None:
+    refused = NotKept("error.database", reason="disk full")
+    assert isinstance(refused, OSError) and not isinstance(refused, ValueError)
+    assert str(refused) == "the database reports: disk full" and refused.errno is None
+    assert Words("de").sentence(refused) == "die Datenbank meldet: disk full"
+    assert said_by(refused) == refused.message == pickle.loads(pickle.dumps(refused)).message
+    whole = Message("say.lab_kept", {"reason": NotKept("error.lab_newer").message})
+    assert whole.told("de").endswith("nicht öffnen: dieses Labor hat ein neueres OnPath aufbewahrt")
+
+
+@pytest.mark.parametrize("ask", ["_end", "_forget"])
+def test_a_teacher_is_told_in_german_what_cannot_be_forgotten(ask: str) -> None:
+    def fails() -> int:
+        raise NotKept("error.database", reason="disk full")
+
+    asked: Any = SimpleNamespace(end=fails, forget=fails)
+    told, words = SimpleNamespace(content=""), Words("de")
+    panel: Any = SimpleNamespace(
+        _words=words, _class=asked, _teaching=asked, _told=told, _look_again=lambda: None
+    )
+    getattr(TeacherPanel, ask)(panel)
+    assert "die Datenbank meldet: disk full" in told.content
 
 
 def test_an_error_survives_a_process_and_one_without_a_code_stays_as_it_is() -> None:
