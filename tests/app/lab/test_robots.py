@@ -283,17 +283,23 @@ def test_a_figure_shows_what_a_new_robot_has_to_plot(bending: RobotEntry) -> Non
     figure = experiment_figure(chosen, [log])
     (axes,) = (axes for axes in figure.axes if axes.get_ylabel().startswith("deflection"))
     (line,) = axes.lines
-    np.testing.assert_allclose(line.get_ydata(), 1e3 * 0.01 * log.fields["q"][:, 0])
+    np.testing.assert_allclose(np.asarray(line.get_ydata()), 1e3 * 0.01 * log.fields["q"][:, 0])
 
 
 def test_the_panel_of_a_flexible_link_is_that_of_every_robot_that_has_one(
     bending: RobotEntry, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(panel_factory, "FlexiblePanel", lambda *given: given)
-    stage: Any = SimpleNamespace(pulls={"plane": None})
-    nothing: Any = None
+    given: Any = SimpleNamespace(stage=SimpleNamespace(pulls={"plane": None}))
     factory = panel_factory.PanelFactory(
-        *[nothing] * 5, cast("Any", SimpleNamespace(stage=stage)), nothing, nothing
+        gui=given,
+        words=given,
+        post=given,
+        exporter=given,
+        submit=given,
+        scene=given,
+        desk=given,
+        reset_view=given,
     )
     for entry in ROBOTS.values():
         first: Any = SimpleNamespace(key=SimpleNamespace(robot=entry.name))
