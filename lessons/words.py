@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any
 
 from onpath.assets.messages import DEFAULT, Catalogue, catalogue, languages
-from onpath.models.errors import CodedError, Message
+from onpath.models.errors import Coded, Message
 
 ELSEWHERE = ("parameter.", "machine.", "path.")
 """Beginnings of keys whose English stands in models/, so that other languages alone have them."""
@@ -46,7 +46,7 @@ class Words:
 
     def sentence(self, said: Message | Exception) -> str:
         """A message, or what an error says; one without a code stays as it is."""
-        message = said.message if isinstance(said, CodedError) else said
+        message = said.message if isinstance(said, Coded) else said
         return message.told(self.language) if isinstance(message, Message) else str(message)
 
 

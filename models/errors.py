@@ -46,7 +46,7 @@ def _value(value: Argument, language: str) -> str | int:
     return value
 
 
-class CodedError(ValueError):
+class Coded(Exception):
     """An error that a user may see; `str` of it is English.
 
     Args:
@@ -61,6 +61,10 @@ class CodedError(ValueError):
         return str(self.message)
 
 
+class CodedError(Coded, ValueError):
+    """What a user wants is not possible; see `Coded`."""
+
+
 def said_by(error: Exception) -> Message | str:
     """What an error says, as an argument of another message."""
-    return error.message if isinstance(error, CodedError) else str(error)
+    return error.message if isinstance(error, Coded) else str(error)

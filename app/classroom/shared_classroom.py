@@ -203,7 +203,7 @@ class SharedClassroom:
                     return result, self._ledger.look(connection, self._seen, self._now())
             except exc.IntegrityError:  # another process created the class at the same time
                 if last:
-                    raise NotKept("the class cannot be begun") from None
+                    raise NotKept("error.class_not_begun") from None
         raise AssertionError
 
     def _write(

@@ -14,7 +14,9 @@ from onpath.app.common.palette import CONTROLLERS
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.studies.experiments import Experiment
-from onpath.models.systems.flexible_robot import FlexibleFiveBar
+
+EXTRA = {"deflection": ("deflection of\nthe tip  [mm]", 1e3)}
+"""Label and scale of those of `Robot.extra_fields` that are drawn."""
 
 
 class ShownFigure(Figure):
@@ -34,9 +36,7 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
 def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     """Plot the end-point in output space, and distance, xi, eta, speed and torque over time."""
     panels = _panels()
-    robot = experiment.robot()
-    if isinstance(robot, FlexibleFiveBar):
-        panels.insert(1, _deflection(robot))
+    panels[1:1] = _extra_panels(experiment)
     figure = ShownFigure(figsize=(13, 2.1 * len(panels)), layout="constrained")
     axes = figure.subplot_mosaic([["space", name] for name, _, _ in panels], width_ratios=(1, 1.25))
     figure.suptitle(experiment.title, fontsize=15)
@@ -91,11 +91,20 @@ def _panels(words: Words = ENGLISH):
     ]
 
 
-def _deflection(robot: FlexibleFiveBar):
-    def column(run: Trajectory) -> tuple[np.ndarray]:
-        return (1e3 * robot.deflection(run.fields["q"])[:, None],)
+def _extra_panels(experiment: Experiment):
+    """Panels, as in `_panels`, for what the robot has to plot besides what every robot has."""
+    robot, parameters = experiment.robot(), experiment.parameters
+    names = [name for name, _ in robot.extra_fields if name in EXTRA]
 
-    return "w", "deflection of\nthe tip  [mm]", column
+    def values(run: Trajectory, name: str) -> np.ndarray:
+        states = zip(run.fields["q"], run.fields["v"], strict=True)
+        return np.stack([robot.extras(q, v, parameters)[name] for q, v in states])
+
+    def panel(name: str):
+        label, scale = EXTRA[name]
+        return name, label, lambda run: (scale * values(run, name),)
+
+    return [panel(name) for name in names]
 
 
 def _wrapped(theta: np.ndarray) -> np.ndarray:

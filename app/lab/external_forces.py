@@ -11,7 +11,6 @@ from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.simulation import FREE, Push, brake_at
 from onpath.models.control.laws import NAMES
-from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import Frame
 from onpath.models.systems.robots import Robot
@@ -69,14 +68,9 @@ class ExternalForces:
         """Pull an end-point towards a target, and others by the same displacement.
 
         Args:
-            target: shape (p,), [m].
+            target: shape (p,), finite: the command has checked it, [m].
             together: all controllers concerned; they stay the same until `release`.
-
-        Raises:
-            ValueError: the target is not finite.
         """
-        if not np.isfinite(target).all():
-            raise CodedError("error.not_a_point")
         if self.grabbed != controller:
             self.release()
             own = self._runs[controller].shown()["y"].copy()

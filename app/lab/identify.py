@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from functools import lru_cache
 from itertools import groupby
@@ -26,7 +25,7 @@ from onpath.models.studies.identification import (
     simplest,
     smooth_velocities,
 )
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.parameters import Parameters, changed, specs
 from onpath.models.systems.robots import BalancedLinkage, Robot
 
 MOST_TICKS = 3000  # maximum ticks to use, to keep the lab responsive
@@ -89,12 +88,11 @@ def last_record(robot: Robot, history: list[Segment]) -> JointRecord:
 def believing(linkage: BalancedLinkage, parameters: Parameters, found: Identified) -> Parameters:
     """The parameters with the controllers' model as identified, limited to the sliders' ranges."""
     built, known = linkage.built, specs(parameters)
-    changes = dict[str, float]()
-    for name in INERTIA:
-        spec = known[f"error_{name}"]
-        error = round(100 * (found.values[name] / built[name] - 1), 2)
-        changes[f"error_{name}"] = min(max(error, spec.low), spec.high) + 0.0  # no -0
-    return dataclasses.replace(parameters, **changes)
+    for name in (f"error_{name}" for name in INERTIA):
+        spec, inertia = known[name], name.removeprefix("error_")
+        error = round(100 * (found.values[inertia] / built[inertia] - 1), 2)
+        parameters = changed(parameters, name, min(max(error, spec.low), spec.high))
+    return parameters
 
 
 def _same_robot(robot: Robot, history: list[Segment]) -> list[Segment]:

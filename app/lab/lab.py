@@ -19,6 +19,7 @@ from onpath.app.lab.session import Session
 from onpath.app.lab.setup import Setup, restore
 from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.words import Words
+from onpath.models.errors import Message
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 
 MOST_COMMANDS = 500  # maximum in the queue; further ones are dropped
@@ -86,8 +87,8 @@ class Lab:
         return self.lessons.words
 
     @property
-    def locked(self) -> str:
-        """Why time must not run now; empty if it may."""
+    def locked(self) -> Message | None:
+        """Why time must not run now; None if it may."""
         return self.lessons.locked
 
     # Commands
@@ -111,7 +112,7 @@ class Lab:
             if not command.from_teacher:
                 self.asked += 1
                 if refusal := self._refusal(command):
-                    self.show_message(refusal, "warning")
+                    self.show_message(self.words.sentence(refusal), "warning")
                     continue
             self._apply(command)
         taken = perf_counter() - begun
@@ -122,11 +123,11 @@ class Lab:
             self.watch(self)
         return taken
 
-    def _refusal(self, command: Command) -> str:
-        """Why a user's command is refused now; empty if it is not."""
+    def _refusal(self, command: Command) -> Message | None:
+        """Why a user's command is refused now; None if it is not."""
         if self.frozen:
-            return self.words("class.frozen")
-        return self.locked if command.lets_time_run else ""
+            return Message("class.frozen")
+        return self.locked if command.lets_time_run else None
 
     def _apply(self, command: Command) -> None:
         try:

@@ -170,8 +170,7 @@ class LessonRun(LessonState):
         lesson, found, session = self.lesson, self.prediction(), lab.session
         if lesson is None:
             return
-        if self.locked:
-            raise ValueError(self.locked)
+        self.check_unlocked()
         rate = session.rate
         _set_up(lab, lesson, self.index)
         session.rate = rate  # may be slow motion; the result is the same

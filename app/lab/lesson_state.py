@@ -13,7 +13,7 @@ from onpath.lessons.course import Course
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.schema import Lesson, Prediction, Quiz, Step
 from onpath.lessons.words import Words
-from onpath.models.errors import CodedError
+from onpath.models.errors import CodedError, Message
 
 
 class LessonState:
@@ -92,9 +92,14 @@ class LessonState:
         return self.prediction() is not None and self.answer() is None
 
     @property
-    def locked(self) -> str:
-        """Why time must not run (a prediction is pending); empty if it may."""
-        return self.words("lesson.locked") if self.waits else ""
+    def locked(self) -> Message | None:
+        """Why time must not run (a prediction is pending); None if it may."""
+        return Message("lesson.locked") if self.waits else None
+
+    def check_unlocked(self) -> None:
+        """Raise ValueError if time must not run; see `locked`."""
+        if self.waits:
+            raise CodedError("lesson.locked")
 
     def has_played(self) -> bool:
         """Whether the open step's demonstration has been played, now or earlier."""

@@ -9,7 +9,7 @@ import viser
 
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.flexible_panel import FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
@@ -25,7 +25,7 @@ from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
 from onpath.lessons.schema import StepSetup
 from onpath.lessons.words import Words
-from onpath.models.systems.flexible_parameters import FlexibleParameters
+from onpath.models.systems.catalogue import ROBOTS
 
 ALL = (
     *("robot", "hold", "path", "flexible", "gains", "editor", "plots", "past", "keep"),
@@ -123,14 +123,17 @@ class PanelFactory:
             return PathPanel(self._gui, self._words, self._post, first, draw, shade)
 
     def _flexible(self, first: PageSnapshot) -> Part | None:
-        if not isinstance(parameters_of(first), FlexibleParameters):
+        link = ROBOTS[first.key.robot].flexible_link
+        if link is None:
             return None
 
         def choose(name: str) -> None:
             self._scene.pull = name
 
         pulls = list(self._scene.stage.pulls)
-        return FlexiblePanel(self._gui, self._words, self._post, first, pulls, choose, self._submit)
+        return FlexiblePanel(
+            self._gui, self._words, self._post, first, link, pulls, choose, self._submit
+        )
 
     def _copy(self, first: PageSnapshot) -> None:
         copy = self._gui.add_checkbox(

@@ -37,7 +37,7 @@ class Freehand:
     ) -> None:
         self._scene = scene
         self._bases = stage.origins
-        self._plane = stage.path_plane
+        self._plane, self._box = stage.path_plane, stage.reachable
         self._on_stroke = on_stroke
         self._base = self._bases[0]  # of the robot in front of which the stroke is drawn
         look = (palette.INK, 0.003)
@@ -67,7 +67,8 @@ class Freehand:
         camera = event.client.camera.position
         seen = [event.start_position] if event.phase == "start" else []
         for pointer in (*seen, event.end_position):
-            point = pointer_on_plane(camera, np.array(pointer), self._base, self._plane)
+            place = np.array(pointer)
+            point = pointer_on_plane(camera, place, self._base, self._plane, self._box)
             if point is not None:
                 self._ink.add(point)
         if event.phase == "end":

@@ -52,7 +52,6 @@ class Box:
 
 
 VERTICAL_PLANE = DragPlane(np.zeros(3), np.array([0.0, 1.0, 0.0]))
-REACHABLE = Box(np.full(3, -0.6), np.full(3, 0.6))
 
 
 def intersect_ray_plane(
@@ -93,7 +92,7 @@ def pointer_on_plane(
     pointer: np.ndarray,
     base: np.ndarray,
     plane: DragPlane,
-    box: Box = REACHABLE,
+    box: Box,
 ) -> np.ndarray | None:
     """Project the pointer onto a robot's plane.
 

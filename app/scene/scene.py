@@ -272,5 +272,6 @@ class Scene:
         plane: DragPlane | None = None,
     ) -> np.ndarray | None:
         """Pointer position in a robot's frame on a plane, by default the path's plane."""
-        camera, base = event.client.camera.position, self._stage.bases[name]
-        return pointer_on_plane(camera, np.array(pointer), base, plane or self._stage.path_plane)
+        camera, stage = event.client.camera.position, self._stage
+        place, base = np.array(pointer), stage.bases[name]
+        return pointer_on_plane(camera, place, base, plane or stage.path_plane, stage.reachable)

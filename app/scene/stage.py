@@ -11,7 +11,7 @@ import numpy as np
 import trimesh
 
 from onpath.app.common import palette
-from onpath.app.scene.pointer_projection import DragPlane
+from onpath.app.scene.pointer_projection import Box, DragPlane
 from onpath.lessons.words import ENGLISH, Words
 
 if TYPE_CHECKING:
@@ -33,7 +33,8 @@ class Stage:
         low, high: opposite corners of the box that the camera shows of a robot, shape (3,).
         floor: height of the floor, negative.
         elevation, azimuth: angles of the camera above the horizontal and to the right, [rad].
-        path_plane: plane of the path, in which control points are dragged.
+        path_plane: plane of the path, in which control points are dragged; its point is the home of
+            the end-point.
         pulls: planes through the end-point in which it is pulled, by name, the default first;
             their own points do not matter.
         reach: radii of the circles about the base pivot at which the robot is singular.
@@ -67,6 +68,15 @@ class Stage:
     def origins(self) -> np.ndarray:
         """Origins of the robots' frames, shape (k, 3), [m]."""
         return np.stack(list(self.bases.values()))
+
+    @property
+    def reachable(self) -> Box:
+        """Where the mouse can drag to: as far from the home of the end-point as the robot reaches.
+
+        A hand's target is limited in the same way in the lab.
+        """
+        home, outer = self.path_plane.point, self.reach[1]
+        return Box(home - outer, home + outer)
 
     @property
     def corners(self) -> np.ndarray:

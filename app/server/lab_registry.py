@@ -22,7 +22,7 @@ from onpath.app.storage.lab_state import LabState, StateObserver, put_back
 from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import NotKept
 from onpath.app.storage.write_behind import WriteBehind
-from onpath.models.errors import CodedError
+from onpath.models.errors import CodedError, Message
 
 log = logging.getLogger(__name__)
 
@@ -79,16 +79,17 @@ class LabRegistry:
         codes = CODE.findall(known[:200]) if known else []
         if self.leases is not None and codes:
             codes = self.leases.available(codes)
-        remark = ""
+        refusal: NotKept | None = None
         try:
             for code in self._in_turn(codes):
                 if (entry := self._open(client, code)) is not None:
                     return entry
         except NotKept as error:
-            remark = f"Your lab is kept, but cannot be opened now: {error}"
+            refusal = error
         entry = self._made(new_code())
-        if remark:
-            entry.scheduled.lab.show_message(remark, "warning")
+        if refusal is not None:
+            lab, said = entry.scheduled.lab, Message("say.lab_kept", {"reason": refusal.message})
+            lab.show_message(lab.words.sentence(said), "warning")
         return self._give(client, entry)
 
     def enter(self, client: int, code: str) -> RegisteredLab:
@@ -168,7 +169,7 @@ class LabRegistry:
                     put_back(lab, state)
             except ValueError as error:
                 log.warning("what was kept cannot be read: %s", error)
-                raise NotKept("what was kept of this lab cannot be read") from None
+                raise NotKept("error.lab_unreadable") from None
         if (keeper := self.keeper) is not None:
             lab.watch = StateObserver(lambda make: keeper.submit(code, make), lab)
         return RegisteredLab(code, ScheduledLab(lab))

@@ -19,6 +19,7 @@ from sqlalchemy import event, exc, pool
 from onpath.app.storage.migrations import HEAD, known_revisions, revision_of, upgrade
 from onpath.app.storage.migrations.first_tables import strange_table
 from onpath.app.storage.schema import meta
+from onpath.models.errors import Coded
 
 log = logging.getLogger(__name__)
 
@@ -27,7 +28,7 @@ PATIENCE = 10.0  # [s] to wait for a lock that another process holds
 _BROKEN = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 
 
-class NotKept(OSError):
+class NotKept(Coded, OSError):
     """The database cannot be used at present; the message says why."""
 
 
@@ -59,7 +60,7 @@ def opened_server(url: sa.URL) -> sa.Engine:
             return _prepared(url)
         except exc.SQLAlchemyError as error:  # another process may have created the tables
             if last:
-                raise NotKept(f"cannot use {url!r}: {words(error)}") from error
+                raise NotKept("error.database_at", place=repr(url), reason=words(error)) from error
     raise AssertionError
 
 
@@ -88,8 +89,8 @@ def opened_file(url: sa.URL, clock: Callable[[], float]) -> sa.Engine:
             if file is not None:
                 _move_aside(file, before, str(error), clock)
         except exc.SQLAlchemyError as error:
-            raise NotKept(words(error)) from error
-    raise NotKept("it breaks again and again")
+            raise NotKept("error.database", reason=words(error)) from error
+    raise NotKept("error.database_keeps_breaking")
 
 
 def words(error: Exception) -> str:
@@ -116,7 +117,7 @@ def _locked(beside: Path) -> Iterator[None]:
             lock.execute("BEGIN EXCLUSIVE")
             yield
     except sqlite3.Error as error:
-        raise NotKept(f"{beside.name}: {error}") from error
+        raise NotKept("error.database_at", place=beside.name, reason=str(error)) from error
 
 
 def _rename(file: Path, why: str, clock: Callable[[], float]) -> None:
@@ -206,13 +207,13 @@ def _migrate(connection: sa.Connection) -> None:
     """
     revision = revision_of(connection)
     if revision is None and (strange := strange_table(connection)):
-        raise NotKept(f"its table {strange} is not OnPath's")
+        raise NotKept("error.database_table", table=strange)
     if revision != HEAD:
         if revision is not None and revision not in known_revisions():
-            raise NotKept(f"its tables ({revision}) are of a newer OnPath, which is needed here")
+            raise NotKept("error.database_tables_newer", revision=revision)
         upgrade(connection)
     version = connection.execute(sa.select(meta.c.number).where(meta.c.name == "version")).scalar()
     if version is None:
         connection.execute(sa.insert(meta).values(name="version", number=VERSION))
     elif version > VERSION:
-        raise NotKept(f"it is of version {version}, made by a newer OnPath, which is needed here")
+        raise NotKept("error.database_newer", version=str(version))

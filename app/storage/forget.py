@@ -7,7 +7,7 @@ from pathlib import Path
 
 import sqlalchemy as sa
 
-from onpath.app.storage.records import NotKept, Records, default_file
+from onpath.app.storage.records import Records, default_file
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ def forget(url: str | None = None) -> ForgetCounts:
     records = Records(url)
     try:
         if records.warning:
-            raise NotKept(records.warning)
+            raise OSError(records.warning)
         labs = records.delete_all()
     finally:
         records.close()

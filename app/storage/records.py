@@ -99,11 +99,11 @@ class Records:
         if row is None:
             return None
         if row.version > VERSION:
-            raise NotKept("this lab was kept by a newer OnPath")
+            raise NotKept("error.lab_newer")
         try:
             return msgspec.json.decode(row.state, type=dict[str, Any])
         except (ValueError, RecursionError):
-            raise NotKept("what was kept of this lab cannot be read") from None
+            raise NotKept("error.lab_unreadable") from None
 
     def save(self, code: str, state: dict[str, Any], owner: str | None = None) -> None:
         """Replace the state of a lab.
@@ -132,7 +132,7 @@ class Records:
                 return
             except exc.IntegrityError:  # another process inserted it first, or is a newer version
                 if last:
-                    raise NotKept("this lab was kept by a newer OnPath") from None
+                    raise NotKept("error.lab_newer") from None
 
     def delete_all(self) -> int:
         """Delete all labs and classes. Returns the number of labs.
@@ -170,7 +170,7 @@ class Records:
         except exc.IntegrityError:
             raise
         except (exc.SQLAlchemyError, UnicodeDecodeError) as error:
-            raise NotKept(words(error)) from error
+            raise NotKept("error.database", reason=words(error)) from error
 
     def _opened(self) -> sa.Engine:
         if self._url.get_backend_name() != "sqlite":

@@ -718,6 +718,19 @@ error-lab_is_open = dieses Labor ist in einem anderen Fenster offen: Schließe e
 error-session_code_length = der Code eines Labors hat { $length } Buchstaben und Ziffern, wie { $example }
 error-session_code_letters = das ist kein Code eines Labors: 0, 1, i, l und o kommen in keinem vor, wie { $example }
 
+## Refusals: what is kept in a database (app/storage)
+
+error-database = die Datenbank meldet: { $reason }
+error-database_at = { $place } ist nicht zu gebrauchen: { $reason }
+error-database_keeps_breaking = die Datenbank geht immer wieder kaputt
+error-database_table = ihre Tabelle { $table } gehört nicht zu OnPath
+error-database_tables_newer = ihre Tabellen ({ $revision }) stammen von einem neueren OnPath, das hier nötig ist
+error-database_newer = sie hat die Version { $version } und stammt von einem neueren OnPath, das hier nötig ist
+error-lab_newer = dieses Labor hat ein neueres OnPath aufbewahrt
+error-lab_unreadable = was von diesem Labor aufbewahrt ist, lässt sich nicht lesen
+error-class_not_begun = die Klasse lässt sich nicht beginnen
+say-lab_kept = Dein Labor ist aufbewahrt, lässt sich aber gerade nicht öffnen: { $reason }
+
 ## Refusals: the class
 
 error-too_many_codes = zu viele falsche Codes: warte eine Minute

@@ -573,6 +573,19 @@ error-lab_is_open = this lab is open in another window: close that one first
 error-session_code_length = a session code has { $length } letters and digits, like { $example }
 error-session_code_letters = this is not a session code: 0, 1, i, l and o do not occur in one, like { $example }
 
+## Refusals: what is kept in a database (app/storage)
+
+error-database = the database reports: { $reason }
+error-database_at = cannot use { $place }: { $reason }
+error-database_keeps_breaking = the database breaks again and again
+error-database_table = its table { $table } is not OnPath's
+error-database_tables_newer = its tables ({ $revision }) are of a newer OnPath, which is needed here
+error-database_newer = it is of version { $version }, made by a newer OnPath, which is needed here
+error-lab_newer = this lab was kept by a newer OnPath
+error-lab_unreadable = what was kept of this lab cannot be read
+error-class_not_begun = the class cannot be begun
+say-lab_kept = Your lab is kept, but cannot be opened now: { $reason }
+
 ## Refusals: the class
 
 error-too_many_codes = too many wrong codes: wait a minute

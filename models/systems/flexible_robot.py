@@ -20,7 +20,7 @@ from onpath.models.systems.flexible_five_bar import RIGID, FlexibleLinks
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.forces import Grip, SpringLimits
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.robots import BalancedLinkage, RobotEntry, first_fault
+from onpath.models.systems.robots import BalancedLinkage, FlexibleLink, RobotEntry, first_fault
 from onpath.models.systems.system import MechanicalSystem, conditioning, decoupling_matrix
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
 
@@ -244,6 +244,14 @@ def _own(parameters: Parameters) -> FlexibleParameters:
     return parameters
 
 
+def critical_alpha(parameters: Parameters, joints: Array) -> float:
+    """See `FlexibleLink.critical_alpha`."""
+    robot = robot_for(parameters)
+    q = np.concatenate([joints, np.zeros(robot.modes)])
+    zero = flexible_zero_dynamics(robot.modes, robot.plant_name)
+    return zero.critical_alpha(q, robot.plant(parameters), highest=1.0)
+
+
 ROBOT = RobotEntry(
     name="flexible",
     label="Five-bar with a flexible link",
@@ -252,4 +260,10 @@ ROBOT = RobotEntry(
     parameters=FlexibleParameters,
     lab=FlexibleParameters(law="composite"),  # the only law that survives every pull at the tip
     make=robot_for,
+    flexible_link=FlexibleLink(
+        joints=RIGID,
+        beam=("plant", "modes", "rho", "frequency", "zeta"),
+        composite=("tip_damping", "tip_prediction", "tip_shaping", "tip_yielding"),
+        critical_alpha=critical_alpha,
+    ),
 )

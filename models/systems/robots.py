@@ -42,6 +42,25 @@ class BalancedLinkage:
     built: Mapping[str, float]
 
 
+@dataclass(frozen=True, slots=True)
+class FlexibleLink:
+    """What the page needs to know about a robot whose last link bends.
+
+    Attributes:
+        joints: number of joint angles, which come before the link's coordinates in q.
+        beam: names of the parameters that describe the link.
+        composite: names of the gains of composite control.
+        critical_alpha: α up to 1 from which the internal dynamics are unstable, at rest at joint
+            angles, shape (joints,), with the link straight; infinity if there is none. It depends
+            on the parameters in `beam` only.
+    """
+
+    joints: int
+    beam: tuple[str, ...]
+    composite: tuple[str, ...]
+    critical_alpha: Callable[[Parameters, Array], float]
+
+
 class Robot(Protocol):
     """A robot: equations of motion, parameters, kinematics, limits and drawing.
 
@@ -244,6 +263,8 @@ class RobotEntry:
         lab: parameters with which the lab starts.
         make: the instance for given parameters; only structural parameters select it.
         picture: name of an asset; if empty, the bars are sketched.
+        flexible_link: of a robot with parameters `law` and `alpha` and an extra field "deflection";
+            None: all links are rigid.
     """
 
     name: str
@@ -253,6 +274,7 @@ class RobotEntry:
     lab: Parameters
     make: Callable[[Parameters], Robot]
     picture: str = ""
+    flexible_link: FlexibleLink | None = None
 
 
 def first_fault(

@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from onpath.app.lab.commands.checks import point
 from onpath.app.lab.commands.forces import Release
 from onpath.app.lab.commands.parameters import ChooseRobot, Identify, SetParameter
 from onpath.app.lab.commands.path import ChoosePath, MovePoint
@@ -54,9 +55,8 @@ class ScriptPull(Command):
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         session, name = lab.session, CONTROLLERS[self.only or "follower"]
-        there = displaced(
-            session.robot.frame, session.runs[name].shown()["y"], np.array(self.by) / 1e3
-        )
+        by = point(np.array(self.by), 2) / 1e3
+        there = displaced(session.robot.frame, session.runs[name].shown()["y"], by)
         session.grips.grab(name, there, _controllers(self.only))
 
 

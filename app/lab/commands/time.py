@@ -35,8 +35,7 @@ class StepOnce(Command):
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         lab.return_to_present()
-        if lab.locked:
-            raise ValueError(lab.locked)
+        lab.lessons.check_unlocked()
         lab.session.step_once()
 
 

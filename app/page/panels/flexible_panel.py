@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import viser
@@ -15,54 +15,44 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.lab.snapshots.snapshot import FollowerName, TrackerName
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_user_update
 from onpath.lessons.words import Words
-from onpath.models.systems.flexible_five_bar import RIGID
-from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
-from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
+from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import FlexibleLink
 
 LEAST, MOST = -1.0, 1.0  # range of alpha on its bar
-BEAM = ["plant", "modes", "rho", "frequency", "zeta"]
-COMPOSITE = ["tip_damping", "tip_prediction", "tip_shaping", "tip_yielding"]
 TURNED = 0.03  # [rad], joint change below which the critical alpha is not recomputed
-
-
-def critical_alpha(parameters: FlexibleParameters, joints: np.ndarray) -> float:
-    """Alpha from which the internal dynamics at rest at joints (3,) are unstable; or infinity."""
-    robot = robot_for(parameters)
-    q = np.concatenate([joints, np.zeros(robot.modes)])
-    zero = flexible_zero_dynamics(parameters.modes, parameters.plant)
-    return zero.critical_alpha(q, robot.plant(parameters), MOST)
 
 
 class CriticalAlpha:
     """The follower's critical alpha, computed in another thread when it may have changed.
 
     Args:
+        link: the robot's flexible link.
         submit: runs something in another thread.
 
     Attributes:
         value: the latest result; infinity if there is none up to 1, NaN while unknown.
     """
 
-    def __init__(self, submit: Callable[[Callable[[], None]], None]) -> None:
-        self._submit = submit
-        self._key: FlexibleParameters | None = None
-        self._joints = np.full(RIGID, np.inf)
+    def __init__(self, link: FlexibleLink, submit: Callable[[Callable[[], None]], None]) -> None:
+        self._link, self._submit = link, submit
+        self._beam: tuple[Any, ...] | None = None
+        self._joints = np.full(link.joints, np.inf)
         self._busy = False
         self.value = math.nan
 
-    def follow(self, parameters: FlexibleParameters, q: np.ndarray) -> None:
-        """Recompute if the parameters or joint angles, (n,), have changed."""
-        key = replace(FlexibleParameters(), **{name: getattr(parameters, name) for name in BEAM})
-        joints = q[:RIGID].copy()
+    def follow(self, parameters: Parameters, q: np.ndarray) -> None:
+        """Recompute if the link's parameters or the joint angles, in q (n,), have changed."""
+        beam = tuple(getattr(parameters, name) for name in self._link.beam)
+        joints = q[: self._link.joints].copy()
         moved = np.abs(joints - self._joints).max() > TURNED
-        if self._busy or (key == self._key and not moved):
+        if self._busy or (beam == self._beam and not moved):
             return
-        self._key, self._joints, self._busy = key, joints, True
-        self._submit(lambda: self._find(key, joints))
+        self._beam, self._joints, self._busy = beam, joints, True
+        self._submit(lambda: self._find(parameters, joints))
 
-    def _find(self, key: FlexibleParameters, joints: np.ndarray) -> None:
+    def _find(self, parameters: Parameters, joints: np.ndarray) -> None:
         try:
-            self.value = critical_alpha(key, joints)
+            self.value = self._link.critical_alpha(parameters, joints)
         finally:
             self._busy = False
 
@@ -102,6 +92,7 @@ class FlexiblePanel:
     """Output, alpha with its limit, the beam, and how it is drawn and pulled.
 
     Args:
+        link: the robot's flexible link.
         pulls: names of the planes in which an end-point can be pulled, the current one first.
         choose_pull: called with the selected name.
         submit: runs something in another thread.
@@ -113,12 +104,13 @@ class FlexiblePanel:
         words: Words,
         post: Post,
         first: PageSnapshot,
+        link: FlexibleLink,
         pulls: list[str],
         choose_pull: Callable[[str], None],
         submit: Callable[[Callable[[], None]], None],
     ) -> None:
         self._post, self._words = post, words
-        self._critical = CriticalAlpha(submit)
+        self._critical = CriticalAlpha(link, submit)
         self._shown: tuple[float, float, bool] | None = None
         with gui.add_folder(words("flexible.title")):
             self._widgets = [ParameterWidgets(gui, words, self._set, ["law", "alpha"], first)]
@@ -138,22 +130,22 @@ class FlexiblePanel:
             )
             with gui.add_folder(words("flexible.beam"), expand_by_default=False):
                 gui.add_markdown(words("flexible.anew"))
-                self._widgets.append(ParameterWidgets(gui, words, post, BEAM, first))
+                self._widgets.append(ParameterWidgets(gui, words, post, list(link.beam), first))
             with gui.add_folder(words("flexible.composite"), expand_by_default=False):
-                self._widgets.append(ParameterWidgets(gui, words, post, COMPOSITE, first))
+                gains = list(link.composite)
+                self._widgets.append(ParameterWidgets(gui, words, post, gains, first))
         on_user_update(pull, lambda shown: choose_pull(planes[shown]))
         on_user_update(self._larger, lambda factor: post(c.SetExaggeration(factor)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's values and the current limit of alpha."""
-        own = parameters_of(snapshot)
-        assert isinstance(own, FlexibleParameters)
+        own = snapshot.parameters
         for widgets in self._widgets:
             widgets.follow(snapshot)
         if self._larger.value != snapshot.run.exaggeration:
             self._larger.value = snapshot.run.exaggeration
-        self._critical.follow(own, snapshot.joints)
-        shown = own.alpha, self._critical.value, own.law == "redefined"
+        self._critical.follow(parameters_of(snapshot), snapshot.joints)
+        shown = float(own["alpha"]), self._critical.value, own["law"] == "redefined"
         if shown != self._shown:
             self._shown, self._bar.content = shown, alpha_bar(*shown, self._words)
         numbers = deflections(snapshot, self._words)

@@ -233,7 +233,7 @@ class TeacherPanel:
         try:
             said = self._words("class.ended", count=self._class.end())
         except OSError as error:
-            said = str(error)
+            said = self._words.sentence(error)
         self._told.content = note(said)
         self._look_again()
 
@@ -241,7 +241,7 @@ class TeacherPanel:
         try:
             said = self._words("class.forgotten", count=self._teaching.forget())
         except OSError as error:
-            said = str(error)
+            said = self._words.sentence(error)
         self._told.content = note(said)
         self._look_again()
 

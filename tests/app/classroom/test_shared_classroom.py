@@ -377,7 +377,9 @@ def test_when_the_database_is_away_labs_stay_as_they_are(
     one.room.freeze(True)
     two.look()
     with monkeypatch.context() as patch:
-        patch.setattr(one.room, "_written", lambda *_: _raise(NotKept("away")))
+        patch.setattr(
+            one.room, "_written", lambda *_: _raise(NotKept("error.database", reason="away"))
+        )
         one.room.freeze(False)
         lab.lessons.progress = WAY
         one.attendance.look()

@@ -15,11 +15,16 @@ from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_snapshot
-from onpath.app.page.panels.flexible_panel import alpha_bar, critical_alpha
+from onpath.app.page.panels.flexible_panel import alpha_bar
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
-from onpath.models.systems.flexible_robot import UNSTABLE, FlexibleFiveBar, FlexibleParameters
+from onpath.models.systems.flexible_robot import (
+    UNSTABLE,
+    FlexibleFiveBar,
+    FlexibleParameters,
+    critical_alpha,
+)
 from tests.support.drawing import drawn
 from tests.support.lab import FOLLOWER, TRACKER, do, run, states, store
 

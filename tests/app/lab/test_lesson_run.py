@@ -22,7 +22,7 @@ from onpath.lessons.checks import judge
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.progress import MOST_POINTS, Answer, Progress, read_progress
 from onpath.lessons.schema import Action, Choice, Event, Option, Quiz, Sketch, Task
-from onpath.lessons.words import Words
+from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, run, store
 from tests.support.lesson_texts import write_lesson
@@ -56,7 +56,7 @@ def test_a_scene_sets_the_lab_up_and_the_free_lab_comes_back(course: Course) -> 
     assert lab.session.editor.design.name == "circle" and lab.session.running
     do(lab, c.CloseLesson())
     assert lab.session.parameters.K2 == 33 and lab.session.editor.design.name == "clover"
-    assert lab.lessons.lesson is None and lab.locked == ""
+    assert lab.lessons.lesson is None and lab.locked is None
 
 
 def test_nothing_happens_before_a_prediction(lab: Lab) -> None:
@@ -65,17 +65,29 @@ def test_nothing_happens_before_a_prediction(lab: Lab) -> None:
         do(lab, command)
         run(lab, 0.2)
         assert lab.session.time == 0.0 and not lab.session.running
-    assert lab.message == lab.locked != ""
+    assert lab.message == str(lab.locked) == ENGLISH("lesson.locked")
     do(lab, c.Predict(times=(0.0, 1.0, 2.0), values=(0.0, 40.0, 0.0)))
-    assert lab.locked == ""
+    assert lab.locked is None
     do(lab, c.SetRunning(True))
     run(lab, 0.2)
     assert lab.session.time > 0.1
 
 
+def test_why_nothing_happens_is_told_in_the_language_of_the_lab(lab: Lab) -> None:
+    german = Words("de")("lesson.locked")
+    do(lab, TakeStep(NAME, 2))
+    play = c.Act((Action(run=True),))
+    for command in (c.SetRunning(True), c.StepOnce(), c.GoOn(), c.PlayStep(), play):
+        do(lab, c.SetLanguage("de"))  # clears the message
+        assert lab.message == ""
+        do(lab, command)
+        assert lab.message == german and lab.message_level == "warning"
+    assert lab.locked is not None and lab.locked.told("de") == german != str(lab.locked)
+
+
 def test_skipping_is_one_step_and_locks_nothing(lab: Lab) -> None:
     do(lab, c.GoToStep(1), c.GoToStep(1))
-    assert lab.lessons.index == 2 and lab.locked == ""
+    assert lab.lessons.index == 2 and lab.locked is None
     answer = lab.lessons.answer()
     assert answer is not None and answer.skipped
 

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from onpath.app.cli.main import run_command
+from onpath.app.exports.figures import experiment_figure
 from onpath.app.exports.files import csv_bytes, picture_file
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
@@ -19,6 +24,7 @@ from onpath.app.lab.setup import capture, restore
 from onpath.app.lab.share_code import decode, encode
 from onpath.app.lab.snapshots.robot_geometry import geometry_function, robot_views
 from onpath.app.lab.snapshots.take_snapshot import take_snapshot
+from onpath.app.page import panel_factory
 from onpath.app.page.robot_picture import picture_of
 from onpath.app.scene.poses import poses_of
 from onpath.app.scene.stage_catalogue import stage_of
@@ -28,9 +34,10 @@ from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.systems import catalogue
-from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.catalogue import FLEXIBLE, ROBOTS
 from onpath.models.systems.parameters import specs
 from onpath.models.systems.robots import RobotEntry
+from tests.support.checkout import ROOT
 from tests.support.lab import FOLLOWER, TRACKER, assert_drawable, assert_sound, do, store, y
 from tests.support.lab import run as run_lab
 
@@ -232,6 +239,81 @@ def test_its_share_code_brings_back_the_same_lab(entry: RobotEntry) -> None:
     restore(again, decode(encode(setup)))
     assert again.entry is entry and again.parameters == session.parameters
     assert again.editor.design.name == "ellipse" and capture(again) == setup
+
+
+def test_a_drag_leads_as_far_as_the_hand_in_the_lab(entry: RobotEntry) -> None:
+    lab = lab_with(entry)
+    robot = lab.session.robot
+    box = stage_of(robot).reachable
+    for corner in (box.lower, box.upper):
+        target = robot.unplace(corner)
+        do(lab, c.Grab(FOLLOWER, target))
+        hand = robot.place(lab.session.grips.hands[FOLLOWER])
+        np.testing.assert_allclose(hand, robot.place(target), atol=1e-12)
+        beyond = robot.unplace(corner + 0.3 * np.sign(corner - (box.lower + box.upper) / 2))
+        do(lab, c.Grab(FOLLOWER, beyond))
+        np.testing.assert_allclose(robot.place(lab.session.grips.hands[FOLLOWER]), hand, atol=1e-12)
+
+
+BENDING = GANTRY.replace(
+    "    def plant(",
+    """    extra_fields = (("deflection", 1), ("temperature", 1))
+    def extras(self, q, v, parameters):
+        return {"deflection": 0.01 * q[:1], "temperature": v[:1]}
+    def plant(""",
+)
+
+
+@pytest.fixture
+def bending(
+    monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> Iterator[RobotEntry]:
+    """A robot in one file that says that it bends."""
+    monkeypatch.setitem(globals(), "GANTRY", BENDING)
+    request.getfixturevalue("gantry")
+    monkeypatch.setitem(
+        ROBOTS, "gantry", replace(ROBOTS["gantry"], flexible_link=FLEXIBLE.flexible_link)
+    )
+    yield ROBOTS["gantry"]
+
+
+def test_a_figure_shows_what_a_new_robot_has_to_plot(bending: RobotEntry) -> None:
+    chosen = experiments(bending.name)["position"].with_values({"duration": "0.1", "r": "0.04"})
+    log = run(chosen, NAMES[0])
+    figure = experiment_figure(chosen, [log])
+    (axes,) = (axes for axes in figure.axes if axes.get_ylabel().startswith("deflection"))
+    (line,) = axes.lines
+    np.testing.assert_allclose(np.asarray(line.get_ydata()), 1e3 * 0.01 * log.fields["q"][:, 0])
+
+
+def test_the_panel_of_a_flexible_link_is_that_of_every_robot_that_has_one(
+    bending: RobotEntry, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(panel_factory, "FlexiblePanel", lambda *given: given)
+    given: Any = SimpleNamespace(stage=SimpleNamespace(pulls={"plane": None}))
+    factory = panel_factory.PanelFactory(
+        gui=given,
+        words=given,
+        post=given,
+        exporter=given,
+        submit=given,
+        scene=given,
+        desk=given,
+        reset_view=given,
+    )
+    for entry in ROBOTS.values():
+        first: Any = SimpleNamespace(key=SimpleNamespace(robot=entry.name))
+        panels = factory._add("flexible", first)
+        assert len(panels) == (entry.name in ("flexible", bending.name))
+        assert all(entry.flexible_link in cast("Any", panel) for panel in panels)
+
+
+def test_what_draws_and_simulates_knows_no_single_robot() -> None:
+    """The study of the flexible five-bar, and the measurement of its loops, do."""
+    own = {"exports/zero_dynamics.py", "bench/tables.py"}
+    single = re.compile(r"models\.systems\.(\w*five_bar\w*|flexible\w*|two_link\w*)")
+    files = {str(file.relative_to(ROOT / "app")): file for file in (ROOT / "app").rglob("*.py")}
+    assert {name for name, file in files.items() if single.search(file.read_text("utf-8"))} <= own
 
 
 @pytest.mark.parametrize("name", ["position", "obstruction"])

@@ -16,10 +16,11 @@ from onpath.app.lab.snapshots.take_snapshot import take_snapshot
 from onpath.app.storage.lab_state import _now, _state, put_back
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.schema import Action
-from onpath.models.closed_loop.simulation import kernel_of
+from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of, settings_vector
 from onpath.models.control.laws import NAMES
+from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
-from onpath.models.systems.parameters import specs
+from onpath.models.systems.parameters import changed, specs
 from tests.support.lab import (
     FOLLOWER,
     FRAME,
@@ -212,7 +213,7 @@ def test_no_sequence_of_commands_breaks_a_lesson(
         assert_sound(lab)
     put_back(Lab(store(), FIVE_BAR, course), _state(*_now(lab)))  # it can be kept
     do(lab, c.CloseLesson())
-    assert lab.lessons.lesson is None and lab.locked == ""
+    assert lab.lessons.lesson is None and lab.locked is None
     do(lab, c.ChooseRobot("five_bar"), c.ResetParameters(), c.ChoosePath("circle"))
     do(lab, c.SetRate(1.0), c.SetRunning(True))
     run(lab, 0.4)  # the path has blended in
@@ -239,6 +240,49 @@ def test_bad_command_is_answered_and_the_next_one_is_done() -> None:
     do(lab, c.SetParameter("K1", float("nan")), c.SetParameter("K2", 50))
     assert "K1" in lab.message and lab.message_level == "warning"
     assert (lab.session.parameters.K1, lab.session.parameters.K2) == (400, 50)
+
+
+def test_a_gain_that_is_posted_is_the_number_that_both_loops_are_run_with() -> None:
+    lab = new_lab()
+    for value, packed in (("905", 905.0), (float("nan"), 905.0), (1e300, 905.0), (30, 30.0)):
+        lab.post(c.SetParameter("K1", value))
+        run(lab, FRAME)
+        for run_ in lab.session.runs.values():
+            settings = kernel_of(lab.session.robot, run_.kind).settings.unpack(run_.settings)
+            assert settings["K1"] == packed
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        c.Grab(FOLLOWER, np.array([np.nan, 0.0])),
+        c.Grab(TRACKER, np.array([0.0, np.inf])),
+        c.MoveHand(float("nan"), 0.0),
+        c.Act((Action(pull=(float("nan"), 0.0)),)),
+        c.Act((Action(pull=(0.0, float("-inf"))),)),
+    ],
+)
+def test_a_pull_to_no_point_is_refused_by_its_command(command: c.Command) -> None:
+    lab = new_lab(0.1)
+    do(lab, command)
+    assert "not a" in lab.message and lab.message_level == "warning"
+    assert not lab.session.grips.hands and lab.session.grips.grabbed is None
+
+
+@given(st.data())
+def test_parameters_within_their_ranges_are_packed_to_finite_numbers(data: st.DataObject) -> None:
+    """Whatever `changed` lets in: nothing checks the vector again."""
+    entry = ROBOTS[data.draw(st.sampled_from(list(ROBOTS)))]
+    parameters, structural = entry.lab, ("modes", "plant")
+    for name, spec in specs(parameters).items():
+        if name not in structural:
+            bounds = st.sampled_from([spec.low, spec.high]) | st.floats(spec.low, spec.high)
+            values = st.sampled_from(spec.options) if spec.options else bounds
+            parameters = changed(parameters, name, data.draw(values))
+    robot, curve = entry.make(parameters), presets()["ellipse"].curve
+    for controller in NAMES:
+        kernel = kernel_of(robot, kind_of(controller, parameters, curve))
+        assert np.isfinite(settings_vector(robot, kernel, parameters, curve, FREE)).all()
 
 
 # Running

@@ -6,9 +6,12 @@ import ast
 import dataclasses
 import pickle
 import re
+import sys
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,21 +20,25 @@ from jinja2 import Environment, nodes
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.page.panels.keys import KEYS, help_text
-from onpath.app.page.panels.widgets import label_of, option_of
+from onpath.app.page.panels.robot_panel import label_of as title_of
+from onpath.app.page.panels.teacher_panel import TeacherPanel
+from onpath.app.page.panels.widgets import help_of, label_of, option_of
 from onpath.app.page.plots import MORE
+from onpath.app.storage.records import NotKept
 from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.record import PLOTS
 from onpath.lessons.words import ELSEWHERE, ENGLISH, Words
+from onpath.models import systems
 from onpath.models.control.poles import channels
-from onpath.models.errors import CodedError, Message
+from onpath.models.errors import CodedError, Message, said_by
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
-from onpath.models.systems.catalogue import FLEXIBLE, ROBOTS
+from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS, found_robots
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.flexible_robot import BENT, UNSTABLE
 from onpath.models.systems.parameters import FiveBarParameters, specs
-from onpath.models.systems.robots import first_fault
+from onpath.models.systems.robots import RobotEntry, first_fault
 from tests.support.catalogues import arguments, counts, messages
 from tests.support.checkout import ROOT
 from tests.support.lab import do, run, store
@@ -222,19 +229,74 @@ def test_what_the_program_names_has_words(words: Words) -> None:
         assert words(f"gains.{channel.name}")
 
 
+def keys_of(entry: RobotEntry) -> Iterator[str]:
+    """What a language that knows the robot has words for, besides units."""
+    yield from (f"machine.{entry.name}.{part}" for part in ("label", "text"))
+    for name, spec in specs(entry.parameters).items():
+        yield from (f"parameter.{name}.{part}" for part in ("label", "help"))
+        if spec.options and not isinstance(spec.options[0], int):
+            yield from (f"parameter.{name}.option.{option}" for option in spec.options)
+
+
 @pytest.mark.parametrize("words", [Words(language) for language in OTHERS])
 def test_what_stands_in_models_is_translated(words: Words) -> None:
+    """The paths, and all of every robot that the language knows; a new robot is told in English."""
     known = catalogue(words.language)
-    for name in presets():
-        assert f"path.{name}" in known
+    assert [name for name in presets() if f"path.{name}" not in known] == []
+    told = [entry for entry in ROBOTS.values() if f"machine.{entry.name}.label" in known]
+    assert {FIVE_BAR.name, FLEXIBLE.name} <= {entry.name for entry in told}
+    for entry in told:
+        assert [key for key in keys_of(entry) if key not in known] == []
+
+
+@pytest.mark.parametrize("words", [Words(language) for language in languages()])
+def test_every_robot_has_labels_in_every_language(words: Words) -> None:
     for entry in ROBOTS.values():
-        assert f"machine.{entry.name}.label" in known and f"machine.{entry.name}.text" in known
+        assert title_of(entry, words)
         for name, spec in specs(entry.parameters).items():
-            assert f"parameter.{name}.label" in known and f"parameter.{name}.help" in known
+            assert label_of(words, name, spec) and help_of(words, name, spec)
             shown = [option_of(words, name, option) for option in spec.options]
             assert len(set(shown)) == len(shown)
-            if spec.options and not isinstance(spec.options[0], int):
-                assert all(f"parameter.{name}.option.{option}" in known for option in spec.options)
+
+
+NEW_ROBOT = """
+from dataclasses import dataclass
+from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.parameters import Parameters, choice, number
+from onpath.models.systems.robots import RobotEntry
+
+@dataclass(frozen=True, slots=True)
+class CraneParameters(Parameters):
+    rope: float = number(1.0, "m", (0.5, 2, 0.1), "length of the rope", group="robot", label="Rope")
+    hook: str = choice("light", ("light", "heavy"), "which hook", group="robot", label="Hook")
+
+ROBOT = RobotEntry(name="crane", label="Crane", text="A load on a rope.",
+    parameters=CraneParameters, lab=CraneParameters(), make=lambda _: rigid_five_bar())
+"""
+
+
+@pytest.fixture
+def crane(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RobotEntry]:
+    """A robot that is one more file, without words in any catalogue."""
+    (tmp_path / "crane.py").write_text(NEW_ROBOT)
+    monkeypatch.setattr(systems, "__path__", [*systems.__path__, str(tmp_path)])
+    monkeypatch.setitem(ROBOTS, "crane", found_robots()["crane"])
+    yield ROBOTS["crane"]
+    sys.modules.pop("onpath.models.systems.crane", None)
+
+
+def test_a_new_robot_speaks_english_until_it_is_translated(crane: RobotEntry) -> None:
+    for language in languages():
+        words, known = Words(language), specs(crane.parameters)
+        assert title_of(crane, words) == "Crane"
+        assert label_of(words, "rope", known["rope"]) == "Rope"
+        assert help_of(words, "hook", known["hook"]) == "which hook"
+        assert option_of(words, "hook", "heavy") == "heavy"
+        test_every_robot_has_labels_in_every_language(words)
+        if language in OTHERS:
+            assert label_of(words, "K1", known["K1"]) != known["K1"].label  # as every robot
+            test_what_stands_in_models_is_translated(words)
+            test_nothing_is_translated_that_there_is_not(language)
 
 
 @pytest.mark.parametrize("language", OTHERS)
@@ -260,7 +322,7 @@ def said_in_code() -> Iterator[tuple[str, set[str], str]]:
     for file in CODED:
         where = str(file.relative_to(ROOT))
         for name, call in calls(parsed(file)):
-            if name in ("CodedError", "Message") and where not in HANDED_ON:
+            if name in ("CodedError", "Message", "NotKept") and where not in HANDED_ON:
                 first = call.args[0]
                 branches = [first.body, first.orelse] if isinstance(first, ast.IfExp) else [first]
                 given = {keyword.arg or "**" for keyword in call.keywords}
@@ -299,6 +361,30 @@ def test_an_unknown_code_and_a_missing_argument_are_noticed() -> None:
     for message in (Message("error.nobody_wrote_this"), Message("error.no_point", {"index": 3})):
         with pytest.raises(KeyError):
             str(message)
+
+
+def test_what_cannot_be_kept_is_told_in_german_too() -> None:
+    refused = NotKept("error.database", reason="disk full")
+    assert isinstance(refused, OSError) and not isinstance(refused, ValueError)
+    assert str(refused) == "the database reports: disk full" and refused.errno is None
+    assert Words("de").sentence(refused) == "die Datenbank meldet: disk full"
+    assert said_by(refused) == refused.message == pickle.loads(pickle.dumps(refused)).message
+    whole = Message("say.lab_kept", {"reason": NotKept("error.lab_newer").message})
+    assert whole.told("de").endswith("nicht öffnen: dieses Labor hat ein neueres OnPath aufbewahrt")
+
+
+@pytest.mark.parametrize("ask", ["_end", "_forget"])
+def test_a_teacher_is_told_in_german_what_cannot_be_forgotten(ask: str) -> None:
+    def fails() -> int:
+        raise NotKept("error.database", reason="disk full")
+
+    asked: Any = SimpleNamespace(end=fails, forget=fails)
+    told, words = SimpleNamespace(content=""), Words("de")
+    panel: Any = SimpleNamespace(
+        _words=words, _class=asked, _teaching=asked, _told=told, _look_again=lambda: None
+    )
+    getattr(TeacherPanel, ask)(panel)
+    assert "die Datenbank meldet: disk full" in told.content
 
 
 def test_an_error_survives_a_process_and_one_without_a_code_stays_as_it_is() -> None:

@@ -9,13 +9,14 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from onpath.app.scene.pointer_projection import (
-    REACHABLE,
     VERTICAL_PLANE,
     Box,
+    DragPlane,
     intersect_ray_plane,
     plane_coordinates,
     pointer_on_plane,
 )
+from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models.systems.catalogue import ROBOTS
 
 vectors = arrays(np.float64, 3, elements=st.floats(-10.0, 10.0))
@@ -79,17 +80,22 @@ def test_pointer_anywhere_on_the_ray_means_the_same_point(x, z, share, base):
     camera = base + [0.3, -3.0, 0.4]
     target = np.array([x, 0.0, z])
     pointer = camera + share * (base + target - camera)
-    found = pointer_on_plane(camera, pointer, base, VERTICAL_PLANE)
+    box = Box(np.full(3, -0.6), np.full(3, 0.6))
+    found = pointer_on_plane(camera, pointer, base, VERTICAL_PLANE, box)
     assert found is not None
     np.testing.assert_allclose(found, target, atol=1e-9)
 
 
-def test_far_pointer_stays_within_reach():
-    far = pointer_on_plane(
-        np.array([0.0, -1.0, 0.0]), np.array([50.0, 0.0, 80.0]), np.zeros(3), VERTICAL_PLANE
-    )
+@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("place", [(50.0, 0.0, 80.0), (-70.0, 0.0, 60.0), (40.0, 0.0, -90.0)])
+def test_far_pointer_stays_within_the_robot_s_reach(name, place):
+    robot = ROBOTS[name].make(ROBOTS[name].lab)
+    stage, home = stage_of(robot), robot.place(robot.frame.lift(np.zeros(2)))
+    plane = DragPlane(home, np.array([0.0, 1.0, 0.0]))
+    camera = home + [0.0, -1.0, 0.0]
+    far = pointer_on_plane(camera, home + place, np.zeros(3), plane, stage.reachable)
     assert far is not None
-    np.testing.assert_allclose(far, [REACHABLE.upper[0], 0.0, REACHABLE.upper[2]])
+    np.testing.assert_allclose(far - home, robot.reach[1] * np.sign(place), atol=1e-12)
 
 
 @pytest.mark.parametrize("name", ROBOTS)

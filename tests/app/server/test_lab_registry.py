@@ -6,6 +6,8 @@ import re
 
 import pytest
 
+from onpath.app.lab.commands import SetLanguage
+from onpath.app.lab.lab import Lab
 from onpath.app.server.lab_registry import (
     CODE,
     KEPT,
@@ -15,7 +17,11 @@ from onpath.app.server.lab_registry import (
     RegisteredLab,
 )
 from onpath.app.simulation.simulation_thread import SimulationThread
-from tests.support.lab import new_lab
+from onpath.app.storage.lab_state import LabState
+from onpath.app.storage.records import NotKept
+from onpath.assets.messages import languages
+from onpath.lessons.words import Words
+from tests.support.lab import do, new_lab
 
 
 class Desk:
@@ -49,6 +55,27 @@ class _View:
 @pytest.fixture
 def desk() -> Desk:
     return Desk()
+
+
+@pytest.mark.parametrize("language", languages())
+def test_a_lab_that_cannot_be_opened_is_told_of_in_the_language_of_the_new_one(
+    desk: Desk, language: str
+) -> None:
+    def make() -> Lab:
+        lab = new_lab()
+        do(lab, SetLanguage(language))
+        return lab
+
+    def load(_: str) -> LabState | None:
+        raise NotKept("error.lab_newer")
+
+    desk.sessions.make, desk.sessions.load = make, load
+    desk.storage["a"] = "abcdefghijkm"
+    lab = desk.open("a")[1].scheduled.lab
+    words = Words(language)
+    assert lab.message == words("say.lab_kept", reason=words("error.lab_newer"))
+    assert lab.message_level == "warning"
+    assert ("aufbewahrt" in lab.message) == (language == "de")
 
 
 def test_reload_comes_back_to_the_same_lab(desk: Desk) -> None:

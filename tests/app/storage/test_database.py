@@ -558,11 +558,11 @@ def test_a_lab_is_kept_when_it_is_let_go_though_its_turn_was_under_way() -> None
 def test_what_could_not_be_kept_is_tried_again_and_told_once(caplog: Any) -> None:
     caplog.set_level(logging.WARNING)
     store = Memory()
-    store.fault = NotKept("the disk is full")
+    store.fault = NotKept("error.database", reason="the disk is full")
     keeper = WriteBehind(store, interval=0.002)
     keeper.submit("a", number(1))
     until(lambda: keeper.warning)
-    assert keeper.warning == "the disk is full"
+    assert keeper.warning.endswith("the disk is full")
     for n in range(2, 20):
         tries = store.tries
         keeper.submit("b", number(n))
@@ -579,7 +579,7 @@ def test_an_older_state_never_overwrites_a_newer_one() -> None:
     """A write that fails while a newer state arrives is not tried again with the older one."""
     store = Memory()
     store.gate.clear()
-    store.fault = NotKept("the disk is full")
+    store.fault = NotKept("error.database", reason="the disk is full")
     keeper = WriteBehind(store, interval=0.0)
     keeper.submit("a", number(1))
     until(lambda: not keeper._pending)  # 1 is being written
