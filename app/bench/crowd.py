@@ -109,10 +109,10 @@ def measured(crowd: ClientLoad, environment: Mapping[str, str]) -> Iterator[Row]
         alone = server.at_rest()
         with _load(server, crowd.clients, crowd.seconds) as seen:
             settled = next(seen).seconds
-            before, spent = server.vitals(), _processor()
+            before, spent = server.metrics(), _processor()
             for _ in range(crowd.rows):
                 during = next(seen)
-                after, now = server.vitals(crowd.seconds), _processor()
+                after, now = server.metrics(crowd.seconds), _processor()
                 stolen = (now[0] - spent[0]) / max(now[1] - spent[1], 1.0)
                 yield _row(during, settled, stolen, alone, before, after)
                 before, spent = after, now

@@ -56,7 +56,7 @@ class Serve:
         if self.workers != 1:
             self._supervise()
             return
-        from onpath.app.server.handing import handed
+        from onpath.app.server.handover import handover_socket
         from onpath.app.server.lab_server import serve
 
         worker = is_worker()
@@ -75,7 +75,7 @@ class Serve:
             trusted_proxies=self.trusted_proxy,
             unix_socket=self.socket,
             share_port=worker,
-            listener=handed(self.host, self.port),
+            listener=handover_socket(self.host, self.port),
         )
 
     def _supervise(self) -> None:

@@ -150,7 +150,7 @@ def test_a_lab_is_drawn_from_data(robot: str, drawing: Drawing, course: Course) 
     film = filmed(
         lab,
         *(c.Hold(True), c.SetCopy(False), c.Hold(False), c.SetParameter("K1", 90.0)),
-        *(c.Grab(FOLLOWER, y + 0.02), c.Release(), c.SelectPoint(1), c.Arrow(0.002, 0.001)),
+        *(c.Grab(FOLLOWER, y + 0.02), c.Release(), c.SelectPoint(1), c.NudgePoint(0.002, 0.001)),
         *(c.ChoosePath("figure of eight"), c.ChoosePath("ellipse"), c.Share()),
         *(c.SetParameter("torque_limit", 0.5), c.LookAt(1.0), c.GoOn(), c.SetRate(0.5)),
         *(c.SetExaggeration(3.0), c.SetRunning(False)),

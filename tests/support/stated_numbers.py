@@ -64,7 +64,7 @@ def agrees(text: str, measured: float) -> bool:
     return abs(measured - value(text)) <= 0.5 * 10.0**-digits + 1e-9
 
 
-def assert_told(texts: list[str], measured: list[float]) -> None:
+def assert_stated(texts: list[str], measured: list[float]) -> None:
     """All of them, in order."""
     wrong = [(t, m) for t, m in zip(texts, measured, strict=True) if not agrees(t, m)]
     assert not wrong, wrong
@@ -123,11 +123,11 @@ def pulled(right: float, up: float = 0.0, robot: RobotName = "follower", **gains
 def shown(lesson: str, title: str) -> Run:
     """What a step that runs by itself shows."""
     (home,) = BUILT_IN.glob(f"{lesson}-*")
-    told: Lesson = read_lesson(home / "en.md")
-    for index, step in enumerate(told.steps):
+    parsed: Lesson = read_lesson(home / "en.md")
+    for index, step in enumerate(parsed.steps):
         if step.title == title and step.script is not None:
             lab = Lab(store())
-            lab.set_up(setup_of(told, index))
+            lab.set_up(setup_of(parsed, index))
             return _played(lab, step.script)
     raise AssertionError(f"lesson {lesson} shows no {title!r}")
 
