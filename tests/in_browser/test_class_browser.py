@@ -27,7 +27,7 @@ WINDOWS = ((1100, 600), (800, 400), (800, 400))
 
 @dataclass
 class Class:
-    """Three tabs."""
+    """The tabs of a teacher and two students."""
 
     room: LocalClassroom
     teacher: Tab

@@ -1,4 +1,4 @@
-"""Every task of every lesson, done in a browser as its last hint says."""
+"""Tests that every task of every lesson is passed by doing what its last hint says."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ HOLD, LET_GO, RESET = Press("Hold both back"), Press("Let both go"), Press("Rese
 TWO_BULGES = (DragBall((0, 50), (0, 65)), DragBall((0, -50), (0, -65)))
 TWO_HOLDS = (HOLD, Wait(2.2), LET_GO, Wait(2), HOLD, Wait(2.2), LET_GO, Wait(3.2))
 
-# In the order in which a student comes to them; a step's tasks follow each other without a Reset.
+# In the order of the course; there is no reset between the tasks of one step.
 WALKS: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "01-path-or-timetable": {
         "hold-two-seconds": (Enter("K1", 600), Enter("K2", 50), Key("h"), Wait(3), Key("h")),
@@ -121,16 +121,16 @@ BY_TOUCH: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "03-the-five-bar": {"dear": WALKS["03-the-five-bar"]["dear"]},
     "05-invariance": WALKS["05-invariance"],
 }
-"""One task at least for each kind of gesture: a pull, a ball, a slider, buttons."""
+"""At least one task for each kind of gesture: pull, drag of a control point, slider, button."""
 
 
 def cases(walks: dict[str, dict[str, tuple[Gesture, ...]]]) -> list[tuple[str, str]]:
-    """Lesson and task of each walk, in order."""
+    """Lesson and task of each solution, in order."""
     return [(lesson, task) for lesson, tasks in walks.items() for task in tasks]
 
 
 def opened(browser: Browser, server: LabServer, touch: bool) -> Iterator[Hands]:
-    """A student's tab."""
+    """Open a student's tab."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, has_touch=touch)
     tab = Tab(server, context, draws=False)
     yield Hands(tab, touch)
@@ -149,7 +149,7 @@ def finger(browser: Browser, server: LabServer) -> Iterator[Hands]:
 
 
 def go_to(tab: Tab, lesson: str, index: int) -> None:
-    """To a step, unless it is open; time stands still there."""
+    """Open a step unless it is open, and pause the lab."""
     run = tab.lab.lessons
     if run.lesson is None or run.lesson.name != lesson:
         tab.ask(c.OpenLesson(lesson))
@@ -163,7 +163,7 @@ def go_to(tab: Tab, lesson: str, index: int) -> None:
 
 
 def do(hands: Hands, lesson: str, task: str, gestures: tuple[Gesture, ...]) -> None:
-    """A walk, and the task's tick on the page."""
+    """Do the gestures, and assert that the page shows the task as passed."""
     index, wanted = TASKS[lesson, task]
     go_to(hands.tab, lesson, index)
     for gesture in gestures:
@@ -176,18 +176,18 @@ def do(hands: Hands, lesson: str, task: str, gestures: tuple[Gesture, ...]) -> N
 
 
 def passed(tab: Tab, task: Task) -> bool:
-    """Whether the page says so."""
-    box = tab.page.locator(".op-box").filter(has_text=beginning(task))
+    """Whether the page shows a task as passed."""
+    box = tab.page.locator(".op-box").filter(has_text=first_words(task))
     return box.filter(has_text="✓ Passed").count() == 1
 
 
 def verdicts(tab: Tab, task: Task) -> list[str]:
-    """What the lab has measured."""
+    """The lab's verdicts on a task, in words."""
     return [verdict.words for verdict in tab.lab.lessons.verdicts.get(task.id, [])]
 
 
-def beginning(task: Task) -> str:
-    """Of its text, as the page shows it."""
+def first_words(task: Task) -> str:
+    """The first words of a task's text, as the page shows them."""
     return html.unescape(re.sub(r"<[^>]+>", "", task.text))[:40]
 
 
@@ -219,7 +219,7 @@ def test_a_task_is_passed_by_touch(finger: Hands, lesson: str, task: str) -> Non
 
 @pytest.mark.parametrize("by", ["mouse", "finger"])
 def test_the_ball_under_the_end_point_is_dragged(by: str, request: pytest.FixtureRequest) -> None:
-    """As the five-bar's first step asks: the end-point rests on the ball at the right end."""
+    """The first step of lesson 3 asks for it: the end-point rests on the ball at the right."""
     hands: Hands = request.getfixturevalue(by)
     tab, lab = hands.tab, hands.lab
     go_to(tab, "03-the-five-bar", 0)

@@ -43,7 +43,7 @@ def client() -> Iterator[viser.ClientHandle]:
     server = LabServer("127.0.0.1", 0, LoopCache())
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.may("Path") and server._views)
+        student.read(lambda: student.has_widget("Path") and server._views)
         server.simulation.stop()
         (number,) = wait_for(lambda: list(server._views))
         yield server.server.get_clients()[number]
