@@ -1,6 +1,6 @@
-"""Load test: a server process, and simulated browsers in a process of their own.
+"""Load test: a server process, and another process with simulated browsers.
 
-The server has data folders of its own. Measurement begins when every browser is shown moving
+The server uses temporary data folders. Measurement begins when every browser is shown moving
 robots.
 """
 
@@ -27,7 +27,7 @@ SHORTEST = 1.0  # [s]
 HEAD = """\
 clients settled  sim slow  display [Hz]  frames late [ms] >50ms       CPU [%]        for each  labs
             [s] [Hz]  lab slowest median  p50   p95   p99   [%] server load stolen  [MB] [kB/s]"""
-PROCESSOR = Path("/proc/stat")  # Linux alone
+PROCESSOR = Path("/proc/stat")  # Linux only
 
 
 @dataclass(frozen=True, slots=True)

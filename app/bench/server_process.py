@@ -22,7 +22,7 @@ from onpath.app.viser_adapter.request_filter import HEALTH
 
 PATIENCE = 60.0  # [s] until all workers must have answered
 LAST_WORDS = 20.0  # [s] that the server has to stop
-STILL = 0.5  # [MB] by which a server at rest may grow
+STILL = 0.5  # [MB], largest growth of a server at rest
 
 
 @dataclass(frozen=True, slots=True)

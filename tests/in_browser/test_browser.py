@@ -243,13 +243,13 @@ def test_gains_by_number_and_by_slider(tab: Tab) -> None:
     wait_for(lambda: float(shown.input_value()) == 400.0)
 
 
-def test_a_number_beyond_the_limits_is_brought_back(tab: Tab) -> None:
+def test_a_number_beyond_the_limits_is_clamped(tab: Tab) -> None:
     tab.enter("K1", "99999")
     wait_for(lambda: tab.session.parameters.K1 == 2500.0)
     wait_for(lambda: tab.number("K1").input_value() == "2500")
 
 
-def test_a_path_is_refused_in_words_and_the_old_one_kept(tab: Tab) -> None:
+def test_a_refused_path_is_explained_and_the_old_one_kept(tab: Tab) -> None:
     tab.choose("Path", "figure of eight")
     tab.page.get_by_role("status").filter(has_text="refused").wait_for()
     assert "crosses itself" in tab.said()

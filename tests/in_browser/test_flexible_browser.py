@@ -93,7 +93,7 @@ def test_the_path_is_dragged_in_its_slanted_plane(tab: Tab) -> None:
     tab.ask(c.ChoosePath("circle"), c.Reset())
 
 
-def test_a_divergence_is_caught_said_and_reset(tab: Tab) -> None:
+def test_a_divergence_is_caught_reported_and_reset(tab: Tab) -> None:
     lab = tab.lab
     tab.ask(c.SetParameter("speed", 2.0), c.Reset(), c.SetRunning(True))
     tab.enter("Drawn larger", "5")
@@ -111,7 +111,7 @@ def test_a_divergence_is_caught_said_and_reset(tab: Tab) -> None:
     assert lab.session.runs[FOLLOWER].distance < 5e-3
 
 
-def test_the_other_robot_is_as_it_was(tab: Tab) -> None:
+def test_the_other_robot_is_unchanged(tab: Tab) -> None:
     tab.press("Robot…")
     tab.press(FIVE_BAR.label)
     wait_for(lambda: tab.session.entry is FIVE_BAR and tab.session.time > 0.3)

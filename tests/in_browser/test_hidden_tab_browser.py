@@ -103,7 +103,7 @@ class Meter:
         return (self._sent - before) / seconds
 
 
-def test_a_covered_tab_costs_nothing_and_then_shows_what_is(
+def test_a_covered_tab_costs_nothing_and_then_shows_the_current_state(
     server: LabServer, window: Window
 ) -> None:
     view = wait_for(lambda: [lab.view for lab in server.simulation.labs if lab.view is not None])[0]

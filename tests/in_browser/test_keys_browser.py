@@ -211,7 +211,7 @@ def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
     tab.field("Share code").fill("")
 
 
-def test_going_on_is_said_and_undone_by_key_and_button(tab: Tab) -> None:
+def test_going_on_is_reported_and_undone_by_key_and_button(tab: Tab) -> None:
     lab = tab.lab
     wait_for(lambda: lab.session.time > 1.5)
     tab.page.keyboard.press("b")

@@ -43,7 +43,7 @@ def positions(page: Page, *places: tuple[float, float]) -> list[tuple[float, flo
     return [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in places]
 
 
-def test_only_what_the_step_speaks_of_is_shown(tab: Tab) -> None:
+def test_only_the_controls_of_the_step_are_shown(tab: Tab) -> None:
     run = tab.lab.lessons
     assert run.lesson is not None and run.lesson.name == LESSON
     assert tab.page.get_by_role("tab", name="This step").get_attribute("aria-selected") == "true"
@@ -70,7 +70,7 @@ def test_a_prediction_is_sketched_before_anything_happens(tab: Tab) -> None:
     assert max(answer.values) > 1.3 * answer.values[0] and max(answer.values) > answer.values[-1]
 
 
-def test_the_truth_comes_onto_the_same_axes(tab: Tab) -> None:
+def test_the_result_is_plotted_on_the_same_axes(tab: Tab) -> None:
     tab.press("Next")
     wait_for_heading(tab, "Held from 3 s to 5 s")
     assert tab.page.get_by_text("Four arches").count() == 0  # not told before it has happened
@@ -128,7 +128,7 @@ def hold_for(tab: Tab, seconds: float) -> None:
     wait_for(lambda: not tab.session.grips.held)
 
 
-def test_the_free_lab_is_as_it_was(tab: Tab) -> None:
+def test_the_free_lab_is_unchanged(tab: Tab) -> None:
     tab.page.get_by_role("button", name="Free lab").click()
     tab.page.get_by_role("heading", name="Hold it yourself").wait_for(state="detached")
     wait_for(lambda: tab.lab.lessons.lesson is None)

@@ -44,7 +44,7 @@ TWO_BULGES = (DragBall((0, 50), (0, 65)), DragBall((0, -50), (0, -65)))
 TWO_HOLDS = (HOLD, Wait(2.2), LET_GO, Wait(2), HOLD, Wait(2.2), LET_GO, Wait(3.2))
 
 # In the order of the course; there is no reset between the tasks of one step.
-WALKS: dict[str, dict[str, tuple[Gesture, ...]]] = {
+SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "01-path-or-timetable": {
         "hold-two-seconds": (Enter("K1", 600), Enter("K2", 50), Key("h"), Wait(3), Key("h")),
         "thirty-times": (Enter("K1", 1600), Enter("K2", 80), HOLD, Wait(3), LET_GO),
@@ -118,15 +118,15 @@ WALKS: dict[str, dict[str, tuple[Gesture, ...]]] = {
 }
 BY_TOUCH: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "01-path-or-timetable": {"push-across": (Pull(30, 0, seconds=1), Wait(2))},
-    "03-the-five-bar": {"dear": WALKS["03-the-five-bar"]["dear"]},
-    "05-invariance": WALKS["05-invariance"],
+    "03-the-five-bar": {"dear": SOLUTIONS["03-the-five-bar"]["dear"]},
+    "05-invariance": SOLUTIONS["05-invariance"],
 }
 """At least one task for each kind of gesture: pull, drag of a control point, slider, button."""
 
 
-def cases(walks: dict[str, dict[str, tuple[Gesture, ...]]]) -> list[tuple[str, str]]:
+def cases(solutions: dict[str, dict[str, tuple[Gesture, ...]]]) -> list[tuple[str, str]]:
     """Lesson and task of each solution, in order."""
-    return [(lesson, task) for lesson, tasks in walks.items() for task in tasks]
+    return [(lesson, task) for lesson, tasks in solutions.items() for task in tasks]
 
 
 def opened(browser: Browser, server: LabServer, touch: bool) -> Iterator[Hands]:
@@ -191,25 +191,25 @@ def first_words(task: Task) -> str:
     return html.unescape(re.sub(r"<[^>]+>", "", task.text))[:40]
 
 
-def test_every_task_of_every_lesson_is_done_here() -> None:
-    assert set(cases(WALKS)) == set(TASKS)
+def test_every_task_of_every_lesson_has_gestures_here() -> None:
+    assert set(cases(SOLUTIONS)) == set(TASKS)
     assert set(cases(BY_TOUCH)) <= set(TASKS)
 
 
-@pytest.mark.parametrize(("lesson", "task"), cases(WALKS))
-def test_a_number_that_is_typed_stands_in_the_hints(lesson: str, task: str) -> None:
+@pytest.mark.parametrize(("lesson", "task"), cases(SOLUTIONS))
+def test_typed_numbers_are_in_the_hints(lesson: str, task: str) -> None:
     said = " ".join([TASKS[lesson, task][1].text, *TASKS[lesson, task][1].hints])
     numbers = re.findall(r"[-−]?\d+(?:\.\d+)?", html.unescape(said))
     known = {float(number.replace("−", "-")) for number in numbers}
-    typed = {g.value for g in WALKS[lesson][task] if isinstance(g, Enter | Slide)}
+    typed = {g.value for g in SOLUTIONS[lesson][task] if isinstance(g, Enter | Slide)}
     assert typed <= known
 
 
-@pytest.mark.parametrize(("lesson", "task"), cases(WALKS))
+@pytest.mark.parametrize(("lesson", "task"), cases(SOLUTIONS))
 def test_a_task_is_passed_by_doing_what_its_last_hint_says(
     mouse: Hands, lesson: str, task: str
 ) -> None:
-    do(mouse, lesson, task, WALKS[lesson][task])
+    do(mouse, lesson, task, SOLUTIONS[lesson][task])
 
 
 @pytest.mark.parametrize(("lesson", "task"), cases(BY_TOUCH))
