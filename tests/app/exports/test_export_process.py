@@ -7,13 +7,14 @@ import signal
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from onpath.app.exports.export_process import ExportError, ExportProcess
 from onpath.app.exports.files import csv_bytes, csv_file
 from onpath.app.exports.worker import NICENESS
-from tests.support.export_jobs import die
+from tests.support.export_jobs import die, sleep_after_touching
 from tests.support.lab import new_lab
 from tests.support.waiting import wait_for
 
@@ -59,12 +60,18 @@ def test_a_crash_fails_one_call(process: ExportProcess) -> None:
     assert process.call(LONG, abs, -1) == 1
 
 
-def test_a_killed_process_fails_one_call(process: ExportProcess) -> None:
-    pid = process.call(LONG, os.getpid)
-    killer = threading.Timer(0.0, os.kill, [pid, signal.SIGKILL])
+def test_a_killed_process_fails_one_call(process: ExportProcess, tmp_path: Path) -> None:
+    pid, begun = process.call(LONG, os.getpid), tmp_path / "begun"
+
+    def kill_once_begun() -> None:
+        wait_for(begun.exists, LONG)
+        os.kill(pid, signal.SIGKILL)
+
+    killer = threading.Thread(target=kill_once_begun)
     killer.start()
     with pytest.raises(ExportError, match="died"):
-        process.call(LONG, time.sleep, LONG)
+        process.call(LONG, sleep_after_touching, begun, LONG)
+    killer.join()
     assert process.call(LONG, os.getpid) != pid
 
 
