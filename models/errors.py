@@ -1,4 +1,4 @@
-"""Errors and reasons as data: a code, whose words every language's catalogue has, and arguments."""
+"""Errors and reasons as data: a code, which the catalogues translate, and arguments."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ Argument: TypeAlias = "str | int | Message | tuple[Message, ...]"
 
 @dataclass(frozen=True)
 class Message:
-    """Something to be said to a user; `str` of it is English.
+    """A message to a user; `str` of it is English.
 
     Attributes:
         code: a key of the catalogues, such as "fault.crosses".
         arguments: by name. A count is a whole number, so that a language can choose the plural;
-            other numbers are text, as they are to be shown. Messages in a message are translated
+            other numbers are formatted as text. Messages in a message are translated
             too, several of them separated by semicolons.
     """
 
@@ -66,5 +66,5 @@ class CodedError(Coded, ValueError):
 
 
 def said_by(error: Exception) -> Message | str:
-    """What an error says, as an argument of another message."""
+    """The message of an error, as an argument of another message."""
     return error.message if isinstance(error, Coded) else str(error)

@@ -1,6 +1,6 @@
-"""Load test: a server process, and simulated browsers in a process of their own.
+"""Load test: a server process, and another process with simulated browsers.
 
-The server has data folders of its own. Measurement begins when every browser is shown moving
+The server uses temporary data folders. Measurement begins when every browser is shown moving
 robots.
 """
 
@@ -27,7 +27,7 @@ SHORTEST = 1.0  # [s]
 HEAD = """\
 clients settled  sim slow  display [Hz]  frames late [ms] >50ms       CPU [%]        for each  labs
             [s] [Hz]  lab slowest median  p50   p95   p99   [%] server load stolen  [MB] [kB/s]"""
-PROCESSOR = Path("/proc/stat")  # Linux alone
+PROCESSOR = Path("/proc/stat")  # Linux only
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,10 +109,10 @@ def measured(crowd: ClientLoad, environment: Mapping[str, str]) -> Iterator[Row]
         alone = server.at_rest()
         with _load(server, crowd.clients, crowd.seconds) as seen:
             settled = next(seen).seconds
-            before, spent = server.vitals(), _processor()
+            before, spent = server.metrics(), _processor()
             for _ in range(crowd.rows):
                 during = next(seen)
-                after, now = server.vitals(crowd.seconds), _processor()
+                after, now = server.metrics(crowd.seconds), _processor()
                 stolen = (now[0] - spent[0]) / max(now[1] - spent[1], 1.0)
                 yield _row(during, settled, stolen, alone, before, after)
                 before, spent = after, now

@@ -36,7 +36,7 @@ MOVED = 1e-4  # [m]
 
 
 def check_installed() -> None:
-    """Complain before all the other tables are measured.
+    """Check the installation before the other tables are measured.
 
     Raises:
         ValueError: Playwright is not installed.

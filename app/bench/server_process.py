@@ -22,7 +22,7 @@ from onpath.app.viser_adapter.request_filter import HEALTH
 
 PATIENCE = 60.0  # [s] until all workers must have answered
 LAST_WORDS = 20.0  # [s] that the server has to stop
-STILL = 0.5  # [MB] by which a server at rest may grow
+STILL = 0.5  # [MB], largest growth of a server at rest
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class Server:
     process: subprocess.Popen[bytes]
     said: IO[bytes]
 
-    def vitals(self, seconds: float = WINDOW) -> dict[int, Metrics]:
+    def metrics(self, seconds: float = WINDOW) -> dict[int, Metrics]:
         """Metrics of each worker, by process id.
 
         New connections go to the least-loaded worker; so connections to those that have answered
@@ -53,27 +53,29 @@ class Server:
             ValueError: some do not answer.
         """
         with ExitStack() as held:
-            return self._vitals(seconds, held)
+            return self._metrics(seconds, held)
 
-    def _vitals(self, seconds: float, held: ExitStack) -> dict[int, Metrics]:
-        told: dict[int, Metrics] = {}
+    def _metrics(self, seconds: float, held: ExitStack) -> dict[int, Metrics]:
+        reported: dict[int, Metrics] = {}
         until, trouble = time.monotonic() + PATIENCE, ""
-        while len(told) < self.workers:
+        while len(reported) < self.workers:
             if self.process.poll() is not None:
                 self.said.seek(0)
                 said = self.said.read().decode(errors="replace").strip()
                 raise ValueError("the server has ended: " + said.rpartition("\n")[2])
             if time.monotonic() > until:
-                raise ValueError(f"{len(told)} of {self.workers} workers say how they are{trouble}")
+                raise ValueError(
+                    f"{len(reported)} of {self.workers} workers say how they are{trouble}"
+                )
             try:
-                vitals = self._ask(seconds)
-                if vitals.pid in told:
+                measured = self._ask(seconds)
+                if measured.pid in reported:
                     held.enter_context(socket.create_connection(("127.0.0.1", self.port)))
-                told[vitals.pid] = vitals
+                reported[measured.pid] = measured
             except (OSError, HTTPException, msgspec.DecodeError) as error:
                 trouble = f": {error}"
                 time.sleep(0.05)
-        return told
+        return reported
 
     def _ask(self, seconds: float) -> Metrics:
         connection = HTTPConnection("127.0.0.1", self.port, timeout=10.0)
@@ -87,11 +89,11 @@ class Server:
         """Metrics before any client has come, after `warm_up` has finished."""
         sizes: list[tuple[float, float]] = []
         while True:
-            vitals, now = self.vitals(), time.monotonic()
-            sizes.append((now, sum(each.rss_mb or 0.0 for each in vitals.values())))
+            measured, now = self.metrics(), time.monotonic()
+            sizes.append((now, sum(each.rss_mb or 0.0 for each in measured.values())))
             lately = [size for when, size in sizes if when > now - REST - 1.0]
             if len(lately) < len(sizes) and max(lately) - min(lately) < STILL:
-                return vitals
+                return measured
             time.sleep(0.3)
 
 

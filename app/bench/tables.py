@@ -56,7 +56,7 @@ def bench(quick: bool = False) -> None:
 
 
 def _loops(folder: Path, repeats: int) -> None:
-    """Microseconds per simulated millisecond, medians, tiers interleaved."""
+    """Median microseconds per simulated millisecond; the tiers are measured in turn."""
     print(f"{'robot':12s} {'controller':20s} {'pushed':7s} {'tier':12s} {'µs/ms':>8s}")
     for entry in ROBOTS.values():
         for controller in NAMES:
@@ -95,7 +95,7 @@ def _per_tick(calls: Mapping[str, Callable[[], object]], repeats: int) -> dict[s
 
 
 def _interleaved(calls: Mapping[str, Callable[[], object]], repeats: int) -> dict[str, float]:
-    """Median seconds of each, taken in turn so that drift hits all alike."""
+    """Median seconds of each call; they run in turn, so that drift affects all equally."""
     times: dict[str, list[float]] = {name: [] for name in calls}
     for _ in range(repeats):
         for name, call in calls.items():
@@ -117,7 +117,7 @@ def _modes(folder: Path, repeats: int) -> None:
 
 
 def _making(repeats: int) -> None:
-    """How long it takes to make machine code of a follower."""
+    """Time to compile a follower's loop to machine code."""
     for entry in ROBOTS.values():
         parameters = entry.parameters()
         kind = kind_of("path_following", parameters, circle(0.05))
@@ -129,7 +129,7 @@ def _making(repeats: int) -> None:
 
 @contextmanager
 def _quiet_lab() -> Iterator[LabServer]:
-    """A server in this process, without viser's banner."""
+    """Start a server in this process, without viser's banner."""
     with redirect_stdout(StringIO()):
         lab = LabServer("127.0.0.1", 0, LoopCache())
     try:
@@ -140,13 +140,13 @@ def _quiet_lab() -> Iterator[LabServer]:
 
 
 def bench_crowds(crowds: list[ClientLoad]) -> None:
-    """Print the table of crowds: a row for each, or as many as it asks for."""
+    """Print the table of loads, with the requested number of rows for each."""
     _begin()
     _crowds(crowds)
 
 
 def _begin() -> None:
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # the servers are to end as well
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # so that the servers end, too
     load = os.getloadavg()[0]
     print(f"{platform.platform()}, {os.cpu_count()} cores, load {load:.1f}\n", flush=True)
 
@@ -161,7 +161,7 @@ def _crowds(crowds: list[ClientLoad]) -> None:
 
 
 def _start_up() -> None:
-    """From the start of the process to the first picture."""
+    """Time from the start of the process to the first picture."""
     with tempfile.TemporaryDirectory() as folder:
         for name in ("the first time", "again"):
             with serving(folders(Path(folder), "data")) as server:
@@ -171,7 +171,7 @@ def _start_up() -> None:
 
 
 def _mouse() -> None:
-    """From a mouse move in Chromium to the changed pose that comes back."""
+    """Time from a mouse move in Chromium to the changed pose that comes back."""
     browser = find_browser()
     if browser is None:
         print("mouse to picture: not measured, it needs Chromium and Playwright")

@@ -141,11 +141,11 @@ class ClassLedger:
         return connection.execute(sa.delete(members).where(self._all)).rowcount
 
     def forget(self, connection: sa.Connection) -> None:
-        """Nothing is kept of the class."""
+        """Delete all data of the class."""
         _forget(connection, self._own)
 
     def forget_old(self, connection: sa.Connection, now: Now) -> None:
-        """Nothing is kept of any class that nobody has changed for long."""
+        """Delete all data of classes without a recent change."""
         _forget(connection, classes.c.touched < now.wall - FORGOTTEN)
 
     # Passes

@@ -110,7 +110,7 @@ class Relay:
         self._mirrors = mirrors
 
     def _run(self, wanted: set[Mirror]) -> None:
-        """Have these advanced, and no others."""
+        """Let the simulation thread advance these mirrors only."""
         running = {mirror for _, mirror in self._mirrors.values()}
         for mirror in running - wanted:
             self._simulation.remove(mirror)

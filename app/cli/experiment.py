@@ -1,4 +1,4 @@
-"""`onpath experiment` and `onpath zero-dynamics`: what can be reproduced without a browser."""
+"""`onpath experiment` and `onpath zero-dynamics`, which reproduce results of the paper."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from onpath.app.exports.summary_text import summary_lines
 
 @dataclass(frozen=True)
 class ExperimentCommand:
-    """Run one of the paper's experiments and report."""
+    """Run one of the paper's experiments and print a report."""
 
     name: Annotated[str, tyro.conf.Positional]
-    """position, obstruction or flexible (that one with the flexible link alone)."""
+    """position, obstruction or flexible (flexible link only)."""
     robot: str = ""
-    """Which robot does it, by name; the paper's unless told otherwise."""
+    """Name of the robot; by default the paper's."""
     controller: Literal["path_following", "trajectory_tracking", "both"] = "both"
     """Which controller to run."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """name=value, for any parameter; repeat for more."""
+    """Set any parameter, as name=value; repeat for more."""
     csv: Path | None = None
     """Write every millisecond to this CSV file."""
     plot: Path | None = None
@@ -33,7 +33,7 @@ class ExperimentCommand:
     """Print a summary as JSON."""
 
     def run(self) -> None:
-        """Simulate, then write and print what was asked for."""
+        """Simulate, then write and print the requested output."""
         from onpath.app.exports.figures import draw_experiment
         from onpath.models.closed_loop.trajectory import write_csv
         from onpath.models.control.laws import NAMES
@@ -62,19 +62,19 @@ class ExperimentCommand:
 
 @dataclass(frozen=True)
 class ZeroDynamicsCommand:
-    """Exponents of the flexible link's internal dynamics against alpha and number of modes."""
+    """Compute exponents of the flexible link's internal dynamics for alpha and number of modes."""
 
     at: tuple[float, float] = (0.0, 0.0)
     """y2 and y3 of the tip at rest, in metres."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """name=value, for rho, plant, frequency, zeta; repeat for more."""
+    """Set rho, plant, frequency or zeta, as name=value; repeat for more."""
     plot: Path | None = None
     """Draw exponents and critical alpha to this .png, .svg or .pdf file."""
     json: bool = False
     """Print the table as JSON."""
 
     def run(self) -> None:
-        """Compute, then print and draw."""
+        """Compute, draw and print the result."""
         from onpath.app.exports.figures_flexible import draw_zero_dynamics
         from onpath.app.exports.zero_dynamics import as_json, as_table, changed_all, study
 
@@ -97,7 +97,7 @@ def _assignments(pairs: tuple[str, ...]) -> dict[str, str]:
 
 
 def _table(result: dict, reasons: dict[str, str]) -> str:
-    """The summary for a reader."""
+    """The summary as text."""
     lines = [result["experiment"]]
     for controller, values in result["controllers"].items():
         lines.append(f"  {controller.replace('_', ' ')}")

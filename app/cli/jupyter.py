@@ -1,4 +1,4 @@
-"""The lab inside Jupyter: what jupyter-server-proxy starts when somebody opens it there."""
+"""The lab inside Jupyter, as started by jupyter-server-proxy."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import Any
 
 
 def server() -> dict[str, Any]:
-    """The entry of jupyter-server-proxy.
+    """Return the configuration for jupyter-server-proxy.
 
-    The lab listens on a Unix socket that only its user can open: on a port, everybody else on the
-    same machine would get in past Jupyter's login.
+    The lab listens on a Unix socket that only its user can open: through a port, other users
+    of the same machine would bypass Jupyter's login.
     """
     return {
         "command": [sys.executable, "-P", "-m", "onpath", "serve", "--socket", "{unix_socket}"],

@@ -1,4 +1,4 @@
-"""The command line: `onpath` serves the lab, its subcommands run without a browser."""
+"""Serve the lab in the browser, or run one of the subcommands."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ INTERRUPTED = 130
 
 @dataclass(frozen=True)
 class Lessons:
-    """List the lessons, or check lessons of your own: read them, play what they say."""
+    """List the lessons, or check your own lessons by reading them and playing their scripts."""
 
     do: Annotated[Literal["list", "check"], tyro.conf.Positional]
     """list or check."""
     folder: Annotated[Path | None, tyro.conf.Positional] = None
-    """A folder of lessons; the built-in ones if there is none."""
+    """Folder of lessons; by default the built-in ones."""
 
     def run(self) -> int:
-        """Print; exit code 1 when something is wrong."""
+        """List or check; return exit code 1 if there are problems."""
         from onpath.lessons.course import BUILT_IN, read_course
 
         folder = self.folder or BUILT_IN
@@ -66,15 +66,15 @@ class BenchCommand:
     """Measure the speed of the closed loops and of the lab."""
 
     quick: bool = False
-    """Fewer repetitions, no clients."""
+    """Run fewer repetitions, and no clients."""
     clients: tuple[int, ...] = ()
-    """Only this: how a server bears so many simulated browsers; several numbers, one by one."""
+    """Only measure a server with this many simulated browsers; several numbers run in turn."""
     workers: int = 1
-    """So many processes serve them."""
+    """Number of server processes."""
     seconds: float = 15.0
-    """So long is measured, once all browsers are shown moving robots."""
+    """Duration of the measurement, once all browsers are shown moving robots."""
     minutes: int = 0
-    """A row every minute for so long, to see whether memory stays flat."""
+    """Measure a row per minute for this long, to see whether memory use is constant."""
 
     def run(self) -> None:
         """Print the table."""
@@ -100,13 +100,13 @@ class BenchCommand:
 
 @dataclass(frozen=True)
 class Forget:
-    """Delete every lab that is kept. There is no way back."""
+    """Delete all stored labs. This cannot be undone."""
 
     database: str | None = None
-    """URL of the database; the file in your data folder if not given."""
+    """URL of the database; by default the file in your data folder."""
 
     def run(self) -> None:
-        """Delete, and say how much."""
+        """Delete the labs, and print their number."""
         from onpath.app.storage.forget import forget
 
         gone = forget(self.database)
@@ -119,10 +119,10 @@ def main() -> None:
 
 
 def run_command(arguments: list[str]) -> int:
-    """Run one command line; returns the exit code.
+    """Run one command line; return the exit code.
 
-    That is 0, or 2 with one line on standard error, 1 for lessons with something wrong, or what
-    shells say of a command that was interrupted.
+    The code is 0; 1 for lessons with problems; 2, with one line on standard error, for other
+    errors; or 130, the usual one, for an interrupted command.
     """
     if not arguments or arguments[0] not in (*COMMANDS, "-h", "--help"):
         if arguments and not arguments[0].startswith("-"):
@@ -141,7 +141,7 @@ def run_command(arguments: list[str]) -> int:
 
 
 def unknown_command(name: str) -> str:
-    """What to say to a command that does not exist."""
+    """The error message for a command that does not exist."""
     return f"unknown command {name!r}: there are {', '.join(COMMANDS)}"
 
 
@@ -169,7 +169,7 @@ def _parse(
 
 
 def _unboxed(text: str) -> str:
-    """A framed message without its frame, title and pointers to the help, on one line."""
+    """Put a framed message on one line, without its frame, title and pointers to the help."""
     _, *sections = re.split(r"[\u2500-]{5,}", re.sub(r"\x1b\[[0-9;]*m", "", text))
     lines = [_one_line(re.sub(r"[\u2500-\u257f]", " ", section)) for section in sections]
     pointers = ("For full helptext", "Argument helptext")

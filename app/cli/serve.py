@@ -1,4 +1,4 @@
-"""`onpath serve`, which is what `onpath` alone does."""
+"""`onpath serve`, the default command."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Serve:
     """Serve the lab in the browser."""
 
     host: str = "127.0.0.1"
-    """Address to listen on; 0.0.0.0 lets other machines in."""
+    """Address to listen on; 0.0.0.0 allows connections from other machines."""
     port: int = 8080
     """Port to listen on."""
     open: bool = False
@@ -29,23 +29,23 @@ class Serve:
     lessons: Path | None = None
     """A folder with lessons of your own, shown after the built-in ones."""
     database: str | None = None
-    """URL of a database that keeps the labs; a file in your data folder if not given."""
+    """URL of the database for the labs; by default a file in your data folder."""
     classroom: bool = False
-    """Open a class: prints a code for the students and a key for the teacher."""
+    """Open a class, and print a code for the students and a key for the teacher."""
     origin: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Address of the page behind a proxy, https://lab.example.org; repeat for more."""
     trusted_proxy: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """A proxy on another machine, 10.0.0.7 or 10.0.0.0/8, that says who asks; repeat for more."""
+    """Proxy on another machine to trust, such as 10.0.0.7 or 10.0.0.0/8; repeat for more."""
     socket: Path | None = None
-    """Listen on this Unix socket instead, for a proxy of your own such as Jupyter's."""
+    """Listen on this Unix socket instead, for your own proxy, such as Jupyter's."""
     most_clients: int = 64
-    """So many browsers at once in each process; the next ones are told to wait."""
+    """Maximum number of browsers in each process; further ones wait."""
     workers: int = 1
-    """So many processes, which share the port and the database."""
+    """Number of processes; they share the port and the database."""
     successive_ports: bool = False
-    """Each worker has a port of its own, from --port on, for a proxy in front."""
+    """Give each worker its own port, counting from --port, for a proxy in front."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
-    """How much to log."""
+    """Least level of log messages."""
 
     def run(self) -> None:
         """Serve until Ctrl-C."""
@@ -56,7 +56,7 @@ class Serve:
         if self.workers != 1:
             self._supervise()
             return
-        from onpath.app.server.handing import handed
+        from onpath.app.server.handover import handover_socket
         from onpath.app.server.lab_server import serve
 
         worker = is_worker()
@@ -75,7 +75,7 @@ class Serve:
             trusted_proxies=self.trusted_proxy,
             unix_socket=self.socket,
             share_port=worker,
-            listener=handed(self.host, self.port),
+            listener=handover_socket(self.host, self.port),
         )
 
     def _supervise(self) -> None:
@@ -93,7 +93,7 @@ class Serve:
 
 
 def _opener(silent: bool) -> Callable[[Records], Classroom]:
-    """What opens a class in a database; it prints code and key unless somebody else does."""
+    """Return the function that opens a class; it prints code and key unless `silent`."""
     from onpath.app.classroom.class_opening import given_key, open_class
 
     key = given_key()
@@ -108,7 +108,7 @@ def _opener(silent: bool) -> Callable[[Records], Classroom]:
 
 
 def _print_class(code: str, key: str | None) -> None:
-    """What to tell students and teacher, whatever is logged; a key that was given is known."""
+    """Print the class code, and the teacher's key if there is one to print."""
     from onpath.app.common.access_codes import shown
 
     print(f"class code:    {code.upper()}     for the students, under Class")

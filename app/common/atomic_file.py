@@ -1,4 +1,4 @@
-"""Output files that are written completely or not at all, and checked before the work begins."""
+"""Output files that are written completely or not at all, and early checks of their paths."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from pathlib import Path
 
 
 def check_plot(path: Path | None, asked_by: str = "--plot") -> None:
-    """Complain of a picture that cannot be made.
+    """Check that a picture can be written.
 
     Args:
         asked_by: the option or function that the picture is for.
 
     Raises:
-        ValueError: an unknown kind of file, or nothing can be written there.
+        ValueError: an unknown kind of file, or the file cannot be written.
     """
     if path is None:
         return
@@ -26,10 +26,10 @@ def check_plot(path: Path | None, asked_by: str = "--plot") -> None:
 
 
 def check_writable(path: Path) -> None:
-    """Check that a file can be written, before the work is done.
+    """Check that a file can be written.
 
     Raises:
-        ValueError: it cannot.
+        ValueError: the file cannot be written.
     """
     if path.is_dir():
         raise ValueError(f"{path}: that is a folder")
@@ -41,7 +41,7 @@ def check_writable(path: Path) -> None:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """A scratch file that takes the name `path` only once it is complete."""
+    """Open a temporary file that is renamed to `path` once it is complete."""
     handle, scratch = tempfile.mkstemp(dir=path.parent, suffix=path.suffix)
     os.close(handle)
     try:

@@ -1,4 +1,4 @@
-"""The colours of the lab: one colour for one meaning, in the scene, the plots and the figures.
+"""The colours of the lab, with the same meanings in the scene, the plots and the figures.
 
 The controllers' colours are Okabe and Ito's vermillion and blue, which remain distinguishable for
 every common form of colour blindness and on a pale projector.
@@ -50,14 +50,14 @@ class Colour:
 WHITE = Colour(255, 255, 255)
 INK = Colour(31, 41, 55)
 
-# Text on a page, from the strongest to the weakest, and what is right, wrong or told
+# Text on a page, from the strongest to the weakest, and right, wrong and neutral answers
 SLATE = Colour(63, 74, 90)
 GREY = Colour(102, 112, 133)
 GREEN = Colour(29, 122, 79)
 AMBER = Colour(138, 90, 0)
 BLUE = Colour(51, 80, 107)
 
-# Lines and grounds on a page
+# Lines and backgrounds on a page
 MUTED = Colour(170, 180, 192)
 BORDER = Colour(213, 218, 225)
 SHADE = Colour(238, 241, 245)
@@ -78,6 +78,6 @@ FLOOR = Colour(244, 246, 248)
 GRID = Colour(222, 226, 232)
 
 SEEN = FOLLOWER.toward(WHITE, 0.6)
-"""Of the steps of a lesson that have been opened."""
+"""Colour of the steps of a lesson that have been opened."""
 
 CONTROLLERS: dict[str, Colour] = dict(zip(NAMES, (TRACKER, FOLLOWER), strict=True))

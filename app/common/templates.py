@@ -1,6 +1,6 @@
-"""HTML from the templates in assets/templates: every value is escaped unless it is Markup.
+"""HTML from the templates in assets/templates: every value is escaped unless it is `Markup`.
 
-Markup is made in `phrase` and, of a lesson's markdown, in `lessons.formulas.render`; nowhere else.
+`Markup` is only made in `phrase` and, from a lesson's markdown, in `lessons.formulas.render`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from onpath.lessons.words import Words
 
 @cache
 def environment() -> Environment:
-    """All templates; each is compiled once in a process."""
+    """All templates; each is compiled once per process."""
     made = Environment(
         loader=FileSystemLoader(asset_path("templates")),
         autoescape=True,
@@ -35,9 +35,9 @@ def environment() -> Environment:
 
 
 def render(template: str, /, **values: object) -> str:
-    """A template with its values filled in; from any thread.
+    """Render a template with values. Thread-safe.
 
-    What is returned is no Markup, which viser's messages cannot hold.
+    The result is a plain string, because viser's messages cannot hold `Markup`.
 
     Args:
         template: path in assets/templates.
@@ -50,9 +50,9 @@ def render(template: str, /, **values: object) -> str:
 
 
 def phrase(words: Words, key: str, /, **values: object) -> Markup:
-    """The words for a key with Markup among their values, which stays Markup; all else is escaped.
+    """The message of a key as `Markup`; its values are escaped unless they are `Markup`.
 
-    Each such value is represented by a mark of private characters until the rest is escaped.
+    Values that are `Markup` are replaced by private characters while the rest is escaped.
     """
     marks = {f"\ue000{name}\ue001": v for name, v in values.items() if isinstance(v, Markup)}
     plain = {name: v for name, v in values.items() if not isinstance(v, Markup)}

@@ -1,4 +1,4 @@
-"""Who may go on trying codes: a few wrong ones a minute for each tab, none slows another down."""
+"""Limits wrong codes to a few per minute and tab; tabs do not affect each other."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from contextlib import contextmanager, suppress
 
 from onpath.models.errors import CodedError
 
-TRIES, WITHIN = 5, 60.0  # wrong codes that one tab may type in so many seconds
+TRIES, WITHIN = 5, 60.0  # number of wrong codes per tab, in this many seconds
 
 
 class Throttle:
-    """Counts failures by who has them, any number at once; from any thread.
+    """Counts the failures of each tab. Thread-safe, and attempts may overlap.
 
     Args:
-        clock: [s].
+        clock: monotonic time, [s].
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -26,10 +26,10 @@ class Throttle:
 
     @contextmanager
     def attempt(self, who: str) -> Iterator[None]:
-        """One attempt, failed if a ValueError ends it; until it ends it counts as failed.
+        """Make an attempt, which fails by raising ValueError; until it ends it counts as failed.
 
         Raises:
-            ValueError: not now, whatever the attempt is; it is not begun.
+            ValueError: too many failures; the attempt is not made.
         """
         begun = self._begin(who)
         try:
@@ -53,5 +53,5 @@ class Throttle:
             return begun
 
     def _withdraw(self, begun: tuple[float, str]) -> None:
-        with self._lock, suppress(ValueError):  # it was long ago
+        with self._lock, suppress(ValueError):  # it has expired
             self._failures.remove(begun)

@@ -66,10 +66,10 @@ def record_scene(
     scene = Scene(studio, stage, words=words)  # type: ignore[arg-type]  # has scene, atomic()
     scene.build(_snapshot(robot, frames[0], 0, []))
     serializer = studio.get_scene_serializer()
-    for number, stretch in enumerate(frames):
+    for number, segment in enumerate(frames):
         if time.monotonic() > until:
             raise TimeoutError("the recording takes too long")
-        snapshot = _snapshot(robot, stretch, number, frames[max(0, number - 45) : number])
+        snapshot = _snapshot(robot, segment, number, frames[max(0, number - 45) : number])
         scene.update(snapshot)
         scene.update_path(snapshot)
         if number % 3 == 0:
@@ -85,16 +85,16 @@ def _frames(history: list[Segment]) -> list[Segment]:
     return [history[i] for i in np.searchsorted(times, wanted).clip(max=len(times) - 1)]
 
 
-def _snapshot(robot: Robot, stretch: Segment, number: int, before: list[Segment]) -> Snapshot:
+def _snapshot(robot: Robot, segment: Segment, number: int, before: list[Segment]) -> Snapshot:
     where = sample_layout(robot).slices["y"]
-    traces = np.array([s.sample[:, where] for s in [*before, stretch]], dtype=float)
-    views = robot_views(robot, stretch.curve, stretch.instant(), traces[:-1])
+    traces = np.array([s.sample[:, where] for s in [*before, segment]], dtype=float)
+    views = robot_views(robot, segment.curve, segment.instant(), traces[:-1])
     theta = np.linspace(-np.pi, np.pi, CURVE_POINTS)
     path = PathView(
-        version=id(stretch.curve),
-        points=robot.place(robot.frame.lift(stretch.curve.at(theta))),
+        version=id(segment.curve),
+        points=robot.place(robot.frame.lift(segment.curve.at(theta))),
         control_points=np.zeros((0, 3)),
         selected=None,
         refused=np.zeros((0, 3)),
     )
-    return Snapshot(stretch.time, True, 1.0, views, path, False, None, "", "info")
+    return Snapshot(segment.time, True, 1.0, views, path, False, None, "", "info")

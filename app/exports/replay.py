@@ -37,13 +37,13 @@ def _replayed(robot: Robot, name: str, history: list[Segment]) -> list[Trajector
     parts: list[Trajectory] = []
     runs = groupby(history, key=lambda s: (id(s.curve), s.dt, s.drives[name].kind))
     for (_, dt, kind), group in runs:
-        stretches = [s for s in group if not s.drives[name].frozen]
-        if not stretches:
+        segments = [s for s in group if not s.drives[name].frozen]
+        if not segments:
             continue
         loop = _fast_loop(robot, kind)
-        segments = [(rows, s.curve, held) for s, rows, held in _rows(loop, name, stretches)]
-        times = np.concatenate([s.time + dt * np.arange(s.ticks, dtype=float) for s in stretches])
-        parts.append(record(robot, loop.kernel.log, name, merged(segments), dt, times).thinned())
+        logged = [(rows, s.curve, held) for s, rows, held in _rows(loop, name, segments)]
+        times = np.concatenate([s.time + dt * np.arange(s.ticks, dtype=float) for s in segments])
+        parts.append(record(robot, loop.kernel.log, name, merged(logged), dt, times).thinned())
     return parts
 
 
@@ -57,19 +57,19 @@ def _fast_loop(robot: Robot, kind: Kind) -> Loop:
         return InterpretedLoop(kernel)
 
 
-def _rows(loop: Loop, name: str, stretches: list[Segment]) -> Iterable[tuple[Segment, Array, bool]]:
-    for stretch in stretches:
-        drive = stretch.drives[name]
-        table = stretch.curve.table()
-        rows = loop.run(drive.state, drive.settings, table, stretch.ticks)[1]
+def _rows(loop: Loop, name: str, segments: list[Segment]) -> Iterable[tuple[Segment, Array, bool]]:
+    for segment in segments:
+        drive = segment.drives[name]
+        table = segment.curve.table()
+        rows = loop.run(drive.state, drive.settings, table, segment.ticks)[1]
         held = loop.kernel.settings.unpack(drive.settings)["hold_active"][0] > 0
-        yield stretch, rows, bool(held)
+        yield segment, rows, bool(held)
 
 
-def merged(segments: list) -> list:
-    """Merge consecutive segments of one curve and hold, so that distances take a single call."""
+def merged(logged: list) -> list:
+    """Merge consecutive log rows of one curve and hold, so that distances take a single call."""
     result: list = []
-    for (_, held), group in groupby(segments, key=lambda s: (id(s[1]), s[2])):
+    for (_, held), group in groupby(logged, key=lambda s: (id(s[1]), s[2])):
         members = list(group)
         result.append((np.concatenate([rows for rows, _, _ in members]), members[0][1], held))
     return result

@@ -115,13 +115,13 @@ class History:
             return None
         return segment_at(self._columns, max(self._find(time, "right") - 1, self._begin))
 
-    def before(self, stretch: Segment) -> History:
-        """A copy of everything before `stretch`."""
+    def before(self, segment: Segment) -> History:
+        """A copy of everything before `segment`."""
         self.settle()
         copy = History(self._sample)
         with self._lock:
             copy._columns = {name: column.copy() for name, column in self._columns.items()}
-            copy._begin, copy._end = self._begin, self._find(stretch.time, "left")
+            copy._begin, copy._end = self._begin, self._find(segment.time, "left")
             copy._before = self._before
         return copy
 

@@ -59,9 +59,9 @@ def identify_model(
 
 
 @lru_cache(maxsize=4)  # repeated clicks do not compute again
-def _learned(robot: Robot, stretches: tuple[Segment, ...]) -> tuple[Identified, float]:
+def _learned(robot: Robot, segments: tuple[Segment, ...]) -> tuple[Identified, float]:
     """The identified model and the duration of its data, [s]."""
-    record = last_record(robot, list(stretches))
+    record = last_record(robot, list(segments))
     return simplest(record), len(record.q) * record.dt
 
 
@@ -71,11 +71,11 @@ def last_record(robot: Robot, history: list[Segment]) -> JointRecord:
     Raises:
         ValueError: there is no data, or the robot is not a balanced linkage.
     """
-    linkage, stretches = robot.linkage, _same_robot(robot, history)
-    if linkage is None or not stretches:
+    linkage, segments = robot.linkage, _same_robot(robot, history)
+    if linkage is None or not segments:
         raise CodedError("error.nothing_recorded")
-    drive, dt = stretches[-1].drives[FOLLOWER], stretches[-1].dt
-    log = kernel_of(robot, drive.kind).log.unpack(_rows(robot, stretches))
+    drive, dt = segments[-1].drives[FOLLOWER], segments[-1].dt
+    log = kernel_of(robot, drive.kind).log.unpack(_rows(robot, segments))
     q, v = log["q"], log["v"]
     torque = log["u"] + joint_torques(q, log["force"], linkage.l1, linkage.l4)
     if drive.kind.encoder:
@@ -98,15 +98,15 @@ def believing(linkage: BalancedLinkage, parameters: Parameters, found: Identifie
 def _same_robot(robot: Robot, history: list[Segment]) -> list[Segment]:
     """The latest segments without a stop or a change of the plant or its sensors."""
     found, ticks = list[Segment](), 0
-    for stretch in reversed(history):
-        ticks += stretch.ticks
-        later = found[-1] if found else stretch
-        drive, next_drive = stretch.drives[FOLLOWER], later.drives[FOLLOWER]
-        if ticks > MOST_TICKS or drive.frozen or stretch.dt != later.dt:
+    for segment in reversed(history):
+        ticks += segment.ticks
+        later = found[-1] if found else segment
+        drive, next_drive = segment.drives[FOLLOWER], later.drives[FOLLOWER]
+        if ticks > MOST_TICKS or drive.frozen or segment.dt != later.dt:
             break
         if not _alike(robot, drive, next_drive):
             break
-        found.append(stretch)
+        found.append(segment)
     return found[::-1]
 
 
@@ -122,10 +122,10 @@ def _setting(robot: Robot, drive: Drive, name: str) -> Array:
     return drive.settings[kernel_of(robot, drive.kind).settings.slices[name]]
 
 
-def _rows(robot: Robot, stretches: list[Segment]) -> Array:
+def _rows(robot: Robot, segments: list[Segment]) -> Array:
     """Recompute the follower's log rows, in one call for segments with the same inputs."""
     rows = list[Array]()
-    runs = groupby(stretches, lambda s: (id(s.drives[FOLLOWER].settings), id(s.curve)))
+    runs = groupby(segments, lambda s: (id(s.drives[FOLLOWER].settings), id(s.curve)))
     for _, group in runs:
         members = list(group)
         drive, table = members[0].drives[FOLLOWER], members[0].curve.table()

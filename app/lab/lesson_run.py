@@ -242,7 +242,7 @@ class LessonRun(LessonState):
     def _begin_again(self, lab: LessonLab, running: bool) -> None:
         """Reset demonstration, tasks and undo for the step."""
         session = lab.session
-        lab.script, session.put_aside, session.running = None, None, running
+        lab.script, session.undo_timeline, session.running = None, None, running
         self._player = self._trace = None
         self.verdicts, self._passed = {}, {}
         self._begin = Beginning.now(session)

@@ -23,36 +23,36 @@ def look_back(session: Session, ago: float) -> None:
 
 
 def go_on(session: Session) -> tuple[float, float] | None:
-    """Continue from the viewed instant; the later history is put aside.
+    """Continue from the viewed instant; the later history is discarded.
 
     Returns:
-        The instant and the duration put aside, [s]; None if the present was being viewed.
+        The instant and the duration discarded, [s]; None if the present was being viewed.
     """
-    stretch = None if session.viewing is None else session.history.at(session.viewing)
+    segment = None if session.viewing is None else session.history.at(session.viewing)
     left = None
-    if stretch is not None:
+    if segment is not None:
         left = _timeline(session)
-        _take(session, _branch(session, stretch))
+        _take(session, _branch(session, segment))
         session.note("let_go")
         session.note("release")
-        session.put_aside = left
+        session.undo_timeline = left
     session.viewing, session.running = None, True
     return None if left is None else (session.time, left.time - session.time)
 
 
 def undo_going_on(session: Session) -> bool:
-    """Restore the history that was put aside, paused at its end, and put the current one aside.
+    """Restore the discarded history, paused at its end, and discard the current one.
 
     Returns:
         Whether there was a history to restore.
     """
-    back = session.put_aside
+    back = session.undo_timeline
     if back is None:
         return False
     session.grips.release()
     session.viewing = None
     session.running = False
-    session.put_aside = _timeline(session)
+    session.undo_timeline = _timeline(session)
     _take(session, back)
     return True
 
@@ -79,17 +79,17 @@ def _take(session: Session, timeline: Timeline) -> None:
             run.change_path(session.editor.curve)
 
 
-def _branch(session: Session, stretch: Segment) -> Timeline:
+def _branch(session: Session, segment: Segment) -> Timeline:
     """A timeline that ends where a segment of the current one begins, without external forces."""
     runs = {name: copy(run) for name, run in session.runs.items()}
     for name, run in runs.items():
-        run.restore(stretch.drives[name], stretch.curve)
+        run.restore(segment.drives[name], segment.curve)
     events = session.events
-    kept = [e for e in events if e.run != session.run_number or e.time <= stretch.time]
+    kept = [e for e in events if e.run != session.run_number or e.time <= segment.time]
     return Timeline(
-        stretch.time,
-        stretch.curve,
-        session.history.before(stretch),
+        segment.time,
+        segment.curve,
+        session.history.before(segment),
         runs,
         ExternalForces(session.robot, runs, session.note),
         deque(kept, events.maxlen),

@@ -51,7 +51,7 @@ class Session:
         copy: whether pulling and holding act on both robots.
         exaggeration: magnification of the drawn deflection.
         viewing: the past instant being viewed, [s], or None.
-        put_aside: the timeline replaced by continuing from the past, or None.
+        undo_timeline: the timeline replaced by continuing from the past, or None.
         events: user actions and incidents, oldest first.
         faults: controllers whose robots have stopped and have not been reported yet.
         run_number: number of resets.
@@ -170,7 +170,7 @@ class Session:
         self._owed = 0.0
         self._now: Instant | None = None
         self.viewing: float | None = None
-        self.put_aside: Timeline | None = None
+        self.undo_timeline: Timeline | None = None
         self.history.clear()
         self.faults.clear()
         start = self.start_point(self.editor.curve)

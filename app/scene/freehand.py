@@ -9,8 +9,8 @@ import numpy as np
 
 from onpath.app.common import palette
 from onpath.app.scene import meshes
-from onpath.app.scene.ink import Ink
 from onpath.app.scene.pointer_projection import pointer_on_plane
+from onpath.app.scene.sketch_line import SketchLine
 from onpath.app.scene.stage import Stage, add_copies
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Freehand:
         self._on_stroke = on_stroke
         self._base = self._bases[0]  # of the robot in front of which the stroke is drawn
         look = (palette.INK, 0.003)
-        self._ink = Ink(scene, "/freehand/ink", look, CLOSEST, self._before_the_robot)
+        self._line = SketchLine(scene, "/freehand/line", look, CLOSEST, self._before_the_robot)
         self.active = True
         sheet = meshes.sheet(*stage.sheet)
         self._sheets = add_copies(
@@ -54,11 +54,11 @@ class Freehand:
         if self.active:
             self.active = False
             self._sheets.remove()
-            self._ink.remove()
+            self._line.remove()
 
     def draw(self) -> None:
         """Redraw the stroke; called at about 10 Hz."""
-        self._ink.draw()
+        self._line.draw()
 
     async def _dragged(self, event: viser.SceneNodeDragEvent[viser.BatchedMeshHandle]) -> None:
         if not self.active or event.instance_index is None:
@@ -70,10 +70,10 @@ class Freehand:
             place = np.array(pointer)
             point = pointer_on_plane(camera, place, self._base, self._plane, self._box)
             if point is not None:
-                self._ink.add(point)
+                self._line.add(point)
         if event.phase == "end":
             self.cancel()
-            self._on_stroke(self._ink.points.reshape(-1, 3))
+            self._on_stroke(self._line.points.reshape(-1, 3))
 
     def _before_the_robot(self, points: np.ndarray) -> np.ndarray:
         return points + self._base - [0.0, 0.004, 0.0]

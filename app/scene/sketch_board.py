@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
 from onpath.app.common import palette
-from onpath.app.scene.ink import Ink
 from onpath.app.scene.pointer_projection import intersect_ray_plane
+from onpath.app.scene.sketch_line import SketchLine
 from onpath.app.scene.stage import Stage
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch
@@ -51,7 +51,9 @@ class SketchBoard:
         self._size = width * np.array([1.0, FORM])
         self._inner = 1 - 2 * MARGIN * np.array([1.0, 1.0 / FORM])
         look = (palette.SELECTED, 0.006)
-        self._ink = Ink(scene, "/board/ink", look, CLOSEST, partial(self._world, above=0.003))
+        self._line = SketchLine(
+            scene, "/board/line", look, CLOSEST, partial(self._world, above=0.003)
+        )
         handle = scene.add_image(
             "/board/sheet",
             _picture(sketch, title),
@@ -68,16 +70,16 @@ class SketchBoard:
 
     def show(self, times: np.ndarray, values: np.ndarray) -> None:
         """Set the curve from arrays, shape (n,) each."""
-        self._ink.begin(self._from_axes(np.column_stack([times, values])))
+        self._line.begin(self._from_axes(np.column_stack([times, values])))
 
     def draw(self) -> None:
         """Redraw the curve; called at about 10 Hz."""
-        self._ink.draw()
+        self._line.draw()
 
     def remove(self) -> None:
         """Remove the board."""
         self._sheet.remove()
-        self._ink.remove()
+        self._line.remove()
 
     # Conversions between axis units, board coordinates (fractions from its centre) and the world.
 
@@ -100,13 +102,13 @@ class SketchBoard:
 
     async def _dragged(self, event: viser.SceneNodeDragEvent[viser.ImageHandle]) -> None:
         if event.phase == "start":
-            self._ink.begin()
+            self._line.begin()
         seen = [event.start_position] if event.phase == "start" else []
         for pointer in (*seen, event.end_position):
             place = self._place(event.client.camera.position, np.array(pointer))
             if place is not None:
-                self._ink.add(place)
-        if event.phase == "end" and len(points := self._ink.points) > 1:
+                self._line.add(place)
+        if event.phase == "end" and len(points := self._line.points) > 1:
             times, values = self._to_axes(points).T
             self._on_drawn(times, values)
 

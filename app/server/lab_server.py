@@ -33,7 +33,7 @@ from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.lazy_imports import warm_up
 from onpath.app.server.tab_visibility import TabVisibilities
-from onpath.app.simulation.metrics import asked_vitals
+from onpath.app.simulation.metrics import metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import Records
@@ -79,7 +79,7 @@ class LabServer:
         self._room = AdmissionQueue(most_clients)
         self._course = lessons = course or read_course([BUILT_IN])[0]
         self.simulation = SimulationThread()
-        health = partial(asked_vitals, self.simulation)
+        health = partial(metrics_json, self.simulation)
         self.server = make_server(host, port, label="OnPath", health=health, **listening)
         self._records = records
         self._leases = Leases(records) if records else None

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
-from onpath.app.server.handing import CAN_HAND, CHANNEL, Reception
+from onpath.app.server.handover import CAN_HAND_OVER, CHANNEL, Reception
 from onpath.app.viser_adapter.sockets import listen, reserve
 from onpath.assets import asset_path
 
@@ -74,7 +74,7 @@ def supervise(options: Options, secrets: Mapping[str, str] | None = None) -> Non
         OSError: a port is not available.
     """
     logging.basicConfig(level=options.log_level.upper(), format="%(levelname)s %(message)s")
-    apart = options.successive_ports or not CAN_HAND
+    apart = options.successive_ports or not CAN_HAND_OVER
     places = options.workers if apart else 1
     hold = reserve if apart else listen
     held = [hold(options.host, options.port + i if options.port else 0) for i in range(places)]

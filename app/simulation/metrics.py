@@ -45,7 +45,7 @@ class Metrics:
     rss_mb: float | None
 
 
-def asked_vitals(simulation: SimulationThread, query: str) -> str:
+def metrics_json(simulation: SimulationThread, query: str) -> str:
     """The metrics as JSON.
 
     Args:
@@ -56,10 +56,10 @@ def asked_vitals(simulation: SimulationThread, query: str) -> str:
     except (KeyError, ValueError):
         seconds = WINDOW
     seconds = seconds if 1.0 <= seconds <= LONGEST else WINDOW
-    return msgspec.json.encode(vitals(simulation, seconds)).decode() + "\n"
+    return msgspec.json.encode(measure_metrics(simulation, seconds)).decode() + "\n"
 
 
-def vitals(simulation: SimulationThread, seconds: float = WINDOW) -> Metrics:
+def measure_metrics(simulation: SimulationThread, seconds: float = WINDOW) -> Metrics:
     """Measure this process over the last `seconds`."""
     now = time.perf_counter()
     frames = simulation.frames.copy()

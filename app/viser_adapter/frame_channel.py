@@ -84,11 +84,11 @@ class FrameChannel:
         return self._buffer.done
 
     def __enter__(self) -> None:
-        """From now on, messages of this thread are collected until `send`."""
+        """Collect the messages of this thread until `send`."""
         self._collector = get_ident()
 
     def __exit__(self, *_: object) -> None:
-        """From now on, messages of this thread are sent at once."""
+        """Send the messages of this thread immediately again."""
         self._collector = None
         if self._messages:
             self.frames += 1

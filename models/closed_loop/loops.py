@@ -71,7 +71,7 @@ class CompiledLoop:
     about a hundred times as long.
 
     Args:
-        kernel: what was compiled.
+        kernel: the kernel that was compiled.
         address: of `void onpath_run(const double* settings, const double* curve, double* state,
             double* log, long long ticks)`, which advances the state and fills the log.
         owner: the object that keeps the machine code in memory.

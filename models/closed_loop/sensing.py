@@ -1,4 +1,4 @@
-"""What the control laws know in a tick: exact or measured states, predicted half a tick ahead."""
+"""Inputs of the control laws in a tick: exact or measured states, predicted half a tick ahead."""
 
 from __future__ import annotations
 

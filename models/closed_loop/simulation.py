@@ -21,7 +21,7 @@ NO_LIMIT = 1000.0  # [N m], the limit when there is none: far above any motor, b
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Push:
-    """What acts on the end-point from outside, in output coordinates.
+    """External action on the end-point, in output coordinates.
 
     Attributes:
         hand: position of the hand, shape (p,), [m], or None.

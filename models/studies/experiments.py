@@ -98,7 +98,7 @@ class Experiment:
         parameters: of the robot, the control laws and the task.
         schedule: what happens when.
         start: r -> the end-point at rest at the start, shape (p,), [m].
-        path: what is followed; None: the circle of the schedule.
+        path: the path to follow; None: the circle of the schedule.
     """
 
     name: str
@@ -114,7 +114,7 @@ class Experiment:
         return self.make(self.parameters)
 
     def curve(self) -> Curve:
-        """What is followed."""
+        """The path to follow."""
         return circle(self.schedule.r) if self.path is None else self.path
 
     def with_values(self, assignments: Mapping[str, Any]) -> Experiment:

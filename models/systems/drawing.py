@@ -34,18 +34,18 @@ class Depths:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """What the scene needs to know about a robot. None: derived from its bars and reach.
+    """The data from which the scene draws a robot; None is derived from its bars and reach.
 
     Links lie alternately in the back and the front layer, so that they do not intersect.
 
     Attributes:
         strip: number of the last bars that are pieces of one flexible strip; the others are links.
         motors: joints that are drawn as motors, besides those at the base pivot.
-        base: what carries the robot: two uprights with motors, or a column with a turntable.
+        base: support of the robot: two uprights with motors, or a column with a turntable.
         away: horizontal direction (x, y) across the links, away from the viewer, of unit length.
         depths: of the layers.
         elevation, azimuth: angles of the camera, downward and from the right, [rad].
-        box: opposite corners of what the camera shows of one robot.
+        box: opposite corners of the box that the camera shows of one robot.
         apart: distance between the base pivots of neighbouring robots, [m].
         title: place of the title.
         note: place of the note that the drawing is not to scale.

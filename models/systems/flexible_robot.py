@@ -258,7 +258,7 @@ ROBOT = RobotEntry(
     text="Three motors, a last link that bends: the tip is not where the motors put it.",
     picture="flexible_five_bar.png",
     parameters=FlexibleParameters,
-    lab=FlexibleParameters(law="composite"),  # the only law that survives every pull at the tip
+    lab=FlexibleParameters(law="composite"),  # the only law that is stable under every pull
     make=robot_for,
     flexible_link=FlexibleLink(
         joints=RIGID,

@@ -279,7 +279,7 @@ def unknown_name(name: str, known: list[str], what: str = "parameter") -> CodedE
 
 
 def out_of_range(name: str, value: str, low: str, high: str) -> CodedError:
-    """The error for a number that is too small or too large; all as they are to be shown."""
+    """The error for a number that is too small or too large; arguments are formatted."""
     return CodedError("error.value_out_of_range", name=name, value=value, low=low, high=high)
 
 

@@ -30,7 +30,7 @@ NOT_FINITE = Message("stop.range")
 
 @dataclass(frozen=True, slots=True)
 class BalancedLinkage:
-    """What the identification needs to know about a balanced five-bar.
+    """Data of a balanced five-bar for the identification.
 
     Attributes:
         l1, l4: lengths of links 1 and 4, [m].
@@ -175,12 +175,12 @@ class Robot(Protocol):
 
     @property
     def drawing(self) -> Drawing:
-        """What does not follow from bars and joints about its drawing."""
+        """Details of its drawing that do not follow from bars and joints."""
         ...
 
     @property
     def linkage(self) -> BalancedLinkage | None:
-        """What can be identified from a record of its motion, or None."""
+        """Data for identification from a record of its motion, or None."""
         ...
 
 

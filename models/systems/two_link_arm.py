@@ -69,7 +69,7 @@ class ArmLinks:
         """
         moment = self.m2 * self.r2 + payload * self.l2
         a3 = self.I2 + self.m2 * self.r2**2 + payload * self.l2**2
-        beyond = self.motor + self.m2 + payload  # what link 1 carries at the elbow
+        beyond = self.motor + self.m2 + payload  # mass that link 1 carries at the elbow
         return {
             "a1": self.I1 + self.m1 * self.r1**2 + beyond * self.l1**2 + a3,
             "a2": self.l1 * moment,
@@ -213,7 +213,7 @@ class TwoLinkArm(PlanarRobot):
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """See `Robot.fault`: too near a singular configuration, or beyond it, the elbow down."""
-        with np.errstate(invalid="ignore"):  # numbers that are not finite are caught apart
+        with np.errstate(invalid="ignore"):  # non-finite numbers are caught elsewhere
             singular = np.sin(q[:, 1]) > -STRETCHED
         return first_fault(q, v, (singular, SINGULAR))
 

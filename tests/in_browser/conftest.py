@@ -1,4 +1,4 @@
-"""One Chromium for all tests in a browser, and one lab for each file."""
+"""Fixtures: one Chromium for all tests in a browser, and one server for each file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
-    """Ends with this folder: while it is open, no other test can use asyncio in this thread."""
+    """A browser for the tests of this folder; while it is open, no test can use asyncio here."""
     from playwright.sync_api import sync_playwright
 
     from tests.support.browser import CHROMIUM, PLAIN
@@ -29,7 +29,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[LabServer]:
-    """A lab for all who come, without a class and a database."""
+    """A server without a class and without a database."""
     server = LabServer("127.0.0.1", 0, LoopCache())
     yield server
     server.stop()

@@ -1,4 +1,4 @@
-"""The lab as its users meet it: headless Chromium with a real mouse and real keys."""
+"""Tests of the lab in headless Chromium, with real mouse and key events."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ WINDOW = {"width": 1000, "height": 700}
 
 
 def fresh(browser: Browser, **options: Any) -> BrowserContext:
-    """Another browser: nothing in it is known to the lab."""
+    """A new browser that the lab does not know."""
     return browser.new_context(**{"viewport": WINDOW, "accept_downloads": True, **options})
 
 
@@ -43,7 +43,7 @@ def shared(browser: Browser, server: LabServer) -> Iterator[Tab]:
 
 @pytest.fixture
 def tab(shared: Tab) -> Iterator[Tab]:
-    """A tab as it is when one comes to the lab; no test may make its page complain."""
+    """A tab in its initial state; asserts afterwards that its page reports no error."""
     lab = shared.lab
     shared.page.keyboard.press("Escape")
     shared.page.mouse.move(1, 1)
@@ -52,13 +52,13 @@ def tab(shared: Tab) -> Iterator[Tab]:
     shared.ask(c.SetCopy(True), c.SetRate(1.0), c.SetRunning(True))
     wait_for(lambda: lab.session.time > 0.1)
     yield shared
-    shared.ask(c.SetRunning(False))  # draws nothing more: other tabs need the processor
+    shared.ask(c.SetRunning(False))  # stops drawing: other tabs need the processor
     assert shared.errors == []
 
 
 @pytest.fixture
 def other(browser: Browser, server: LabServer) -> Iterator[Tab]:
-    """A tab in a browser of its own."""
+    """A tab in another browser."""
     context = fresh(browser)
     yield Tab(server, context, draws=False)
     context.close()
@@ -68,7 +68,7 @@ def other(browser: Browser, server: LabServer) -> Iterator[Tab]:
 
 
 def stop_between_control_points(tab: Tab) -> None:
-    """Where a control point is, the mouse takes that instead of the end-point."""
+    """Stop the end-point between control points; near one, the mouse would take that instead."""
     tab.ask(c.SetRunning(False))
     points = tab.session.editor.points()
 
@@ -89,8 +89,8 @@ def test_pulling_an_end_point_pulls_both(tab: Tab, name: str) -> None:
     goal = start[0] - 40, start[1] + 30
     with tab.dragging(start, goal):
         wait_for(lambda: lab.session.grips.grabbed == name and len(lab.session.grips.hands) == 2)
-        wait_for(lambda: math.dist(tab.placed(name, hands(lab)[name]), goal) < 12)
-        pulled = hands(lab)
+        wait_for(lambda: math.dist(tab.placed(name, hand_targets(lab)[name]), goal) < 12)
+        pulled = hand_targets(lab)
         moved = {each: pulled[each] - before[each] for each in pulled}
         np.testing.assert_allclose(moved[TRACKER], moved[FOLLOWER], atol=1e-9)
         tab.ask(c.SetParameter("speed", 0.0), c.SetRunning(True))
@@ -101,8 +101,8 @@ def test_pulling_an_end_point_pulls_both(tab: Tab, name: str) -> None:
     wait_for(lambda: lab.session.grips.grabbed is None and not lab.session.grips.hands)
 
 
-def hands(lab: Lab) -> dict[str, np.ndarray]:
-    """Where they pull, in the path's plane, shape (2,) each, [m]."""
+def hand_targets(lab: Lab) -> dict[str, np.ndarray]:
+    """Positions of the pulling hands, in the path's plane, shape (2,) each, [m]."""
     return {
         name: lab.session.robot.frame.planar(hand) for name, hand in lab.session.grips.hands.items()
     }
@@ -162,8 +162,8 @@ def test_drawing_a_path_freehand(tab: Tab) -> None:
 # Buttons.
 
 
-def test_holding_both_back_tells_the_story(tab: Tab) -> None:
-    """What a student must find out within a minute."""
+def test_holding_both_back_shows_the_difference(tab: Tab) -> None:
+    """The main result, which a student must be able to find within a minute."""
     lab = tab.lab
     tab.press("Pause")
     wait_for(lambda: not lab.session.running)
@@ -243,13 +243,13 @@ def test_gains_by_number_and_by_slider(tab: Tab) -> None:
     wait_for(lambda: float(shown.input_value()) == 400.0)
 
 
-def test_a_number_beyond_the_limits_is_brought_back(tab: Tab) -> None:
+def test_a_number_beyond_the_limits_is_clamped(tab: Tab) -> None:
     tab.enter("K1", "99999")
     wait_for(lambda: tab.session.parameters.K1 == 2500.0)
     wait_for(lambda: tab.number("K1").input_value() == "2500")
 
 
-def test_a_path_is_refused_in_words_and_the_old_one_kept(tab: Tab) -> None:
+def test_a_refused_path_is_explained_and_the_old_one_kept(tab: Tab) -> None:
     tab.choose("Path", "figure of eight")
     tab.page.get_by_role("status").filter(has_text="refused").wait_for()
     assert "crosses itself" in tab.said()
@@ -456,7 +456,7 @@ def test_a_narrow_screen_shows_both_robots_and_the_buttons(
 
 
 def test_hostile_text_is_not_rendered(tab: Tab) -> None:
-    """No browser can make the lab say this, but nothing may rely on that."""
+    """No browser can make the lab show this text, but no code may rely on that."""
     tab.page.evaluate("window.harmed = false")
     tab.lab.show_message("<img src=x onerror='window.harmed = true'><b>bold</b>", "warning")
     tab.page.get_by_role("status").filter(has_text="<b>bold</b>").wait_for()

@@ -27,7 +27,7 @@ WINDOWS = ((1100, 600), (800, 400), (800, 400))
 
 @dataclass
 class Class:
-    """Three tabs."""
+    """The tabs of a teacher and two students."""
 
     room: LocalClassroom
     teacher: Tab
@@ -78,7 +78,7 @@ def test_students_join_and_the_teacher_sees_them(tabs: Class) -> None:
     assert teacher.page.locator("img[src=x]").count() == 0
 
 
-def test_frozen_labs_stand_still_and_say_so(tabs: Class) -> None:
+def test_frozen_labs_are_paused_and_say_so(tabs: Class) -> None:
     for student in tabs.students:
         student.ask(c.SetRunning(True))
     tabs.teacher.press("Freeze all labs")
@@ -129,7 +129,7 @@ def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None
     teacher.page.get_by_text("Students who join receive").wait_for(state="hidden")
 
 
-def test_the_teacher_looks_on_and_touches_nothing(tabs: Class) -> None:
+def test_the_teacher_watches_a_lab_without_changing_it(tabs: Class) -> None:
     teacher, (first, _) = tabs.teacher, tabs.students
     teacher.page.get_by_role("tab", name="Class").click()
     teacher.field("Follow").click()

@@ -1,4 +1,4 @@
-"""The flexible link as its users meet it: chosen from the menu, bent, pulled, diverged, reset."""
+"""Tests of the flexible link in a browser: choose it, pull it, let it diverge, reset it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
 
 
 def deflection(tab: Tab) -> float:
-    """Of the follower's tip, or of those that stand still, [m]."""
+    """Deflection of the follower's tip, or of a robot that has stopped, [m]."""
     robot, runs = tab.session.robot, tab.session.runs
     assert isinstance(robot, FlexibleFiveBar)
     still = [run for run in runs.values() if run.diverged is not None]
@@ -48,7 +48,7 @@ def deflection(tab: Tab) -> float:
 
 
 def tip(tab: Tab) -> np.ndarray:
-    """The follower's end-point in the robot's frame for drawing, (3,), [m]."""
+    """Position of the follower's end-point in the robot's frame for drawing, (3,), [m]."""
     lab = tab.lab
     return lab.session.robot.place(lab.session.runs[FOLLOWER].shown()["y"])
 
@@ -93,7 +93,7 @@ def test_the_path_is_dragged_in_its_slanted_plane(tab: Tab) -> None:
     tab.ask(c.ChoosePath("circle"), c.Reset())
 
 
-def test_a_divergence_is_caught_said_and_reset(tab: Tab) -> None:
+def test_a_divergence_is_caught_reported_and_reset(tab: Tab) -> None:
     lab = tab.lab
     tab.ask(c.SetParameter("speed", 2.0), c.Reset(), c.SetRunning(True))
     tab.enter("Drawn larger", "5")
@@ -111,7 +111,7 @@ def test_a_divergence_is_caught_said_and_reset(tab: Tab) -> None:
     assert lab.session.runs[FOLLOWER].distance < 5e-3
 
 
-def test_the_other_robot_is_as_it_was(tab: Tab) -> None:
+def test_the_other_robot_is_unchanged(tab: Tab) -> None:
     tab.press("Robot…")
     tab.press(FIVE_BAR.label)
     wait_for(lambda: tab.session.entry is FIVE_BAR and tab.session.time > 0.3)

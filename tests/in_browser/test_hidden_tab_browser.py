@@ -1,6 +1,6 @@
-"""A real browser with another tab in front of the lab: what it costs then, and what is seen after.
+"""A lab behind another tab of a real browser: the cost meanwhile, and the picture afterwards.
 
-Playwright keeps all its tabs visible; so the browser is started and told by its own protocol.
+Playwright keeps all its tabs visible, so the browser is controlled by the DevTools protocol.
 """
 
 from __future__ import annotations
@@ -48,17 +48,17 @@ class Window:
         self._process.wait()
 
     def cover(self) -> None:
-        """Another tab comes to the front."""
+        """Bring another tab to the front."""
         self._ask("new?about:blank", "PUT")
         wait_for(lambda: self.evaluate("document.visibilityState") == "hidden")
 
     def uncover(self) -> None:
-        """The lab's tab comes back to the front."""
+        """Bring the lab's tab back to the front."""
         self._ask(f"activate/{self._lab['id']}")
         wait_for(lambda: self.evaluate("document.visibilityState") == "visible")
 
     def evaluate(self, expression: str) -> Any:
-        """In the lab's page."""
+        """Evaluate a JavaScript expression in the lab's page."""
         ask = {"id": 1, "method": "Runtime.evaluate", "params": {"expression": expression}}
         with websockets.sync.client.connect(self._lab["webSocketDebuggerUrl"]) as socket:
             socket.send(json.dumps(ask))
@@ -85,7 +85,7 @@ def window(server: LabServer, tmp_path: Path) -> Iterator[Window]:
 
 
 class Meter:
-    """Counts what is written to the only browser."""
+    """Counts the bytes that are written to the only browser."""
 
     def __init__(self, server: LabServer) -> None:
         (connection,) = server.server._websock_server._live_connections.values()
@@ -97,13 +97,13 @@ class Meter:
         self._write(data)
 
     def rate(self, seconds: float) -> float:
-        """[B/s]"""
+        """Measure the data rate for some seconds, [B/s]."""
         before = self._sent
         time.sleep(seconds)
         return (self._sent - before) / seconds
 
 
-def test_a_covered_tab_costs_nothing_and_then_shows_what_is(
+def test_a_covered_tab_costs_nothing_and_then_shows_the_current_state(
     server: LabServer, window: Window
 ) -> None:
     view = wait_for(lambda: [lab.view for lab in server.simulation.labs if lab.view is not None])[0]

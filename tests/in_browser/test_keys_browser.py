@@ -1,4 +1,4 @@
-"""Keys in the lab and in a lesson, pressed in a real browser: whose they are, and the camera."""
+"""Keys in the lab and in a lesson, in a real browser: what handles them, and the camera."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def shared(request: pytest.FixtureRequest, browser: Browser, server: LabServer) 
 
 @pytest.fixture
 def tab(shared: Tab) -> Iterator[Tab]:
-    """Running, with nothing selected and nothing focused."""
+    """A tab with a running lab, with nothing selected and nothing focused."""
     shared.blur()
     shared.ask(c.ResetParameters(), c.SelectPoint(None), c.Reset(), c.SetRunning(True))
     yield shared
@@ -57,7 +57,7 @@ def tab(shared: Tab) -> Iterator[Tab]:
 
 
 def asked_since(tab: Tab, before: int) -> int:
-    """How many commands the keys have given, one more that is the last not counted."""
+    """Number of commands from the keys, not counting the one that ends the measurement."""
     tab.blur()
     tab.ask(c.SelectPoint(None))
     tab.page.keyboard.press("n")
@@ -66,9 +66,9 @@ def asked_since(tab: Tab, before: int) -> int:
 
 
 def camera(tab: Tab) -> np.ndarray:
-    """Where the page says that its camera is and looks to, when it is asked, shape (6,), [m]."""
+    """Position and target of the camera, as the page reports them, shape (6,), [m]."""
     camera = tab.client.camera
-    for _ in range(2):  # the first answer may have been on its way
+    for _ in range(2):  # the first answer may have been sent earlier
         before = camera.update_timestamp
         up = tuple(camera.up_direction.tolist())
         message = _messages.SetCameraUpDirectionMessage(up)
@@ -78,7 +78,7 @@ def camera(tab: Tab) -> np.ndarray:
 
 
 def settled_camera(tab: Tab) -> np.ndarray:
-    """The same, once the lab places it no more by itself."""
+    """Position and target of the camera once the lab has stopped placing it."""
     wait_for(lambda: not tab.view.page._settling)  # type: ignore[attr-defined]
     tab.settle()
     return camera(tab)
@@ -211,7 +211,7 @@ def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
     tab.field("Share code").fill("")
 
 
-def test_going_on_is_said_and_undone_by_key_and_button(tab: Tab) -> None:
+def test_going_on_is_reported_and_undone_by_key_and_button(tab: Tab) -> None:
     lab = tab.lab
     wait_for(lambda: lab.session.time > 1.5)
     tab.page.keyboard.press("b")

@@ -1,4 +1,4 @@
-"""Lesson 1 as a student goes through it, with a real mouse and a reload in the middle."""
+"""A student's work on lesson 1, with a real mouse and a reload in the middle."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     tab = Tab(server, context, draws=False)
     tab.press("Lessons")
     tab.page.get_by_role("button", name="Open", exact=True).first.click()
-    heading(tab, "Two robots, one circle")
+    wait_for_heading(tab, "Two robots, one circle")
     yield tab
     assert tab.errors == []
     context.close()
 
 
-def heading(tab: Tab, title: str) -> None:
+def wait_for_heading(tab: Tab, title: str) -> None:
     """Wait until a step is open."""
     tab.page.get_by_role("heading", name=title).wait_for()
 
 
-def way(page: Page, *places: tuple[float, float]) -> list[tuple[float, float]]:
-    """Fractions of the scene's width and height, as places in the window."""
+def positions(page: Page, *places: tuple[float, float]) -> list[tuple[float, float]]:
+    """Convert fractions of the scene's width and height to positions in the window."""
     box = page.locator("canvas").first.bounding_box()
     assert box is not None
     return [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in places]
 
 
-def test_only_what_the_step_speaks_of_is_shown(tab: Tab) -> None:
+def test_only_the_controls_of_the_step_are_shown(tab: Tab) -> None:
     run = tab.lab.lessons
     assert run.lesson is not None and run.lesson.name == LESSON
     assert tab.page.get_by_role("tab", name="This step").get_attribute("aria-selected") == "true"
@@ -53,14 +53,14 @@ def test_only_what_the_step_speaks_of_is_shown(tab: Tab) -> None:
 
 def test_a_prediction_is_sketched_before_anything_happens(tab: Tab) -> None:
     tab.press("Next")
-    heading(tab, "Draw what the tracker does")
+    wait_for_heading(tab, "Draw what the tracker does")
     tab.page.get_by_text("Draw with the mouse").wait_for()
     assert tab.button("Commit to this prediction").is_disabled()
     tab.page.keyboard.press("Space")
     wait_for(lambda: "commit" in tab.said())
     assert not tab.session.running and tab.session.time == 0.0
     tab.settle()
-    drawn = way(tab.page, (0.2, 0.57), (0.4, 0.55), (0.5, 0.45), (0.6, 0.43), (0.8, 0.56))
+    drawn = positions(tab.page, (0.2, 0.57), (0.4, 0.55), (0.5, 0.45), (0.6, 0.43), (0.8, 0.56))
     with tab.dragging(*drawn):
         pass
     tab.page.get_by_text("Draw again, or commit").wait_for()
@@ -70,9 +70,9 @@ def test_a_prediction_is_sketched_before_anything_happens(tab: Tab) -> None:
     assert max(answer.values) > 1.3 * answer.values[0] and max(answer.values) > answer.values[-1]
 
 
-def test_the_truth_comes_onto_the_same_axes(tab: Tab) -> None:
+def test_the_result_is_plotted_on_the_same_axes(tab: Tab) -> None:
     tab.press("Next")
-    heading(tab, "Held from 3 s to 5 s")
+    wait_for_heading(tab, "Held from 3 s to 5 s")
     assert tab.page.get_by_text("Four arches").count() == 0  # not told before it has happened
     tab.ask(c.SetRate(4.0))
     tab.press("Let it happen")
@@ -91,7 +91,7 @@ def test_the_truth_comes_onto_the_same_axes(tab: Tab) -> None:
 def test_a_reload_in_the_middle_comes_back_to_the_step(tab: Tab) -> None:
     before = tab.lab.lessons.progress
     tab.reload()
-    heading(tab, "Held from 3 s to 5 s")
+    wait_for_heading(tab, "Held from 3 s to 5 s")
     tab.page.get_by_text("Four arches, not one bump").wait_for()
     assert tab.lab.lessons.progress == before
 
@@ -100,7 +100,7 @@ def test_a_task_is_failed_then_passed(tab: Tab) -> None:
     for step in range(tab.lab.lessons.index + 1, tab.lab.lessons.index + 5):
         tab.page.keyboard.press("PageDown")
         wait_for(lambda step=step: tab.lab.lessons.index == step)
-    heading(tab, "Hold it yourself")
+    wait_for_heading(tab, "Hold it yourself")
     tab.ask(c.SetRate(2.0), c.SetParameter("K1", 40), c.SetParameter("K2", 12))
     tab.ask(c.SetRunning(False), c.Reset())  # how far it gives way depends on where it is held
     hold_for(tab, 2.6)
@@ -128,7 +128,7 @@ def hold_for(tab: Tab, seconds: float) -> None:
     wait_for(lambda: not tab.session.grips.held)
 
 
-def test_the_free_lab_is_as_it_was(tab: Tab) -> None:
+def test_the_free_lab_is_unchanged(tab: Tab) -> None:
     tab.page.get_by_role("button", name="Free lab").click()
     tab.page.get_by_role("heading", name="Hold it yourself").wait_for(state="detached")
     wait_for(lambda: tab.lab.lessons.lesson is None)

@@ -1,4 +1,4 @@
-"""The page of a lesson's step: it opens at its top, and says what can be done now."""
+"""The page of a lesson's step opens at its top, and says what can be done now."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SCROLL = """(to) => {
     if (box !== null && to !== null) box.scrollTop = to
     return box === null ? 0 : box.scrollTop
 }"""
-"""Scrolls what the step's page is in, and says how far it is scrolled, [px]."""
+"""Scrolls the container of the step's page, and returns how far it is scrolled, [px]."""
 SEEN = """(heading) => {
     const { x, y, height } = heading.getBoundingClientRect()
     return heading.contains(document.elementFromPoint(x + 5, y + height / 2))

@@ -1,4 +1,4 @@
-"""Every task of every lesson, done in a browser as its last hint says."""
+"""Tests that every task of every lesson is passed by doing what its last hint says."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ HOLD, LET_GO, RESET = Press("Hold both back"), Press("Let both go"), Press("Rese
 TWO_BULGES = (DragBall((0, 50), (0, 65)), DragBall((0, -50), (0, -65)))
 TWO_HOLDS = (HOLD, Wait(2.2), LET_GO, Wait(2), HOLD, Wait(2.2), LET_GO, Wait(3.2))
 
-# In the order in which a student comes to them; a step's tasks follow each other without a Reset.
-WALKS: dict[str, dict[str, tuple[Gesture, ...]]] = {
+# In the order of the course; there is no reset between the tasks of one step.
+SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "01-path-or-timetable": {
         "hold-two-seconds": (Enter("K1", 600), Enter("K2", 50), Key("h"), Wait(3), Key("h")),
         "thirty-times": (Enter("K1", 1600), Enter("K2", 80), HOLD, Wait(3), LET_GO),
@@ -118,19 +118,19 @@ WALKS: dict[str, dict[str, tuple[Gesture, ...]]] = {
 }
 BY_TOUCH: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "01-path-or-timetable": {"push-across": (Pull(30, 0, seconds=1), Wait(2))},
-    "03-the-five-bar": {"dear": WALKS["03-the-five-bar"]["dear"]},
-    "05-invariance": WALKS["05-invariance"],
+    "03-the-five-bar": {"dear": SOLUTIONS["03-the-five-bar"]["dear"]},
+    "05-invariance": SOLUTIONS["05-invariance"],
 }
-"""One task at least for each kind of gesture: a pull, a ball, a slider, buttons."""
+"""At least one task for each kind of gesture: pull, drag of a control point, slider, button."""
 
 
-def cases(walks: dict[str, dict[str, tuple[Gesture, ...]]]) -> list[tuple[str, str]]:
-    """Lesson and task of each walk, in order."""
-    return [(lesson, task) for lesson, tasks in walks.items() for task in tasks]
+def cases(solutions: dict[str, dict[str, tuple[Gesture, ...]]]) -> list[tuple[str, str]]:
+    """Lesson and task of each solution, in order."""
+    return [(lesson, task) for lesson, tasks in solutions.items() for task in tasks]
 
 
 def opened(browser: Browser, server: LabServer, touch: bool) -> Iterator[Hands]:
-    """A student's tab."""
+    """Open a student's tab."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, has_touch=touch)
     tab = Tab(server, context, draws=False)
     yield Hands(tab, touch)
@@ -149,7 +149,7 @@ def finger(browser: Browser, server: LabServer) -> Iterator[Hands]:
 
 
 def go_to(tab: Tab, lesson: str, index: int) -> None:
-    """To a step, unless it is open; time stands still there."""
+    """Open a step unless it is open, and pause the lab."""
     run = tab.lab.lessons
     if run.lesson is None or run.lesson.name != lesson:
         tab.ask(c.OpenLesson(lesson))
@@ -163,7 +163,7 @@ def go_to(tab: Tab, lesson: str, index: int) -> None:
 
 
 def do(hands: Hands, lesson: str, task: str, gestures: tuple[Gesture, ...]) -> None:
-    """A walk, and the task's tick on the page."""
+    """Do the gestures, and assert that the page shows the task as passed."""
     index, wanted = TASKS[lesson, task]
     go_to(hands.tab, lesson, index)
     for gesture in gestures:
@@ -176,40 +176,40 @@ def do(hands: Hands, lesson: str, task: str, gestures: tuple[Gesture, ...]) -> N
 
 
 def passed(tab: Tab, task: Task) -> bool:
-    """Whether the page says so."""
-    box = tab.page.locator(".op-box").filter(has_text=beginning(task))
+    """Whether the page shows a task as passed."""
+    box = tab.page.locator(".op-box").filter(has_text=first_words(task))
     return box.filter(has_text="✓ Passed").count() == 1
 
 
 def verdicts(tab: Tab, task: Task) -> list[str]:
-    """What the lab has measured."""
+    """The lab's verdicts on a task, in words."""
     return [verdict.words for verdict in tab.lab.lessons.verdicts.get(task.id, [])]
 
 
-def beginning(task: Task) -> str:
-    """Of its text, as the page shows it."""
+def first_words(task: Task) -> str:
+    """The first words of a task's text, as the page shows them."""
     return html.unescape(re.sub(r"<[^>]+>", "", task.text))[:40]
 
 
-def test_every_task_of_every_lesson_is_done_here() -> None:
-    assert set(cases(WALKS)) == set(TASKS)
+def test_every_task_of_every_lesson_has_gestures_here() -> None:
+    assert set(cases(SOLUTIONS)) == set(TASKS)
     assert set(cases(BY_TOUCH)) <= set(TASKS)
 
 
-@pytest.mark.parametrize(("lesson", "task"), cases(WALKS))
-def test_a_number_that_is_typed_stands_in_the_hints(lesson: str, task: str) -> None:
+@pytest.mark.parametrize(("lesson", "task"), cases(SOLUTIONS))
+def test_typed_numbers_are_in_the_hints(lesson: str, task: str) -> None:
     said = " ".join([TASKS[lesson, task][1].text, *TASKS[lesson, task][1].hints])
     numbers = re.findall(r"[-−]?\d+(?:\.\d+)?", html.unescape(said))
     known = {float(number.replace("−", "-")) for number in numbers}
-    typed = {g.value for g in WALKS[lesson][task] if isinstance(g, Enter | Slide)}
+    typed = {g.value for g in SOLUTIONS[lesson][task] if isinstance(g, Enter | Slide)}
     assert typed <= known
 
 
-@pytest.mark.parametrize(("lesson", "task"), cases(WALKS))
+@pytest.mark.parametrize(("lesson", "task"), cases(SOLUTIONS))
 def test_a_task_is_passed_by_doing_what_its_last_hint_says(
     mouse: Hands, lesson: str, task: str
 ) -> None:
-    do(mouse, lesson, task, WALKS[lesson][task])
+    do(mouse, lesson, task, SOLUTIONS[lesson][task])
 
 
 @pytest.mark.parametrize(("lesson", "task"), cases(BY_TOUCH))
@@ -219,7 +219,7 @@ def test_a_task_is_passed_by_touch(finger: Hands, lesson: str, task: str) -> Non
 
 @pytest.mark.parametrize("by", ["mouse", "finger"])
 def test_the_ball_under_the_end_point_is_dragged(by: str, request: pytest.FixtureRequest) -> None:
-    """As the five-bar's first step asks: the end-point rests on the ball at the right end."""
+    """The first step of lesson 3 asks for it: the end-point rests on the ball at the right."""
     hands: Hands = request.getfixturevalue(by)
     tab, lab = hands.tab, hands.lab
     go_to(tab, "03-the-five-bar", 0)

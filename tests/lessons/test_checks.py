@@ -22,7 +22,7 @@ WORDS = Words()
 
 
 @dataclass(frozen=True)
-class Stretch:
+class FrameSegment:
     """Some frames of the lab with the same inputs."""
 
     ticks: tuple[int, ...]
@@ -69,8 +69,8 @@ class Frames:
         return chosen, int(self.ticks[chosen].sum())
 
 
-def frames_of(stretches: list[Stretch]) -> Frames:
-    rows = [(ticks, s.held, s.value) for s in stretches for ticks in s.ticks]
+def frames_of(segments: list[FrameSegment]) -> Frames:
+    rows = [(ticks, s.held, s.value) for s in segments for ticks in s.ticks]
     ticks, held, values = zip(*rows, strict=True)
     return Frames(np.array(ticks), np.array(held, dtype=bool), np.array(values))
 
@@ -79,20 +79,20 @@ sixtieths = st.integers(1, 90).map(
     lambda n: tuple(np.diff([int(k / 60 / DT + 1e-9) for k in range(n + 1)]).tolist())
 )
 uneven = st.lists(st.integers(1, 68), min_size=1, max_size=90).map(tuple)
-stretches = st.builds(
-    Stretch,
+segments = st.builds(
+    FrameSegment,
     st.one_of(sixtieths, uneven),
     st.booleans(),
     st.sampled_from([0.5, 0.603, 1.0, 1.004, 3.0]),
 )
-runs = st.lists(stretches, min_size=1, max_size=8).map(frames_of)
+runs = st.lists(segments, min_size=1, max_size=8).map(frames_of)
 seconds = st.sampled_from([0.0, 0.05, 0.3, 0.5, 0.95, 1.0, 2.0, 2.2, 3.0])
 durings = st.sampled_from(["always", "held", "free"])
 
 
 def frames(*ticks: int) -> Frames:
     """A run all of which is held, and well."""
-    return frames_of([Stretch(ticks, held=True, value=1.0)])
+    return frames_of([FrameSegment(ticks, held=True, value=1.0)])
 
 
 @given(runs, durings, seconds, seconds)

@@ -27,11 +27,12 @@ from tests.support import waiting
 
 CHROMIUM = "/usr/bin/chromium"
 PLAIN = (*ARGUMENTS, "--disable-gpu-rasterization", "--disable-gpu-compositing")
-"""Where a GPU is simulated, a page is put together faster without it."""
+"""Arguments of a browser whose GPU is simulated; a page is then composed faster without it."""
 SELDOM = "requestAnimationFrame = act => setTimeout(() => act(performance.now()), 100)"
-"""Drawing in software takes most of a browser's time; where a mouse points is found without it."""
-COARSE = "fixedDpr=0.5"  # viser's own switch: half the pixels each way, where a GPU is simulated
-COARSER = "fixedDpr=0.1"  # for those who do not look
+"""Reduces the frame rate: drawing in software takes most of a browser's time, and picking by mouse
+does not need it."""
+COARSE = "fixedDpr=0.5"  # option of viser: half the pixels in each direction, for a simulated GPU
+COARSER = "fixedDpr=0.1"  # for tabs whose picture is not checked
 WAIT = 60.0  # [s]; software rendering on a busy machine shows a few frames a second
 
 wait_for = partial(waiting.wait_for, seconds=WAIT)
@@ -43,7 +44,7 @@ THREE_FRAMES = """() => new Promise(done => {
 
 
 class Note(Command):
-    """A command that only notes that it has been reached."""
+    """A command that only records that it has been applied."""
 
     def __init__(self, done: list[bool]) -> None:
         self.done = done
@@ -53,7 +54,7 @@ class Note(Command):
 
 
 class Elapse(Command):
-    """A command that lets simulated time pass, frame by frame, as quickly as can be computed."""
+    """A command that advances simulated time, frame by frame, as fast as it can be computed."""
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
@@ -70,7 +71,7 @@ class Tab:
     """A tab with its session, client and view in the lab.
 
     Args:
-        context: a browser context of its own is another browser; a shared one another tab.
+        context: a new context stands for another browser, a shared one for another tab.
         draws: whether triangles are drawn.
     """
 
@@ -89,7 +90,7 @@ class Tab:
         self._join(self.page.reload)
 
     def close(self) -> None:
-        """Close the tab; returns when the lab has noticed."""
+        """Close the tab; return when the lab has noticed."""
         self.page.close()
         wait_for(lambda: self.client.client_id not in self.server.server.get_clients())
         wait_for(lambda: self.scheduled.view is not self.view)
@@ -122,7 +123,7 @@ class Tab:
         ]
 
     def _framed(self) -> bool:
-        """Whether the browser has taken the camera that the lab chose for its size."""
+        """Whether the browser has applied the camera that the lab chose for its size."""
         camera = self.client.camera
         box = self._canvas()
         same = abs(camera.image_width / camera.image_height * box["height"] - box["width"]) < 10
@@ -140,7 +141,7 @@ class Tab:
         return self.lab.session
 
     def ask(self, *commands: Command) -> None:
-        """Post commands directly to the lab; returns when they have been applied."""
+        """Post commands directly to the lab; return when they have been applied."""
         done: list[bool] = []
         for command in commands:
             self.lab.post(command)
@@ -148,13 +149,13 @@ class Tab:
         wait_for(lambda: done)
 
     def elapse(self, seconds: float) -> None:
-        """Let simulated time pass in a paused lab, to the tick."""
+        """Advance the simulated time of a paused lab by an exact number of ticks."""
         self.ask(Elapse(seconds))
 
-    # Where things are.
+    # Positions.
 
     def pixel(self, name: str, point: np.ndarray) -> tuple[float, float]:
-        """Where in the window a point of a robot's frame, shape (3,), [m], is seen."""
+        """Position in the window of a point of a robot's frame, shape (3,), [m]."""
         camera, box = self.client.camera, self._canvas()
         forward = camera.look_at - camera.position
         forward = forward / np.linalg.norm(forward)
@@ -167,39 +168,39 @@ class Tab:
         return float(box["x"] + x), float(box["y"] + y)
 
     def _canvas(self) -> dict[str, float]:
-        """Where the scene is in the window, [px]."""
+        """Position and size of the scene in the window, [px]."""
         box = self.page.locator("canvas").first.bounding_box()
         assert box is not None
         return {"x": box["x"], "y": box["y"], "width": box["width"], "height": box["height"]}
 
     def placed(self, name: str, z: np.ndarray) -> tuple[float, float]:
-        """Where in the window a point of the path's plane, shape (2,), [m], is seen."""
+        """Position in the window of a point of the path's plane, shape (2,), [m]."""
         robot = self.session.robot
         return self.pixel(name, robot.place(robot.frame.lift(np.asarray(z, dtype=float))))
 
     def tip(self, name: str) -> np.ndarray:
-        """The end-point in the path's plane, shape (2,), [m]."""
+        """Position of the end-point in the path's plane, shape (2,), [m]."""
         return self.session.robot.frame.planar(self.session.runs[name].shown()["y"]).copy()
 
-    # What a user does.
+    # User actions.
 
     @contextmanager
     def dragging(self, *way: tuple[float, float]) -> Iterator[None]:
-        """The mouse pressed at the first place and moved through the others, down meanwhile."""
+        """Press the mouse at the first place and move it through the others; release on exit."""
         mouse = self.page.mouse
         mouse.move(*way[0])
         self.settle()
         mouse.down()
         for place in way[1:]:
             mouse.move(*place, steps=2)
-            self.page.wait_for_timeout(60)  # viser passes on twenty places a second,
-        mouse.move(*way[-1])  # and drops those between
+            self.page.wait_for_timeout(60)  # viser passes on twenty positions a second
+        mouse.move(*way[-1])  # and drops those in between
         yield
         mouse.up()
 
     @contextmanager
     def touching(self, *way: tuple[float, float]) -> Iterator[None]:
-        """A finger put down at the first place and moved through the others, down meanwhile."""
+        """Touch the first place and move the finger through the others; lift it on exit."""
         touched = self.page.context.new_cdp_session(self.page)
 
         def tell(kind: str, *places: tuple[float, float]) -> None:
@@ -222,7 +223,7 @@ class Tab:
         self.page.evaluate(THREE_FRAMES)
 
     def is_built(self) -> bool:
-        """Whether the page is that of the present robot, and not about to be built anew."""
+        """Whether the page is that of the current robot, and is not about to be rebuilt."""
         feed = self.view
         if not isinstance(feed, LabFeed) or not feed.page.is_ready:
             return False
@@ -233,11 +234,11 @@ class Tab:
         self.button(name).click()
 
     def button(self, name: str) -> Locator:
-        """A button by its label."""
+        """Return the button with a label."""
         return self.page.get_by_role("button", name=name, exact=True)
 
     def open(self, folder: str) -> None:
-        """Open a folder; without effect when it is open."""
+        """Open a folder unless it is open already."""
         title = self.page.get_by_text(folder, exact=True).filter(has=self.page.locator("svg"))
         content = title.locator("xpath=following-sibling::*[1]")
         if content.get_attribute("aria-hidden") == "true":
@@ -246,35 +247,35 @@ class Tab:
         content.locator("visible=true").first.wait_for()  # it unfolds some frames later
 
     def choose(self, label: str, option: str) -> None:
-        """Take an option of a drop-down list."""
+        """Choose an option of a drop-down list."""
         self.page.get_by_label(label, exact=True).filter(visible=True).first.click()
         self.page.get_by_role("option", name=option, exact=True).click()
 
     def focus(self, control: Locator) -> None:
-        """Give a control the focus, which one that is not shown yet would not take."""
+        """Focus a control once it is visible; a hidden one cannot be focused."""
         control.wait_for(state="visible")
         control.focus()
         wait_for(lambda: control.evaluate("control => control === document.activeElement"))
 
     def blur(self) -> None:
-        """Take the focus away from whatever has it."""
+        """Remove the focus from the focused control."""
         self.page.evaluate("document.activeElement?.blur()")
         self.page.wait_for_function("document.activeElement === document.body")
 
     def slider(self, label: str) -> Locator:
-        """The handle of a slider."""
+        """Return the handle of a slider."""
         return self._row(label).get_by_role("slider")
 
     def number(self, label: str) -> Locator:
-        """A box with a number, a slider's too."""
+        """Return the box for a number, which a slider has, too."""
         return self._row(label).locator("input[inputmode]")
 
     def field(self, label: str) -> Locator:
-        """A box with a text."""
+        """Return a text field."""
         return self._row(label).locator("input:not([type=hidden])")
 
     def enter(self, label: str, text: str) -> None:
-        """Type into a number's box."""
+        """Type a number into its box."""
         box = self.number(label)
         box.fill(text)
         box.press("Enter")

@@ -10,7 +10,7 @@ import numpy as np
 
 
 def play(lab: Any, node: str, phase: str, instance: int, start: np.ndarray, end: np.ndarray):
-    """Calls a node's drag callbacks as viser would, the pointer's ray being that of a real one."""
+    """Call a node's drag callbacks as viser does, with a realistic ray of the pointer."""
     camera = np.array([0.1, -3.0, 0.5])
     pointer = camera + 0.97 * (end - camera)
     event = SimpleNamespace(

@@ -11,7 +11,7 @@ from onpath.models.arrays import Array
 
 
 def evaluated(function: Callable[..., Any], *values: Any) -> list[Array]:
-    """What a function of symbols gives for numbers; columns come and go as they are."""
+    """Evaluate a symbolic function for numbers; columns remain columns."""
     given = [ca.DM(value) for value in values]
     symbols = [ca.SX.sym("x", *value.shape) for value in given]
     results = function(*symbols)
@@ -21,6 +21,6 @@ def evaluated(function: Callable[..., Any], *values: Any) -> list[Array]:
 
 
 def drawn(skeleton: Callable[..., Any], q: Array, *values: float) -> tuple[Array, Array]:
-    """Bars, shape (n, 2, 3), and joints, shape (m, 3), of a robot's skeleton, [m]."""
+    """Evaluate a robot's skeleton: bars, shape (n, 2, 3), and joints, shape (m, 3), [m]."""
     bars, joints = evaluated(skeleton, q, *values)
     return bars.T.reshape(-1, 2, 3), joints.T

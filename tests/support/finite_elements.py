@@ -24,7 +24,7 @@ class Elements:
     stiffness: Array
 
     def vibration(self, count: int) -> tuple[Array, Array]:
-        """Clamped at the root: the first angular frequencies, (count,), and shapes, (n, count)."""
+        """First angular frequencies, (count,), and shapes, (n, count), if clamped at the root."""
         inner = slice(2, None)
         squared, vectors = eigh(
             self.stiffness[inner, inner], self.mass[inner, inner], subset_by_index=[0, count - 1]
@@ -32,9 +32,9 @@ class Elements:
         return np.sqrt(squared), np.vstack([np.zeros(count), vectors[::2]])
 
     def on_hub(self, inertia: float) -> tuple[Array, Array]:
-        """M and K with the root clamped to a hub that turns, coordinates (angle, deflection).
+        """M and K if the root is clamped to a rotating hub; coordinates (angle, deflection).
 
-        A point s of the beam is at s angle + w(s) across.
+        The lateral position of a point s of the beam is s angle + w(s).
 
         Args:
             inertia: of the hub alone, [kg m^2].
@@ -53,7 +53,7 @@ class Elements:
 
 
 def beam_of_elements(count: int, length: float, rigidity: float, density: float) -> Elements:
-    """`count` cubic Hermite elements of equal length, consistent mass."""
+    """Assemble `count` cubic Hermite elements of equal length, with consistent mass."""
     h, n = length / count, 2 * (count + 1)
     stiffness, mass = np.zeros((n, n)), np.zeros((n, n))
     bending = np.array(

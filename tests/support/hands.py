@@ -1,7 +1,7 @@
 """A student's actions in a lab: gestures by mouse, keys or touch, one after the other.
 
-The lab stands still while the hands move, and each gesture waits until the lab has heard of it:
-what comes out does not depend on how busy the machine is.
+The lab is paused during a gesture, and each gesture waits until the lab has received it, so that
+the result does not depend on how busy the machine is.
 """
 
 from __future__ import annotations
@@ -27,10 +27,11 @@ Place = tuple[float, float]
 
 
 class Hands:
-    """Of one student.
+    """The gestures of one student.
 
     Args:
-        touch: whether they touch the screen or use a mouse.
+        tab: the student's tab.
+        touch: whether the student touches the screen or uses a mouse.
     """
 
     def __init__(self, tab: Tab, touch: bool) -> None:
@@ -38,45 +39,45 @@ class Hands:
 
     @property
     def lab(self) -> Lab:
-        """What the student looks at."""
+        """The student's lab."""
         return self.tab.lab
 
     @property
     def session(self) -> Session:
-        """Its simulated part."""
+        """Session of the lab."""
         return self.lab.session
 
     def press(self, what: Locator) -> None:
-        """A button, a link."""
+        """Press a button or a link."""
         (what.tap if self._touch else what.click)()
 
     @contextmanager
     def dragging(self, *way: Place) -> Iterator[None]:
-        """Something taken at the first place and moved through the others, not let go yet."""
+        """Take something at the first place and move it through the others; let go on exit."""
         with (self.tab.touching if self._touch else self.tab.dragging)(*way):
             yield
 
     @contextmanager
-    def heard(self) -> Iterator[None]:
-        """What is done within is a command to the lab, and has come there afterwards."""
+    def until_received(self) -> Iterator[None]:
+        """Wait on exit until the lab has received the command given within."""
         asked = self.lab.asked
         yield
         wait_for(lambda: self.lab.asked > asked)
 
     def has(self, label: str, value: float, near: float = 0.0) -> bool:
-        """Whether what stands in the lab under a label is near a value."""
+        """Whether the lab's parameter with a label is near a value."""
         own = self.session.parameters
         known = {label_of(ENGLISH, name, spec): name for name, spec in specs(own).items()}
         name = next(known[full] for full in known if full.startswith(label))
         return abs(getattr(own, name) - value) <= near + 1e-9
 
     def is_near(self, output: np.ndarray, z: np.ndarray) -> bool:
-        """Whether an output is at a place of the path's plane, shape (2,), [m]."""
+        """Whether an output is near a point of the path's plane, shape (2,), [m]."""
         return bool(np.linalg.norm(self.session.robot.frame.planar(output) - z) < NEAR)
 
     @staticmethod
     def box(what: Locator) -> dict[str, float]:
-        """Where something is in the window, [px]."""
+        """Position and size of an element in the window, [px]."""
         box = what.bounding_box()
         assert box is not None
         return {"x": box["x"], "y": box["y"], "width": box["width"], "height": box["height"]}
@@ -94,32 +95,32 @@ class Wait:
 
 @dataclass(frozen=True)
 class Press:
-    """A button or a link, by what is written on it."""
+    """Press a button or a link with a label."""
 
     label: str
 
     def __call__(self, hands: Hands) -> None:
-        with hands.heard():
+        with hands.until_received():
             hands.press(hands.tab.button(self.label).first)
 
 
 @dataclass(frozen=True)
 class Key:
-    """A key, perhaps several times."""
+    """Press a key, once or several times."""
 
     key: str
     times: int = 1
 
     def __call__(self, hands: Hands) -> None:
         for _ in range(self.times):
-            with hands.heard():
+            with hands.until_received():
                 hands.tab.page.keyboard.press(self.key)
             hands.tab.elapse(PACE)
 
 
 @dataclass(frozen=True)
 class Enter:
-    """A number typed into a box, by its label."""
+    """Type a number into the box with a label."""
 
     label: str
     value: float
@@ -131,7 +132,7 @@ class Enter:
 
 @dataclass(frozen=True)
 class Slide:
-    """A slider's handle moved to a number, or near it."""
+    """Move a slider's handle to a number, or near it."""
 
     label: str
     value: float
@@ -153,13 +154,13 @@ class Slide:
 
 @dataclass(frozen=True)
 class Choose:
-    """An option of a list."""
+    """Choose an option of a list."""
 
     label: str
     option: str
 
     def __call__(self, hands: Hands) -> None:
-        with hands.heard():
+        with hands.until_received():
             hands.tab.choose(self.label, self.option)
         wait_for(hands.tab.is_built)  # another number of modes is another robot
         hands.tab.settle()
@@ -167,7 +168,7 @@ class Choose:
 
 @dataclass(frozen=True)
 class Pull:
-    """The follower's end-point pulled aside, [mm], for a while, and let go."""
+    """Pull the follower's end-point aside by [mm] for some seconds, and let go."""
 
     right: float
     up: float
@@ -186,7 +187,7 @@ class Pull:
 
 @dataclass(frozen=True)
 class DragBall:
-    """A ball of the path dragged from one place to another, about, in the path's plane, [mm]."""
+    """Drag the control point nearest to `start` near to `end`, in the path's plane, [mm]."""
 
     start: Place
     end: Place

@@ -22,12 +22,12 @@ FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
 
 @lru_cache(maxsize=1)
 def store() -> LoopCache:
-    """Loops built once for all tests in this process."""
+    """The loops, built once for all tests in this process."""
     return LoopCache()
 
 
 def new_lab(seconds: float = 0.0) -> Lab:
-    """A lab that has run for a while."""
+    """Make a lab that has run for some seconds."""
     lab = Lab(store())
     run(lab, seconds)
     return lab
@@ -41,7 +41,7 @@ def run(lab: Lab, seconds: float) -> None:
 
 
 def do(lab: Lab, *commands: Command) -> None:
-    """Apply commands at once."""
+    """Apply commands immediately."""
     for command in commands:
         lab.post(command)
     lab.drain()
@@ -53,7 +53,7 @@ def states(session: Session) -> dict[str, np.ndarray]:
 
 
 def y(session: Session, name: str) -> np.ndarray:
-    """Where an end-point is, (p,), [m]."""
+    """Position of an end-point, (p,), [m]."""
     return session.robot.endpoint(session.runs[name].fields()["q"])
 
 

@@ -99,7 +99,7 @@ do = [{ at = 1.0, hold = true }]
 def write_lesson(
     folder: Path, text: str = LESSON, reference: str = REFERENCE, name: str = "01-a"
 ) -> Path:
-    """A course of one lesson; returns the lesson's file."""
+    """Write a course of one lesson; return the lesson's file."""
     home = folder / name
     home.mkdir(parents=True, exist_ok=True)
     (home / "reference.toml").write_text(reference)

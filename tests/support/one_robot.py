@@ -30,8 +30,8 @@ from onpath.models.systems.robots import Robot
 
 FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
 CURVE = circle(0.05)
-FAST = 6.28  # [rad/s], as lesson 5's scripts have it
-LENGTH = 2.2  # [s], of a hold
+FAST = 6.28  # [rad/s], the speed in the scripts of lesson 5
+LENGTH = 2.2  # [s], duration of a hold
 
 
 @lru_cache
@@ -40,12 +40,12 @@ def _loop(robot: Robot, kind: Kind) -> Loop:
 
 
 class Driven:
-    """A robot at rest on the default circle, at its right-hand end, and what it does from then on.
+    """A robot that starts at rest at the right-hand end of the default circle, and its log.
 
     Args:
-        who: which controller.
-        robot: its name.
-        settings: parameters, where they differ from the lab's.
+        who: name of the controller.
+        robot: name of the robot.
+        settings: parameters that differ from the lab's.
     """
 
     def __init__(self, who: str = FOLLOWER, robot: str = "five_bar", **settings: object) -> None:
@@ -59,10 +59,10 @@ class Driven:
         self._layout, self._log = kernel.state, kernel.log
         self._rows = list[Array]()
 
-    # What is done to it
+    # Actions
 
     def run(self, until: float) -> Driven:
-        """Go on to an instant, [s]; nothing more once it has been stopped."""
+        """Simulate until an instant, [s]; no effect once the robot has been stopped."""
         ticks = round((until - self.time) / TICK)
         if self.stopped is None and ticks > 0:
             kind = kind_of(self.who, self.parameters, CURVE)
@@ -78,28 +78,28 @@ class Driven:
         return self
 
     def set(self, **settings: object) -> Driven:
-        """Other parameters from now on."""
+        """Change parameters from now on."""
         self.parameters = replace(self.parameters, **settings)  # type: ignore[arg-type]
         return self
 
     def hold(self) -> Driven:
-        """The brake grips here."""
+        """Apply the brake at the current position."""
         self.push = Push(hold=brake_at(self.robot, CURVE, self.y, self.place))
         return self
 
     def pull(self, right: float, up: float) -> Driven:
-        """A hand goes there from where the end-point is, [mm], and stays."""
+        """Pull from now on towards a point relative to the end-point, [mm]."""
         away = np.array([right, up]) / 1e3
         frame = self.robot.frame
         self.push = Push(hand=self.y + frame.lift(away) - frame.lift(np.zeros(2)))
         return self
 
     def let_go(self) -> Driven:
-        """Neither hand nor brake."""
+        """Release the hand or the brake."""
         self.push = FREE
         return self
 
-    # How it is now
+    # Current state
 
     @property
     def q(self) -> Array:
@@ -108,78 +108,80 @@ class Driven:
 
     @property
     def v(self) -> Array:
-        """Its rate, (n,)."""
+        """Velocity of the configuration, (n,)."""
         return self._layout.unpack(self.state)["v"]
 
     @property
     def y(self) -> Array:
-        """End-point, (p,), [m]."""
+        """Position of the end-point, (p,), [m]."""
         return self.robot.endpoint(self.q)
 
     @property
     def place(self) -> float:
-        """theta of the closest point, [rad]."""
+        """Path parameter theta of the closest point, [rad]."""
         return float(self._layout.unpack(self.state)["theta"][0])
 
-    # What it has done, a number a millisecond
+    # Log, one value per millisecond
 
     def log(self, name: str) -> Array:
-        """A field of the log, (ticks, size), SI."""
+        """A field of the log, (ticks, size), in SI units."""
         return self._log.unpack(np.concatenate(self._rows))[name]
 
     @property
     def distance(self) -> Array:
-        """Of the actual end-point to the path, (ticks,), [mm]."""
+        """Distance of the actual end-point to the path, (ticks,), [mm]."""
         return 1e3 * path_distance(self.robot.frame, CURVE, self.log("y"))
 
     @property
     def across(self) -> Array:
-        """Of the controlled output, (ticks,), [mm]."""
+        """Transverse error of the controlled output, (ticks,), [mm]."""
         return 1e3 * np.linalg.norm(self.log("xi"), axis=1)
 
     @property
     def torque(self) -> Array:
-        """The largest, (ticks,), [N m]."""
+        """The larger motor torque, (ticks,), [N m]."""
         return np.abs(self.log("u")).max(axis=1)
 
     @property
     def deflection(self) -> Array:
-        """Of the flexible link's tip, (ticks,), [mm]."""
+        """Deflection of the flexible link's tip, (ticks,), [mm]."""
         assert isinstance(self.robot, FlexibleFiveBar)
         return 1e3 * self.robot.deflection(self.log("q"))
 
     @property
     def energy(self) -> Array:
-        """In the flexible link, (ticks,), [mJ]."""
+        """Vibration energy of the flexible link, (ticks,), [mJ]."""
         assert isinstance(self.robot, FlexibleFiveBar)
         return 1e3 * self.robot.internal_energy(self.log("q"), self.log("v"), self.parameters)
 
 
 def largest(values: Array, begin: float, end: float) -> float:
-    """Without sign, from one instant to another, [s]."""
+    """Largest absolute value between two instants, [s]."""
     return float(np.abs(values[round(begin / TICK) : round(end / TICK)]).max())
 
 
 def at(values: Array, time: float) -> float:
-    """At an instant, [s]."""
+    """Value at an instant, [s]."""
     return float(values[round(time / TICK)])
 
 
 @cache
-def way_round(law: str, **gains: Any) -> Array:
-    """theta of a robot that nobody holds, every millisecond of 5 s."""
+def undisturbed_theta(law: str, **gains: Any) -> Array:
+    """Path parameter theta of an undisturbed robot, every millisecond for 5 s."""
     return Driven(law, speed=FAST, **gains).run(5.0).log("theta")[:, 0]
 
 
 @cache
 def held_at(degrees: float, law: str = FOLLOWER, **gains: Any) -> Driven:
-    """Caught by the brake when it comes to a place, after at least 3 s."""
-    away = np.abs(np.exp(1j * way_round(law, **gains)[3000:]) - np.exp(1j * np.radians(degrees)))
+    """A robot that the brake catches at an angle of the circle, after at least 3 s."""
+    away = np.abs(
+        np.exp(1j * undisturbed_theta(law, **gains)[3000:]) - np.exp(1j * np.radians(degrees))
+    )
     begin = 3 + 1e-3 * int(np.argmax(away < 0.005))
     return Driven(law, speed=FAST, **gains).run(begin).hold().run(begin + LENGTH)
 
 
 def most_and_rest(degrees: float, law: str = FOLLOWER, **gains: Any) -> tuple[float, float]:
-    """Largest distance while held, and that at the end, [mm]."""
+    """Largest distance during the hold, and distance at its end, [mm]."""
     distance = held_at(degrees, law, **gains).distance[-round(1e3 * LENGTH) :]
     return float(distance.max()), float(distance[-1])

@@ -12,7 +12,7 @@ from websockets.sync.client import ClientConnection
 from onpath.app.bench.client_protocol import SUBPROTOCOL, answer, unpacked
 
 WAIT = 10.0  # [s]
-QUESTIONS = 2  # of a lab to a newcomer
+QUESTIONS = 2  # number of a lab's questions to a new client
 
 
 def frames(*payloads: bytes, opcode: Opcode = Opcode.BINARY) -> bytes:
@@ -23,7 +23,7 @@ def frames(*payloads: bytes, opcode: Opcode = Opcode.BINARY) -> bytes:
 def knock(
     port: int, subprotocol: str | None = SUBPROTOCOL, source: str = "127.0.0.1"
 ) -> socket.socket:
-    """A socket that has asked for a websocket, and read nothing."""
+    """Open a socket and send the websocket handshake, without reading the answer."""
     lines = [
         "GET / HTTP/1.1",
         f"Host: 127.0.0.1:{port}",
@@ -39,7 +39,7 @@ def knock(
 
 
 def is_closed(raw: socket.socket) -> bool:
-    """Whether the other end has closed; drops what came before."""
+    """Whether the other end has closed; discards what has been received."""
     try:
         while select.select([raw], [], [], 0)[0]:
             if not raw.recv(1 << 16):
@@ -50,7 +50,7 @@ def is_closed(raw: socket.socket) -> bool:
 
 
 def answer_questions(client: ClientConnection, stored: Mapping[str, str] | None = None) -> None:
-    """Answer the initial questions to a new client, and nothing later."""
+    """Answer the initial questions to a new client, but no later ones."""
     answered = 0
     while answered < QUESTIONS:
         raw = client.recv(WAIT)

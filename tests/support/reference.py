@@ -20,12 +20,12 @@ FLAGS = (
 
 
 def reference_loop(kernel: Kernel, folder: Path) -> CompiledLoop | None:
-    """The hand-written loop, or None where there is no C compiler.
+    """Compile the hand-written loop; None if there is no C compiler.
 
     Args:
-        kernel: of the rigid five-bar, path following, closed, distance, no encoder; whose layouts
-            the C follows.
-        folder: where the library goes.
+        kernel: of the rigid five-bar, path following, closed path, distance, no encoder; the C
+            code assumes its layouts.
+        folder: the library is written to it.
     """
     compiler = shutil.which(os.environ.get("CC", "cc"))
     if compiler is None:

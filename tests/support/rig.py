@@ -67,7 +67,7 @@ class Rig:
         return self.kernels[kind]
 
     def loop(self, kind: Kind) -> Loop:
-        """What the lab runs: the laws must hold in it."""
+        """The loop as the lab runs it."""
         if kind not in self.loops:
             self.loops[kind] = translate_loop(self.kernel(kind))
         return self.loops[kind]
@@ -77,7 +77,7 @@ class Rig:
         return self.kernel(kind).settings.pack(values)
 
     def state(self, kind: Kind, y: Array, y_rate: Array | None = None, **changes: Any) -> Array:
-        """The end-point at y moving with y_rate, the memory of the controller empty."""
+        """State with the end-point at y, moving with y_rate, and the controller's memory empty."""
         q = inverse_kinematics(np.asarray(y, dtype=float), 0.2, 0.2)
         v = np.zeros(2) if y_rate is None else np.linalg.solve(jacobian(q), y_rate)
         values: dict[str, Any] = {"q": q, "v": v, "theta": 0, "theta_rate": 0, "theta_ref": 0}
@@ -86,7 +86,7 @@ class Rig:
         return self.kernel(kind).state.pack({**values, **changes})
 
     def on_path(self, kind: Kind, curve: Curve, theta: float, rate: float, **changes: Any) -> Array:
-        """On the curve at theta, moving along it."""
+        """State on the curve at theta, moving along it."""
         at = np.array(theta)
         start = {"theta": theta, "theta_rate": rate, "theta_ref": theta, **changes}
         return self.state(kind, curve.at(at), rate * curve.at(at, 1), **start)
@@ -94,7 +94,7 @@ class Rig:
     def run(
         self, kind: Kind, curve: Curve, state: Array, ticks: int, **changes: Any
     ) -> dict[str, Array]:
-        """The log, by name."""
+        """Run the loop; return the log by name."""
         rows = self.loop(kind).run(state, self.settings(kind, **changes), curve.table(), ticks)[1]
         return self.kernel(kind).log.unpack(rows)
 

@@ -19,7 +19,7 @@ FOLLOWABLE = sorted(set(PRESETS) - {"figure of eight"})
 
 
 def wave(shape: float, phase: float, closed: bool) -> PathDesign:
-    """What a hand might draw."""
+    """A path such as a user might draw freehand."""
     t = np.linspace(-1, 1, 60)
     if closed:
         radius = 0.05 + 0.01 * shape * np.cos(2 * np.pi * t + phase)
@@ -51,7 +51,7 @@ def _value(spec: Spec) -> st.SearchStrategy[Any]:
 
 @st.composite
 def benches(draw: st.DrawFn, robot: str) -> RobotSetup:
-    """One robot's, as `capture` makes it."""
+    """A set-up of one robot, as `capture` makes it."""
     lab = ROBOTS[robot].lab
     some = draw(st.lists(st.sampled_from(list(specs(lab).items())), max_size=6))
     values = {name: draw(_value(spec)) for name, spec in some}
@@ -61,7 +61,7 @@ def benches(draw: st.DrawFn, robot: str) -> RobotSetup:
 
 @st.composite
 def setups(draw: st.DrawFn) -> Setup:
-    """A lab's, as `capture` makes it."""
+    """A set-up of a lab, as `capture` makes it."""
     names = draw(st.lists(st.sampled_from(list(ROBOTS)), unique=True, max_size=2))
     found = {name: draw(benches(name)) for name in sorted(names)}
     return Setup(

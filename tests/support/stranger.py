@@ -17,7 +17,7 @@ FILES = ("app.py", "experiments.py", "models/__init__.py", "models/robots.py", "
 
 
 def fill(folder: Path) -> None:
-    """Put app.py, models/ (a package) and lessons/ (none) into it; to import them leaves a mark."""
+    """Write the `FILES`, of which models/ is a package; importing any of them leaves a mark."""
     for name in FILES:
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(CODE, "utf-8")
@@ -30,6 +30,6 @@ def marks(folder: Path) -> list[Path]:
 
 
 def environment(**more: str) -> dict[str, str]:
-    """For a process outside the checkout that imports the package under test."""
+    """Environment of a process outside the checkout that imports the package under test."""
     path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
     return {**os.environ, "PYTHONPATH": path, **more}

@@ -22,15 +22,15 @@ class Student:
     """One tab.
 
     Args:
-        address: of the websocket.
-        through: the port on this machine to connect to, whatever the address says.
-        headers: of the handshake.
+        address: URL of the websocket.
+        through: port on this machine to connect to, instead of that in the address.
+        headers: headers of the handshake.
 
     Attributes:
         kept: the browser's local storage.
-        widgets: what the page shows, by widget: the properties.
-        moving: how often it was told new poses.
-        received: [B].
+        widgets: properties of the widgets on the page, by id.
+        moving: number of updates of the poses.
+        received: amount of data, [B].
     """
 
     def __init__(self, address: str, through: int | None = None, **headers: str) -> None:
@@ -47,7 +47,7 @@ class Student:
         self.close()
 
     def close(self) -> None:
-        """The tab."""
+        """Close the tab."""
         if self._socket is not None:
             self._socket.close()
 
@@ -57,7 +57,7 @@ class Student:
         return self.kept.get("onpath_sessions", "").partition(",")[0]
 
     def open(self) -> None:
-        """The page; it may have been open already."""
+        """Open the page, or open it again."""
         self.widgets.clear()
         way = socket.create_connection(("127.0.0.1", self._through)) if self._through else None
         self._socket = connect(
@@ -102,30 +102,30 @@ class Student:
         end = time.monotonic() + seconds
         self.read(lambda: time.monotonic() > end)
 
-    def cut_off(self) -> None:
-        """Wait until the server is gone."""
+    def wait_until_closed(self) -> None:
+        """Wait until the server has closed the connection."""
         try:
             self.read(lambda: False)
         except ConnectionClosed:
             return
 
     def find(self, label: str) -> dict[str, Any]:
-        """A widget by the beginning of its label or by an option, once it is there."""
-        self.read(lambda: self.may(label))
+        """Wait for a widget whose label or option begins with `label`, and return it."""
+        self.read(lambda: self.has_widget(label))
         return next(w for text, w in self._labels().items() if text.startswith(label))
 
     def set(self, label: str, value: Any) -> None:
-        """Move a slider, choose from a list, press a button."""
+        """Set the value of a widget, as by moving a slider or pressing a button."""
         widget = self.find(label)
         assert self._socket is not None
         self._socket.send(packed("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value}))
 
-    def may(self, label: str) -> bool:
-        """Whether there is a widget now whose label or option begins so."""
+    def has_widget(self, label: str) -> bool:
+        """Whether the page has a widget whose label or option begins with `label`."""
         return any(text.startswith(label) for text in self._labels())
 
     def sees(self, text: str) -> bool:
-        """Whether the page says something."""
+        """Whether the page shows a text."""
         parts = ("content", "_markdown")
         return any(text in str(w.get(part)) for w in self.widgets.values() for part in parts)
 

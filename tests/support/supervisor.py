@@ -1,4 +1,4 @@
-"""`onpath --workers` as a process of its own, for tests."""
+"""`onpath --workers` in a separate process, for tests."""
 
 from __future__ import annotations
 

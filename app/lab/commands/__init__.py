@@ -18,11 +18,11 @@ from onpath.app.lab.commands.lessons import (
 from onpath.app.lab.commands.parameters import ChooseRobot, Identify, ResetParameters, SetParameter
 from onpath.app.lab.commands.path import (
     AddPoint,
-    Arrow,
     ChoosePath,
     DrawPath,
     EndMove,
     MovePoint,
+    NudgePoint,
     PlacePoint,
     Redo,
     RemovePoint,
@@ -51,7 +51,6 @@ __all__ = [
     "Act",
     "AddPoint",
     "AnswerQuiz",
-    "Arrow",
     "BeginStepAnew",
     "ChoosePath",
     "ChooseRobot",
@@ -69,6 +68,7 @@ __all__ = [
     "LookBack",
     "MoveHand",
     "MovePoint",
+    "NudgePoint",
     "OpenLesson",
     "PlacePoint",
     "PlayStep",

@@ -87,7 +87,7 @@ class EndMove(Command):
 
 
 @dataclass(frozen=True, slots=True)
-class Arrow(Command):
+class NudgePoint(Command):
     """Move the selected control point by a step, [m]; with none, right steps simulated time."""
 
     right: float

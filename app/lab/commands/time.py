@@ -91,12 +91,12 @@ class GoOn(Command):
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        put_aside = go_on(lab.session)
-        if put_aside is None:
+        discarded = go_on(lab.session)
+        if discarded is None:
             lab.clear_message()
             return
         lab.script = None
-        time, seconds = (f"{number:.1f}" for number in put_aside)
+        time, seconds = (f"{number:.1f}" for number in discarded)
         lab.remark(lab.words("say.went_on", time=time, seconds=seconds))
 
 

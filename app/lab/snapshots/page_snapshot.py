@@ -24,7 +24,7 @@ class RunState:
     Attributes:
         now: simulated time, also while the past is viewed, [s].
         viewing: the past instant being viewed, [s], or None.
-        can_undo_going_on: whether a timeline put aside can be restored.
+        can_undo_going_on: whether a discarded timeline can be restored.
         rate: requested simulated seconds per second.
         copy: whether pulling and holding act on both robots.
         exaggeration: magnification of the drawn deflection.

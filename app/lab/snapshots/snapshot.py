@@ -111,8 +111,8 @@ class RobotView:
 
     @property
     def marker(self) -> np.ndarray:
-        """What the controller aims at: the tracker's moving reference point, the follower's
-        closest point, shape (3,)."""
+        """The controller's target: the tracker's moving reference point or the follower's closest
+        point, shape (3,)."""
         return self.points[MARKER]
 
     @property

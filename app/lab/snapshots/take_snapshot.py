@@ -73,7 +73,7 @@ def take_page_snapshot(
         run=RunState(
             now=session.time,
             viewing=session.viewing,
-            can_undo_going_on=session.put_aside is not None,
+            can_undo_going_on=session.undo_timeline is not None,
             rate=session.rate,
             copy=session.copy,
             exaggeration=session.exaggeration,

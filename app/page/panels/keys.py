@@ -44,10 +44,10 @@ class Key:
 
 KEYS = (
     Key("run", "space", "space", c.SetRunning()),
-    Key("right", "arrowright", "→", c.Arrow(NUDGE, 0.0)),
-    Key("left", "arrowleft", "←", c.Arrow(-NUDGE, 0.0)),
-    Key("up", "arrowup", "↑", c.Arrow(0.0, NUDGE)),
-    Key("down", "arrowdown", "↓", c.Arrow(0.0, -NUDGE)),
+    Key("right", "arrowright", "→", c.NudgePoint(NUDGE, 0.0)),
+    Key("left", "arrowleft", "←", c.NudgePoint(-NUDGE, 0.0)),
+    Key("up", "arrowup", "↑", c.NudgePoint(0.0, NUDGE)),
+    Key("down", "arrowdown", "↓", c.NudgePoint(0.0, -NUDGE)),
     Key("reset", "R", "R", c.Reset()),
     Key("hold", "H", "H", c.Hold()),
     Key("next", "N", "N", c.SelectNext()),

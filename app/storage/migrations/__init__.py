@@ -1,4 +1,4 @@
-"""How the database's tables came about: one revision a change, applied by Alembic at opening."""
+"""Migrations of the database's tables: one revision per change, applied by Alembic on opening."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from pathlib import Path
 import sqlalchemy as sa
 
 HEAD = "0001"
-"""The revision of `app.storage.schema`; a test holds it to be the newest file in versions/."""
+"""The revision of `app.storage.schema`; a test checks that it is the newest file in versions/."""
 REVISIONS = sa.Table(
     "alembic_version", sa.MetaData(), sa.Column("version_num", sa.String(32), primary_key=True)
 )
-logging.getLogger("alembic").setLevel(logging.WARNING)  # it tells of each of its plugins
-_alone = threading.Lock()  # Alembic keeps the migration under way in a global
+logging.getLogger("alembic").setLevel(logging.WARNING)  # it logs each of its plugins
+_alone = threading.Lock()  # Alembic stores the current migration in a global
 
 
 def revision_of(connection: sa.Connection) -> str | None:
-    """The revision that a database is at; None before the first."""
+    """The revision of a database; None before the first one."""
     if not sa.inspect(connection).has_table(REVISIONS.name):
         return None
     return connection.execute(sa.select(REVISIONS.c.version_num)).scalar()
 
 
 def known_revisions() -> set[str]:
-    """All that this version of the program can start from."""
+    """The revisions from which this version of the program can upgrade."""
     from alembic.script import ScriptDirectory
 
     return {script.revision for script in ScriptDirectory(_folder()).walk_revisions()}

@@ -1,4 +1,4 @@
-"""The tables of 0.1, from before Alembic: what they were then, whatever they become.
+"""The tables of version 0.1, which did not use Alembic; they stay as they were then.
 
 A table's columns are (name, type, whether it is part of the primary key); none may be null.
 """
@@ -27,7 +27,7 @@ TABLES = {
 
 
 def strange_table(connection: sa.Connection) -> str | None:
-    """A table of one of these names with other columns: another program's; None if all is well."""
+    """The name of a table with other columns, which belongs to another program; None if none."""
     inspector = sa.inspect(connection)
     for name in TABLES.keys() & set(inspector.get_table_names()):
         columns = {column["name"] for column in inspector.get_columns(name)}

@@ -107,4 +107,4 @@ def test_a_server_that_ends_says_why(tmp_path: Path) -> None:
         serving(environment, most=0) as server,
         pytest.raises(ValueError, match=r"ended: .*--most-clients 0: expected 1 or more"),
     ):
-        server.vitals()
+        server.metrics()

@@ -112,4 +112,4 @@ def _follow(teacher: Student, student: Student) -> None:
     press(student, "Hold both back")
     student.stay(1.0)
     teacher.read(lambda: teacher.moving > before + 10)
-    assert not teacher.may("Hold both back")
+    assert not teacher.has_widget("Hold both back")

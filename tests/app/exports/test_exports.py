@@ -78,8 +78,8 @@ def test_replay_after_going_on_from_the_past() -> None:
 def test_two_kilohertz_gives_whole_milliseconds() -> None:
     lab = new_lab()
     do(lab, c.SetParameter("control_rate", 2000))
-    for k in range(12):  # every frame another path, so that no stretch joins the next
-        do(lab, c.SelectPoint(0), c.Arrow(0.0005 * (-1) ** k, 0.0))
+    for k in range(12):  # every frame another path, so that no segment joins the next
+        do(lab, c.SelectPoint(0), c.NudgePoint(0.0005 * (-1) ** k, 0.0))
         lab.advance(FRAME)
     for trajectory in replay(lab.session.robot, lab.session.history.all()).values():
         assert trajectory.t == pytest.approx(np.arange(len(trajectory.t)) * 1e-3, abs=1e-9)

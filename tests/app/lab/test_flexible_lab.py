@@ -88,18 +88,18 @@ def test_a_pull_bends_the_link_and_is_survived(plane: str) -> None:
 
 def test_going_on_from_the_past_is_the_same_motion_again() -> None:
     lab = flexible(1.0)
-    stretch = lab.session.history.at(0.5)
-    assert stretch is not None
+    segment = lab.session.history.at(0.5)
+    assert segment is not None
     do(lab, c.LookAt(lab.session.time - 0.5))
     shown = take_snapshot(lab, 1.0).robots[FOLLOWER]
-    q = stretch.drives[FOLLOWER].state[: lab.session.robot.system.n]
+    q = segment.drives[FOLLOWER].state[: lab.session.robot.system.n]
     np.testing.assert_allclose(shown.bars, drawn(lab.session.robot.skeleton, q, 1.0)[0], atol=1e-15)
-    then = {name: drive.state.copy() for name, drive in stretch.drives.items()}
+    then = {name: drive.state.copy() for name, drive in segment.drives.items()}
     do(lab, c.GoOn())
     for name, state in states(lab.session).items():
         np.testing.assert_array_equal(state, then[name])
     run(lab, 0.5)
-    assert lab.session.time > stretch.time and lab.message_level == "info"
+    assert lab.session.time > segment.time and lab.message_level == "info"
 
 
 def test_past_the_critical_alpha_the_vibration_grows_and_is_caught() -> None:

@@ -35,7 +35,7 @@ def add(
     curve: Curve = CURVE,
     dt: float = 1e-3,
 ) -> None:
-    """A stretch of one robot, whose state and sample are the time."""
+    """A segment of one robot, whose state and sample are the time."""
     state, inputs = np.array([time]), inputs_of(curve, dt, id(settings), frozen)
     history.append(HistoryFrame(time, ticks, inputs, [state], [0.0], [state], [0.0]))
 
@@ -145,16 +145,16 @@ def test_older_stretches_are_fewer_and_as_exact() -> None:
         if k % 37 == 0:
             do(lab, c.SetParameter("K2", 20.0 + k % 5))
         lab.session.simulate(17)
-    stretches, name = lab.session.history.all(), FOLLOWER
-    assert sum(s.ticks for s in stretches) == 2400 * 17
-    recent = [s.ticks for s in stretches if s.time > lab.session.time - RECENT]
-    assert set(recent) == {17} and max(s.ticks for s in stretches) == COARSE
-    assert len(stretches) < 2400 * 0.8
-    for stretch, later in pairwise(stretches):
-        drive, ends = stretch.drives[name], stretch.time + stretch.ticks * stretch.dt
+    segments, name = lab.session.history.all(), FOLLOWER
+    assert sum(s.ticks for s in segments) == 2400 * 17
+    recent = [s.ticks for s in segments if s.time > lab.session.time - RECENT]
+    assert set(recent) == {17} and max(s.ticks for s in segments) == COARSE
+    assert len(segments) < 2400 * 0.8
+    for segment, later in pairwise(segments):
+        drive, ends = segment.drives[name], segment.time + segment.ticks * segment.dt
         assert later.time == pytest.approx(ends, abs=1e-9)
         loop = lab.session._store.get(lab.session.robot, drive.kind)
-        state, _ = loop.run(drive.state, drive.settings, stretch.curve.table(), stretch.ticks)
+        state, _ = loop.run(drive.state, drive.settings, segment.curve.table(), segment.ticks)
         assert np.array_equal(state, later.drives[name].state)
 
 

@@ -163,7 +163,7 @@ MEDDLING = (
     asked(c.SetParameter("speed", -2.0), c.SetParameter("task", "position")),
     asked(c.SetParameter("payload", 0.2), c.SetParameter("control_rate", 50)),
     asked(c.ChoosePath("clover")),
-    asked(c.SelectPoint(2), c.Arrow(0.003, 0.0)),
+    asked(c.SelectPoint(2), c.NudgePoint(0.003, 0.0)),
     asked(*(c.ChooseRobot(name) for name in ROBOTS), c.SetParameter("K1", 55.0)),
     asked(c.SetRate(0.25), c.SetCopy(False)),
     asked(c.Hold(True)),

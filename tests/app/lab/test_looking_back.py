@@ -30,12 +30,12 @@ class Seen:
 
 
 def seen(lab: Lab) -> Seen:
-    """What is to be kept. A stretch is known by its time: those that wait may still grow."""
+    """What is to be kept. A segment is known by its time: those that wait may still grow."""
     kept = {
-        stretch.time: b"".join(
-            [stretch.sample.tobytes(), *(d.state.tobytes() for d in stretch.drives.values())]
+        segment.time: b"".join(
+            [segment.sample.tobytes(), *(d.state.tobytes() for d in segment.drives.values())]
         )
-        for stretch in lab.session.history.all()
+        for segment in lab.session.history.all()
     }
     robots = tuple(
         run.state.tobytes()
@@ -92,7 +92,7 @@ def test_only_going_on_forgets_and_undo_brings_all_of_it_back(actions: list[str]
             assert lab.session.viewing is None and not lab.session.running
             aside = before
         elif action == "go on" and viewing is not None:
-            assert lab.message and lab.session.put_aside is not None
+            assert lab.message and lab.session.undo_timeline is not None
             assert after.time <= viewing and after.kept == {
                 time: bits for time, bits in before.kept.items() if time < after.time
             }
@@ -170,9 +170,9 @@ def test_a_step_of_a_lesson_cannot_be_passed_by_bringing_back_what_came_before(
     do(lab, c.OpenLesson("01-a"), c.SetRunning(True))
     run(lab, 0.5)
     do(lab, c.LookAt(0.3), c.GoOn())
-    assert lab.session.put_aside is not None
+    assert lab.session.undo_timeline is not None
     do(lab, c.GoToStep(1))
-    assert lab.session.put_aside is None
+    assert lab.session.undo_timeline is None
 
 
 def test_whoever_acts_on_the_lab_while_looking_back_is_told_that_it_is_the_present() -> None:

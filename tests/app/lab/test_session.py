@@ -127,7 +127,7 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.MovePoint: st.builds(c.MovePoint, st.integers(-3, 30), points(1), st.booleans()),
     c.EndMove: st.builds(c.EndMove),
     c.SelectNext: st.builds(c.SelectNext),
-    c.Arrow: st.builds(c.Arrow, WILD, WILD),
+    c.NudgePoint: st.builds(c.NudgePoint, WILD, WILD),
     c.PlacePoint: st.builds(c.PlacePoint, st.one_of(st.none(), WILD), st.one_of(st.none(), WILD)),
     c.AddPoint: st.builds(c.AddPoint),
     c.RemovePoint: st.builds(c.RemovePoint),
@@ -321,7 +321,7 @@ def test_space_toggles_and_arrow_steps_when_no_point_is_selected() -> None:
     lab = new_lab(0.1)
     do(lab, c.SetRunning())
     time = lab.session.time
-    do(lab, c.Arrow(0.001, 0.0))
+    do(lab, c.NudgePoint(0.001, 0.0))
     assert not lab.session.running and lab.session.time > time
     do(lab, c.SetRunning())
     assert lab.session.running
@@ -547,7 +547,13 @@ def test_undo_in_the_middle_of_a_drag_takes_the_drag_back() -> None:
 def test_keyboard_moves_the_selected_point_as_a_drag_would() -> None:
     by_key, by_number, by_mouse = new_lab(), new_lab(), new_lab()
     start = by_key.session.editor.design.points[3]
-    do(by_key, c.SelectPoint(2), c.SelectNext(), c.Arrow(0.003, 0.0), c.Arrow(0.0, -0.004))
+    do(
+        by_key,
+        c.SelectPoint(2),
+        c.SelectNext(),
+        c.NudgePoint(0.003, 0.0),
+        c.NudgePoint(0.0, -0.004),
+    )
     do(
         by_number,
         c.SelectPoint(3),
@@ -579,7 +585,7 @@ def test_undo_and_redo_walk_the_line_of_edits(actions: list[str]) -> None:
             do(lab, c.Redo())
         else:
             edits: dict[str, Callable[[], c.Command]] = {
-                "move": lambda: c.Arrow(0.001, 0.0005),
+                "move": lambda: c.NudgePoint(0.001, 0.0005),
                 "add": c.AddPoint,
                 "remove": c.RemovePoint,
                 "preset": lambda: c.ChoosePath(("ellipse", "circle")[k % 2]),

@@ -43,7 +43,7 @@ def client() -> Iterator[viser.ClientHandle]:
     server = LabServer("127.0.0.1", 0, LoopCache())
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.may("Path") and server._views)
+        student.read(lambda: student.has_widget("Path") and server._views)
         server.simulation.stop()
         (number,) = wait_for(lambda: list(server._views))
         yield server.server.get_clients()[number]
@@ -150,7 +150,7 @@ def test_a_lab_is_drawn_from_data(robot: str, drawing: Drawing, course: Course) 
     film = filmed(
         lab,
         *(c.Hold(True), c.SetCopy(False), c.Hold(False), c.SetParameter("K1", 90.0)),
-        *(c.Grab(FOLLOWER, y + 0.02), c.Release(), c.SelectPoint(1), c.Arrow(0.002, 0.001)),
+        *(c.Grab(FOLLOWER, y + 0.02), c.Release(), c.SelectPoint(1), c.NudgePoint(0.002, 0.001)),
         *(c.ChoosePath("figure of eight"), c.ChoosePath("ellipse"), c.Share()),
         *(c.SetParameter("torque_limit", 0.5), c.LookAt(1.0), c.GoOn(), c.SetRate(0.5)),
         *(c.SetExaggeration(3.0), c.SetRunning(False)),

@@ -230,7 +230,7 @@ def test_a_freehand_stroke_is_told_once_in_the_robots_frame(lab):
     assert len(strokes) == 1
     np.testing.assert_allclose(strokes[0], corners, atol=1e-9)
     assert lab.api.get_handle_by_name("/freehand/sheet") is None
-    assert lab.api.get_handle_by_name("/freehand/ink") is None
+    assert lab.api.get_handle_by_name("/freehand/line") is None
 
 
 def test_the_singular_zone_can_be_shown_and_hidden(lab):

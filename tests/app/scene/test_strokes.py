@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from onpath.app.common import palette
 from onpath.app.lab import commands as c
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.scene.ink import MOST, Ink
+from onpath.app.scene.sketch_line import MOST, SketchLine
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.schema import Sketch
@@ -30,7 +30,7 @@ wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that woul
 
 
 class Page:
-    """One tab of a real lab whose frames are counted out here; notes what is told of the ink."""
+    """One tab of a real lab whose frames are counted out here; notes what is told of the line."""
 
     def __init__(self, lab: LabServer) -> None:
         (self.number,) = wait_for(lambda: list(lab._views))
@@ -46,7 +46,7 @@ class Page:
         connection.queue_message = self._note
 
     def _note(self, message: Any) -> None:
-        if getattr(message, "name", "").endswith("/ink"):
+        if getattr(message, "name", "").endswith("/line"):
             drawn = getattr(message, "updates", None) or vars(getattr(message, "props", message))
             if "points" in drawn:
                 self.told.append(len(drawn["points"]))
@@ -77,7 +77,7 @@ class Page:
         self.end = partial(play, scene, node, "end", 0, place(k), place(k))
 
     def assert_bounded(self) -> None:
-        """What has been told of the ink since the beginning."""
+        """What has been told of the line since the beginning."""
         assert len(self.told) <= SECONDS * DISPLAY + 1
         assert max(self.told) <= MOST
         assert len(self.told) > SECONDS * DISPLAY / 2  # it is seen while it is drawn
@@ -89,7 +89,7 @@ def page() -> Iterator[Page]:
     lab = LabServer("127.0.0.1", 0, LoopCache())
     with Student(f"ws://127.0.0.1:{lab.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.may("Path") and lab._views)
+        student.read(lambda: student.has_widget("Path") and lab._views)
         yield Page(lab)
     lab.stop()
 
@@ -112,7 +112,7 @@ def test_an_endless_freehand_stroke_is_drawn_ten_times_a_second_of_few_points(pa
     middle = np.array([0.2, 0.0, 0.15])
     assert np.linalg.norm(stroke - middle, axis=1) == pytest.approx(np.full(len(stroke), 0.1))
     assert stroke[0] == pytest.approx(around(0))
-    assert not page.shown("/freehand/ink") and not page.told_by_mouse
+    assert not page.shown("/freehand/line") and not page.told_by_mouse
 
 
 def test_an_endless_sketch_too(page: Page) -> None:
@@ -166,19 +166,19 @@ def test_a_line_begins_where_it_began_and_ends_near_the_hand(
     steps: list[float], count: int
 ) -> None:
     paper = Paper()
-    ink = Ink(paper, "ink", (palette.INK, 1.0), 1.0, lambda points: points)  # type: ignore[arg-type]
+    line = SketchLine(paper, "line", (palette.INK, 1.0), 1.0, lambda points: points)  # type: ignore[arg-type]
     way = np.cumsum([0.0, *(2.0 * np.resize(steps or [1.0], count))])
     for x in way:
-        ink.add(np.array([x, 0.0, 0.0]))
-    points = ink.points[:, 0]
+        line.add(np.array([x, 0.0, 0.0]))
+    points = line.points[:, 0]
     gaps = np.diff(points)
     assert len(points) <= MOST and points[0] == way[0] and set(points) <= set(way)
     if len(points) > 1:
         assert gaps.min() > 1.0 and way[-1] - points[-1] <= gaps.max()
     for _ in range(2):
-        ink.draw()
+        line.draw()
     assert len(paper.drawings) == (len(points) > 1)
-    ink.remove()
-    ink.add(np.array([-9.0, 0.0, 0.0]))
-    ink.draw()
+    line.remove()
+    line.add(np.array([-9.0, 0.0, 0.0]))
+    line.draw()
     assert len(paper.drawings) == 2 * (len(points) > 1)

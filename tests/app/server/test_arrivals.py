@@ -54,15 +54,15 @@ def test_silent_tabs_hold_no_thread_no_lab_and_no_place(lab: LabServer) -> None:
     with ExitStack() as stay:
         insider = stay.enter_context(Student(address))
         insider.open()
-        insider.read(lambda: insider.may("Path"))
+        insider.read(lambda: insider.has_widget("Path"))
         tabs = [stay.enter_context(silent(lab.server)) for _ in range(SILENT)]
         wait_for(lambda: [is_closed(tab) for tab in tabs].count(True) == SILENT - MOST_EACH)
         assert all_threads_are_free(lab.server)
         newcomer = stay.enter_context(Student(address))
         newcomer.open()
-        newcomer.read(lambda: newcomer.may("Path"))
+        newcomer.read(lambda: newcomer.has_widget("Path"))
         insider.set("Lessons", True)
-        insider.read(lambda: insider.may("Open"))
+        insider.read(lambda: insider.has_widget("Open"))
         wait_for(lambda: len(lab._views) == 2)
         assert len(lab.sessions) == 2
         assert [is_closed(tab) for tab in tabs] == [True] * MOST_EACH + [False] * MOST_EACH
@@ -71,14 +71,14 @@ def test_silent_tabs_hold_no_thread_no_lab_and_no_place(lab: LabServer) -> None:
 def test_who_answers_late_comes_back_to_the_same_lab(lab: LabServer) -> None:
     with Student(f"ws://127.0.0.1:{lab.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.code and student.may("Path"))
+        student.read(lambda: student.code and student.has_widget("Path"))
         code = student.code
         student.close()
         wait_for(lambda: not lab.server.get_clients())
         student.open()  # and reads no question yet
         wait_for(lab.server.get_clients)
         assert all_threads_are_free(lab.server)
-        student.read(lambda: student.may("Path"))
+        student.read(lambda: student.has_widget("Path"))
         assert student.code == code and len(lab.sessions) == 1
 
 

@@ -153,16 +153,18 @@ def test_a_student_whose_worker_is_killed_goes_on_with_another(site: Site) -> No
         student.read(lambda: student.sees("Step 2 of"))
         student.set("B", "B")
         student.set("Commit to this prediction: B", True)
-        student.read(lambda: student.may("Next") and not student.may("Commit"))
+        student.read(lambda: student.has_widget("Next") and not student.has_widget("Commit"))
         student.stay(4.0)  # what may be lost is within 5 s
         serving, code = worker_of(site, student), student.code
         os.kill(serving, signal.SIGKILL)
-        student.cut_off()
+        student.wait_until_closed()
         student.reopen()
         student.read(lambda: student.sees("Step 2 of"))
         assert worker_of(site, student) != serving and student.code == code
-        student.read(lambda: student.may("Next"))
-        assert not student.may("Commit") and not student.may("Skip")  # it stays predicted
+        student.read(lambda: student.has_widget("Next"))
+        assert not student.has_widget("Commit") and not student.has_widget(
+            "Skip"
+        )  # it stays predicted
         student.set("Free lab", "Free lab")
         student.read(lambda: not student.sees("Step 2 of"))
         assert student.find("Path")["value"] == "clover" and student.find("K2")["value"] == 44.0

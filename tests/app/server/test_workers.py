@@ -47,7 +47,7 @@ def test_a_lab_survives_its_worker_on_a_shared_port(supervisor: Supervisor) -> N
         (serving,) = [worker for worker in before if supervisor.sockets(worker)]
         os.kill(serving, signal.SIGKILL)
         code = student.code
-        student.cut_off()
+        student.wait_until_closed()
         student.reopen()
         assert student.find("K2")["value"] == 44.0 and student.code == code
         assert student.find("Path")["value"] == "clover"

@@ -13,7 +13,7 @@ import pytest
 
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from onpath.app.simulation.metrics import LONGEST, Metrics, asked_vitals, vitals
+from onpath.app.simulation.metrics import LONGEST, Metrics, measure_metrics, metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
 from tests.support.waiting import wait_for
 
@@ -28,12 +28,12 @@ def thread() -> SimulationThread:
     return made
 
 
-def test_vitals_are_those_of_the_window(thread: SimulationThread) -> None:
-    lately, long = vitals(thread, 9.0), vitals(thread, LONGEST)
+def test_metrics_are_those_of_the_window(thread: SimulationThread) -> None:
+    lately, long = measure_metrics(thread, 9.0), measure_metrics(thread, LONGEST)
     assert lately.late_ms == (5.0, 5.0, 5.0) and max(long.late_ms) == 5.0 > min(long.late_ms)
     thread.frames.extend([(time.perf_counter(), 0.08)] * 20)
     assert [lately.overdue, long.overdue] == pytest.approx([1 / 540, 1 / 3600], rel=0.02)
-    after = vitals(thread, 9.0)
+    after = measure_metrics(thread, 9.0)
     assert after.late_ms[2] == 80.0 and after.overdue == pytest.approx(21 / 560, rel=0.02)
     assert lately.frames_per_s == pytest.approx(60.0, abs=1.0)
     assert lately.pid == os.getpid() and lately.labs == 0 == len(lately.simulated_s)
@@ -43,12 +43,12 @@ def test_a_thread_that_stands_still_is_seen_to(thread: SimulationThread) -> None
     old = SimulationThread()
     old.frames.extend((began - LONGEST, late) for began, late in thread.frames)
     for silent in (old, SimulationThread()):
-        assert vitals(silent).frames_per_s == 0.0
+        assert measure_metrics(silent).frames_per_s == 0.0
 
 
 @pytest.mark.parametrize("query", ["", "seconds=x", "seconds=nan", "seconds=1e9", "seconds=", "%"])
 def test_nonsense_is_answered_as_if_it_were_not_there(query: str, thread: SimulationThread) -> None:
-    answer = json.loads(asked_vitals(thread, query))
+    answer = json.loads(metrics_json(thread, query))
     assert answer["late_ms"] == [5.0, 5.0, 5.0]
 
 
@@ -61,7 +61,7 @@ def _moving(address: str) -> Metrics | None:
     return told if told.frames_per_s > 0 else None
 
 
-def test_a_server_tells_its_vitals() -> None:
+def test_a_server_reports_its_metrics() -> None:
     server = LabServer("127.0.0.1", 0, LoopCache())
     try:
         address = f"http://127.0.0.1:{server.server.get_port()}/health"

@@ -1,6 +1,6 @@
-"""The tables of 0.1, made where they are missing: databases from before Alembic have them.
+"""Create the tables of version 0.1 where they are missing; older databases have them already.
 
-What a teacher had sent is cleared: from now on it would stand for all who join later.
+What a teacher had sent is cleared, because it would now apply to all students who join later.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ down_revision = None
 
 
 def upgrade() -> None:
-    """Create what is missing."""
+    """Create the missing tables."""
     there = set(sa.inspect(op.get_bind()).get_table_names())
     for name, columns in TABLES.items():
         if name not in there:

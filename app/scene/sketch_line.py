@@ -21,7 +21,7 @@ MOST = 1000
 """Maximum number of points; beyond it, every second one is dropped and the spacing doubles."""
 
 
-class Ink:
+class SketchLine:
     """A line in the scene. Thread-safe.
 
     Args:

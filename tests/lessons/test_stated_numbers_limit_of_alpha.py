@@ -10,8 +10,8 @@ from onpath.models.arrays import Array
 from onpath.models.systems.beam import beam_modes
 from onpath.models.systems.flexible_five_bar import HOME, load_links
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
-from tests.lessons.test_told_numbers_invariance import told_in_readme
-from tests.support.told import agrees, assert_told, said
+from tests.lessons.test_stated_numbers_invariance import stated_in_readme
+from tests.support.stated_numbers import agrees, assert_stated, said
 
 LESSON, LINKS = "07", load_links()
 
@@ -57,23 +57,23 @@ def equal(omega: Array) -> Array:
 def test_the_numbers_of_one_mode() -> None:
     beam = beam_modes(1, LINKS.beam)
     turned, shifted = float(coefficients(1)[0]), float(beam.tip[0] * beam.area[0])
-    assert_told(said(LESSON, "and $c = #$ follows from"), [turned])
-    assert_told(said(LESSON, "a base that is *shifted* would give #)"), [shifted])
-    assert_told(said(LESSON, "$(1-c)\\,a = #\\,a$"), [1 - turned])
-    assert_told(said(LESSON, "At $\\alpha = 1/c = #$ the sign turns"), [1 / turned])
+    assert_stated(said(LESSON, "and $c = #$ follows from"), [turned])
+    assert_stated(said(LESSON, "a base that is *shifted* would give #)"), [shifted])
+    assert_stated(said(LESSON, "$(1-c)\\,a = #\\,a$"), [1 - turned])
+    assert_stated(said(LESSON, "At $\\alpha = 1/c = #$ the sign turns"), [1 / turned])
     texts = said(LESSON, "their sum tends to 1: it is #, #, #, # with one to four modes.")
-    assert_told(texts, np.cumsum(coefficients(4)).tolist())
+    assert_stated(texts, np.cumsum(coefficients(4)).tolist())
     assert abs(coefficients(6).sum() - 1) < abs(coefficients(4).sum() - 1)
 
 
 def test_the_limit_is_one_of_the_damping() -> None:
     one, three = said(LESSON, "The limit is # for one mode and # for three.")
-    assert_told([one, three], [limit(1, equal), limit(3, equal)])
+    assert_stated([one, three], [limit(1, equal), limit(3, equal)])
     texts = said(LESSON, "grows from α = # on, in the home pose (# with four modes or more).")
-    assert_told(texts, [limit(3, equal), limit(4, equal)])
+    assert_stated(texts, [limit(3, equal), limit(4, equal)])
     assert agrees(texts[1], limit(6, equal))
     meet, _ = said(LESSON, "Without damping they would meet at α = #, at # Hz")
-    assert_told([meet], [limit(3, np.zeros_like)])
+    assert_stated([meet], [limit(3, np.zeros_like)])
     texts = said(LESSON, "So between # and # it is *damping* that destabilises")
     assert limit(3, equal) < float(texts[0]) + 1e-3 and float(texts[1]) < limit(3, np.zeros_like)
     first = 2 * np.pi * LINKS.frequency
@@ -82,8 +82,8 @@ def test_the_limit_is_one_of_the_damping() -> None:
     texts = said(
         LESSON, "in proportion to its stiffness, the limit would be #, in proportion to its mass #."
     )
-    assert_told(texts, [stiff, heavy])
-    assert_told(told_in_readme("with this damping, it is stable up to #."), [limit(3, equal)])
+    assert_stated(texts, [stiff, heavy])
+    assert_stated(stated_in_readme("with this damping, it is stable up to #."), [limit(3, equal)])
 
 
 def frequencies(alpha: float, **changes: float) -> Array:
@@ -100,8 +100,8 @@ def test_frequencies_inside() -> None:
         "the lowest rises (#, #, # Hz at α = 0, 0.5, 0.7) while the second sinks (#, #, # Hz).",
     )
     found = [frequencies(alpha)[:2] for alpha in (0.0, 0.5, 0.7)]
-    assert_told(texts, [float(f[0]) for f in found] + [float(f[1]) for f in found])
+    assert_stated(texts, [float(f[0]) for f in found] + [float(f[1]) for f in found])
     alpha, meeting = said(LESSON, "Without damping they would meet at α = #, at # Hz")
     lowest, second = frequencies(float(alpha) - 1e-5, zeta=0.0)[:2]
     assert agrees(meeting, float(lowest + second) / 2) and second - lowest < 0.5
-    assert_told(said(LESSON, "The inside swings at # Hz"), [float(frequencies(-1.0)[0])])
+    assert_stated(said(LESSON, "The inside swings at # Hz"), [float(frequencies(-1.0)[0])])

@@ -22,13 +22,13 @@ from tests.support.one_robot import (
     largest,
     most_and_rest,
 )
-from tests.support.told import NUMBER, assert_told, said, value
+from tests.support.stated_numbers import NUMBER, assert_stated, said, value
 
 LESSON = "05"
 README = ROOT / "README.md"
 
 
-def told_in_readme(sentence: str) -> list[str]:
+def stated_in_readme(sentence: str) -> list[str]:
     """As `said`."""
     text = " ".join(README.read_text(encoding="utf-8").split())
     found = re.findall(NUMBER.join(map(re.escape, sentence.split("#"))), text)
@@ -61,16 +61,16 @@ def test_reversals() -> None:
         "a reversal at full speed throws the orange robot # mm off the circle."
         " From # to # rad/s it is # mm. The blue robot is at most # mm off in both.",
     )
-    assert_told(texts, [tracker[0], 12, -12, tracker[1], max(follower)])
+    assert_stated(texts, [tracker[0], 12, -12, tracker[1], max(follower)])
 
 
 def test_four_jumps() -> None:
     start, *tracker = jumps(TRACKER)
-    assert_told(said(LESSON, "with the orange robot: #, #, # and # mm."), tracker)
+    assert_stated(said(LESSON, "with the orange robot: #, #, # and # mm."), tracker)
     texts = said(LESSON, "at every jump: by # mm at 2 s, # mm at 4 s, # mm at 6 s and # mm at 8 s.")
-    assert_told(texts, tracker)
-    assert_told(said(LESSON, "even at the very start, by # mm"), [start])
-    assert_told(said(LESSON, "Yes: # mm, and that little"), [max(jumps(FOLLOWER))])
+    assert_stated(texts, tracker)
+    assert_stated(said(LESSON, "even at the very start, by # mm"), [start])
+    assert_stated(said(LESSON, "Yes: # mm, and that little"), [max(jumps(FOLLOWER))])
 
 
 def test_a_reversal_takes_half_a_second_and_a_harder_k5_takes_nothing_off_the_path() -> None:
@@ -82,7 +82,7 @@ def test_a_reversal_takes_half_a_second_and_a_harder_k5_takes_nothing_off_the_pa
         "with K5 = #, ten times as hard, a full reversal still leaves the blue robot within # mm.",
     )
     robot = reversed_at_2_s(FOLLOWER, FAST, value(k5))
-    assert_told([within], [robot.distance.max()])
+    assert_stated([within], [robot.distance.max()])
 
 
 # A velocity across --------------------------------------------------------------------------------
@@ -101,15 +101,15 @@ def test_the_hand_lets_go_at_585_mm_s_just_past_the_circle() -> None:
     with_rate = robot.robot.system.with_rate(robot.robot.system.output)
     y, rate = (np.array(part).ravel() for part in with_rate(robot.q, robot.v, plant))
     speed = 1e3 * abs(rate @ y) / np.linalg.norm(y)
-    (told,) = said(LESSON, "The velocity is # mm/s, straight across the circle.")
-    assert speed == pytest.approx(value(told), abs=2.5)
-    assert told == said(LESSON, "you let the controller stop # mm/s in no time.")[0]
+    (stated,) = said(LESSON, "The velocity is # mm/s, straight across the circle.")
+    assert speed == pytest.approx(value(stated), abs=2.5)
+    assert stated == said(LESSON, "you let the controller stop # mm/s in no time.")[0]
     texts = said(
         LESSON,
         "for # mm/s it is # mm. You have seen #, because the hand let go # mm after the circle.",
     )
     peak, past = largest(snatched(FOLLOWER).distance, 1.06, 2), float(50 - 1e3 * np.linalg.norm(y))
-    assert_told(texts, [value(told), value(told) / (20 * float(np.e)), peak, past])
+    assert_stated(texts, [value(stated), value(stated) / (20 * float(np.e)), peak, past])
     assert past > 0
 
 
@@ -124,12 +124,12 @@ def test_both_robots_swing_through_and_come_back() -> None:
         " another 0.3 s less than # mm are left.",
     )
     distance = snatched(FOLLOWER).distance
-    assert_told(texts[:1], [at(distance, 1.1)])
+    assert_stated(texts[:1], [at(distance, 1.1)])
     assert largest(distance, 1.4, 2) < value(texts[1]) < 2 * at(distance, 1.4)
     both = [largest(snatched(law).distance, 1.06, 2) for law in (FOLLOWER, TRACKER)]
-    assert_told(said(LESSON, "The two robots do nearly the same here, # and # mm."), both)
+    assert_stated(said(LESSON, "The two robots do nearly the same here, # and # mm."), both)
     (through,) = said(LESSON, "It goes through: v₀/(20 e) gives # mm on the other side")
-    assert_told([through], [100 / (20 * np.e)])
+    assert_stated([through], [100 / (20 * np.e)])
 
 
 def test_the_paper_s_first_experiment() -> None:
@@ -138,9 +138,9 @@ def test_the_paper_s_first_experiment() -> None:
         robot = Driven(law, task="position", target=-1.05).run(2.0).pull(-15, 26).run(4.0)
         logs[law] = robot.let_go().set(target=1.57).run(7.0)
     (inside,) = said(LESSON, "first brings both end-points # mm into the circle")
-    assert_told([inside], [at(logs[FOLLOWER].distance, 3.999)])
+    assert_stated([inside], [at(logs[FOLLOWER].distance, 3.999)])
     texts = said(LESSON, "It first goes to the circle: # mm off after 0.2 s, # mm after 0.4 s.")
-    assert_told(texts, [at(logs[FOLLOWER].distance, t) for t in (4.2, 4.4)])
+    assert_stated(texts, [at(logs[FOLLOWER].distance, t) for t in (4.2, 4.4)])
     place = logs[FOLLOWER].log("theta")[:, 0]
     assert at(place, 4.4) - at(place, 4.0) > (1.57 - at(place, 4.0)) / 2
     top = np.array([0.0, 0.05])
@@ -213,7 +213,7 @@ def test_the_end_point_is_heavier_sideways() -> None:
     robot = Driven()
     q = robot.robot.rest(0.05 * frame(value(texts[0]))[1])
     masses = 1 / np.diag(mobility(robot, q))
-    assert_told(texts[1:], masses.tolist())
+    assert_stated(texts[1:], masses.tolist())
 
 
 def test_at_four_places_a_push_along_the_path_gives_nothing_across() -> None:
@@ -241,21 +241,21 @@ def test_round_the_circle() -> None:
     )
     follower = [most_and_rest(degrees) for degrees in range(0, 360, 6)]
     most, rest = (max(column) for column in zip(*follower, strict=True))
-    assert_told(texts, [rest, most])
+    assert_stated(texts, [rest, most])
     tracker = [most_and_rest(degrees, TRACKER)[0] for degrees in range(0, 360, 12)]
-    texts = told_in_readme("the place: # to # mm for the follower, # to # mm for the tracker.")
-    assert_told(texts, [min(follower)[0], most, min(tracker), max(tracker)])
+    texts = stated_in_readme("the place: # to # mm for the follower, # to # mm for the tracker.")
+    assert_stated(texts, [min(follower)[0], most, min(tracker), max(tracker)])
 
 
 def test_the_readme_s_experiment() -> None:
-    texts = told_in_readme(
+    texts = stated_in_readme(
         "held back from # to # s, the follower is never further than # mm from the circle and the"
         " tracker # mm. That is at the places where the two are at # s;"
     )
     chosen = experiments()["obstruction"]
     most = [1e3 * float(run(chosen, who).distance.max()) for who in (FOLLOWER, TRACKER)]
     begin, end = chosen.schedule.hold_from, chosen.schedule.hold_to
-    assert_told(texts, [begin, end, *most, begin])
+    assert_stated(texts, [begin, end, *most, begin])
 
 
 @pytest.mark.parametrize("degrees", range(30, 360, 60))
@@ -280,7 +280,7 @@ def test_a_softer_k5_costs_time_afterwards() -> None:
     slow, quick, percent = said(
         LESSON, "And blue then needs # s instead of # s to # % of its speed."
     )
-    for k5, told in ((2.0, slow), (10.0, quick)):
+    for k5, stated in ((2.0, slow), (10.0, quick)):
         robot = Driven(speed=FAST, K5=k5).run(3.0).hold().run(5.2).let_go().run(8.2)
         rate = robot.log("theta_rate")[5200:, 0]
-        assert_told([told], [1e-3 * int(np.argmax(rate > value(percent) / 100 * FAST))])
+        assert_stated([stated], [1e-3 * int(np.argmax(rate > value(percent) / 100 * FAST))])

@@ -13,8 +13,8 @@ from contextlib import suppress
 from typing import Any
 
 CHANNEL = "ONPATH_CHANNEL"  # environment variable of a worker: file descriptor of its channel
-CAN_HAND = hasattr(socket, "send_fds")
-SAID = b"."  # sent by a worker when it is ready, and for every connection that it has closed
+CAN_HAND_OVER = hasattr(socket, "send_fds")
+SIGNAL = b"."  # sent by a worker when it is ready, and for every connection that it has closed
 
 
 class Reception:
@@ -59,7 +59,7 @@ class Reception:
         with connection:
             for channel in sorted(self._open, key=lambda channel: self._open[channel]):
                 with suppress(OSError):  # the worker has ended, or does not read
-                    socket.send_fds(channel, [SAID], [connection.fileno()])
+                    socket.send_fds(channel, [SIGNAL], [connection.fileno()])
                     self._open[channel] += 1
                     return
 
@@ -79,13 +79,13 @@ class Reception:
         self._open[channel] = self._open.get(channel, 1) - len(said)
 
 
-def handed(host: str, port: int) -> Handed | None:
+def handover_socket(host: str, port: int) -> HandoverSocket | None:
     """The socket from which this process gets connections, if another one accepts them."""
     number = os.environ.get(CHANNEL)
-    return None if number is None else Handed(int(number), (host, port))
+    return None if number is None else HandoverSocket(int(number), (host, port))
 
 
-class Handed(socket.socket):
+class HandoverSocket(socket.socket):
     """A worker's end of its channel. asyncio uses it like a listening socket."""
 
     def __init__(self, descriptor: int, address: tuple[str, int]) -> None:
@@ -98,7 +98,7 @@ class Handed(socket.socket):
 
     def listen(self, backlog: int = 0, /) -> None:
         """Report that this worker is ready."""
-        self.send(SAID)
+        self.send(SIGNAL)
 
     def accept(self) -> tuple[socket.socket, Any]:
         """A connection that was handed over, and the client's address.
@@ -134,4 +134,4 @@ class _WorkerConnection(socket.socket):
         super().close()
         if is_open:
             with suppress(OSError):  # the accepting process has ended
-                self.channel.send(SAID)
+                self.channel.send(SIGNAL)

@@ -12,9 +12,9 @@ from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.systems.flexible_five_bar import HOME, load_links
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
-from tests.lessons.test_told_numbers_invariance import told_in_readme
+from tests.lessons.test_stated_numbers_invariance import stated_in_readme
 from tests.support.one_robot import FOLLOWER, TRACKER, Driven, at, largest
-from tests.support.told import agrees, assert_told, said, value
+from tests.support.stated_numbers import agrees, assert_stated, said, value
 
 LESSON, LINKS = "07", load_links()
 SPEED = 2.0  # [rad/s], as the lesson's scenes have it
@@ -36,8 +36,8 @@ def gone(settings: dict[str, Any], until: float = 10.0) -> Driven:
 def test_the_link_bends_four_times_as_far_at_twice_the_speed() -> None:
     runs = [gone({"law": "composite", "speed": speed}) for speed in (2.0, 4.0)]
     bent = [largest(robot.deflection, 2, 10) for robot in runs]
-    assert_told(said(LESSON, "You should get # mm and # mm: *four* times."), bent)
-    assert_told(said(LESSON, "At 2 rad/s it is # mm, too little to see."), bent[:1])
+    assert_stated(said(LESSON, "You should get # mm and # mm: *four* times."), bent)
+    assert_stated(said(LESSON, "At 2 rad/s it is # mm, too little to see."), bent[:1])
     (near,) = said(LESSON, "Both robots keep their tip within about # mm of the path")
     for who in (FOLLOWER, TRACKER):
         off = largest(going(who, law="composite", speed=4.0).distance, 2, 10)
@@ -48,7 +48,7 @@ def test_a_quiet_output() -> None:
     robot = Driven(FOLLOWER, "flexible", speed=SPEED, law="redefined", alpha=0.0).run(2.0)
     robot.pull(20, 0).run(2.5).let_go().run(8.0)
     (energy,) = said(LESSON, "a pull of half a second that takes it to about # mJ")
-    assert_told([energy], [largest(robot.energy, 2, 2.5)])
+    assert_stated([energy], [largest(robot.energy, 2, 2.5)])
     (quiet,) = said(LESSON, "after 3 s its offset ξ₁ is below # mm and stays there")
     assert largest(robot.across, 3, 8) < value(quiet)
     swing = [largest(robot.deflection, begin, begin + 0.25) for begin in (3.0, 5.0, 7.75)]
@@ -57,15 +57,15 @@ def test_a_quiet_output() -> None:
         "After 3 s it swings # mm to either side, after 5 s # mm, and at the end still more"
         " than # mm.",
     )
-    assert_told(texts, swing)
+    assert_stated(texts, swing)
     texts = said(LESSON, "The energy falls from # mJ at 3 s to # at 5 s and # at the end")
-    assert_told(texts, [at(robot.energy, time) for time in (3, 5, 7.999)])
+    assert_stated(texts, [at(robot.energy, time) for time in (3, 5, 7.999)])
 
 
 @pytest.mark.parametrize("alpha", ["0", "0.5", "0.7"])
 def test_more_alpha_less_error(alpha: str) -> None:
-    (told,) = said(LESSON, f"| {alpha} | # mm |")
-    assert_told([told], [largest(gone({"alpha": float(alpha)}).distance, 2, 10)])
+    (stated,) = said(LESSON, f"| {alpha} | # mm |")
+    assert_stated([stated], [largest(gone({"alpha": float(alpha)}).distance, 2, 10)])
 
 
 @cache
@@ -84,19 +84,19 @@ def test_past_the_limit() -> None:
     for row, window in zip(rows, windows, strict=True):
         texts = said(LESSON, f"| {row} | # mm | # mJ | # N m |")[-3:]
         seen = (robot.across, robot.energy, robot.torque)
-        assert_told(texts, [largest(values, *window) for values in seen])
+        assert_stated(texts, [largest(values, *window) for values in seen])
     stopped = said(LESSON, "At # s the lab stops it and says"), said(LESSON, "went first, at # s.")
     for text, law in zip(stopped, (FOLLOWER, TRACKER), strict=True):
-        assert_told(text, [past_the_limit(law).stopped or 0.0])
+        assert_stated(text, [past_the_limit(law).stopped or 0.0])
     before, end = largest(robot.energy, 2, 3), len(robot.energy) / 1e3
     assert largest(robot.energy, 5, 5.25) > 5000 * before
     assert largest(robot.energy, 3, end) > 1e6 * before
     (jolt,) = said(LESSON, "A jolt at 3 s is there, # mm")
-    assert_told([jolt], [largest(robot.across, 3, 3.25)])
+    assert_stated([jolt], [largest(robot.across, 3, 3.25)])
     (late,) = said(LESSON, "Just after 5 s the output is at most # mm off")
-    assert_told([late], [largest(robot.across, 5, 5.25)])
+    assert_stated([late], [largest(robot.across, 5, 5.25)])
     (left,) = said(LESSON, "You had such a plot at 5 s of the second run, # s before the lab")
-    assert_told([left], [(robot.stopped or 0.0) - 5])
+    assert_stated([left], [(robot.stopped or 0.0) - 5])
 
 
 def stepped(alpha: float, modes: int = 3) -> float:
@@ -113,7 +113,7 @@ def test_how_fast_it_is_with_more_alpha_and_that_this_is_the_truncation_s() -> N
         "a step to 0.9 ends after # s, one to 1 after # s. The last number says more about"
         " the model than about a beam: with one bending mode it is # s, with six # s.",
     )
-    assert_told(texts, [stepped(0.9), stepped(1.0), stepped(1.0, 1), stepped(1.0, 6)])
+    assert_stated(texts, [stepped(0.9), stepped(1.0), stepped(1.0, 1), stepped(1.0, 6)])
 
 
 # The tasks ----------------------------------------------------------------------------------------
@@ -124,7 +124,7 @@ def test_the_reflected_tip_is_off_by_twice_the_deflection() -> None:
         LESSON, "the tip is off by *twice* the deflection, # mm at 2 rad/s, and # mm at first"
     )
     distance = going(FOLLOWER, 70.0, alpha=-1.0).distance
-    assert_told([first, steady], [largest(distance, 2, 10), largest(distance, 60, 70)])
+    assert_stated([first, steady], [largest(distance, 2, 10), largest(distance, 60, 70)])
 
 
 def test_a_promise_that_is_not_kept() -> None:
@@ -144,7 +144,7 @@ def test_composite_control() -> None:
     wrong = [{"law": "composite", "error_omega1": error} for error in (-10.0, 10.0)]
     settings: list[dict[str, Any]] = [{"law": "composite"}, {"alpha": 0.5}, *wrong]
     good, half, *off = (largest(gone(each).distance, 2, 10) for each in settings)
-    assert_told(texts, [good, half, max(off)])
+    assert_stated(texts, [good, half, max(off)])
 
 
 @cache
@@ -186,12 +186,12 @@ def test_turning_round() -> None:
         " The orange one: # to # mm, whatever K5 is.",
     )
     off = (follower[:, 0], tracker[:, 0])
-    assert_told(texts, [float(f(x)) for x in off for f in (np.min, np.max)])
+    assert_stated(texts, [float(f(x)) for x in off for f in (np.min, np.max)])
     texts = said(
         LESSON,
         "bends the orange link by # to # mm and, with K5 = 1, the blue one by less than # mm.",
     )
-    assert_told(texts[:2], [tracker[:, 1].min(), tracker[:, 1].max()])
+    assert_stated(texts[:2], [tracker[:, 1].min(), tracker[:, 1].max()])
     assert gently[:, 1].max() < value(texts[2])
     (far,) = said(LESSON, "with the blue tip never further than # mm from the path")
     assert gently[:, 0].max() < value(far)
@@ -202,12 +202,14 @@ def test_turning_round() -> None:
 
 def test_the_riddle() -> None:
     calm = going(FOLLOWER, 8.0, alpha=1.0, plant="unit_modes")
-    assert_told(said(LESSON, "the tip itself, and is calm: # mm."), [largest(calm.distance, 2, 8)])
+    assert_stated(
+        said(LESSON, "the tip itself, and is calm: # mm."), [largest(calm.distance, 2, 8)]
+    )
     shown, density, stops = said(
         LESSON, "The limit is then ρ = #; with ρ = # the same robot is stopped after # s."
     )
     stopped = going(FOLLOWER, 8.0, alpha=1.0, plant="unit_modes", rho=value(density)).stopped
-    assert_told([stops], [stopped or 0.0])
+    assert_stated([stops], [stopped or 0.0])
     zero = flexible_zero_dynamics(3, "unit_modes")
     for rho, sign in ((value(shown) - 0.005, -1), (value(shown) + 0.005, 1)):
         parameters = zero.system.parameter_vector(LINKS.lumped(1.0) | {"rho": rho})
@@ -226,13 +228,13 @@ def flexible(**settings: object) -> Trajectory:
 
 
 def test_how_soon_the_tip_is_lost_is_told_with_the_number_of_modes() -> None:
-    texts = told_in_readme("is stopped after # ms; with one mode it takes # ms, with six # ms,")
+    texts = stated_in_readme("is stopped after # ms; with one mode it takes # ms, with six # ms,")
     found = [flexible(alpha=1, modes=modes).diverged_at or 0.0 for modes in (3, 1, 6)]
-    assert_told(texts, [1e3 * seconds for seconds in found])
+    assert_stated(texts, [1e3 * seconds for seconds in found])
 
 
 def test_composite_control_is_told_with_its_window() -> None:
-    texts = told_in_readme(
+    texts = stated_in_readme(
         "from # s to its end at # s, the follower's tip is # mm rms off the ellipse and at most"
         " # mm, against # and # mm with `alpha=0.5`. (Over all 6 s both are # mm rms: it starts"
         " # mm off.)"
@@ -245,4 +247,4 @@ def test_composite_control_is_told_with_its_window() -> None:
         whole.append(float(np.sqrt(np.mean(distance**2))))
         assert log.t[-1] == pytest.approx(6.0, abs=2e-3)
     assert agrees(texts[6], whole[0])
-    assert_told(texts, [*found, whole[1], 1e3 * float(flexible(alpha=0.5).distance[0])])
+    assert_stated(texts, [*found, whole[1], 1e3 * float(flexible(alpha=0.5).distance[0])])

@@ -15,7 +15,17 @@ from onpath.models.systems.five_bar import inverse_kinematics, load_links
 from onpath.models.systems.parameters import FiveBarParameters
 from tests.support.one_robot import most_and_rest
 from tests.support.rig import jacobian
-from tests.support.told import WORST, assert_told, held, numbers, play, said, shown, text, value
+from tests.support.stated_numbers import (
+    WORST,
+    assert_stated,
+    held,
+    numbers,
+    play,
+    said,
+    shown,
+    text,
+    value,
+)
 
 RADIUS, TURN = 0.05, 2 * np.pi
 STAGES = (0, 4, 8, 12)  # [s], when the gains go up in lesson 4
@@ -53,17 +63,17 @@ def test_tracker_draws_four_arches_of_one_height() -> None:
         "On average it is # mm off",
     )
     heights = [tracker.largest(3 + i / 2, 3.5 + i / 2) for i in range(4)]
-    assert_told([first, *4 * [each]], [heights[0], *heights])
-    assert_told([mean], [float(tracker.distance[tracker.during(3, 5)].mean())])
+    assert_stated([first, *4 * [each]], [heights[0], *heights])
+    assert_stated([mean], [float(tracker.distance[tracker.during(3, 5)].mean())])
     assert tracker.distance[tracker.during(3.3, 4.7)].min() < 1
 
 
 def test_soft_tracker_is_torn_off_further() -> None:
     soft = shown("01", "The same hold, softer")["tracker"].largest(3, 5)
     stiff = shown("01", "Held from 3 s to 5 s")["tracker"].largest(3, 5)
-    assert_told(said("01", "torn off to # mm; the stiff one got to # mm"), [soft, stiff])
+    assert_stated(said("01", "torn off to # mm; the stiff one got to # mm"), [soft, stiff])
     for answer in ("a soft spring. It got # mm", "the arm itself to move. It got #", "Yes: # mm."):
-        assert_told(said("01", answer), [soft])
+        assert_stated(said("01", answer), [soft])
 
 
 def test_slower_clock_runs_on_and_no_clock_takes_any_speed() -> None:
@@ -85,23 +95,23 @@ def test_brake_feels_the_catch_and_then_the_lean() -> None:
     lean = both["follower"].at(4.9, "force")
     press = float(both["tracker"].force[3100:5000].max())
     quiz = "it leaned on the brake with # N, the tracker with up to # N. (Catching them took # N"
-    assert_told(said("01", "and leans on the brake with # N"), [lean])
+    assert_stated(said("01", "and leans on the brake with # N"), [lean])
     for robot in both.values():
-        assert_told(said("01", quiz), [lean, press, float(robot.force[3000:5000].max())])
+        assert_stated(said("01", quiz), [lean, press, float(robot.force[3000:5000].max())])
 
 
 def test_nudge_is_what_the_arm_makes_of_the_lean() -> None:
     follower = shown("01", "Held from 3 s to 5 s")["follower"]
     lean, nudge = follower.at(4.9, "force"), 400 * follower.at(4.9) * 1e-3
-    told = said("01", "the brake catches it at #°")
-    assert_told(told, [float(np.degrees(follower.at(3.0, "place"))) - 3 * 360])
-    assert_told(said("01", "There the nudge is # m/s²"), [nudge])
+    stated = said("01", "the brake catches it at #°")
+    assert_stated(stated, [float(np.degrees(follower.at(3.0, "place"))) - 3 * 360])
+    assert_stated(said("01", "There the nudge is # m/s²"), [nudge])
     formula = r"K_1\lambda = #\ \mathrm{m/s^2} \quad\Rightarrow\quad \lambda = #\ "
-    assert_told(said("01", formula), [nudge, follower.at(4.9)])
+    assert_stated(said("01", formula), [nudge, follower.at(4.9)])
     share = along_to_across(follower.y[3000] * 1e-3)
-    told = said("04", "with # N along the circle, $N\\cdot JM^{-1}J^{\\top}T$ is # per kg there")
-    assert_told(told, [lean, share])
-    assert_told(said("04", "and $#\\cdot # = #$ m/s² was the nudge"), [share, lean, nudge])
+    stated = said("04", "with # N along the circle, $N\\cdot JM^{-1}J^{\\top}T$ is # per kg there")
+    assert_stated(stated, [lean, share])
+    assert_stated(said("04", "and $#\\cdot # = #$ m/s² was the nudge"), [share, lean, nudge])
     assert share * lean == pytest.approx(nudge, rel=0.02)  # the brake gives a little
 
 
@@ -112,11 +122,11 @@ def test_nudge_depends_on_the_place() -> None:
     assert np.count_nonzero(np.diff(signs, append=signs[0])) == 4  # "At four places"
     assert held(3.15).across[-1] * held(3.16).across[-1] < 0  # one of the four lies between
     round_the_circle = [most_and_rest(degrees) for degrees in range(0, 360, 6)]
-    told = [max(column) for column in zip(*round_the_circle, strict=True)][::-1]
+    stated = [max(column) for column in zip(*round_the_circle, strict=True)][::-1]
     (near,) = said("01", "the follower comes to rest within # mm of it")
     assert max(most_and_rest(degrees)[1] for degrees in (22, 113, 173, 243)) < value(near)
     sentence = "it comes to rest # mm off, and as the brake catches it, it even swings out to # mm"
-    assert_told(said("01", sentence), told)
+    assert_stated(said("01", sentence), stated)
 
 
 def test_leaning_less_on_the_brake_helps_at_rest() -> None:
@@ -132,8 +142,8 @@ def test_tracker_is_torn_off_wherever_it_is_held() -> None:
 
 def test_pull_across_moves_both_alike() -> None:
     both = shown("01", "Across, then along")
-    told = said("01", "The follower comes to rest # mm off the circle, the tracker # mm")
-    assert_told(told, [both["follower"].at(2.9), both["tracker"].at(2.9)])
+    stated = said("01", "The follower comes to rest # mm off the circle, the tracker # mm")
+    assert_stated(stated, [both["follower"].at(2.9), both["tracker"].at(2.9)])
 
 
 # Lesson 2
@@ -154,10 +164,12 @@ def test_hold_for_half_a_round_leaves_room_for_the_hand() -> None:
 def test_tip_lets_go() -> None:
     follower = shown("02", "The tip lets go")["follower"]
     gone = np.linalg.norm(follower.y - [70, 0], axis=1)
-    assert_told(said("02", "it comes to rest # mm from where it began"), [gone[3900]])
+    assert_stated(said("02", "it comes to rest # mm from where it began"), [gone[3900]])
     sentence = "comes to rest # mm from the tip but only # mm from the path"
-    assert_told(said("02", sentence), [gone[5450], follower.at(5.45)])
-    assert_told(said("02", "First gently: # mm. Then again, hard: # mm"), [gone[1950], gone[5450]])
+    assert_stated(said("02", sentence), [gone[5450], follower.at(5.45)])
+    assert_stated(
+        said("02", "First gently: # mm. Then again, hard: # mm"), [gone[1950], gone[5450]]
+    )
 
 
 # Lesson 3
@@ -166,18 +178,18 @@ def test_tip_lets_go() -> None:
 def test_torque_at_the_edge() -> None:
     follower = shown("03", "Pushed towards the edge")["follower"]
     peaks = [float(follower.torque[follower.during(a + 1, a + 3)].max()) for a in range(0, 15, 3)]
-    assert_told(said("03", "from one second after each move on: **#, #, #, #, # N m**"), peaks)
+    assert_stated(said("03", "from one second after each move on: **#, #, #, #, # N m**"), peaks)
     reach = [333, 363, 383, 393, 397]
     for rho, peak in zip(reach, peaks, strict=True):
-        assert_told(said("03", f"| {rho} mm | # | # | # |")[2:], [peak])
+        assert_stated(said("03", f"| {rho} mm | # | # | # |")[2:], [peak])
 
 
 def test_cosine_of_half_the_elbow() -> None:
     text = "At # mm, # % of the full reach, the cosine is #. At # mm it is #, at # mm #, and"
     far, share, *rest = said("03", text)
-    assert_told([share], [value(far) / 4])
+    assert_stated([share], [value(far) / 4])
     for rho, cosine in ((far, rest[0]), (rest[1], rest[2]), (rest[3], rest[4])):
-        assert_told([cosine], [float(np.sqrt(1 - (value(rho) / 400) ** 2))])
+        assert_stated([cosine], [float(np.sqrt(1 - (value(rho) / 400) ** 2))])
 
 
 def test_what_the_circle_needs_outwards_at_its_farthest_point() -> None:
@@ -187,16 +199,16 @@ def test_what_the_circle_needs_outwards_at_its_farthest_point() -> None:
     )
     squared = (TURN * RADIUS) ** 2
     for rho in (0.333, 0.383):
-        assert_told([needed, turning], [squared / RADIUS, squared / rho])
-        assert_told([left], [squared / RADIUS - squared / rho])
+        assert_stated([needed, turning], [squared / RADIUS, squared / rho])
+        assert_stated([left], [squared / RADIUS - squared / rho])
 
 
 def test_cost_of_a_bulge() -> None:
     dear, cheap = (
         play(5.0, [Action(at=0.5, move=move)])["follower"] for move in ((5, 32, 32), (7, -32, 32))
     )
-    told = said("03", "at the upper right costs # N m, the one at the upper left #.")
-    assert_told(told, [float(bulge.torque[3000:].max()) for bulge in (dear, cheap)])
+    stated = said("03", "at the upper right costs # N m, the one at the upper left #.")
+    assert_stated(stated, [float(bulge.torque[3000:].max()) for bulge in (dear, cheap)])
 
 
 # Lesson 4
@@ -207,15 +219,15 @@ def test_all_pulls_decay_alike() -> None:
     after = (0.0, 0.1, 0.2, 0.35)
     for row, let_go in (("first", 3.5), ("second", 6.0), ("third", 11.0)):
         left = [follower.at(let_go + seconds, "across") for seconds in after]
-        assert_told(said("04", f"| {row} | # | # | # | # |"), left)
+        assert_stated(said("04", f"| {row} | # | # | # | # |"), left)
         shares = [100 * rest / left[0] for rest in left[1:]]
-        assert_told(said("04", "| share | 100 % | # % | # % | # % |"), shares)
+        assert_stated(said("04", "| share | 100 % | # % | # % | # % |"), shares)
 
 
 def test_swing_is_the_same_with_and_without_the_trip() -> None:
-    told = said("04", "It swings: #, +#, #, +#, # mm")
+    stated = said("04", "It swings: #, +#, #, +#, # mm")
     follower = shown("04", "Two things at once")["follower"]
-    assert_told(told, [follower.at(2.0, "across"), *turning_points(follower.across[2000:])[:4]])
+    assert_stated(stated, [follower.at(2.0, "across"), *turning_points(follower.across[2000:])[:4]])
     do = [
         Action(at=0.5, pull=(40.0, 0.0)),
         Action(at=2.0, set={"K2": 8}),
@@ -232,38 +244,38 @@ def test_lab_shows_the_poles_of_the_table() -> None:
         assert [value(pole) for pole in shown_as.split(", ")] == [value(pole) for pole in table]
     fast, slow = said("04", "| K1 = 400, K2 = 200 | #, # |")[::-1]
     sampled, exact = said("04", "a thousand times a second: # instead of #; the others are as here")
-    told = channels(FiveBarParameters(K2=200))[0].pole_words().split(", ")
+    stated = channels(FiveBarParameters(K2=200))[0].pole_words().split(", ")
     assert exact == fast
-    assert_told([sampled, slow], [float(pole) for pole in told])
-    assert_told([fast, slow], sorted(np.roots([1, 200, 400]).real))
+    assert_stated([sampled, slow], [float(pole) for pole in stated])
+    assert_stated([fast, slow], sorted(np.roots([1, 200, 400]).real))
 
 
 def test_gain_and_coarse_encoders() -> None:
     both = shown("04", "More gain is better")
-    told = said("04", "blue is off by up to #, #, #, # mm; orange by #, #, #, #. (At # s, when")
+    stated = said("04", "blue is off by up to #, #, #, # mm; orange by #, #, #, #. (At # s, when")
     off = [both[name].largest(a + 0.5, a + 4) for name in ("follower", "tracker") for a in STAGES]
-    assert_told(told[:8], off)
+    assert_stated(stated[:8], off)
     first, *later = off[:4]
     still = said("04", "when the second stage begins, blue is still # mm off from the first")
-    assert_told(still, [both["follower"].largest(4.0, 4.5)])
-    assert_told(said("04", "In the first stage blue is up to # mm off"), [first])
-    assert_told(said("04", "with K1 = 100 it was # mm off"), [first])
-    assert_told(said("04", "For one stage: # mm. Then # mm and # mm."), later)
-    assert_told(said("04", "Yes: #, then #, # and # mm. In between"), [first, *later])
-    assert_told(said("04", "Blue was #, # and # mm off."), later)
+    assert_stated(still, [both["follower"].largest(4.0, 4.5)])
+    assert_stated(said("04", "In the first stage blue is up to # mm off"), [first])
+    assert_stated(said("04", "with K1 = 100 it was # mm off"), [first])
+    assert_stated(said("04", "For one stage: # mm. Then # mm and # mm."), later)
+    assert_stated(said("04", "Yes: #, then #, # and # mm. In between"), [first, *later])
+    assert_stated(said("04", "Blue was #, # and # mm off."), later)
 
 
 def test_what_a_step_of_the_encoder_looks_like() -> None:
     step, parameters = TURN / 500, FiveBarParameters()
     held_for = parameters.encoder_filter + 1 / parameters.control_rate
     jump = step / held_for
-    told = said("04", "looks like a jump of # mrad in # ms, # rad/s")
-    assert_told(told, [1e3 * step, 1e3 * held_for, jump])
-    told = said("04", "Link 1 is # m long, so that is # m/s at the end-point")
-    assert_told(told, [0.2, 0.2 * jump])
+    stated = said("04", "looks like a jump of # mrad in # ms, # rad/s")
+    assert_stated(stated, [1e3 * step, 1e3 * held_for, jump])
+    stated = said("04", "Link 1 is # m long, so that is # m/s at the end-point")
+    assert_stated(stated, [0.2, 0.2 * jump])
     for gain in (40, 200):
         (asked,) = said("04", f"#\\ \\mathrm{{m/s^2}} & K_2 = {gain}\\")
-        assert_told([asked], [gain * 0.2 * jump])
+        assert_stated([asked], [gain * 0.2 * jump])
 
 
 @pytest.mark.parametrize("place", ["0", "3.14"])
@@ -274,9 +286,9 @@ def test_gain_at_rest(place: str) -> None:
     ]
     off = [both["follower"].largest(4, 8) for both in rest]
     torque = [float(both["follower"].torque[4000:].max()) for both in rest]
-    told = said(
+    stated = said(
         "04",
         f"at θ = {place}: off by | # mm | # mm | # mm | "
         "| … and torque up to | # N m | # N m | **# N m**",
     )
-    assert_told(told, [*off, *torque])
+    assert_stated(stated, [*off, *torque])

@@ -12,7 +12,17 @@ from onpath.lessons.schema import Action
 from onpath.models.control.poles import channels
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.parameters import FiveBarParameters
-from tests.support.told import WORST, Motion, assert_told, held, play, pulled, said, shown, value
+from tests.support.stated_numbers import (
+    WORST,
+    Motion,
+    assert_stated,
+    held,
+    play,
+    pulled,
+    said,
+    shown,
+    value,
+)
 
 RADIUS, TURN = 0.05, 2 * np.pi
 
@@ -35,8 +45,8 @@ SPOILERS: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize("spoiler", SPOILERS)
 def test_spoiler_shows_across_and_along(spoiler: str) -> None:
     follower = play(6.0, [], **SPOILERS[spoiler])["follower"]
-    told = said("06", f"| {spoiler} | # mm | # rad/s |")
-    assert_told(told, [follower.largest(1, 6), float(follower.rate[1000:].mean())])
+    stated = said("06", f"| {spoiler} | # mm | # rad/s |")
+    assert_stated(stated, [follower.largest(1, 6), float(follower.rate[1000:].mean())])
 
 
 def test_late_control_is_fast_control() -> None:
@@ -44,50 +54,52 @@ def test_late_control_is_fast_control() -> None:
         play(6.0, [], **SPOILERS[name])["follower"].rate[1000:].mean()
         for name in ("control at 100 Hz, not 1000", "encoders with 2000 steps a turn")
     ]
-    told = said("06", "At 100 Hz blue is # % too fast, with the encoders # %")
-    assert_told(told, [100 * (float(rate) / TURN - 1) for rate in rates])
+    stated = said("06", "At 100 Hz blue is # % too fast, with the encoders # %")
+    assert_stated(stated, [100 * (float(rate) / TURN - 1) for rate in rates])
 
 
 def test_wrong_model_costs_some_millimetres() -> None:
     tracker = shown("06", "Forty per cent too light")["tracker"]
-    told = said("06", "and is # mm off on average from 3 s on")
-    assert_told(told, [float(tracker.distance[3000:].mean())])
+    stated = said("06", "and is # mm off on average from 3 s on")
+    assert_stated(stated, [float(tracker.distance[3000:].mean())])
     wrong: dict[str, Any] = {"error_M11": -40, "error_M22": -40}
     stiff = play(9.0, [], K1=800, **wrong)["follower"].distance[7000:].mean()
-    assert_told(said("06", "| too light, twice K1 | # mm | # mm |")[1:], [float(stiff)])
+    assert_stated(said("06", "| too light, twice K1 | # mm | # mm |")[1:], [float(stiff)])
 
 
 def test_more_gain_until_it_is_fatal() -> None:
     follower = shown("06", "More is better")["follower"]
-    told = said(
+    stated = said(
         "06", "In the last second of each step blue is # mm off on average, then #, then #:"
     )
-    assert_told(told, [float(follower.distance[a : a + 1000].mean()) for a in (1000, 3000, 5000)])
+    assert_stated(
+        stated, [float(follower.distance[a : a + 1000].mean()) for a in (1000, 3000, 5000)]
+    )
     low, high = said("06", "In the first step, from 1 s on, blue is # to # mm off")
     off = follower.distance[1000:2000]
-    assert_told([low, high], [float(off.min()), float(off.max())])
+    assert_stated([low, high], [float(off.min()), float(off.max())])
     do = [Action(at=2.0, set={"K1": 2500, "K2": 150})]
     settings: dict[str, Any] = {"error_M11": -40, "error_M22": -40, "control_rate": 50}
     survives = play(8.0, do, **settings)["follower"].distance[4000:].mean()
-    told = said("06", "and the arm survives, # mm off on average")
-    assert_told(told, [float(survives)])
+    stated = said("06", "and the arm survives, # mm off on average")
+    assert_stated(stated, [float(survives)])
 
 
 def test_arm_that_nobody_has_identified() -> None:
     wrong: dict[str, Any] = {"error_M11": -40, "error_M22": -50, "error_b1": 30, "error_b2": -30}
     off = play(8.0, [], **wrong)["follower"].largest(3, 8)
-    assert_told(said("06", "at full speed it would be up to # mm off"), [off])
+    assert_stated(said("06", "at full speed it would be up to # mm off"), [off])
 
 
 def test_largest_damping_is_where_the_poles_say() -> None:
     at_100, at_50 = said("06", "they are unstable from # on, and at 50 Hz from # on, not 100")
-    for rate, told in ((100, value(at_100)), (50, value(at_50))):
+    for rate, stated in ((100, value(at_100)), (50, value(at_50))):
         stable = [
             channels(FiveBarParameters(control_rate=rate, K2=damping))[0].stable
-            for damping in (told - 1, told)
+            for damping in (stated - 1, stated)
         ]
         assert stable == [True, False]
-        assert told == pytest.approx(2 / (1 / rate + 1e-3), abs=1)  # "as if T were 1 ms longer"
+        assert stated == pytest.approx(2 / (1 / rate + 1e-3), abs=1)  # "as if T were 1 ms longer"
     with_it = play(3.0, [], K1=2500, K2=200, control_rate=100)["follower"]
     assert 1.0 <= with_it.t[-1] < 1.1  # "stops the blue robot after one second"
 
@@ -103,53 +115,53 @@ def bulge(index: int, right: float, up: float, *more: Action, **settings: Any) -
 def test_bulge_costs_what_its_bend_needs() -> None:
     right, slow = bulge(4, 15, 0), bulge(4, 15, 0, speed=TURN / 2)
     costs = [float(run.torque[4000:].max()) for run in (right, bulge(6, 0, 15), slow)]
-    assert_told(said("08", "the bulge to the right costs # N m, twice"), costs[:1])
-    assert_told(said("08", "The same bulge at the top costs #. And"), costs[1:2])
-    assert_told(said("08", "the right one costs #: not half"), costs[2:])
-    assert_told(said("08", "The plot said #; out there"), costs[:1])
+    assert_stated(said("08", "the bulge to the right costs # N m, twice"), costs[:1])
+    assert_stated(said("08", "The same bulge at the top costs #. And"), costs[1:2])
+    assert_stated(said("08", "the right one costs #: not half"), costs[2:])
+    assert_stated(said("08", "The plot said #; out there"), costs[:1])
     circle = presets()["circle"]
     curve, theta = circle.moved(4, circle.points[4] + [0.015, 0]).curve, np.linspace(-1, 1, 4001)
     first, second = curve.at(theta, 1), curve.at(theta, 2)
     length = np.linalg.norm(first, axis=1)
     bend = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / length**3
     sharpest, speed = int(bend.argmax()), TURN * length
-    told = said("08", "at $R = #$ mm, and the end-point passes it at # m/s: # m/s²")
+    stated = said("08", "at $R = #$ mm, and the end-point passes it at # m/s: # m/s²")
     across = float(bend[sharpest] * speed[sharpest] ** 2)
-    assert_told(told, [1e3 / bend[sharpest], float(speed[sharpest]), across])
+    assert_stated(stated, [1e3 / bend[sharpest], float(speed[sharpest]), across])
     drawn = (BUILT_IN / "08-challenge" / "bend.svg").read_text(encoding="utf-8")
-    assert f"v²/R = {told[2]} m/s²" in drawn and f"{costs[0]:.2f} N m" in drawn
+    assert f"v²/R = {stated[2]} m/s²" in drawn and f"{costs[0]:.2f} N m" in drawn
     estimate = said("08", r"\frac{#\cdot #}{#} = #\ \text{N m}")
-    assert_told(estimate, [0.0226, across, 0.2, 0.0226 * value(told[2]) / 0.2])
+    assert_stated(estimate, [0.0226, across, 0.2, 0.0226 * value(stated[2]) / 0.2])
 
 
 def test_tracker_is_closer_from_the_second_lap_on() -> None:
     both = shown("08", "Louder, or slower")
     tracker, follower = both["tracker"], both["follower"]
     off = [follower.largest(1, 4), tracker.largest(1, 4)]
-    assert_told(said("08", "| full speed, from 1 s | # mm | # mm |"), off)
+    assert_stated(said("08", "| full speed, from 1 s | # mm | # mm |"), off)
     assert off[1] < off[0]
-    told = said("08", "begins by cutting the corner, and gets up to # mm off")
-    assert_told(told, [tracker.largest(0, 1)])
+    stated = said("08", "begins by cutting the corner, and gets up to # mm off")
+    assert_stated(stated, [tracker.largest(0, 1)])
 
 
 def test_clover_at_full_speed_and_at_the_hint_s() -> None:
     runs = [play(8.0, [], path="clover", speed=speed)["follower"] for speed in (TURN, 4.0, 3.9)]
     full, four, less = (float(run.torque[3000:].max()) for run in runs)
-    assert_told(said("08", "At full speed it would take #."), [full])
-    told = said(
+    assert_stated(said("08", "At full speed it would take #."), [full])
+    stated = said(
         "08",
         "× √(0.5/#) = #. That is # mm/s. "
         "For an instant it takes # N m, a hair too much; at 3.9 it is #",
     )
     speed, mean = TURN * np.sqrt(0.5 / full), runs[1].speed[3000:].mean()
-    assert_told(told, [full, speed, float(mean), four, less])
+    assert_stated(stated, [full, speed, float(mean), four, less])
 
 
 def test_path_with_two_gentle_bulges() -> None:
     second = Action(at=0.3, move=(2, 0, -15))
     plain = bulge(6, 0, 15, second)
-    told = said("08", "each pulled 15 mm outwards, cost # N m and give # mm/s")
-    assert_told(told, [float(plain.torque[3000:].max()), float(plain.speed[3000:].mean())])
+    stated = said("08", "each pulled 15 mm outwards, cost # N m and give # mm/s")
+    assert_stated(stated, [float(plain.torque[3000:].max()), float(plain.speed[3000:].mean())])
     real: dict[str, Any] = {
         "payload": 0.02,
         "coulomb": 0.02,
@@ -167,38 +179,38 @@ def test_path_with_two_gentle_bulges() -> None:
         )["follower"].largest(0, 10)
         for k2 in (100, 200)
     ]
-    assert_told(said("08", "the follower, untouched, stays within # mm of the circle"), off[:1])
-    assert_told(said("08", "With K2 = 200 it is about # mm"), off[1:])
-    assert_told(said("08", "K2 = 200 turned # mm into about # mm."), off)
+    assert_stated(said("08", "the follower, untouched, stays within # mm of the circle"), off[:1])
+    assert_stated(said("08", "With K2 = 200 it is about # mm"), off[1:])
+    assert_stated(said("08", "K2 = 200 turned # mm into about # mm."), off)
 
 
 def test_course_on_one_page() -> None:
     slow = held(3.0, speed=2.0), held(3.0, speed=2.0, robot="tracker")
-    told = said(
+    stated = said(
         "08", "hold them from 3 s to 5 s: the tracker is # mm off, as before. The follower: # mm"
     )
-    assert_told(told, [slow[1].largest(3, 5), slow[0].largest(3, 5)])
+    assert_stated(stated, [slow[1].largest(3, 5), slow[0].largest(3, 5)])
     follower = held(3.0)
     clock = RADIUS * 1e3 * np.stack([np.cos(TURN * follower.t), np.sin(TURN * follower.t)], axis=1)
     lag = np.linalg.norm(follower.y - clock, axis=1)[3000:].max()
-    told = said(
+    stated = said(
         "08", "is up to # mm from where the clock would have it, and # mm from the path. At"
     )
-    assert_told(told, [float(lag), follower.largest(3, 5)])
+    assert_stated(stated, [float(lag), follower.largest(3, 5)])
     worst = said("08", "At other places it is up to # mm")
-    assert_told(worst, [held(WORST).largest(3, 9)])
-    told = said(
+    assert_stated(worst, [held(WORST).largest(3, 9)])
+    stated = said(
         "08", "a hand 30 mm to the right moves it # mm, and only # mm with K1 = 1600 and K2 = 80"
     )
-    assert_told(told, [pulled(30.0).distance[-1], pulled(30.0, K1=1600, K2=80).distance[-1]])
+    assert_stated(stated, [pulled(30.0).distance[-1], pulled(30.0, K1=1600, K2=80).distance[-1]])
 
 
 def test_stiff_tracker_presses_harder_and_leaves_the_circle_all_the_same() -> None:
     stiff, usual = held(3.0, robot="tracker", K1=1600, K2=80), held(3.0, robot="tracker")
-    told = said(
+    stated = said(
         "08",
         "with # N at K1 = 1600 and with # N at K1 = 400, "
         "and left the circle all the same, by # and # mm",
     )
     pressed = [float(run.force[3100:].max()) for run in (stiff, usual)]
-    assert_told(told, [*pressed, stiff.largest(3, 5), usual.largest(3, 5)])
+    assert_stated(stated, [*pressed, stiff.largest(3, 5), usual.largest(3, 5)])

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from onpath.app.server.handing import CHANNEL, Handed, Reception, handed
+from onpath.app.server.handover import CHANNEL, HandoverSocket, Reception, handover_socket
 from onpath.app.viser_adapter.sockets import listen
 
 ADDRESS = ("127.0.0.1", 4711)
@@ -22,8 +22,8 @@ class Desk:
         self.reception = Reception(listener)
         self.callers: list[socket.socket] = []
 
-    def worker(self, ready: bool = True) -> Handed:
-        made = Handed(self.reception.join().detach(), ADDRESS)
+    def worker(self, ready: bool = True) -> HandoverSocket:
+        made = HandoverSocket(self.reception.join().detach(), ADDRESS)
         made.setblocking(False)
         if ready:
             made.listen()
@@ -39,7 +39,7 @@ class Desk:
             self.reception.attend(0.0)
 
 
-def accepted(worker: Handed) -> list[socket.socket]:
+def accepted(worker: HandoverSocket) -> list[socket.socket]:
     """All that wait."""
     got: list[socket.socket] = []
     while True:
@@ -138,11 +138,11 @@ def test_who_is_stuck_is_passed_over(desk: Desk) -> None:
 
 def test_only_a_worker_is_handed_anything(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(CHANNEL, raising=False)
-    assert handed(*ADDRESS) is None
+    assert handover_socket(*ADDRESS) is None
     ours, theirs = socket.socketpair()
     with ours:
         monkeypatch.setenv(CHANNEL, str(theirs.detach()))
-        made = handed(*ADDRESS)
+        made = handover_socket(*ADDRESS)
         assert made is not None
         with made:
             made.listen()

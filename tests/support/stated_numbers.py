@@ -1,7 +1,7 @@
 """Comparison of the numbers in a lesson's text with the simulated motion, every millisecond.
 
-A number is taken from the text, so that text and physics cannot drift apart: `said` finds a
-sentence in which each # stands for a number, `agrees` compares to the digits that are written.
+The numbers are read from the text, so that text and physics cannot diverge: `said` finds a
+sentence in which each # stands for a number; `agrees` compares the digits that are written.
 """
 
 from __future__ import annotations
@@ -36,16 +36,16 @@ def text(lesson: str, language: str = "en") -> str:
 
 
 def numbers(part: str) -> list[float]:
-    """All that occur in a text, in order."""
+    """All numbers in a text, in order."""
     return [value(found) for found in re.findall(NUMBER, part.replace("{,}", ","))]
 
 
 def said(lesson: str, sentence: str) -> list[str]:
-    """The numbers of a sentence as they are written; spaces in it match line breaks, too.
+    """The numbers of a sentence as they are written; spaces also match line breaks.
 
     Args:
-        lesson: its number, as "01".
-        sentence: as in the text, each number as #.
+        lesson: number of the lesson, such as "01".
+        sentence: the text, with # for each number.
     """
     pattern = NUMBER.join(map(re.escape, sentence.split("#")))
     found = re.findall(pattern, " ".join(text(lesson).split()))
@@ -54,7 +54,7 @@ def said(lesson: str, sentence: str) -> list[str]:
 
 
 def value(text: str) -> float:
-    """Of a number as it is written."""
+    """Value of a number as it is written."""
     return float(text.replace("−", "-").replace(",", "."))
 
 
@@ -64,15 +64,15 @@ def agrees(text: str, measured: float) -> bool:
     return abs(measured - value(text)) <= 0.5 * 10.0**-digits + 1e-9
 
 
-def assert_told(texts: list[str], measured: list[float]) -> None:
-    """All of them, in order."""
+def assert_stated(texts: list[str], measured: list[float]) -> None:
+    """Assert that all numbers agree with the measured ones, in order."""
     wrong = [(t, m) for t, m in zip(texts, measured, strict=True) if not agrees(t, m)]
     assert not wrong, wrong
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
-    """What one robot did, every millisecond; mm, N m, N, rad and s."""
+    """The motion of one robot, every millisecond, in mm, N m, N, rad and s."""
 
     t: Array
     distance: Array
@@ -85,15 +85,15 @@ class Motion:
     y: Array
 
     def during(self, begin: float, end: float) -> slice:
-        """The milliseconds from one instant to another."""
+        """The rows between two instants, [s]."""
         return slice(*np.searchsorted(self.t, (begin - 1e-9, end - 1e-9)))
 
     def largest(self, begin: float, end: float) -> float:
-        """Distance, [mm]."""
+        """Largest distance between two instants, [mm]."""
         return float(self.distance[self.during(begin, end)].max())
 
     def at(self, time: float, quantity: str = "distance") -> float:
-        """A quantity at an instant."""
+        """Value of a quantity at an instant, [s]."""
         return float(getattr(self, quantity)[self.during(time, time + 1)][0])
 
 
@@ -102,7 +102,7 @@ WORST = 3 + 25 / 36  # [s], the brake then catches the follower at 214 degrees
 
 
 def play(until: float, do: list[Action], path: str = "", **settings: Value) -> Run:
-    """What both robots do, set up with the lab's defaults but for some settings."""
+    """Simulate both robots with the lab's defaults except for some settings."""
     lab = Lab(store())
     own = RobotSetup(settings, Path(path or Path().name))
     lab.set_up(Setup("five_bar", {"five_bar": own}))
@@ -110,24 +110,24 @@ def play(until: float, do: list[Action], path: str = "", **settings: Value) -> R
 
 
 def held(at: float, seconds: float = 2.0, robot: RobotName = "follower", **gains: Any) -> Motion:
-    """A robot that goes round and is held back from `at` to the end."""
+    """Motion of a robot that follows the circle and is held back from `at` to the end."""
     return play(at + seconds, [Action(at=at, hold=True)], **gains)[robot]
 
 
 def pulled(right: float, up: float = 0.0, robot: RobotName = "follower", **gains: Any) -> Motion:
-    """A robot that stands at the right-hand end, pulled from 1 s on."""
+    """Motion of a robot that rests at the right-hand end and is pulled from 1 s on."""
     return play(4.0, [Action(at=1.0, pull=(right, up))], speed=0.0, **gains)[robot]
 
 
 @cache
 def shown(lesson: str, title: str) -> Run:
-    """What a step that runs by itself shows."""
+    """Motion in a step of a lesson that has a script."""
     (home,) = BUILT_IN.glob(f"{lesson}-*")
-    told: Lesson = read_lesson(home / "en.md")
-    for index, step in enumerate(told.steps):
+    parsed: Lesson = read_lesson(home / "en.md")
+    for index, step in enumerate(parsed.steps):
         if step.title == title and step.script is not None:
             lab = Lab(store())
-            lab.set_up(setup_of(told, index))
+            lab.set_up(setup_of(parsed, index))
             return _played(lab, step.script)
     raise AssertionError(f"lesson {lesson} shows no {title!r}")
 
