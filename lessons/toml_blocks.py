@@ -1,4 +1,4 @@
-"""From a block of TOML in a lesson's file to a value, or to complaints about its lines."""
+"""Converts a block of TOML in a lesson's file to a value, or reports errors with their lines."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from onpath.lessons.problems import line_of
 
 T = TypeVar("T")
 Complain = Callable[[int, str], None]
-"""Told the line of the file and what is wrong there."""
+"""Callback for an error: the line of the file, and a description."""
 
 
 def read_toml(content: str, line: int, kind: type[T], complain: Complain) -> T | None:
-    """TOML that begins at a line, as a value of some type; None after a complaint."""
+    """Convert TOML that begins at a line to a value of a type; None if errors were reported."""
     try:
         return msgspec.convert(tomllib.loads(content), kind)
     except tomllib.TOMLDecodeError as error:
@@ -37,10 +37,10 @@ def read_checked(
     faults: Callable[[Any], Iterable[str]],
     complain: Complain,
 ) -> Any:
-    """The same, for a value that may have faults of its own; None after a complaint.
+    """Like `read_toml`, with further checks of the value.
 
     Args:
-        faults: what is wrong with a value.
+        faults: returns descriptions of the value's errors.
     """
     read = read_toml(content, line, kind, complain)
     if read is None:

@@ -1,4 +1,4 @@
-"""Everything the interface says, in the language of its user."""
+"""The texts of the interface, in the language of its user."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from onpath.assets.messages import DEFAULT, Catalogue, catalogue, languages
 from onpath.models.errors import Coded, Message
 
 ELSEWHERE = ("parameter.", "machine.", "path.")
-"""Beginnings of keys whose English stands in models/, so that other languages alone have them."""
+"""Prefixes of keys whose English texts are in models/; only the other catalogues have them."""
 
 
 class Words:
-    """What is said in one language.
+    """The texts of one language.
 
     Args:
-        language: one that there is no catalogue for is answered in English.
+        language: code of the language; English if there is no catalogue for it.
     """
 
     def __init__(self, language: str = DEFAULT) -> None:
@@ -28,7 +28,7 @@ class Words:
         return catalogue(self.language)
 
     def __call__(self, key: str, **values: Any) -> str:
-        """The words for a key, with values filled in; a count as a whole number, for the plural.
+        """The text of a key with values filled in; a count must be an integer, for the plural.
 
         Raises:
             KeyError: there is no such key, or a value is missing.
@@ -41,13 +41,13 @@ class Words:
             return self._plain.setdefault(key, self._catalogue.text(key, values))
 
     def get(self, key: str, default: str) -> str:
-        """The words for a key, or others."""
+        """The text of a key, or a default."""
         return self(key) if key in self._plain or key in self._catalogue else default
 
     def sentence(self, said: Message | Exception) -> str:
-        """A message, or what an error says; one without a code stays as it is."""
+        """The text of a message or an error; an error without a code is not translated."""
         message = said.message if isinstance(said, Coded) else said
-        return message.told(self.language) if isinstance(message, Message) else str(message)
+        return message.text(self.language) if isinstance(message, Message) else str(message)
 
 
 ENGLISH = Words()

@@ -26,9 +26,9 @@ class Message:
     arguments: Mapping[str, Argument] = field(default_factory=dict[str, Argument])
 
     def __str__(self) -> str:
-        return self.told()
+        return self.text()
 
-    def told(self, language: str = DEFAULT) -> str:
+    def text(self, language: str = DEFAULT) -> str:
         """The sentence in a language.
 
         Raises:
@@ -40,9 +40,9 @@ class Message:
 
 def _value(value: Argument, language: str) -> str | int:
     if isinstance(value, Message):
-        return value.told(language)
+        return value.text(language)
     if isinstance(value, tuple):
-        return "; ".join(message.told(language) for message in value)
+        return "; ".join(message.text(language) for message in value)
     return value
 
 

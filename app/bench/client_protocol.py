@@ -61,7 +61,7 @@ class _Window(msgspec.Struct):
 _window = msgspec.msgpack.Decoder(_Window)
 
 
-def told(raw: bytes) -> list[MessageHeader]:
+def message_headers(raw: bytes) -> list[MessageHeader]:
     """The headers of the messages in a frame; faster than `unpacked`."""
     end = 16 + int.from_bytes(raw[8:16], "little")
     return _window.decode(decompress(raw[16:end])).messages

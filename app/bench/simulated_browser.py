@@ -25,7 +25,14 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 from websockets.typing import Subprotocol
 
-from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, told, unpacked
+from onpath.app.bench.client_protocol import (
+    CAMERA,
+    SUBPROTOCOL,
+    answer,
+    message_headers,
+    packed,
+    unpacked,
+)
 
 LAST = 19  # the lowest priority
 TOGETHER = Path("/proc/self/autogroup")  # priority of a whole session, on Linux
@@ -107,7 +114,7 @@ class Browser:
         async for raw in socket:
             assert isinstance(raw, bytes)
             self.received += len(raw)
-            messages = told(raw)
+            messages = message_headers(raw)
             if any(message.type in ANSWERED for message in messages):
                 for message in unpacked(raw):
                     await self._answer(socket, message)

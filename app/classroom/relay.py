@@ -94,16 +94,16 @@ class Relay:
         codes = set(wanted.values())
         if codes and self._looks % SELDOM == 0:
             self._watches.ask(codes)
-        told = self._watches.told(codes) if codes else {}
+        published = self._watches.published(codes) if codes else {}
         mirrors = {c: mine for c, mine in self._mirrors.items() if wanted.get(c) == mine[0]}
         for client, code in wanted.items():
-            if code not in told:
+            if code not in published:
                 continue
             if client in mirrors:
-                mirrors[client][1].tell(told[code])
+                mirrors[client][1].tell(published[code])
                 continue
             try:
-                mirrors[client] = code, Mirror(self._make(), told[code])
+                mirrors[client] = code, Mirror(self._make(), published[code])
             except ValueError as error:
                 log_warning("a student's lab cannot be shown: %s", error)
         self._run({mirror for _, mirror in mirrors.values()})

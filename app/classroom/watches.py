@@ -60,7 +60,7 @@ class Watches:
                 new = sa.update(watches).where(self._one(session)).values(moment=moment)
                 connection.execute(new)
 
-    def told(self, sessions: Iterable[str]) -> dict[str, str]:
+    def published(self, sessions: Iterable[str]) -> dict[str, str]:
         """Published states of labs, by session code; labs without one are omitted."""
         wanted = sa.select(watches.c.session, watches.c.moment).where(self._own)
         wanted = wanted.where(watches.c.session.in_(list(sessions)) & (watches.c.moment != ""))

@@ -452,17 +452,17 @@ def test_which_class_a_server_has(
 
 def test_what_is_asked_for_is_told_for_a_while(two: Two) -> None:
     one, other = (process.watches for process in two.both)
-    assert one.asked() == set() and one.told(["a"]) == {}
+    assert one.asked() == set() and one.published(["a"]) == {}
     other.ask(["a", "b"])
     other.ask(["a", "b"])
-    assert one.asked() == {"a", "b"} and one.told(["a"]) == {}
+    assert one.asked() == {"a", "b"} and one.published(["a"]) == {}
     one.tell({"a": "moment", "c": "nobody asked"})
-    assert other.told(["a", "b", "c"]) == {"a": "moment"}
+    assert other.published(["a", "b", "c"]) == {"a": "moment"}
     two.clock.now += LASTS + 0.1
     assert one.asked() == set()
     two.clock.now += GONE
     other.ask(["b"])
-    assert other.told(["a", "b"]) == {} and one.asked() == {"b"}
+    assert other.published(["a", "b"]) == {} and one.asked() == {"b"}
     two.clock.now -= NONSENSE
     assert one.asked() == set()
 

@@ -82,7 +82,7 @@ def test_why_nothing_happens_is_told_in_the_language_of_the_lab(lab: Lab) -> Non
         assert lab.message == ""
         do(lab, command)
         assert lab.message == german and lab.message_level == "warning"
-    assert lab.locked is not None and lab.locked.told("de") == german != str(lab.locked)
+    assert lab.locked is not None and lab.locked.text("de") == german != str(lab.locked)
 
 
 def test_skipping_is_one_step_and_locks_nothing(lab: Lab) -> None:

@@ -346,8 +346,8 @@ def test_an_error_is_told_by_its_code_whatever_its_english_is(language: str) -> 
     for code, given, _ in said_in_code():
         error = CodedError(code, **dict.fromkeys(given, "7"))
         own = Words(language).sentence(error)
-        assert own == error.message.told(language) and "{" not in own
-        assert own != str(error) == ENGLISH.sentence(error) == error.message.told(), code
+        assert own == error.message.text(language) and "{" not in own
+        assert own != str(error) == ENGLISH.sentence(error) == error.message.text(), code
 
 
 def test_a_changed_english_text_keeps_its_translation(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -370,7 +370,7 @@ def test_what_cannot_be_kept_is_told_in_german_too() -> None:
     assert Words("de").sentence(refused) == "die Datenbank meldet: disk full"
     assert said_by(refused) == refused.message == pickle.loads(pickle.dumps(refused)).message
     whole = Message("say.lab_kept", {"reason": NotKept("error.lab_newer").message})
-    assert whole.told("de").endswith("nicht öffnen: dieses Labor hat ein neueres OnPath aufbewahrt")
+    assert whole.text("de").endswith("nicht öffnen: dieses Labor hat ein neueres OnPath aufbewahrt")
 
 
 @pytest.mark.parametrize("ask", ["_end", "_forget"])
