@@ -97,11 +97,6 @@ class Student:
             for message in unpacked(raw):
                 self._take(message)
 
-    def stay(self, seconds: float) -> None:
-        """Read messages for a while."""
-        end = time.monotonic() + seconds
-        self.read(lambda: time.monotonic() > end)
-
     def cut_off(self) -> None:
         """Wait until the server is gone."""
         try:

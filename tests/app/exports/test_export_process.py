@@ -5,15 +5,15 @@ from __future__ import annotations
 import os
 import signal
 import threading
-import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from onpath.app.exports.export_process import ExportError, ExportProcess
 from onpath.app.exports.files import csv_bytes, csv_file
 from onpath.app.exports.worker import NICENESS
-from tests.support.export_jobs import die
+from tests.support.export_jobs import die, hang
 from tests.support.lab import new_lab
 from tests.support.waiting import wait_for
 
@@ -61,17 +61,15 @@ def test_a_crash_fails_one_call(process: ExportProcess) -> None:
 
 def test_a_killed_process_fails_one_call(process: ExportProcess) -> None:
     pid = process.call(LONG, os.getpid)
-    killer = threading.Timer(0.0, os.kill, [pid, signal.SIGKILL])
-    killer.start()
     with pytest.raises(ExportError, match="died"):
-        process.call(LONG, time.sleep, LONG)
+        process.call(LONG, os.kill, pid, signal.SIGKILL)
     assert process.call(LONG, os.getpid) != pid
 
 
-def test_what_takes_too_long_is_given_up(process: ExportProcess) -> None:
+def test_what_takes_too_long_is_given_up(process: ExportProcess, tmp_path: Path) -> None:
     process.call(LONG, abs, -1)  # it has been started
     with pytest.raises(ExportError, match="after its time"):
-        process.call(0.1, time.sleep, LONG)
+        process.call(0.1, hang, tmp_path / "begun")
     with pytest.raises(ExportError, match="before its turn"):
         process.call(0.0, abs, -1)
     assert process.call(LONG, abs, -1) == 1
@@ -98,17 +96,16 @@ def test_an_idle_process_is_ended_and_started_again() -> None:
         wait_for(lambda: process.pid is None, LONG)
 
 
-def test_stopping_ends_the_call_that_is_under_way() -> None:
-    process, failed = ExportProcess(), threading.Event()
-    process.call(LONG, abs, -1)
+def test_stopping_ends_the_call_that_is_under_way(tmp_path: Path) -> None:
+    process, failed, begun = ExportProcess(), threading.Event(), tmp_path / "begun"
 
     def call() -> None:
         with pytest.raises(ExportError):
-            process.call(LONG, time.sleep, LONG)
+            process.call(LONG, hang, begun)
         failed.set()
 
     thread = threading.Thread(target=call)
     thread.start()
-    wait_for(process._calls.locked, LONG)
+    wait_for(begun.exists, LONG)
     process.stop()
     assert failed.wait(LONG) and process.pid is None
