@@ -62,7 +62,7 @@ def asked_since(tab: Tab, before: int) -> int:
     tab.ask(c.SelectPoint(None))
     tab.page.keyboard.press("n")
     wait_for(lambda: tab.session.editor.selected == 0)
-    return tab.lab.asked - before - 3
+    return tab.lab.asked - before - 2
 
 
 def camera(tab: Tab) -> np.ndarray:
@@ -78,10 +78,13 @@ def camera(tab: Tab) -> np.ndarray:
 
 
 def settled_camera(tab: Tab) -> np.ndarray:
-    """The same, once the lab places it no more by itself."""
+    """The same, once the lab places it no more by itself: what a page tells may move it again."""
     wait_for(lambda: not tab.view.page._settling)  # type: ignore[attr-defined]
-    tab.settle()
-    return camera(tab)
+    placed, before = camera(tab), np.zeros(6)
+    while not np.allclose(placed, before):
+        tab.settle()
+        placed, before = camera(tab), placed
+    return placed
 
 
 # The camera.
@@ -110,7 +113,7 @@ def turn_the_view(tab: Tab) -> None:
     assert box is not None
     x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.08 * box["height"]
     before = camera(tab)
-    with tab.dragging((x, y), (x + 60, y + 25)):
+    with tab.dragging((x, y), (x + 60, y + 25), in_scene=False):
         pass
     tab.settle()
     assert np.abs(camera(tab) - before).max() > 1e-3
