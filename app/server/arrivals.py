@@ -27,7 +27,8 @@ class Arrivals:
 
     Args:
         keys: of local storage.
-        enter: called in one of viser's threads, with the values of these keys.
+        enter: called in one of viser's threads, with the values of these keys and the client's
+            address.
         most, most_each: clients that may be unanswered, in total and per address; beyond that the
             oldest is disconnected.
     """
@@ -36,7 +37,7 @@ class Arrivals:
         self,
         server: viser.ViserServer,
         keys: list[str],
-        enter: Callable[[viser.ClientHandle, Kept], None],
+        enter: Callable[[viser.ClientHandle, Kept, str], None],
         most: int = MOST,
         most_each: int = MOST_EACH,
     ) -> None:
@@ -52,7 +53,8 @@ class Arrivals:
         socket = self._sockets.get(client.client_id)
         if socket is None:  # disconnected already
             return
-        surplus = self._silent.add(client.client_id, getattr(socket, "address", ""))
+        address: str = getattr(socket, "address", "")
+        surplus = self._silent.add(client.client_id, address)
         if surplus is not None:
             self._turn_away(surplus)
         connection = client._websock_connection
@@ -64,7 +66,7 @@ class Arrivals:
             if key is not None:
                 kept[key] = message.value
                 if not waits and self._silent.discard(client.client_id):
-                    self._threads.submit(self._let_in, client, kept)
+                    self._threads.submit(self._let_in, client, kept, address)
 
         connection.register_handler(wire.LocalStorageGetItemResponseMessage, answered)
         for question, key in waits.items():
@@ -74,9 +76,9 @@ class Arrivals:
     async def _forget(self, client: viser.ClientHandle) -> None:
         self._silent.discard(client.client_id)
 
-    def _let_in(self, client: viser.ClientHandle, kept: Kept) -> None:
+    def _let_in(self, client: viser.ClientHandle, kept: Kept, address: str) -> None:
         try:
-            self._enter(client, kept)
+            self._enter(client, kept, address)
         except Exception as error:
             log_error(error)
 

@@ -124,12 +124,12 @@ class LabServer:
                 self._leases.close()
             self._records.close()
 
-    def _connected(self, client: viser.ClientHandle, kept: Kept) -> None:
+    def _connected(self, client: viser.ClientHandle, kept: Kept, address: str) -> None:
         if self._class is not None:
             self._class.greet(client, kept[TEACHER_KEY])
         teaches = self._class and self._class.teaches(client.client_id)
         enter = partial(self._entered, client, kept[STORAGE_KEY])
-        self._room.admit(client, enter, always=bool(teaches))
+        self._room.admit(client, enter, address, always=bool(teaches))
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
 

@@ -138,6 +138,7 @@ full-text =
         [one] Der einzige Platz ist besetzt.
        *[other] Alle { $places } Plätze sind besetzt.
     } Lass diese Seite offen: Sie geht von selbst weiter, sobald einer frei ist.
+full-network = Alle { $places } Plätze für ein Netz sind besetzt; die übrigen sind für andere Netze frei gehalten. Lass diese Seite offen: Sie geht von selbst weiter, sobald einer frei ist.
 
 coming-title = Einen Augenblick
 coming-text = Viele kommen gerade auf einmal. Dein Labor öffnet sich in ein paar Sekunden.

@@ -140,6 +140,7 @@ full-text =
         [one] The only place is taken.
        *[other] All { $places } places are taken.
     } Leave this page open: it continues by itself as soon as one is free.
+full-network = All { $places } places for one network are taken; the rest is kept for other networks. Leave this page open: it continues by itself as soon as one is free.
 
 coming-title = One moment
 coming-text = Many people are connecting at once. Your lab opens in a few seconds.

@@ -12,8 +12,7 @@ def die(*_: object) -> bytes:
     os._exit(9)
 
 
-def hang(begun: Path) -> None:
-    """A job without an end; the file is there once it is under way."""
-    begun.touch()
-    while True:
-        time.sleep(60.0)
+def sleep_after_touching(file: Path, seconds: float) -> None:
+    """Create a file, which tells that the job has begun, and sleep."""
+    file.touch()
+    time.sleep(seconds)

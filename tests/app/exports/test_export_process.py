@@ -13,7 +13,7 @@ import pytest
 from onpath.app.exports.export_process import ExportError, ExportProcess
 from onpath.app.exports.files import csv_bytes, csv_file
 from onpath.app.exports.worker import NICENESS
-from tests.support.export_jobs import die, hang
+from tests.support.export_jobs import die, sleep_after_touching
 from tests.support.lab import new_lab
 from tests.support.waiting import wait_for
 
@@ -59,17 +59,25 @@ def test_a_crash_fails_one_call(process: ExportProcess) -> None:
     assert process.call(LONG, abs, -1) == 1
 
 
-def test_a_killed_process_fails_one_call(process: ExportProcess) -> None:
-    pid = process.call(LONG, os.getpid)
+def test_a_killed_process_fails_one_call(process: ExportProcess, tmp_path: Path) -> None:
+    pid, begun = process.call(LONG, os.getpid), tmp_path / "begun"
+
+    def kill_once_begun() -> None:
+        wait_for(begun.exists, LONG)
+        os.kill(pid, signal.SIGKILL)
+
+    killer = threading.Thread(target=kill_once_begun)
+    killer.start()
     with pytest.raises(ExportError, match="died"):
-        process.call(LONG, os.kill, pid, signal.SIGKILL)
+        process.call(LONG, sleep_after_touching, begun, LONG)
+    killer.join()
     assert process.call(LONG, os.getpid) != pid
 
 
 def test_what_takes_too_long_is_given_up(process: ExportProcess, tmp_path: Path) -> None:
     process.call(LONG, abs, -1)  # it has been started
     with pytest.raises(ExportError, match="after its time"):
-        process.call(0.1, hang, tmp_path / "begun")
+        process.call(0.1, sleep_after_touching, tmp_path / "begun", LONG)
     with pytest.raises(ExportError, match="before its turn"):
         process.call(0.0, abs, -1)
     assert process.call(LONG, abs, -1) == 1
@@ -101,7 +109,7 @@ def test_stopping_ends_the_call_that_is_under_way(tmp_path: Path) -> None:
 
     def call() -> None:
         with pytest.raises(ExportError):
-            process.call(LONG, hang, begun)
+            process.call(LONG, sleep_after_touching, begun, LONG)
         failed.set()
 
     thread = threading.Thread(target=call)

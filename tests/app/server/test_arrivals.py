@@ -92,7 +92,7 @@ class Inn:
         self.server = make_server(port=0, limits=Limits(farewell=0.1))
         self.let_in: list[Kept] = []
         self.arrivals = Arrivals(
-            self.server, ["a", "b"], lambda _, kept: self.let_in.append(kept), 5, 3
+            self.server, ["a", "b"], lambda _, kept, __: self.let_in.append(kept), 5, 3
         )
 
     def visit(self) -> ClientConnection:
