@@ -80,11 +80,13 @@ def camera(tab: Tab) -> np.ndarray:
 def settled_camera(tab: Tab) -> np.ndarray:
     """The same, once the lab places it no more by itself: what a page tells may move it again."""
     wait_for(lambda: not tab.view.page._settling)  # type: ignore[attr-defined]
-    placed, before = camera(tab), np.zeros(6)
-    while not np.allclose(placed, before):
+    placed = camera(tab)
+    for _ in range(20):
         tab.settle()
-        placed, before = camera(tab), placed
-    return placed
+        before, placed = placed, camera(tab)
+        if np.allclose(placed, before):
+            return placed
+    raise AssertionError("the camera does not come to rest")
 
 
 # The camera.
