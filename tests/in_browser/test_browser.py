@@ -23,10 +23,12 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.trajectory import read_csv
-from tests.support.browser import SELDOM, Tab, wait_for
+from tests.support.browser import SELDOM, THREE_FRAMES, Tab, wait_for
 
 TRACKER, FOLLOWER = "trajectory_tracking", "path_following"
 WINDOW = {"width": 1000, "height": 700}
+PLAYED = """seconds => [...document.querySelectorAll("[role=slider]")].some(
+    each => each.getAttribute("aria-valuenow") > seconds)"""
 
 
 def fresh(browser: Browser, **options: Any) -> BrowserContext:
@@ -190,7 +192,7 @@ def test_holding_as_long_as_the_button_is_down(tab: Tab) -> None:
     box = tab.button("Hold while pressed").bounding_box()
     assert box is not None
     middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    with tab.dragging(middle):
+    with tab.dragging(middle, in_scene=False):
         wait_for(lambda: len(held) == 2)
         begun = tab.session.time
         wait_for(lambda: tab.session.time > begun + 1.0)
@@ -234,7 +236,7 @@ def test_gains_by_number_and_by_slider(tab: Tab) -> None:
     handle = tab.slider("K1").bounding_box()
     assert handle is not None
     start = (handle["x"] + handle["width"] / 2, handle["y"] + handle["height"] / 2)
-    with tab.dragging(start, (start[0] + 40, start[1])):
+    with tab.dragging(start, (start[0] + 40, start[1]), in_scene=False):
         wait_for(lambda: lab.session.parameters.K1 > 600.0)
     shown = tab.number("K1")
     wait_for(lambda: float(shown.input_value()) == lab.session.parameters.K1)
@@ -385,7 +387,7 @@ def plays_without_complaint(page: Page, film: Path) -> None:
     page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
     page.goto(film.as_uri())
     page.locator("canvas").first.wait_for()
-    page.wait_for_timeout(1500)
+    page.wait_for_function(PLAYED, arg=1.5)
     assert complaints == []
 
 
@@ -460,7 +462,8 @@ def test_hostile_text_is_not_rendered(tab: Tab) -> None:
     tab.page.evaluate("window.harmed = false")
     tab.lab.show_message("<img src=x onerror='window.harmed = true'><b>bold</b>", "warning")
     tab.page.get_by_role("status").filter(has_text="<b>bold</b>").wait_for()
-    tab.page.wait_for_timeout(300)
+    tab.page.evaluate("fetch('x').then(reply => reply.text())")  # longer than a picture takes
+    tab.page.evaluate(THREE_FRAMES)
     assert tab.page.get_by_role("status").locator("b, img").count() == 0
     assert tab.page.evaluate("window.harmed") is False
     tab.lab.show_message("")

@@ -143,7 +143,8 @@ def test_the_teacher_watches_a_lab_without_changing_it(tabs: Class) -> None:
     assert first.lab.lessons.lesson is not None
     assert teacher.button("Hold both back").count() == 0
     teacher.page.keyboard.press("h")
-    teacher.page.wait_for_timeout(300)
+    teacher.answer()
+    first.ask()
     assert not first.session.grips.held and not teacher.session.grips.held
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,7 @@ from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.tab_visibility import PATIENCE, QUESTION_INTERVAL, TICK
 from tests.support.browser import CHROMIUM, COARSER, PLAIN, wait_for
+from tests.support.frame_clock import FrameClock
 
 VALUES = "[...document.querySelectorAll('input')].map(each => each.value)"
 SMALL = ("--window-size=600,400",)  # so that drawing in software keeps up
@@ -89,6 +89,7 @@ class Meter:
 
     def __init__(self, server: LabServer) -> None:
         (connection,) = server.server._websock_server._live_connections.values()
+        self._clock = FrameClock(server.simulation)
         self._write, self._sent = connection.transport.write, 0
         connection.transport.write = self._count
 
@@ -97,9 +98,9 @@ class Meter:
         self._write(data)
 
     def rate(self, seconds: float) -> float:
-        """Measure the data rate for some seconds, [B/s]."""
+        """Measure the data rate, [B/s], in as many frames as should pass in these seconds."""
         before = self._sent
-        time.sleep(seconds)
+        wait_for(self._clock.alarm(seconds))
         return (self._sent - before) / seconds
 
 
@@ -131,5 +132,5 @@ def test_a_covered_tab_costs_nothing_and_then_shows_the_current_state(
     assert meter.rate(1.0) > 0.3 * visible and lab.session.time > simulated
     assert np.allclose(client.camera.position, camera, atol=1e-9)  # for all that it was asked
     lab.lab.post(c.SetRunning(False))
-    time.sleep(QUESTION_INTERVAL + TICK)
+    meter.rate(QUESTION_INTERVAL + TICK)  # the last question
     assert meter.rate(2.0) < PAUSED and lab.view is view

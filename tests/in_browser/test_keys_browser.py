@@ -62,7 +62,7 @@ def asked_since(tab: Tab, before: int) -> int:
     tab.ask(c.SelectPoint(None))
     tab.page.keyboard.press("n")
     wait_for(lambda: tab.session.editor.selected == 0)
-    return tab.lab.asked - before - 3
+    return tab.lab.asked - before - 2
 
 
 def camera(tab: Tab) -> np.ndarray:
@@ -78,10 +78,15 @@ def camera(tab: Tab) -> np.ndarray:
 
 
 def settled_camera(tab: Tab) -> np.ndarray:
-    """Position and target of the camera once the lab has stopped placing it."""
+    """Position and target of the camera once neither the lab nor the page places it anew."""
     wait_for(lambda: not tab.view.page._settling)  # type: ignore[attr-defined]
-    tab.settle()
-    return camera(tab)
+    placed = camera(tab)
+    for _ in range(20):
+        tab.settle()
+        before, placed = placed, camera(tab)
+        if np.allclose(placed, before):
+            return placed
+    raise AssertionError("the camera does not come to rest")
 
 
 # The camera.
@@ -110,7 +115,7 @@ def turn_the_view(tab: Tab) -> None:
     assert box is not None
     x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.08 * box["height"]
     before = camera(tab)
-    with tab.dragging((x, y), (x + 60, y + 25)):
+    with tab.dragging((x, y), (x + 60, y + 25), in_scene=False):
         pass
     tab.settle()
     assert np.abs(camera(tab) - before).max() > 1e-3

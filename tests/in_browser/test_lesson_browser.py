@@ -111,7 +111,8 @@ def test_a_task_is_failed_then_passed(tab: Tab) -> None:
     tab.enter("K1", "600")
     tab.enter("K2", "50")
     wait_for(lambda: (tab.session.parameters.K1, tab.session.parameters.K2) == (600, 50))
-    tab.page.wait_for_timeout(1500)
+    again = tab.session.time + 3.0
+    wait_for(lambda: tab.session.time > again)
     hold_for(tab, 2.6)
     wait_for(lambda: "hold-two-seconds" in tab.lab.lessons.notes.tasks)
     tab.page.get_by_text("✓ Passed").first.wait_for()

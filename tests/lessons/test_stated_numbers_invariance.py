@@ -247,6 +247,15 @@ def test_round_the_circle() -> None:
     assert_stated(texts, [min(follower)[0], most, min(tracker), max(tracker)])
 
 
+def test_round_the_circle_as_lesson_1_tells_it() -> None:
+    round_the_circle = [most_and_rest(degrees) for degrees in range(0, 360, 6)]
+    stated = [max(column) for column in zip(*round_the_circle, strict=True)][::-1]
+    (near,) = said("01", "the follower comes to rest within # mm of it")
+    assert max(most_and_rest(degrees)[1] for degrees in (22, 113, 173, 243)) < value(near)
+    sentence = "it comes to rest # mm off, and as the brake catches it, it even swings out to # mm"
+    assert_stated(said("01", sentence), stated)
+
+
 def test_the_readme_s_experiment() -> None:
     texts = stated_in_readme(
         "held back from # to # s, the follower is never further than # mm from the circle and the"

@@ -7,16 +7,19 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, ClassVar
+from uuid import uuid4
 
 import numpy as np
 from playwright.sync_api import BrowserContext, Locator, Page
 from viser import ClientHandle
+from viser import _messages as wire
 
 from onpath.app.bench.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import page_key
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_feed import LabFeed
@@ -28,13 +31,14 @@ from tests.support import waiting
 CHROMIUM = "/usr/bin/chromium"
 PLAIN = (*ARGUMENTS, "--disable-gpu-rasterization", "--disable-gpu-compositing")
 """Arguments of a browser whose GPU is simulated; a page is then composed faster without it."""
-SELDOM = "requestAnimationFrame = act => setTimeout(() => act(performance.now()), 100)"
+SELDOM = "requestAnimationFrame = act => setTimeout(() => act(performance.now()), 50)"
 """Reduces the frame rate: drawing in software takes most of a browser's time, and picking by mouse
 does not need it."""
 COARSE = "fixedDpr=0.5"  # option of viser: half the pixels in each direction, for a simulated GPU
 COARSER = "fixedDpr=0.1"  # for tabs whose picture is not checked
 WAIT = 60.0  # [s]; software rendering on a busy machine shows a few frames a second
 
+NEAR = 1.5  # [px], from where the mouse is to where the lab has heard that it is
 wait_for = partial(waiting.wait_for, seconds=WAIT)
 THREE_FRAMES = """() => new Promise(done => {
     let left = 3
@@ -44,7 +48,9 @@ THREE_FRAMES = """() => new Promise(done => {
 
 
 class Note(Command):
-    """A command that only records that it has been applied."""
+    """A command that only records that it has been applied; not counted as one of the user's."""
+
+    from_teacher: ClassVar[bool] = True
 
     def __init__(self, done: list[bool]) -> None:
         self.done = done
@@ -108,11 +114,27 @@ class Tab:
             )
         )
         self.view = self.scheduled.view
+        self._listen()
         self.page.get_by_role("button", name="Pause").or_(
             self.page.get_by_role("button", name="Run", exact=True)
         ).wait_for()
         wait_for(self._framed)
         self.page.get_by_role("alert").get_by_role("button").click()  # "software rendering"
+
+    def _listen(self) -> None:
+        """Note what the page tells the server."""
+        connection = self.client._websock_connection
+        self._dragged_to: list[tuple[float, float]] = []
+        self._answered: list[str] = []
+
+        def dragged(_: int, message: wire.SceneNodeDragMessage) -> None:
+            self._dragged_to.append(message.end_screen_pos)
+
+        def answered(_: int, message: wire.LocalStorageGetItemResponseMessage) -> None:
+            self._answered.append(message.request_uuid)
+
+        connection.register_handler(wire.SceneNodeDragMessage, dragged)
+        connection.register_handler(wire.LocalStorageGetItemResponseMessage, answered)
 
     def _clients(self) -> dict[int, ClientHandle]:
         return self.server.server.get_clients()
@@ -185,22 +207,30 @@ class Tab:
     # User actions.
 
     @contextmanager
-    def dragging(self, *way: tuple[float, float]) -> Iterator[None]:
-        """Press the mouse at the first place and move it through the others; release on exit."""
+    def dragging(self, *way: tuple[float, float], in_scene: bool = True) -> Iterator[None]:
+        """Press the mouse at the first place and move it through the others; release on exit.
+
+        Args:
+            in_scene: whether it drags a node of the scene; the lab has then heard of each place.
+        """
         mouse = self.page.mouse
         mouse.move(*way[0])
         self.settle()
         mouse.down()
         for place in way[1:]:
             mouse.move(*place, steps=2)
-            self.page.wait_for_timeout(60)  # viser passes on twenty positions a second
-        mouse.move(*way[-1])  # and drops those in between
+            if in_scene:
+                self._until_dragged(place)
         yield
         mouse.up()
 
     @contextmanager
-    def touching(self, *way: tuple[float, float]) -> Iterator[None]:
-        """Touch the first place and move the finger through the others; lift it on exit."""
+    def touching(self, *way: tuple[float, float], in_scene: bool = True) -> Iterator[None]:
+        """Touch the first place and move the finger through the others; lift it on exit.
+
+        Args:
+            in_scene: see `dragging`.
+        """
         touched = self.page.context.new_cdp_session(self.page)
 
         def tell(kind: str, *places: tuple[float, float]) -> None:
@@ -209,18 +239,40 @@ class Tab:
 
         self.settle()
         tell("touchStart", way[0])
-        for begin, end in pairwise([*way, way[-1]]):
+        for begin, end in pairwise(way):
             for place in np.linspace(begin, end, 4)[1:].tolist():
                 tell("touchMove", (place[0], place[1]))
-                self.page.wait_for_timeout(60)
+            if in_scene:
+                self._until_dragged(end)
         yield
         tell("touchEnd")
         touched.detach()
 
+    def _until_dragged(self, place: tuple[float, float]) -> None:
+        """viser passes on twenty places a second, and drops those between."""
+        box = self._canvas()
+        size = np.array([box["width"], box["height"]])
+        wanted = np.array(place) - [box["x"], box["y"]]
+        wait_for(lambda: any(np.abs(z * size - wanted).max() < NEAR for z in self._dragged_to[-1:]))
+
     def settle(self) -> None:
-        """Return when the page has drawn what the lab has sent by now."""
-        self.page.wait_for_timeout(100)
+        """Return when the page has drawn the lab as it is now."""
+        self.ask()
+        feed = self.view
+        assert isinstance(feed, LabFeed)
+        shown = feed._last
+        wait_for(lambda: feed._last is not shown and isinstance(feed._last, PageSnapshot))
+        self.ask()  # in the frame after that it has been sent
+        self.answer()
         self.page.evaluate(THREE_FRAMES)
+
+    def answer(self) -> None:
+        """Return when the page has dealt with what was sent, and the lab heard what it told."""
+        question = uuid4().hex
+        message = wire.LocalStorageGetItemRequestMessage("", question)
+        self.client._websock_connection.queue_message(message)
+        wait_for(lambda: question in self._answered)
+        self.ask()
 
     def is_built(self) -> bool:
         """Whether the page is that of the current robot, and is not about to be rebuilt."""

@@ -52,9 +52,10 @@ class Hands:
         (what.tap if self._touch else what.click)()
 
     @contextmanager
-    def dragging(self, *way: Place) -> Iterator[None]:
+    def dragging(self, *way: Place, in_scene: bool = True) -> Iterator[None]:
         """Take something at the first place and move it through the others; let go on exit."""
-        with (self.tab.touching if self._touch else self.tab.dragging)(*way):
+        drag = self.tab.touching if self._touch else self.tab.dragging
+        with drag(*way, in_scene=in_scene):
             yield
 
     @contextmanager
@@ -147,7 +148,7 @@ class Slide:
         bar, grip = hands.box(handle.locator("xpath=..")), hands.box(handle)
         start = grip["x"] + grip["width"] / 2, grip["y"] + grip["height"] / 2
         shift = (self.value - now) / (high - low) * bar["width"]
-        with hands.dragging(start, (start[0] + shift, start[1])):
+        with hands.dragging(start, (start[0] + shift, start[1]), in_scene=False):
             pass
         wait_for(lambda: hands.has(self.label, self.value, self.near))
 

@@ -181,6 +181,7 @@ def held_at(degrees: float, law: str = FOLLOWER, **gains: Any) -> Driven:
     return Driven(law, speed=FAST, **gains).run(begin).hold().run(begin + LENGTH)
 
 
+@cache
 def most_and_rest(degrees: float, law: str = FOLLOWER, **gains: Any) -> tuple[float, float]:
     """Largest distance during the hold, and distance at its end, [mm]."""
     distance = held_at(degrees, law, **gains).distance[-round(1e3 * LENGTH) :]

@@ -97,11 +97,6 @@ class Student:
             for message in unpacked(raw):
                 self._take(message)
 
-    def stay(self, seconds: float) -> None:
-        """Read messages for a while."""
-        end = time.monotonic() + seconds
-        self.read(lambda: time.monotonic() > end)
-
     def wait_until_closed(self) -> None:
         """Wait until the server has closed the connection."""
         try:

@@ -8,8 +8,10 @@ import subprocess
 import sys
 import threading
 from contextlib import suppress
+from functools import cached_property
 from pathlib import Path
 
+from onpath.app.storage.records import Records
 from tests.support import waiting
 from tests.support.checkout import ROOT
 
@@ -44,6 +46,23 @@ class Supervisor:
         except AssertionError:
             raise AssertionError(self.said) from None
         return found()
+
+    @cached_property
+    def records(self) -> Records:
+        """What it keeps; to be read once it is ready."""
+        return Records(self.database)
+
+    def has_kept(self, code: str, *words: str) -> bool:
+        """Whether all of this stands in the stored state of a lab."""
+        state = str(self.records.load(code))
+        return all(word in state for word in words)
+
+    def end(self) -> None:
+        """Kill it, which ends its workers as well."""
+        self.process.kill()
+        self.process.wait()
+        if "records" in vars(self):
+            self.records.close()
 
     def workers(self) -> list[int]:
         """Process ids of the running workers."""

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -76,29 +77,34 @@ def processes_of(folder: Path) -> list[str]:
     return found
 
 
+def has_browsers(folder: Path) -> bool:
+    """Whether a bench that was told of that folder simulates browsers by now."""
+    return any("onpath.app.bench.simulated_browser" in each for each in processes_of(folder))
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
-def test_a_bench_that_is_stopped_takes_its_server_along(
-    tmp_path: Path, how: signal.Signals
-) -> None:
+def test_a_bench_that_is_stopped_takes_its_server_along(tmp_path: Path) -> None:
+    """Both at once: each waits until its server is at rest before its browsers come."""
     command = [sys.executable, "-m", "onpath", "bench", "--clients", "2", "--seconds", "60"]
-    environment = {**os.environ, "TMPDIR": str(tmp_path)}
     pipe = subprocess.PIPE
-    with subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe) as process:
-        simulated = "onpath.app.bench.simulated_browser"
-        wait_for(
-            lambda: (
-                process.poll() is not None
-                or any(simulated in each for each in processes_of(tmp_path))
-            ),
-            60.0,
-        )
-        assert process.poll() is None
-        assert any("serve" in each for each in processes_of(tmp_path))
-        process.send_signal(how)
-        _, said = process.communicate(timeout=30.0)
-    assert process.returncode == 130 and said == b""
-    assert not processes_of(tmp_path) and not list(tmp_path.iterdir())
+    with ExitStack() as started:
+        benches: dict[signal.Signals, tuple[Path, subprocess.Popen[bytes]]] = {}
+        for how in (signal.SIGINT, signal.SIGTERM):
+            folder = tmp_path / how.name
+            folder.mkdir()
+            environment = {**os.environ, "TMPDIR": str(folder)}
+            bench = subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe)
+            benches[how] = folder, started.enter_context(bench)
+            started.callback(bench.kill)
+        for how, (folder, bench) in benches.items():
+            wait_for(lambda b=bench, f=folder: b.poll() is not None or has_browsers(f), 120.0)
+            assert bench.poll() is None
+            assert any("serve" in each for each in processes_of(folder))
+            bench.send_signal(how)
+        for folder, bench in benches.values():
+            _, said = bench.communicate(timeout=60.0)
+            assert bench.returncode == 130 and said == b""
+            assert not processes_of(folder) and not list(folder.iterdir())
 
 
 def test_a_server_that_ends_says_why(tmp_path: Path) -> None:

@@ -69,9 +69,9 @@ def test_all_files_are_the_same_to_the_byte(
     for folder in ("first", "second"):
         (tmp_path / folder).mkdir()
         files = [tmp_path / folder / f"out.{kind}" for kind in ("csv", "png", "svg", "pdf")]
-        for file in files:
-            option = "--csv" if file.suffix == ".csv" else "--plot"
-            assert run_command([*SHORT, "--json", option, str(file)]) == 0
+        table, *plots = map(str, files)
+        for options in (["--csv", table, "--plot", plots[0]], *(["--plot", f] for f in plots[1:])):
+            assert run_command([*SHORT, "--json", *options]) == 0
         written.append([file.read_bytes() for file in files])
         written[-1].append(capsys.readouterr().out.encode())
         assert sorted((tmp_path / folder).iterdir()) == sorted(files)  # no scratch files

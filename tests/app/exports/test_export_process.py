@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -75,10 +74,10 @@ def test_a_killed_process_fails_one_call(process: ExportProcess, tmp_path: Path)
     assert process.call(LONG, os.getpid) != pid
 
 
-def test_what_takes_too_long_is_given_up(process: ExportProcess) -> None:
+def test_what_takes_too_long_is_given_up(process: ExportProcess, tmp_path: Path) -> None:
     process.call(LONG, abs, -1)  # it has been started
     with pytest.raises(ExportError, match="after its time"):
-        process.call(0.1, time.sleep, LONG)
+        process.call(0.1, sleep_after_touching, tmp_path / "begun", LONG)
     with pytest.raises(ExportError, match="before its turn"):
         process.call(0.0, abs, -1)
     assert process.call(LONG, abs, -1) == 1
@@ -105,17 +104,16 @@ def test_an_idle_process_is_ended_and_started_again() -> None:
         wait_for(lambda: process.pid is None, LONG)
 
 
-def test_stopping_ends_the_call_that_is_under_way() -> None:
-    process, failed = ExportProcess(), threading.Event()
-    process.call(LONG, abs, -1)
+def test_stopping_ends_the_call_that_is_under_way(tmp_path: Path) -> None:
+    process, failed, begun = ExportProcess(), threading.Event(), tmp_path / "begun"
 
     def call() -> None:
         with pytest.raises(ExportError):
-            process.call(LONG, time.sleep, LONG)
+            process.call(LONG, sleep_after_touching, begun, LONG)
         failed.set()
 
     thread = threading.Thread(target=call)
     thread.start()
-    wait_for(process._calls.locked, LONG)
+    wait_for(begun.exists, LONG)
     process.stop()
     assert failed.wait(LONG) and process.pid is None

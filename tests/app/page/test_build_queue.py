@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import ExitStack
+from itertools import count
+from types import SimpleNamespace
 
 import pytest
 
@@ -13,22 +14,29 @@ from onpath.app.exports import exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.build_queue import FEW
+from onpath.app.page import build_queue
+from onpath.app.page.build_queue import FEW, MOST_REST
 from onpath.app.page.page import Page
 from onpath.app.server.lab_server import LabServer
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
 CROWD = 6
-LONG = 0.2  # [s] that a page takes at least
 MOMENT = "Many people are"
 
 
 class Builds:
-    """What is built, and how many at a time."""
+    """What is built, how many at a time, and what happens in between.
+
+    Attributes:
+        may_begin: until it is set, the first page is under construction.
+        rests: pauses of the queue, in seconds of a clock that goes on by one at each look.
+    """
 
     def __init__(self) -> None:
         self.done, self.most, self._now = 0, 0, 0
+        self.may_begin = threading.Event()
+        self.rests: list[float] = []
 
     def watch(self, monkeypatch: pytest.MonkeyPatch) -> None:
         genuine = Page._build
@@ -36,12 +44,14 @@ class Builds:
         def build(view: Page, first: PageSnapshot) -> None:
             self._now += 1
             self.most = max(self.most, self._now)
-            time.sleep(LONG)
+            assert self.may_begin.wait(60)
             genuine(view, first)
             self._now -= 1
             self.done += 1
 
         monkeypatch.setattr(Page, "_build", build)
+        clock = SimpleNamespace(monotonic=count().__next__, sleep=self.rests.append)
+        monkeypatch.setattr(build_queue, "time", clock)
 
 
 @pytest.fixture
@@ -58,6 +68,10 @@ def builds(monkeypatch: pytest.MonkeyPatch) -> Builds:
     return builds
 
 
+def wait_for_clients(server: LabServer, count: int) -> None:
+    wait_for(lambda: len(server.server.get_clients()) == count, 60)
+
+
 def wait_for_views(server: LabServer, count: int) -> None:
     wait_for(lambda: len(server._views) == count, 60)
 
@@ -68,13 +82,11 @@ class Comer(threading.Thread):
     def __init__(self, address: str, patient: bool = True) -> None:
         super().__init__(daemon=True)
         self.student, self._patient = Student(address), patient
-        self.told, self.after = False, 0.0
+        self.told = False
 
     def run(self) -> None:
-        begun = time.monotonic()
         self.student.open()
         self.student.read(self._inside if self._patient else lambda: self._inside() or self.told)
-        self.after = time.monotonic() - begun
         if not self._patient:
             self.student.__exit__()
 
@@ -92,14 +104,15 @@ def test_pages_are_built_one_at_a_time_and_who_waits_is_told(
         for comer in crowd:
             stay.enter_context(comer.student)
             comer.start()
+        wait_for(lambda: sum(comer.told for comer in crowd) == CROWD - FEW, 60)
+        builds.may_begin.set()
         for comer in crowd:
             comer.join(60)
         wait_for_views(server, CROWD)
         assert builds.done == CROWD and builds.most == 1
-        after = sorted(comer.after for comer in crowd)
-        assert sum(comer.told for comer in crowd) >= CROWD - FEW - 1
         assert not any(comer.student.sees(MOMENT) for comer in crowd)
-        assert after[-1] - after[0] > 2 * (CROWD - 2) * LONG  # with a rest after each
+        wait_for(lambda: len(builds.rests) == CROWD, 60)  # after each page
+        assert set(builds.rests) == {MOST_REST}
         for lab in server.simulation.labs:  # a teacher opens a lesson for all
             lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
         wait_for(lambda: builds.done >= 2 * CROWD, 60)
@@ -111,6 +124,7 @@ def test_a_file_that_is_being_made_does_not_delay_the_page(
 ) -> None:
     begun, over = threading.Event(), threading.Event()
     monkeypatch.setattr(exporter.process, "call", lambda *_: (begun.set(), over.wait(), b"")[2])
+    builds.may_begin.set()
     comer = Comer(f"ws://127.0.0.1:{server.server.get_port()}")
     with comer.student:
         comer.run()
@@ -126,9 +140,11 @@ def test_a_file_that_is_being_made_does_not_delay_the_page(
 def test_who_leaves_while_waiting_is_built_nothing(server: LabServer, builds: Builds) -> None:
     address = f"ws://127.0.0.1:{server.server.get_port()}"
     crowd = [Comer(address, patient=number < FEW + 1) for number in range(CROWD)]
-    for comer in crowd:
+    for number, comer in enumerate(crowd):
         comer.start()
-        time.sleep(0.05)
+        wait_for_clients(server, number + 1) if number <= FEW else comer.join(60)
+    wait_for_clients(server, FEW + 1)
+    builds.may_begin.set()
     for comer in crowd:
         comer.join(60)
     inside = [comer for comer in crowd if comer.student.moving]

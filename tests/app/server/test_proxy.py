@@ -97,7 +97,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     yield Site(port, supervisor)
     nginx.terminate()
     nginx.wait()
-    supervisor.process.kill()  # its workers end as well
+    supervisor.end()
     wait_for(lambda: not (_answers(first) or _answers(second)), 60.0)
 
 
@@ -154,7 +154,8 @@ def test_a_student_whose_worker_is_killed_goes_on_with_another(site: Site) -> No
         student.set("B", "B")
         student.set("Commit to this prediction: B", True)
         student.read(lambda: student.has_widget("Next") and not student.has_widget("Commit"))
-        student.stay(4.0)  # what may be lost is within 5 s
+        kept = ("'answers': {'1'", "'K2': 44.0", "'clover'")
+        student.read(lambda: site.supervisor.has_kept(student.code, *kept))
         serving, code = worker_of(site, student), student.code
         os.kill(serving, signal.SIGKILL)
         student.wait_until_closed()

@@ -17,6 +17,7 @@ from onpath.app.server import tab_visibility as onlooker
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.tab_visibility import PATIENCE, QUESTION_INTERVAL, TICK, TabVisibility
 from onpath.app.simulation.simulation_thread import ScheduledLab
+from tests.support.frame_clock import FrameClock
 from tests.support.lab import new_lab
 from tests.support.student import Student
 
@@ -129,10 +130,10 @@ class Tab(Student):
         self.hidden = False
         self._socket.send(answer(self.asked) or b"")
 
-    def rate(self, seconds: float) -> float:
-        """What comes, [B/s]."""
+    def rate(self, clock: FrameClock, seconds: float) -> float:
+        """What comes, [B/s], in as many frames of the lab as should pass in these seconds."""
         before = self.received
-        self.stay(seconds)
+        self.read(clock.alarm(seconds))
         return (self.received - before) / seconds
 
 
@@ -158,13 +159,14 @@ def tab(server: LabServer) -> Iterator[Tab]:
 
 
 def test_a_hidden_tab_gets_nothing_and_then_the_present_whole(server: LabServer, tab: Tab) -> None:
-    (scheduled,) = server.simulation.labs
-    visible = tab.rate(2 * GONE)
+    (scheduled,), clock = server.simulation.labs, FrameClock(server.simulation)
+    visible = tab.rate(clock, 2 * GONE)
     assert scheduled.view is not None
     tab.hidden = True
-    tab.rate(GONE)
+    tab.read(lambda: scheduled.view is None)
+    tab.rate(clock, 0.5)  # what was on its way
     simulated, moving = scheduled.session.time, tab.moving
-    hidden = tab.rate(2.0)
+    hidden = tab.rate(clock, 2.0)
     assert hidden * SOON["QUESTION_INTERVAL"] / QUESTION_INTERVAL < min(HIDDEN, 0.01 * visible)
     assert scheduled.session.time == simulated and tab.moving == moving
     scheduled.lab.post(c.ChoosePath("clover"))  # a teacher does, say
@@ -174,11 +176,11 @@ def test_a_hidden_tab_gets_nothing_and_then_the_present_whole(server: LabServer,
 
 
 def test_a_paused_lab_sends_nothing(server: LabServer, tab: Tab) -> None:
-    (scheduled,) = server.simulation.labs
-    running = tab.rate(2.0)
+    (scheduled,), clock = server.simulation.labs, FrameClock(server.simulation)
+    running = tab.rate(clock, 2.0)
     scheduled.lab.post(c.SetRunning(False))
-    tab.rate(GONE)
-    paused = tab.rate(2.0)
+    tab.rate(clock, GONE)
+    paused = tab.rate(clock, 2.0)
     assert paused < min(PAUSED, 0.05 * running)
     before = tab.moving
     tab.set("Step", "Step")

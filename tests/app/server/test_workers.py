@@ -7,7 +7,6 @@ import signal
 import socket
 import sys
 import threading
-import time
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,6 +17,7 @@ import viser
 from onpath.app.cli.main import run_command
 from onpath.app.server.workers import Worker, shares
 from onpath.app.viser_adapter import secure_server as hardening
+from onpath.app.viser_adapter.request_filter import RequestFilter
 from onpath.app.viser_adapter.sockets import PortInUse, listen, reserve
 from tests.support.student import Student
 from tests.support.supervisor import Supervisor
@@ -30,8 +30,7 @@ linux_only = pytest.mark.skipif(sys.platform != "linux", reason="tried on Linux 
 def supervisor(tmp_path: Path) -> Iterator[Supervisor]:
     made = Supervisor(tmp_path, "--workers", "2", "--port", "0")
     yield made
-    made.process.kill()
-    made.process.wait()
+    made.end()
 
 
 @linux_only
@@ -43,7 +42,7 @@ def test_a_lab_survives_its_worker_on_a_shared_port(supervisor: Supervisor) -> N
         student.open()
         student.set("K2", 44.0)
         student.set("Path", "clover")
-        student.stay(3.5)  # what may be lost is within 5 s
+        student.read(lambda: supervisor.has_kept(student.code, "'K2': 44.0", "'clover'"))
         (serving,) = [worker for worker in before if supervisor.sockets(worker)]
         os.kill(serving, signal.SIGKILL)
         code = student.code
@@ -104,13 +103,18 @@ def test_who_comes_while_a_server_starts_waits_and_is_let_in(
         with urllib.request.urlopen(f"http://127.0.0.1:{port}/health", timeout=9) as reply:
             page.append(reply.status)
 
+    async def let_wait(requests: RequestFilter) -> None:
+        assert not requests.open
+        waits.set()
+        await opened(requests)
+
     def slow(server: viser.ViserServer, *, limits: hardening.Limits) -> None:
         asking.start()
-        time.sleep(0.5)
-        assert not page
+        assert waits.wait(9) and not page
         genuine(server, limits=limits)
 
-    asking = threading.Thread(target=ask)
+    asking, waits, opened = threading.Thread(target=ask), threading.Event(), hardening._opened
+    monkeypatch.setattr(hardening, "_opened", let_wait)
     monkeypatch.setattr(hardening, "harden", slow)
     server = hardening.make_server(port=port)
     asking.join(9)

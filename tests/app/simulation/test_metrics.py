@@ -7,21 +7,25 @@ import os
 import time
 import urllib.request
 from functools import partial
+from types import SimpleNamespace
 
 import msgspec
 import pytest
 
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.simulation import metrics
 from onpath.app.simulation.metrics import LONGEST, Metrics, measure_metrics, metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
 from tests.support.waiting import wait_for
 
 
 @pytest.fixture
-def thread() -> SimulationThread:
-    """A minute of frames, those of the last ten seconds 5 ms late and one of them 80 ms."""
-    made, now = SimulationThread(), time.perf_counter()
+def thread(monkeypatch: pytest.MonkeyPatch) -> SimulationThread:
+    """A minute of frames until now, those of the last ten seconds 5 ms late and one of them 80."""
+    made, now = SimulationThread(), 1000.0
+    clock = SimpleNamespace(perf_counter=lambda: now, process_time=time.process_time)
+    monkeypatch.setattr(metrics, "time", clock)
     for i in range(3600):
         ago = 60.0 - i / 60
         made.frames.append((now - ago, 0.08 if i == 3400 else 0.005 if ago < 10.5 else 0.0))
@@ -31,7 +35,7 @@ def thread() -> SimulationThread:
 def test_metrics_are_those_of_the_window(thread: SimulationThread) -> None:
     lately, long = measure_metrics(thread, 9.0), measure_metrics(thread, LONGEST)
     assert lately.late_ms == (5.0, 5.0, 5.0) and max(long.late_ms) == 5.0 > min(long.late_ms)
-    thread.frames.extend([(time.perf_counter(), 0.08)] * 20)
+    thread.frames.extend([(thread.frames[-1][0], 0.08)] * 20)
     assert [lately.overdue, long.overdue] == pytest.approx([1 / 540, 1 / 3600], rel=0.02)
     after = measure_metrics(thread, 9.0)
     assert after.late_ms[2] == 80.0 and after.overdue == pytest.approx(21 / 560, rel=0.02)

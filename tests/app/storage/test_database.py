@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -28,7 +28,7 @@ from onpath.app.lab.setup import capture, from_data, restore, to_data
 from onpath.app.storage import records as database
 from onpath.app.storage.records import LARGEST, NotKept, Records, default_file, file_url
 from onpath.app.storage.schema import labs, metadata
-from onpath.app.storage.write_behind import WriteBehind
+from onpath.app.storage.write_behind import BREATH, WriteBehind
 from tests.support import waiting
 from tests.support.checkout import ROOT
 from tests.support.lab import new_lab
@@ -513,15 +513,33 @@ def test_only_the_latest_state_is_written_and_the_rest_on_close() -> None:
     assert sorted(store.saved[1:]) == [("a", 999), ("b", -999)]
 
 
+class Pauses(threading.Event):
+    """Time that a keeper lets pass before each save, [s], without letting it pass.
+
+    Attributes:
+        before_save: by the number of the save.
+    """
+
+    def __init__(self, store: Memory) -> None:
+        super().__init__()
+        self.before_save: defaultdict[int, float] = defaultdict(float)
+        self._store = store
+
+    def wait(self, timeout: float | None = None) -> bool:
+        self.before_save[len(self._store.saved)] += timeout or 0.0
+        return self.is_set()
+
+
 def test_states_are_written_every_few_seconds() -> None:
-    store, interval, n = Memory(), 0.05, 0
-    keeper = WriteBehind(store, interval)
-    begun = time.monotonic()
+    store, n = Memory(), 0
+    keeper = WriteBehind(store, interval=2.0)
+    pauses = Pauses(store)
+    keeper._closing = pauses
     while len(store.saved) < 5:
         keeper.submit("a", number(n))
         n += 1
-    assert time.monotonic() - begun >= 4 * interval
     keeper.close()
+    assert [pauses.before_save[k] for k in range(1, 5)] == pytest.approx([2.0 + BREATH] * 4)
     assert store.saved[-1] == ("a", n - 1)
     assert [value for _, value in store.saved] == sorted({value for _, value in store.saved})
 

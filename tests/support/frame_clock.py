@@ -1,0 +1,29 @@
+"""Time by the frames of a simulation thread, for what does not happen: there is no event to await.
+
+On a busy machine frames come later, and so does all that a lab does; seconds would not wait for it.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from itertools import takewhile
+
+from onpath.app.simulation.simulation_thread import FRAME, SimulationThread
+
+
+class FrameClock:
+    """Of one simulation thread."""
+
+    def __init__(self, thread: SimulationThread) -> None:
+        self._thread = thread
+
+    def alarm(self, seconds: float) -> Callable[[], bool]:
+        """Tells whether the frames of so many seconds have passed; at most a minute."""
+        begun, wanted = time.perf_counter(), round(seconds / FRAME)
+
+        def passed() -> bool:
+            latest = reversed(self._thread.frames.copy())
+            return sum(1 for _ in takewhile(lambda frame: frame[0] > begun, latest)) >= wanted
+
+        return passed
