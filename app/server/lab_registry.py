@@ -170,7 +170,7 @@ class LabRegistry:
                 log.warning("what was kept cannot be read: %s", error)
                 raise NotKept("what was kept of this lab cannot be read") from None
         if (keeper := self.keeper) is not None:
-            lab.watch = StateObserver(lambda make: keeper.submit(code, make), lab)
+            lab.watch = StateObserver(code, keeper, lab)
         return RegisteredLab(code, ScheduledLab(lab))
 
     def _give(self, client: int, entry: RegisteredLab) -> RegisteredLab:

@@ -165,7 +165,7 @@ class LabServer:
         reopen, enter = partial(self._reopen, client, entry), partial(self._enter, client)
         seat = service.seat(client, code, reopen) if service else None
         teaching = service.teaching(client, lab, reopen) if service else None
-        post, keeps = lab.post, self._records is not None
+        post, keeps = lab.post, self._records is not None and not self._records.warning
         desk = PageContext(code, post, self._course, keeps, enter, seat)
         nickname = partial(service.nickname, code) if service else str
         first = take_page_snapshot(lab, 1.0, nickname=nickname())

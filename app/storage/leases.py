@@ -49,6 +49,16 @@ class Leases:
         self._owner = owner or records.owner
         self._rounds: Periodic | None = None
 
+    @property
+    def warning(self) -> str:
+        """See `Records.warning`."""
+        return self._records.warning
+
+    @property
+    def generation(self) -> int:
+        """See `Records.generation`."""
+        return self._records.generation
+
     def save(self, code: str, state: dict[str, Any]) -> None:
         """See `Records.save`. Raises HeldElsewhere if another owner has the lab."""
         self._records.save(code, state, self._owner)

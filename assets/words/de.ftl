@@ -129,6 +129,9 @@ keep-paste = Geteilter Code
 keep-paste_hint = Füge einen Code ein, den dir jemand geschickt hat
 keep-use = Das Labor so aufbauen
 keep-report = Meine Lektionen als Bericht (HTML)
+keep-failed = Dein Labor kann gerade nicht gespeichert werden. Du kannst weitermachen: lass diese Seite offen, bis sie sagt, dass es wieder gespeichert ist.
+keep-again = Dein Labor ist wieder gespeichert.
+keep-anew = Die Datei, in der Labore gespeichert werden, wurde gelöscht oder ersetzt. Dein Labor wird in einer neuen gespeichert.
 
 ## Die Klasse
 

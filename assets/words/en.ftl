@@ -131,6 +131,9 @@ keep-paste = Share code
 keep-paste_hint = Paste a code that somebody sent you
 keep-use = Set up the lab from it
 keep-report = Record of my lessons (HTML)
+keep-failed = Your lab cannot be saved at the moment. You can go on: keep this page open until it says that the lab is saved again.
+keep-again = Your lab is saved again.
+keep-anew = The file in which labs are saved was deleted or replaced. Your lab is being saved in a new one.
 
 ## The class
 
