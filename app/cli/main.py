@@ -103,13 +103,14 @@ class Forget:
     """Delete every lab that is kept. There is no way back."""
 
     database: str | None = None
-    """URL of the database; the file in your data folder if not given."""
+    """URL of the database, also as ONPATH_DATABASE; the file in your data folder if not given."""
 
     def run(self) -> None:
         """Delete, and say how much."""
         from onpath.app.storage.forget import forget
+        from onpath.app.storage.given_url import given_url
 
-        gone = forget(self.database)
+        gone = forget(given_url(self.database))
         print(f"deleted: {gone.labs} labs, {len(gone.files)} files moved aside as broken")
 
 

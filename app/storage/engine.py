@@ -116,14 +116,33 @@ def identity(file: Path | None) -> Identity | None:
     return None if found is None else (found.st_dev, found.st_ino)
 
 
+def journals_of(file: Path | None) -> dict[Path, Identity | None]:
+    """The journals of a database that is open, and which files they are."""
+    parts = [] if file is None else [file.with_name(file.name + tail) for tail in JOURNALS]
+    return {part: identity(part) for part in parts}
+
+
+def discard_journals(file: Path, journals: dict[Path, Identity | None]) -> None:
+    """Delete the journals of a database that has been deleted or replaced.
+
+    SQLite would apply them to the file that stands under its name now. Those that another process
+    has begun for that file stay.
+
+    Args:
+        journals: as `journals_of` found them; the database is still open.
+    """
+    with _locked(file.with_name(f"{file.name}.lock")):
+        for part, known in journals.items():
+            if known is not None and identity(part) == known:
+                part.unlink()
+
+
 def words(error: Exception) -> str:
     """The driver's message, without the statement and its values."""
     return str(getattr(error, "orig", None) or type(error).__name__).strip().splitlines()[0]
 
 
-def _move_aside(
-    file: Path, broken: Identity | None, why: str, clock: Callable[[], float]
-) -> None:
+def _move_aside(file: Path, broken: Identity | None, why: str, clock: Callable[[], float]) -> None:
     with _locked(file.with_name(f"{file.name}.lock")):
         if identity(file) == broken:  # no other process has replaced it
             _rename(file, why, clock)

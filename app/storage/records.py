@@ -25,8 +25,10 @@ from onpath.app.storage.engine import (
     VERSION,
     Identity,
     NotKept,
+    discard_journals,
     file_of,
     identity,
+    journals_of,
     opened_file,
     opened_memory,
     opened_server,
@@ -96,6 +98,7 @@ class Records:
         self._file = file_of(self._url)
         self._identity: Identity | None = None
         self._engine = self._opened()
+        self._journals = journals_of(self._file)
 
     def load(self, code: str) -> dict[str, Any] | None:
         """The state of a lab; None if there is none.
@@ -183,9 +186,9 @@ class Records:
         try:
             self._reopen_if_replaced(until)
             left = max(until - time.monotonic(), 0.0)
-            with self._engine.connect().execution_options(patience=left) as connection:
-                with connection.begin():
-                    yield connection
+            connection = self._engine.connect().execution_options(patience=left)
+            with connection, connection.begin():
+                yield connection
         except exc.IntegrityError:
             raise
         except (exc.SQLAlchemyError, UnicodeDecodeError) as error:
@@ -201,14 +204,17 @@ class Records:
         """
         if self._file is None or self.warning or identity(self._file) == self._identity:
             return
-        self._engine.dispose()
         try:
+            if self._file.parent.exists():
+                discard_journals(self._file, self._journals)
+            self._engine.dispose()
             left = max(until - time.monotonic(), 0.0)
             self._engine, self._identity = opened_file(self._url, self._clock, left)
         except NotKept:
             raise
         except OSError as error:
             raise NotKept(error.strerror or str(error)) from error
+        self._journals = journals_of(self._file)
         self.generation += 1
         log.warning("%s was deleted or replaced: labs in use are kept anew in it", self._file)
 
