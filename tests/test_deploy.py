@@ -12,6 +12,7 @@ import yaml
 from sqlalchemy import make_url
 
 from onpath.app.cli.serve import Serve
+from onpath.app.storage.given_url import DATABASE
 from onpath.app.viser_adapter.connection_limits import Proxies
 from onpath.app.viser_adapter.request_filter import HEALTH
 from tests.support.checkout import ROOT
@@ -64,7 +65,8 @@ def test_the_pod_starts_what_there_is_and_may_do_little(
 ) -> None:
     assert {word for word in container["args"] if word.startswith("--")} <= options()
     (variable,) = container["env"]
-    assert f"$({variable['name']})" in container["args"] and "secretKeyRef" in variable["valueFrom"]
+    assert variable["name"] == DATABASE and "secretKeyRef" in variable["valueFrom"]
+    assert not any("--database" in word or "$(" in word for word in container["args"])
     for probe in ("startupProbe", "readinessProbe", "livenessProbe"):
         assert container[probe]["httpGet"]["path"] == HEALTH
     pod = manifest["Deployment"]["spec"]["template"]["spec"]
@@ -115,7 +117,7 @@ def test_the_commands_of_the_administrators_page_exist() -> None:
     text = (DEPLOY / "README.md").read_text()
     commands = re.findall(r"onpath((?: --[a-z-]+(?: [\w./:]+)?)+)", text)
     assert commands and {word for c in commands for word in re.findall("--[a-z-]+", c)} <= options()
-    (url,) = re.findall(r"--database (postgresql\S+?)`", text)
+    (url,) = re.findall(r"ONPATH_DATABASE=(postgresql\S+?)`", text)
     assert make_url(url).get_backend_name() == "postgresql"
     for name in re.findall(r"\]\(([\w.]+)\)", text):
         assert (DEPLOY / name).is_file()

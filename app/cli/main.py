@@ -103,13 +103,14 @@ class Forget:
     """Delete all stored labs. This cannot be undone."""
 
     database: str | None = None
-    """URL of the database; by default the file in your data folder."""
+    """URL of the database, also as ONPATH_DATABASE; the file in your data folder if not given."""
 
     def run(self) -> None:
         """Delete the labs, and print their number."""
         from onpath.app.storage.forget import forget
+        from onpath.app.storage.given_url import given_url
 
-        gone = forget(self.database)
+        gone = forget(given_url(self.database))
         print(f"deleted: {gone.labs} labs, {len(gone.files)} files moved aside as broken")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -29,7 +29,12 @@ class Serve:
     lessons: Path | None = None
     """A folder with lessons of your own, shown after the built-in ones."""
     database: str | None = None
-    """URL of the database for the labs; by default a file in your data folder."""
+    """URL of the database for the labs; by default a file in your data folder. One with a password
+    is better given in the environment, ONPATH_DATABASE: other users see command lines."""
+    keep_days: int = 365
+    """After this number of days without use, a lab is deleted."""
+    most_labs: int = 100_000
+    """If the database holds more labs, the least recently used are deleted, but none in use."""
     classroom: bool = False
     """Open a class, and print a code for the students and a key for the teacher."""
     origin: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -52,9 +57,12 @@ class Serve:
         if self.most_clients < 1:
             raise ValueError(f"--most-clients {self.most_clients}: expected 1 or more")
         from onpath.app.server.workers import is_worker
+        from onpath.app.storage.expiry import Retention
+        from onpath.app.storage.given_url import given_url
 
+        retention, database = Retention(self.keep_days, self.most_labs), given_url(self.database)
         if self.workers != 1:
-            self._supervise()
+            replace(self, database=database)._supervise()
             return
         from onpath.app.server.handover import handover_socket
         from onpath.app.server.lab_server import serve
@@ -67,10 +75,11 @@ class Serve:
             self.host,
             self.port,
             self.lessons,
-            self.database,
+            database,
             open_browser=self.open,
             open_class=_opener(silent=worker) if self.classroom else None,
             most_clients=self.most_clients,
+            retention=retention,
             allowed_origins=self.origin,
             trusted_proxies=self.trusted_proxy,
             unix_socket=self.socket,

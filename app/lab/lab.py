@@ -66,6 +66,7 @@ class Lab:
         shared: the last share code made.
         frozen: whether the teacher has stopped this lab.
         asked: number of commands given by the user.
+        unsaved: whether the latest changes cannot be saved at present.
         watch: called in every frame, or None.
     """
 
@@ -79,6 +80,7 @@ class Lab:
         self.message, self.message_level = "", "info"
         self.shared = ""
         self.frozen, self.asked = False, 0
+        self.unsaved = False
         self.watch: Callable[[Lab], None] | None = None
 
     @property
@@ -171,6 +173,15 @@ class Lab:
             self.remark(self.words("say.present"))
 
     # Messages
+
+    @property
+    def notice(self) -> tuple[str, str]:
+        """What the page says, and its level: the message, and before it that nothing is saved."""
+        if not self.unsaved:
+            return self.message, self.message_level
+        is_error = bool(self.message) and self.message_level == "error"
+        said = f"{self.words('keep.failed')} {self.message}".strip()
+        return said, "error" if is_error else "warning"
 
     def show_message(self, message: str, level: str = "info") -> None:
         """Show a message to the user."""

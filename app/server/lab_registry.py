@@ -39,12 +39,14 @@ class RegisteredLab:
     Attributes:
         client: id of the client, or None.
         left: when the last client left, [s].
+        stands_in: whether its client came for another lab, which could not be opened then.
     """
 
     code: str
     scheduled: ScheduledLab
     client: int | None = None
     left: float = 0.0
+    stands_in: bool = False
 
 
 @dataclass(slots=True)
@@ -88,6 +90,7 @@ class LabRegistry:
             refusal = error
         entry = self._made(new_code())
         if refusal is not None:
+            entry.stands_in = True
             lab, said = entry.scheduled.lab, Message("say.lab_kept", {"reason": refusal.message})
             lab.show_message(lab.words.sentence(said), "warning")
         return self._give(client, entry)
@@ -110,13 +113,18 @@ class LabRegistry:
             return found
 
     def _in_turn(self, codes: list[str]) -> list[str]:
-        """Codes whose labs wait here, the most recently left first, then those not here."""
+        """Codes whose labs wait here, the most recently left first, then those not here.
+
+        Labs that stand in for others come last: the others may be opened by now.
+        """
         with self._lock:
             self._drop_old()
             here = {code: self._entries[code] for code in codes if code in self._entries}
         waiting = [entry for entry in here.values() if entry.client is None]
         waiting.sort(key=lambda entry: entry.left, reverse=True)
-        return [*(entry.code for entry in waiting), *(code for code in codes if code not in here)]
+        own = [entry.code for entry in waiting if not entry.stands_in]
+        stand_ins = [entry.code for entry in waiting if entry.stands_in]
+        return [*own, *(code for code in codes if code not in here), *stand_ins]
 
     def _open(self, client: int, code: str) -> RegisteredLab | None:
         """Give a lab to a client; None if there is no lab that it may have.
@@ -171,7 +179,7 @@ class LabRegistry:
                 log.warning("what was kept cannot be read: %s", error)
                 raise NotKept("error.lab_unreadable") from None
         if (keeper := self.keeper) is not None:
-            lab.watch = StateObserver(lambda make: keeper.submit(code, make), lab)
+            lab.watch = StateObserver(code, keeper, lab)
         return RegisteredLab(code, ScheduledLab(lab))
 
     def _give(self, client: int, entry: RegisteredLab) -> RegisteredLab:

@@ -35,6 +35,7 @@ from onpath.app.server.lazy_imports import warm_up
 from onpath.app.server.tab_visibility import TabVisibilities
 from onpath.app.simulation.metrics import metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
+from onpath.app.storage.expiry import Expiry, Retention
 from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import Records
 from onpath.app.storage.write_behind import WriteBehind
@@ -58,6 +59,7 @@ class LabServer:
         records: where labs are stored; None stores nothing.
         classroom: the class that students may join, or None.
         most_clients: maximum number at once; others wait. A teacher is always admitted.
+        retention: how long labs are kept, and how many; by default that of the command line.
         listening: further arguments of `make_server`.
 
     Raises:
@@ -73,6 +75,7 @@ class LabServer:
         records: Records | None = None,
         classroom: Classroom | None = None,
         most_clients: int = MOST_CLIENTS,
+        retention: Retention | None = None,
         **listening: Any,
     ) -> None:
         self._store = store
@@ -84,6 +87,7 @@ class LabServer:
         self._records = records
         self._leases = Leases(records) if records else None
         self._keeper = WriteBehind(self._leases) if self._leases else None
+        self._expiry = Expiry(records, retention or Retention()) if records else None
         self.sessions = LabRegistry(self.simulation, lambda: Lab(store, FIVE_BAR, lessons))
         if records is not None:
             self.sessions.load, self.sessions.keeper = records.load, self._keeper
@@ -99,6 +103,8 @@ class LabServer:
         self.simulation.start()
         if self._leases is not None:
             self._leases.keep(self.sessions.held, self._lost)
+        if self._expiry is not None:
+            self._expiry.start()
 
     @property
     def address(self) -> str:
@@ -118,6 +124,8 @@ class LabServer:
             view.page.close()
         exports.process.stop()
         self.server.stop()
+        if self._expiry is not None:
+            self._expiry.stop()
         if self._keeper is not None and self._records is not None:
             self._keeper.close()
             if self._leases is not None:
@@ -165,7 +173,7 @@ class LabServer:
         reopen, enter = partial(self._reopen, client, entry), partial(self._enter, client)
         seat = service.seat(client, code, reopen) if service else None
         teaching = service.teaching(client, lab, reopen) if service else None
-        post, keeps = lab.post, self._records is not None
+        post, keeps = lab.post, self._records is not None and not self._records.warning
         desk = PageContext(code, post, self._course, keeps, enter, seat)
         nickname = partial(service.nickname, code) if service else str
         first = take_page_snapshot(lab, 1.0, nickname=nickname())

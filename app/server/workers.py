@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Protocol
 
 from onpath.app.server.handover import CAN_HAND_OVER, CHANNEL, Reception
+from onpath.app.storage.given_url import DATABASE
 from onpath.app.viser_adapter.sockets import listen, reserve
 from onpath.assets import asset_path
 
@@ -44,6 +45,10 @@ class Options(Protocol):
     def lessons(self) -> Path | None: ...
     @property
     def database(self) -> str | None: ...
+    @property
+    def keep_days(self) -> int: ...
+    @property
+    def most_labs(self) -> int: ...
     @property
     def origin(self) -> tuple[str, ...]: ...
     @property
@@ -84,7 +89,7 @@ def supervise(options: Options, secrets: Mapping[str, str] | None = None) -> Non
         Worker(
             number + 1,
             _command(options, ports[number % places]),
-            dict(secrets or {}),
+            {**(secrets or {}), **_database(options)},
             cores,
             reception,
         )
@@ -224,10 +229,15 @@ def _command(options: Options, port: int) -> list[str]:
     command += ["--host", options.host, "--port", str(port), "--log-level", options.log_level]
     command += ["--most-clients", str(options.most_clients)]
     command += ["--lessons", str(options.lessons)] if options.lessons else []
-    command += ["--database", options.database] if options.database else []
+    command += ["--keep-days", str(options.keep_days), "--most-labs", str(options.most_labs)]
     command += ["--classroom"] if options.classroom else []
     command += [word for origin in options.origin for word in ("--origin", origin)]
     return command + [w for proxy in options.trusted_proxy for w in ("--trusted-proxy", proxy)]
+
+
+def _database(options: Options) -> dict[str, str]:
+    """The environment variable with the database's URL, if there is one."""
+    return {DATABASE: options.database} if options.database else {}
 
 
 def _announce(host: str, ports: list[int], workers: int) -> None:

@@ -18,13 +18,17 @@ from sqlalchemy import event, exc, pool
 
 from onpath.app.storage.migrations import HEAD, known_revisions, revision_of, upgrade
 from onpath.app.storage.migrations.first_tables import strange_table
+from onpath.app.storage.private_files import JOURNALS, make_private_file
 from onpath.app.storage.schema import meta
 from onpath.models.errors import Coded
 
 log = logging.getLogger(__name__)
 
 VERSION = 1  # of the tables and of what `state` holds
-PATIENCE = 10.0  # [s] to wait for a lock that another process holds
+PATIENCE = 10.0  # [s] to wait for a lock that another process holds, while opening
+TRANSACTION_WAIT = 2.0  # [s] the same for a transaction: somebody may be waiting for its end
+Identity = tuple[int, int]
+"""Device and inode: which file stands under a name."""
 _BROKEN = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 
 
@@ -69,22 +73,25 @@ def opened_memory() -> sa.Engine:
     return _prepared(parsed("sqlite://"))
 
 
-def opened_file(url: sa.URL, clock: Callable[[], float]) -> sa.Engine:
-    """The engine of an SQLite file, with the tables created or migrated.
+def opened_file(
+    url: sa.URL, clock: Callable[[], float], patience: float = PATIENCE
+) -> tuple[sa.Engine, Identity | None]:
+    """The engine of an SQLite file, with the tables created or migrated, and the file's identity.
 
     Args:
         clock: seconds since 1970; names a corrupt file that is moved aside.
+        patience: how long to wait for a lock that another process holds, [s].
 
     Raises:
         OSError: it cannot be used.
     """
-    file = Path(url.database) if url.database else None
-    if file is not None:
-        file.parent.mkdir(parents=True, exist_ok=True)
+    file = file_of(url)
     for _ in range(3):
-        before = _identity(file)
+        if file is not None:
+            make_private_file(file)
+        before = identity(file)
         try:
-            return _prepared(url)
+            return _prepared(url, patience), before
         except _Broken as error:
             if file is not None:
                 _move_aside(file, before, str(error), clock)
@@ -93,16 +100,52 @@ def opened_file(url: sa.URL, clock: Callable[[], float]) -> sa.Engine:
     raise NotKept("error.database_keeps_breaking")
 
 
+def file_of(url: sa.URL) -> Path | None:
+    """The file of a database; None if it is in memory, on a server, or named by a URI."""
+    name = url.database or ""
+    if url.get_backend_name() != "sqlite" or name in ("", ":memory:") or name.startswith("file:"):
+        return None
+    return Path(name)
+
+
+def identity(file: Path | None) -> Identity | None:
+    """Which file stands under this name now; None if there is none."""
+    try:
+        found = None if file is None else file.stat()
+    except OSError:
+        return None
+    return None if found is None else (found.st_dev, found.st_ino)
+
+
+def journals_of(file: Path | None) -> dict[Path, Identity | None]:
+    """The journals of a database that is open, and which files they are."""
+    parts = [] if file is None else [file.with_name(file.name + tail) for tail in JOURNALS]
+    return {part: identity(part) for part in parts}
+
+
+def discard_journals(file: Path, journals: dict[Path, Identity | None]) -> None:
+    """Delete the journals of a database that has been deleted or replaced.
+
+    SQLite would apply them to the file that stands under its name now. Those that another process
+    has begun for that file stay.
+
+    Args:
+        journals: as `journals_of` found them; the database is still open.
+    """
+    with _locked(file.with_name(f"{file.name}.lock")):
+        for part, known in journals.items():
+            if known is not None and identity(part) == known:
+                part.unlink()
+
+
 def words(error: Exception) -> str:
     """The driver's message, without the statement and its values."""
     return str(getattr(error, "orig", None) or type(error).__name__).strip().splitlines()[0]
 
 
-def _move_aside(
-    file: Path, broken: tuple[int, int] | None, why: str, clock: Callable[[], float]
-) -> None:
+def _move_aside(file: Path, broken: Identity | None, why: str, clock: Callable[[], float]) -> None:
     with _locked(file.with_name(f"{file.name}.lock")):
-        if _identity(file) == broken:  # no other process has replaced it
+        if identity(file) == broken:  # no other process has replaced it
             _rename(file, why, clock)
 
 
@@ -127,25 +170,21 @@ def _rename(file: Path, why: str, clock: Callable[[], float]) -> None:
     while aside.exists():
         count += 1
         aside = file.with_name(f"{file.name}.broken-{stamp}-{count}")
-    for tail in ("-wal", "-shm", ""):  # SQLite finds the journals by these names
+    for tail in (*JOURNALS, ""):  # SQLite finds the journals by these names
         part = file.with_name(file.name + tail)
         if part.exists():
             part.rename(aside.with_name(aside.name + tail))
     log.warning("%s is broken (%s): moved to %s, a fresh one is begun", file, why, aside.name)
 
 
-def _identity(file: Path | None) -> tuple[int, int] | None:
-    if file is None or not file.exists():
-        return None
-    found = file.stat()
-    return found.st_dev, found.st_ino
-
-
-def _engine(url: sa.URL) -> sa.Engine:
+def _engine(url: sa.URL, patience: float) -> sa.Engine:
     options: dict[str, Any] = {"pool_pre_ping": True}
     sqlite = url.get_backend_name() == "sqlite"
     if sqlite:
-        options = {"connect_args": {"timeout": PATIENCE, "check_same_thread": False}}
+        options = {
+            "connect_args": {"timeout": patience, "check_same_thread": False},
+            "execution_options": {"patience": patience},
+        }
         if not url.database:
             options["poolclass"] = pool.StaticPool
     try:
@@ -170,17 +209,19 @@ def _connected(connection: Any, _: Any) -> None:
 
 
 def _begun(connection: sa.Connection) -> None:
+    patience = connection.get_execution_options()["patience"]
+    connection.exec_driver_sql(f"PRAGMA busy_timeout = {1000 * patience:.0f}")
     connection.exec_driver_sql("BEGIN IMMEDIATE")
 
 
-def _prepared(url: sa.URL) -> sa.Engine:
+def _prepared(url: sa.URL, patience: float = PATIENCE) -> sa.Engine:
     """The engine of a database, with the tables created or migrated.
 
     Raises:
         _Broken: it is not a database, or is corrupt.
         NotKept: it belongs to another program or a newer version.
     """
-    engine = _engine(url)
+    engine = _engine(url, patience)
     try:
         with engine.begin() as connection:
             if engine.dialect.name == "sqlite":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 import msgspec
 
@@ -16,19 +16,35 @@ LabState = dict[str, Any]
 NEW = (Setup(), Progress(), None)
 
 
+class Keeper(Protocol):
+    """Saves states; see `WriteBehind`."""
+
+    @property
+    def generation(self) -> int: ...
+
+    def submit(self, code: str, make_state: Callable[[], LabState]) -> None:
+        """Save the state that a function returns; it is called in another thread."""
+        ...
+
+    def fails(self, code: str) -> bool:
+        """Whether the latest state of a lab could not be saved."""
+        ...
+
+
 class StateObserver:
     """Watches a lab, and submits its state when it has changed, at most once a second.
 
+    The user is told when the lab cannot be saved, and when it is saved again.
+
     Args:
-        submit: takes a function that builds the state; that function is called in another thread.
-        session: whose state is stored already; None: a new one.
+        code: session code of the lab.
+        lab: whose state is stored already; None: a new one.
     """
 
-    def __init__(
-        self, submit: Callable[[Callable[[], LabState]], None], lab: Lab | None = None
-    ) -> None:
-        self._submit = submit
+    def __init__(self, code: str, keeper: Keeper, lab: Lab | None = None) -> None:
+        self._code, self._keeper = code, keeper
         self._seen = NEW if lab is None else _now(lab)
+        self._generation = keeper.generation
         self._frames = 0
 
     def __call__(self, lab: Lab) -> None:
@@ -37,9 +53,17 @@ class StateObserver:
         if self._frames % SAVE_INTERVAL:
             return
         now = _now(lab)
+        if (generation := self._keeper.generation) != self._generation:
+            self._generation, self._seen = generation, NEW
+            if now != NEW:
+                lab.remark(lab.words("keep.anew"))
         if now != self._seen:
             self._seen = now
-            self._submit(lambda: _state(*now))
+            self._keeper.submit(self._code, lambda: _state(*now))
+        if (fails := self._keeper.fails(self._code)) != lab.unsaved:
+            lab.unsaved = fails
+            if not fails:
+                lab.remark(lab.words("keep.again"))
 
 
 def keep(lab: Lab, submit: Callable[[Callable[[], LabState]], None]) -> None:

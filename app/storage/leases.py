@@ -17,7 +17,7 @@ from sqlalchemy import exc
 
 from onpath.app.common.periodic import Periodic
 from onpath.app.storage.records import NotKept, Records
-from onpath.app.storage.schema import leases
+from onpath.app.storage.schema import labs, leases
 
 log = logging.getLogger(__name__)
 
@@ -49,6 +49,16 @@ class Leases:
         self._owner = owner or records.owner
         self._rounds: Periodic | None = None
 
+    @property
+    def warning(self) -> str:
+        """See `Records.warning`."""
+        return self._records.warning
+
+    @property
+    def generation(self) -> int:
+        """See `Records.generation`."""
+        return self._records.generation
+
     def save(self, code: str, state: dict[str, Any]) -> None:
         """See `Records.save`. Raises HeldElsewhere if another owner has the lab."""
         self._records.save(code, state, self._owner)
@@ -71,7 +81,7 @@ class Leases:
             return codes
 
     def claim(self, code: str) -> bool | None:
-        """Take a lab.
+        """Take a lab, which counts as its use; see `Retention`.
 
         Returns:
             None if another owner has it. Otherwise True if no other owner has had it since this one
@@ -144,11 +154,12 @@ class Leases:
         wanted = sa.select(leases.c.owner, leases.c.expires).where(leases.c.code == code)
         row = connection.execute(wanted.with_for_update()).first()
         now, mine = self._clock(), self._mine()
+        if row is not None and row.owner != self._owner and now < row.expires < now + NONSENSE:
+            return None
+        connection.execute(sa.update(labs).where(labs.c.code == code).values(updated=now))
         if row is None:
             connection.execute(sa.insert(leases).values(code=code, **mine))
             return True
-        if row.owner != self._owner and now < row.expires < now + NONSENSE:
-            return None
         connection.execute(sa.update(leases).where(leases.c.code == code).values(mine))
         return row.owner == self._owner
 

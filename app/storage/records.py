@@ -21,14 +21,21 @@ import sqlalchemy as sa
 from sqlalchemy import exc
 
 from onpath.app.storage.engine import (
+    TRANSACTION_WAIT,
     VERSION,
+    Identity,
     NotKept,
+    discard_journals,
+    file_of,
+    identity,
+    journals_of,
     opened_file,
     opened_memory,
     opened_server,
     parsed,
     words,
 )
+from onpath.app.storage.private_files import make_private_folder
 from onpath.app.storage.schema import LONGEST_CODE, labs, leases, meta, metadata
 
 log = logging.getLogger(__name__)
@@ -70,6 +77,8 @@ class Records:
     Attributes:
         owner: unique name of this process among those that share the database.
         warning: why states are lost when the process ends, in words; empty if they are not.
+        generation: how often the file was found deleted or replaced; what was saved before may be
+            gone.
 
     Raises:
         ValueError: the URL is malformed, or its driver is not installed.
@@ -83,8 +92,13 @@ class Records:
         self._clock, self.owner = clock, uuid4().hex
         self._lock = threading.Lock()
         self._url = parsed(url) if url else file_url(default_file())
-        self.warning = ""
+        if not url:
+            make_private_folder(default_file().parent)
+        self.warning, self.generation = "", 0
+        self._file = file_of(self._url)
+        self._identity: Identity | None = None
         self._engine = self._opened()
+        self._journals = journals_of(self._file)
 
     def load(self, code: str) -> dict[str, Any] | None:
         """The state of a lab; None if there is none.
@@ -159,24 +173,57 @@ class Records:
     def transaction(self) -> Iterator[sa.Connection]:
         """A transaction; serialised with all others in SQLite.
 
+        Whoever waits for others, in this process or another, waits `TRANSACTION_WAIT` at most.
+
         Raises:
             NotKept: the database cannot be used; nothing was changed.
             sqlalchemy.exc.IntegrityError: another process inserted the row first; nothing was
                 changed.
         """
+        until = time.monotonic() + TRANSACTION_WAIT
+        if not self._lock.acquire(timeout=TRANSACTION_WAIT):
+            raise NotKept("error.database_busy")
         try:
-            with self._lock, self._engine.begin() as connection:
+            self._reopen_if_replaced(until)
+            left = max(until - time.monotonic(), 0.0)
+            connection = self._engine.connect().execution_options(patience=left)
+            with connection, connection.begin():
                 yield connection
         except exc.IntegrityError:
             raise
         except (exc.SQLAlchemyError, UnicodeDecodeError) as error:
             raise NotKept("error.database", reason=words(error)) from error
+        finally:
+            self._lock.release()
+
+    def _reopen_if_replaced(self, until: float) -> None:
+        """Open the file anew if it has been deleted or replaced: the old one is nobody's any more.
+
+        Raises:
+            NotKept: it cannot be opened or created.
+        """
+        if self._file is None or self.warning or identity(self._file) == self._identity:
+            return
+        try:
+            if self._file.parent.exists():
+                discard_journals(self._file, self._journals)
+            self._engine.dispose()
+            left = max(until - time.monotonic(), 0.0)
+            self._engine, self._identity = opened_file(self._url, self._clock, left)
+        except NotKept:
+            raise
+        except OSError as error:
+            raise NotKept("error.database", reason=error.strerror or str(error)) from error
+        self._journals = journals_of(self._file)
+        self.generation += 1
+        log.warning("%s was deleted or replaced: labs in use are kept anew in it", self._file)
 
     def _opened(self) -> sa.Engine:
         if self._url.get_backend_name() != "sqlite":
             return opened_server(self._url)
         try:
-            return opened_file(self._url, self._clock)
+            engine, self._identity = opened_file(self._url, self._clock)
+            return engine
         except OSError as error:
             reason = error.strerror or error
             self.warning = f"Nothing outlives the server: {self._url.database}: {reason}."

@@ -18,7 +18,12 @@ FLUSH = 10.0  # [s] to wait for the last write
 
 
 class Store(Protocol):
-    """Where states are saved."""
+    """Where states are saved; see `Records` for the properties."""
+
+    @property
+    def warning(self) -> str: ...
+    @property
+    def generation(self) -> int: ...
 
     def save(self, code: str, state: dict[str, Any]) -> None:
         """See `Records.save`."""
@@ -37,6 +42,7 @@ class WriteBehind:
         self._records = records
         self._interval = interval
         self._pending: dict[str, Callable[[], dict[str, Any]]] = {}
+        self._failed = set[str]()
         self._lock, self._writing = threading.Lock(), threading.Lock()
         self._wanted, self._closing = threading.Event(), threading.Event()
         self.warning = ""
@@ -54,11 +60,21 @@ class WriteBehind:
             self._pending[code] = make_state
         self._wanted.set()
 
+    def fails(self, code: str) -> bool:
+        """Whether the latest state of a lab could not be saved, or will not outlive the process."""
+        return code in self._failed or bool(self._records.warning)
+
+    @property
+    def generation(self) -> int:
+        """Changes when what was saved may be gone; see `Records.generation`."""
+        return self._records.generation
+
     def forget(self, delete: Callable[[], int]) -> int:
         """Discard pending states, call `delete`, and return its result."""
         with self._writing:
             with self._lock:
                 self._pending.clear()
+                self._failed.clear()
             return delete()
 
     def flush(self, code: str) -> None:
@@ -103,14 +119,22 @@ class WriteBehind:
 
     def _write(self, code: str, make_state: Callable[[], dict[str, Any]]) -> str:
         """Write a state. Returns why it failed and will be repeated, or ""."""
+        failed: set[str] = set()
         try:
             self._records.save(code, make_state())
+            return ""
         except NotKept as error:
             with self._lock:  # keeps a later state if there is one
                 self._pending.setdefault(code, make_state)
+                failed = set(self._pending)  # the others wait behind this one
             return str(error)
         except HeldElsewhere:
             log.info("a lab has gone to another process")
         except Exception as error:  # must not affect other labs
+            failed = {code}
             log_error(error)
+        finally:
+            with self._lock:
+                self._failed.discard(code)
+                self._failed |= failed
         return ""

@@ -129,6 +129,9 @@ keep-paste = Geteilter Code
 keep-paste_hint = Füge einen Code ein, den dir jemand geschickt hat
 keep-use = Das Labor so aufbauen
 keep-report = Meine Lektionen als Bericht (HTML)
+keep-failed = Dein Labor kann gerade nicht gespeichert werden. Du kannst weitermachen: lass diese Seite offen, bis sie sagt, dass es wieder gespeichert ist.
+keep-again = Dein Labor ist wieder gespeichert.
+keep-anew = Die Datei, in der Labore gespeichert werden, wurde gelöscht oder ersetzt. Dein Labor wird in einer neuen gespeichert.
 
 ## Die Klasse
 
@@ -723,6 +726,7 @@ error-session_code_letters = das ist kein Code eines Labors: 0, 1, i, l und o ko
 error-database = die Datenbank meldet: { $reason }
 error-database_at = { $place } ist nicht zu gebrauchen: { $reason }
 error-database_keeps_breaking = die Datenbank geht immer wieder kaputt
+error-database_busy = die Datenbank ist beschäftigt
 error-database_table = ihre Tabelle { $table } gehört nicht zu OnPath
 error-database_tables_newer = ihre Tabellen ({ $revision }) stammen von einem neueren OnPath, das hier nötig ist
 error-database_newer = sie hat die Version { $version } und stammt von einem neueren OnPath, das hier nötig ist

@@ -131,6 +131,9 @@ keep-paste = Share code
 keep-paste_hint = Paste a code that somebody sent you
 keep-use = Set up the lab from it
 keep-report = Record of my lessons (HTML)
+keep-failed = Your lab cannot be saved at the moment. You can go on: keep this page open until it says that the lab is saved again.
+keep-again = Your lab is saved again.
+keep-anew = The file in which labs are saved was deleted or replaced. Your lab is being saved in a new one.
 
 ## The class
 
@@ -578,6 +581,7 @@ error-session_code_letters = this is not a session code: 0, 1, i, l and o do not
 error-database = the database reports: { $reason }
 error-database_at = cannot use { $place }: { $reason }
 error-database_keeps_breaking = the database breaks again and again
+error-database_busy = the database is busy
 error-database_table = its table { $table } is not OnPath's
 error-database_tables_newer = its tables ({ $revision }) are of a newer OnPath, which is needed here
 error-database_newer = it is of version { $version }, made by a newer OnPath, which is needed here

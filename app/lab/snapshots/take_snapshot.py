@@ -95,6 +95,7 @@ def _scene(
     curve = session.editor.curve if past is None else past.curve
     time = session.time if session.viewing is None else session.viewing
     key = page_key(lab, student)
+    message, level = lab.notice
     return {
         "time": time,
         "running": session.running,
@@ -109,8 +110,8 @@ def _scene(
         "path": _path_view(session, curve, key, before),
         "held": bool(session.grips.held),
         "grabbed": session.grips.grabbed,
-        "message": lab.message,
-        "message_level": lab.message_level,
+        "message": message,
+        "message_level": level,
         "note": scale_note(session, lab.words),
         "key": key,
     }

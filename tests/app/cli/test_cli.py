@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 from onpath.app.cli.main import run_command
+from onpath.app.storage.given_url import DATABASE
+from onpath.app.storage.records import Records, file_url
 from onpath.models.closed_loop.trajectory import read_csv
 from onpath.models.control.laws import NAMES
 from onpath.models.systems.parameters import FiveBarParameters, specs
@@ -264,3 +266,19 @@ def test_bench_without_its_extra_says_what_to_install(
     said = capsys.readouterr()
     assert 'pip install "onpath[bench]"' in said.err
     assert said.out == "" and said.err.count("\n") == 1
+
+
+def test_the_database_may_be_given_in_the_environment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    records = Records(file_url(tmp_path / "labs.db"))
+    records.save("a", {})
+    records.close()
+    monkeypatch.setenv(DATABASE, f"sqlite:///{tmp_path / 'labs.db'}")
+    assert run_command(["forget"]) == 0 and "deleted: 1 labs" in capsys.readouterr().out
+
+
+def test_help_says_how_long_labs_are_kept() -> None:
+    text = " ".join(onpath("serve", "--help").stdout.split())
+    assert "--keep-days" in text and "(default: 365)" in text
+    assert "--most-labs" in text and DATABASE in text

@@ -15,7 +15,9 @@ import pytest
 import viser
 
 from onpath.app.cli.main import run_command
+from onpath.app.exports.export_process import ExportProcess
 from onpath.app.server.workers import Worker, shares
+from onpath.app.storage.given_url import DATABASE, given_url
 from onpath.app.viser_adapter import secure_server as hardening
 from onpath.app.viser_adapter.request_filter import RequestFilter
 from onpath.app.viser_adapter.sockets import PortInUse, listen, reserve
@@ -58,6 +60,32 @@ def test_a_lab_survives_its_worker_on_a_shared_port(supervisor: Supervisor) -> N
     assert not any(Path(f"/proc/{worker}").exists() for worker in after)
 
 
+@linux_only
+def test_the_database_is_on_no_worker_s_command_line(supervisor: Supervisor) -> None:
+    """Its URL may hold a password, and all users of the machine see command lines."""
+    supervisor.wait_for(r"^\[worker [12]\] INFO .*OnPath is ready", times=2)
+    workers = supervisor.workers()
+    assert len(workers) == 2
+    for worker in workers:
+        command = Path(f"/proc/{worker}/cmdline").read_bytes().split(b"\0")
+        assert b"onpath" in command and b"--database" not in command
+        assert not any(b"labs.db" in word for word in command)
+        opened = [os.readlink(file) for file in Path(f"/proc/{worker}/fd").iterdir()]
+        assert any(name.endswith("/labs.db") for name in opened)
+
+
+def test_child_processes_do_not_inherit_the_database(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(DATABASE, "sqlite:///secret.db")
+    assert given_url("sqlite://") == "sqlite://"
+    monkeypatch.setenv(DATABASE, "sqlite:///secret.db")
+    assert given_url(None) == "sqlite:///secret.db" and given_url(None) is None
+    exports = ExportProcess()
+    try:
+        assert exports.call(60.0, os.getenv, DATABASE) is None
+    finally:
+        exports.stop()
+
+
 @pytest.mark.parametrize("cores", [[], [3], [0, 1], [0, 2, 4, 6], list(range(7))])
 @pytest.mark.parametrize("workers", [1, 2, 3, 5])
 def test_each_worker_has_its_own_cores_and_none_is_left_idle(
@@ -82,6 +110,8 @@ def test_what_cannot_be_is_said_once() -> None:
         ["65"],
         ["2", "--classroom", "--database", "sqlite://"],
         ["2", "--socket", "x"],
+        ["2", "--keep-days", "0"],
+        ["2", "--most-labs", "0"],
     ):
         assert run_command(["--workers", *options]) == 2
     useless = Worker(1, [sys.executable, "-c", "raise SystemExit(2)"])

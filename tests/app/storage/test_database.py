@@ -478,6 +478,8 @@ def test_statements_are_everybody_s_sql() -> None:
 class Memory:
     """A store that notes what comes, and fails when told to."""
 
+    warning, generation = "", 0
+
     def __init__(self) -> None:
         self.saved: list[tuple[str, Any]] = []
         self.fault: Exception | None = None
