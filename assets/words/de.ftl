@@ -129,6 +129,8 @@ keep-paste = Geteilter Code
 keep-paste_hint = Füge einen Code ein, den dir jemand geschickt hat
 keep-use = Das Labor so aufbauen
 keep-report = Meine Lektionen als Bericht (HTML)
+keep-with_code = Den Code meines Labors in den Bericht schreiben
+keep-with_code_means = Wer den Code hat, kann dein Labor öffnen, sehen, was du getan hast, und es ändern. Lass ihn weg, wenn du den Bericht abgibst.
 
 ## Die Klasse
 
@@ -368,6 +370,7 @@ export-table = CSV, letzte 60 s
 export-picture = Bild der Verläufe
 export-film = Aufnahme (HTML), letzte 10 s
 export-making = { $name } entsteht …
+export-busy = Eine Datei nach der anderen: die zuletzt verlangte entsteht noch.
 export-ready = { $name } ist fertig.
 export-failed = { $name } ist misslungen.
 export-nothing = Es gibt noch nichts mitzunehmen: Lass es erst laufen.

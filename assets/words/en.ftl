@@ -131,6 +131,8 @@ keep-paste = Share code
 keep-paste_hint = Paste a code that somebody sent you
 keep-use = Set up the lab from it
 keep-report = Record of my lessons (HTML)
+keep-with_code = Put my lab's code into the record
+keep-with_code_means = Whoever has the code can open your lab, see what you did and change it. Leave it out of what you hand in.
 
 ## The class
 
@@ -370,6 +372,7 @@ export-table = CSV, last 60 s
 export-picture = Picture of the plots
 export-film = Recording (HTML), last 10 s
 export-making = Making { $name } …
+export-busy = One file at a time: the last one you asked for is still being made.
 export-ready = { $name } is ready.
 export-failed = { $name } could not be made.
 export-nothing = There is nothing to export yet: let it run first.
