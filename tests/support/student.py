@@ -117,8 +117,12 @@ class Student:
     def set(self, label: str, value: Any) -> None:
         """Move a slider, choose from a list, press a button."""
         widget = self.find(label)
+        self.send("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value})
+
+    def send(self, kind: str, **fields: Any) -> None:
+        """Any message."""
         assert self._socket is not None
-        self._socket.send(packed("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value}))
+        self._socket.send(packed(kind, **fields))
 
     def may(self, label: str) -> bool:
         """Whether there is a widget now whose label or option begins so."""
