@@ -173,12 +173,9 @@ def _guarded_serve(
         options["ping_interval"] = options["ping_timeout"] = limits.silence
         options["close_timeout"] = limits.farewell
         options["process_request"], options["process_response"] = answer_request, _finish
-        options["create_connection"] = partial(
-            SecureConnection,
-            limits=limits,
-            connections=counts,
-            unfinished=UnfinishedMessages(limits.max_unfinished_bytes),
-        )
+        kept = UnfinishedMessages(limits.max_unfinished_bytes)
+        own = {"limits": limits, "connections": counts, "unfinished": kept}
+        options["create_connection"] = partial(SecureConnection, **own)
         return genuine(_of_our_version(handler), sock=listener, **options)
 
     with _patching:

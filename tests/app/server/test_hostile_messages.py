@@ -29,17 +29,25 @@ ROOM = "/"
 RAY = {"ray_origin": [0.0, -2.0, 0.0], "ray_direction": [0.0, 1.0, 0.0]}
 POSE = {"wxyz": [1.0, 0.0, 0.0, 0.0], "position": [0.0, 0.0, 0.0]}
 DRAG = {
-    **{"phase": "start", "name": ROOM, "instance_index": 0, "owner": "0"},
-    **{"start_position": [0.3, 0.0, 0.2], "start_screen_pos": [0.5, 0.5]},
-    **{"end_position": [0.3, 0.0, 0.3], "end_screen_pos": [0.5, 0.4]},
-    **{"button": "left", "modifier": None},
+    "phase": "start",
+    "name": ROOM,
+    "instance_index": 0,
+    "owner": "0",
+    "start_position": [0.3, 0.0, 0.2],
+    "start_screen_pos": [0.5, 0.5],
+    "end_position": [0.3, 0.0, 0.3],
+    "end_screen_pos": [0.5, 0.4],
+    "button": "left",
+    "modifier": None,
 }
 CLICK = {"name": ROOM, "instance_index": 0, "screen_pos": [0.5, 0.5], "modifier": None}
 UPLOAD = {"source_component_uuid": "x", "transfer_uuid": "x"}
 HONEST: dict[str, dict[str, Any]] = {
     "ViewerCameraMessage": CAMERA,
     "ScenePointerMessage": {
-        **{"event_type": "click", "screen_pos": [[0.5, 0.5]], "modifier": None},
+        "event_type": "click",
+        "screen_pos": [[0.5, 0.5]],
+        "modifier": None,
         **RAY,
     },
     "SceneNodeClickMessage": {**CLICK, **RAY, "owner": "0"},
@@ -56,7 +64,10 @@ HONEST: dict[str, dict[str, Any]] = {
     "LocalStorageGetItemResponseMessage": {"value": None, "error": None, "request_uuid": "x"},
     "FileTransferStartUpload": {
         **UPLOAD,
-        **{"filename": "x", "mime_type": "x", "part_count": 1, "size_bytes": 1},
+        "filename": "x",
+        "mime_type": "x",
+        "part_count": 1,
+        "size_bytes": 1,
     },
     "FileTransferPart": {**UPLOAD, "part_index": 0, "content": b"x"},
 }
@@ -84,11 +95,15 @@ class Tab:
         (client,) = self.server.server.get_clients().values()
         return client
 
+    @property
+    def gain(self) -> float:
+        return self.lab.session.parameters.K2
+
     def settle(self) -> None:
         """Return when everything that was sent has been handled."""
-        gain = 44.0 if self.lab.session.parameters.K2 != 44.0 else 45.0
+        gain = 45.0 if self.gain == 44.0 else 44.0
         self.student.set("K2", gain)
-        wait_for(lambda: self.lab.session.parameters.K2 == gain, WAIT)
+        self.student.read(lambda: self.gain == gain)  # as a browser does; else it is closed
 
     def nodes(self) -> list[str]:
         return list(self.client.scene._handle_from_node_name)
@@ -165,7 +180,7 @@ def hit_every_node(tab: Tab) -> None:
                     tab.student.send("SceneNodeDragMessage", **DRAG | drag)
         for kind in [kind for kind in HONEST if kind.startswith("Transform")]:
             tab.student.send(kind, **HONEST[kind] | {"name": name, **owner})
-    tab.settle()
+        tab.settle()
 
 
 @pytest.mark.parametrize("path", ["circle", "clover", "segment"])
