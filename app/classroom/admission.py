@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 from onpath.app.common.access_codes import ALPHABET, normalised
 from onpath.app.common.throttle import Throttle
+from onpath.app.common.visible_text import compared, is_visible, without_surplus_marks
 from onpath.models.errors import CodedError
 
 LONGEST_NAME = 24  # [characters]
@@ -73,23 +74,31 @@ def new_pass() -> str:
 
 
 def cleaned(name: str) -> str:
-    """A nickname in the form in which it is stored.
+    """A nickname in the form in which it is stored: what can be seen of it, in NFC.
+
+    At most `MOST_MARKS` combining marks are kept on one character.
 
     Raises:
         ValueError: no visible character remains.
     """
     text = unicodedata.normalize("NFC", name[:200])
-    seen = "".join(c if unicodedata.category(c)[0] not in "CZ" else " " for c in text)
-    short = " ".join(seen.split())[:LONGEST_NAME].strip()
+    apart = "".join(" " if unicodedata.category(c)[0] in "CZ" else c for c in text)
+    seen = "".join(c for c in apart if c == " " or is_visible(c))
+    sparse = without_surplus_marks(unicodedata.normalize("NFC", seen))
+    short = " ".join(sparse.split())[:LONGEST_NAME].strip()
     if not short:
         raise CodedError("error.no_nickname")
     return short
 
 
 def not_among(others: set[str], name: str) -> str:
-    """The name, with a number appended if it is taken."""
+    """The name, with a number appended if it is taken.
+
+    Args:
+        others: names of the others, as `compared` has them.
+    """
     count, unique = 1, name
-    while unique.casefold() in others:
+    while compared(unique) in others:
         count += 1
         tail = f" {count}"
         unique = name[: LONGEST_NAME - len(tail)].rstrip() + tail

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import csv
 import io
+import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from onpath.app.classroom.classroom import Member
+from onpath.app.common.visible_text import is_visible
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Answer, Notes, Progress, Truth
 from onpath.lessons.schema import Choice, Lesson, Prediction, Quiz, Sketch
 
 HEADER = ("number", "nickname", "lesson", "step", "kind", "item", "result", "right", "value")
-FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "|", "%")
+FORMULA = frozenset("=+-@|%\u2212\u2795\u2796\ua78a\U0001f7f0")
+"""Beginnings of a formula, also as minus, heavy or short sign; other widths and sizes by NFKC."""
 LETTERS = "ABCDEFGH"
 
 
@@ -127,8 +130,10 @@ def _chosen(block: Choice | Quiz, option: int | None) -> tuple[object, object, o
 
 
 def _harmless(cell: object) -> object:
-    if isinstance(cell, str) and cell.lstrip().startswith(FORMULA):
-        return f"'{cell}"
+    if isinstance(cell, str):
+        seen = next(filter(is_visible, cell), "")
+        if unicodedata.normalize("NFKC", seen)[:1] in FORMULA:
+            return f"'{cell}"
     return cell
 
 

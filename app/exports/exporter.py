@@ -25,14 +25,14 @@ _queue = ThreadPoolExecutor(1, "exports")  # passes one file at a time to the pr
 class Exporter:
     """Creates files in another process from copies made by the simulation thread.
 
-    Only one file of each kind is made at a time; further requests for it are ignored meanwhile.
+    Only one file is made at a time; further requests are refused meanwhile, with a message.
     """
 
     def __init__(self, client: viser.ClientHandle) -> None:
         self._client = client
         self._wanted: list[Callable[[Lab], None]] = []
-        self._under_way: set[str] = set()
-        self._latest: dict[str, Future[None]] = {}
+        self._under_way = self._refuses = False
+        self._latest: Future[None] | None = None
 
     def csv(self) -> None:
         """Request the CSV file of the last minute."""
@@ -59,7 +59,7 @@ class Exporter:
             what = run.course, run.progress, code, datetime.now()
             self._submit(name, lab.words, report_file, *what)
 
-        self._want(name, start)
+        self._want(start)
 
     def serve(self, lab: Lab) -> None:
         """Start the requested exports. Called on the simulation thread."""
@@ -68,8 +68,8 @@ class Exporter:
 
     def close(self) -> None:
         """Start no further exports."""
-        for future in list(self._latest.values()):
-            future.cancel()
+        if self._latest is not None:
+            self._latest.cancel()
 
     def _ask(self, name: str, make: Callable[..., bytes], in_words: bool = False) -> None:
         def start(lab: Lab) -> None:
@@ -77,17 +77,24 @@ class Exporter:
             history = session.history.copy()
             if not history:
                 lab.show_message(words("export.nothing"), "warning")
-                self._under_way.discard(name)
+                self._under_way = False
                 return
             what = session.entry.name, session.parameters, history
             self._submit(name, words, make, *what, *[words.language] * in_words)
 
-        self._want(name, start)
+        self._want(start)
 
-    def _want(self, name: str, start: Callable[[Lab], None]) -> None:
-        if name not in self._under_way:
-            self._under_way.add(name)
+    def _want(self, start: Callable[[Lab], None]) -> None:
+        if not self._under_way:
+            self._under_way = True
             self._wanted.append(start)
+        elif not self._refuses:
+            self._refuses = True
+            self._wanted.append(self._refuse)
+
+    def _refuse(self, lab: Lab) -> None:
+        self._refuses = False
+        lab.show_message(lab.words("export.busy"), "warning")
 
     def _submit(self, name: str, words: Words, make: Callable[..., bytes], *what: Any) -> None:
         until = time.monotonic() + PATIENCE
@@ -108,7 +115,7 @@ class Exporter:
                 log_error(error)
                 note.body, note.loading = words("export.failed", name=name), False
             note.with_close_button = True
-            self._under_way.discard(name)
+            self._under_way = False
 
         with suppress(RuntimeError):  # the interpreter is shutting down
-            self._latest[name] = _queue.submit(work)
+            self._latest = _queue.submit(work)

@@ -61,9 +61,10 @@ class Freehand:
         self._line.draw()
 
     async def _dragged(self, event: viser.SceneNodeDragEvent[viser.BatchedMeshHandle]) -> None:
-        if not self.active or event.instance_index is None:
+        index = event.instance_index
+        if not self.active or index is None or index >= len(self._bases):  # a browser may send any
             return
-        self._base = self._bases[event.instance_index]
+        self._base = self._bases[index]
         camera = event.client.camera.position
         seen = [event.start_position] if event.phase == "start" else []
         for pointer in (*seen, event.end_position):

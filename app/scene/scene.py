@@ -201,9 +201,10 @@ class Scene:
     # Mouse callbacks. Coroutines without await, because viser runs those in order.
 
     async def _tip_dragged(self, event: DragEvent) -> None:
-        if event.instance_index is None:
+        index = event.instance_index
+        if index is None or index >= len(self._names):  # a browser may send any
             return
-        name = self._names[event.instance_index]
+        name = self._names[index]
         if event.phase == "start":
             self._covered = self._covered_point(event, name)
         if self._covered is not None:
@@ -241,11 +242,8 @@ class Scene:
         points.on_click()(self._point_clicked)
 
     async def _point_dragged(self, event: DragEvent) -> None:
-        path = self._path
-        if event.instance_index is None or path is None or not len(path.control_points):
-            return
-        robot, index = divmod(event.instance_index, len(path.control_points))
-        self._drag_point(event, self._names[robot], index)
+        if (found := self._robot_and_point(event.instance_index)) is not None:
+            self._drag_point(event, *found)
 
     def _drag_point(self, event: DragEvent, name: str, index: int) -> None:
         if event.phase == "start":  # keep the press's offset from the centre, so no jump
@@ -261,8 +259,19 @@ class Scene:
             self._hooks.on_point_drag_end(index)
 
     async def _point_clicked(self, event: ClickEvent) -> None:
-        if event.instance_index is not None and self._path is not None:
-            self._hooks.on_point_selected(event.instance_index % len(self._path.control_points))
+        if (found := self._robot_and_point(event.instance_index)) is not None:
+            self._hooks.on_point_selected(found[1])
+
+    def _robot_and_point(self, instance: int | None) -> tuple[str, int] | None:
+        """Robot and index of a control point that is drawn; None if there is no such instance.
+
+        The path may have changed since the browser drew it, and a browser may send any number.
+        """
+        count = 0 if self._path is None else len(self._path.control_points)
+        if instance is None or instance >= count * len(self._names):
+            return None
+        robot, index = divmod(instance, count)
+        return self._names[robot], index
 
     def _on_plane(
         self,

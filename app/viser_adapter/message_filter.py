@@ -23,6 +23,11 @@ class Limits:
 
     Attributes:
         max_message_bytes: of one websocket message, [B]; a larger one closes the connection.
+        max_unfinished_bytes: of all messages together of which only a part has come, [B]; beyond
+            it, the connection that holds most is closed.
+        message_seconds: time from a message's first byte to its last, [s]; more closes the
+            connection.
+        max_request_bytes: of an HTTP request, [B]; a larger one closes the connection.
         messages_per_second: sustained rate; more closes the connection.
         message_burst: messages at once; every 4 kB of a long message counts as one more.
         max_text_length: of a text widget, [characters]; longer texts are cut.
@@ -37,6 +42,9 @@ class Limits:
     """
 
     max_message_bytes: int = 1_000_000
+    max_unfinished_bytes: int = 32_000_000
+    message_seconds: float = 10.0
+    max_request_bytes: int = 65_536
     messages_per_second: float = 500.0
     message_burst: float = 1000.0
     max_text_length: int = 2000
@@ -75,7 +83,7 @@ class MessageFilter:
                     await self._update(client_id, widget, message)
                 return
             case wire.GuiButtonHoldMessage():
-                passes = widget is not None and not widget.disabled
+                passes = isinstance(widget, viser.GuiButtonHandle) and not widget.disabled
             case wire.GuiFormDirtyMessage():
                 form = self._gui._container_handle_from_uuid.get(message.uuid)
                 passes = isinstance(form, _gui_handles.GuiFormHandle)

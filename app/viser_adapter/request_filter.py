@@ -1,4 +1,4 @@
-"""Filters HTTP requests: which origins may open a websocket, and which paths may be read."""
+"""Filters HTTP requests: which origins may open a websocket, which paths may be read, by whom."""
 
 from __future__ import annotations
 
@@ -7,10 +7,46 @@ from http import HTTPStatus
 from ipaddress import ip_address
 from urllib.parse import unquote, urlsplit
 
-from websockets.http11 import Request
+from websockets.http11 import Request, Response
 
 LONGEST_PATH = 200  # [characters]; file systems have limits
 HEALTH = "/health"  # answered while the network thread is alive, for process supervisors
+
+_POLICY = (  # viser's page is one file that unpacks and runs itself, with workers and WebAssembly
+    "script-src 'self' 'unsafe-inline' 'unsafe-eval' blob: data:",
+    "worker-src 'self' blob: data:",
+    "object-src 'none'",
+    "base-uri 'none'",
+    "form-action 'none'",
+    "frame-ancestors 'self'",  # JupyterLab may show the lab in a frame of its own page
+)
+_HEADERS = {
+    "Content-Security-Policy": "; ".join(_POLICY),
+    "X-Frame-Options": "SAMEORIGIN",  # for browsers that do not know frame-ancestors
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+}
+
+
+def add_headers(response: Response) -> None:
+    """Tell browsers what the page may do, unless the response opens a websocket."""
+    if response.status_code != HTTPStatus.SWITCHING_PROTOCOLS:
+        for name, value in _HEADERS.items():
+            response.headers.pop(name, None)
+            response.headers[name] = value
+
+
+def without_repeats(request: Request, is_head: bool) -> None:
+    """Make a request one that viser can read, which fails at repeated headers.
+
+    A HEAD request opens no websocket.
+    """
+    encodings = request.headers.get_all("Accept-Encoding")
+    if len(encodings) > 1:
+        del request.headers["Accept-Encoding"]
+        request.headers["Accept-Encoding"] = ", ".join(encodings)
+    if is_head and "Upgrade" in request.headers:
+        del request.headers["Upgrade"]
 
 
 def well(_query: str) -> str:
@@ -32,25 +68,34 @@ class RequestFilter:
         allowed_origins: pages of other sites that may connect, "https://lab.example:8443".
         local_only: whether the server listens on this machine only. The page's origin must then
             be a local name; else any site could point its own name at 127.0.0.1 (DNS rebinding).
-        health: the report for `HEALTH`, given the query string.
+        health: the metrics at `HEALTH`, given the query string. Only this machine gets them;
+            others only learn that the server is well.
         """
         self.open = False
         self._health = health
         self._allowed = frozenset(origin.lower().rstrip("/") for origin in allowed_origins)
         self._local_only = local_only
 
-    def refusal(self, request: Request) -> tuple[HTTPStatus, str] | None:
-        """Status and text with which to answer at once, or None to let the request through."""
+    def refusal(self, request: Request, peer: str = "") -> tuple[HTTPStatus, str] | None:
+        """Status and text with which to answer at once, or None to let the request through.
+
+        Args:
+            peer: address at the other end of the connection; empty for a Unix socket.
+        """
         asked, _, query = request.path.partition("?")
         if asked == HEALTH:
-            return HTTPStatus.OK, self._health(query)
+            report = self._health if _is_asked_here(request, peer) else well
+            return HTTPStatus.OK, report(query)
         path = unquote(asked).replace("\\", "/")
         if len(path) > LONGEST_PATH:
             return HTTPStatus.NOT_FOUND, "Not found.\n"
         if ".." in path.split("/") or ":" in path or "\0" in path:  # C:/ is absolute on Windows
             return HTTPStatus.NOT_FOUND, "Not found.\n"
-        if not request.headers.get_all("Upgrade"):
+        upgrades = request.headers.get_all("Upgrade")
+        if not upgrades:
             return None
+        if len(upgrades) > 1:
+            return HTTPStatus.BAD_REQUEST, "More than one Upgrade.\n"
         if not self.open:
             return HTTPStatus.SERVICE_UNAVAILABLE, "Starting.\n"
         if not self._trusts(request):
@@ -71,6 +116,18 @@ class RequestFilter:
         itself = [site.netloc] == [host.lower() for host in request.headers.get_all("Host")]
         named_well = not self._local_only or is_loopback(site.hostname or "")
         return bool(site.netloc) and itself and named_well
+
+
+def _is_asked_here(request: Request, peer: str) -> bool:
+    """Whether a program of this machine asks for this machine, and no page or proxy does."""
+    headers = request.headers
+    if not is_loopback(peer) or any(name in headers for name in ("Origin", "X-Forwarded-For")):
+        return False
+    try:
+        hosts = [urlsplit(f"//{host}").hostname or "" for host in headers.get_all("Host")]
+    except ValueError:
+        return False
+    return len(hosts) == 1 and is_loopback(hosts[0])
 
 
 def is_loopback(host: str) -> bool:

@@ -1,6 +1,6 @@
 """Protects a viser server from untrusted browsers.
 
-What a browser sends passes the handshake (request_filter.py), the websocket (`_SecureConnection`:
+What a browser sends passes the handshake (request_filter.py), the websocket (secure_connection.py:
 size and rate; message_schema.py), message_filter.py (which widget) and widget_validation.py (which
 value). Exceptions in callbacks are logged (error_log.py). Written against viser 1.1.1; a test pins
 the private names.
@@ -25,39 +25,27 @@ from viser import _gui_api, _gui_handles, _icons, _scene_api, _viser
 from viser import _messages as wire
 from viser.infra import WebsockClientConnection
 from websockets.asyncio.server import ServerConnection
-from websockets.frames import CloseCode, Frame, Opcode
+from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from onpath.app.common.error_log import log_error
 from onpath.app.viser_adapter.compression import share_compressors
-from onpath.app.viser_adapter.connection_limits import ConnectionLimits, CountedConnection, Proxies
-from onpath.app.viser_adapter.message_filter import Limits, MessageFilter, warn_once
-from onpath.app.viser_adapter.message_schema import MessageSchemas
+from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
+from onpath.app.viser_adapter.message_filter import Limits, MessageFilter
 from onpath.app.viser_adapter.page_scripts import add_scripts
-from onpath.app.viser_adapter.request_filter import RequestFilter, is_loopback, well
+from onpath.app.viser_adapter.request_filter import (
+    RequestFilter,
+    add_headers,
+    is_loopback,
+    well,
+    without_repeats,
+)
+from onpath.app.viser_adapter.secure_connection import SecureConnection, UnfinishedMessages
 from onpath.app.viser_adapter.sockets import PortInUse, listen, listen_unix
 
 __all__ = ["Limits", "PortInUse", "harden", "make_server"]
 
 _SUBPROTOCOL = f"viser-v{viser.__version__}"
-_FROM_BROWSER: tuple[type[Any], ...] = (
-    wire.ViewerCameraMessage,
-    wire.ScenePointerMessage,
-    wire.SceneNodeClickMessage,
-    wire.SceneNodeDragMessage,
-    wire.TransformControlsDragStartMessage,
-    wire.TransformControlsUpdateMessage,
-    wire.TransformControlsDragEndMessage,
-    wire.GuiUpdateMessage,
-    wire.GuiButtonHoldMessage,
-    wire.GuiFormDirtyMessage,
-    wire.GuiFormSubmitMessage,
-    wire.CommandTriggerMessage,
-    wire.GetRenderResponseMessage,
-    wire.LocalStorageGetItemResponseMessage,
-    wire.FileTransferStartUpload,
-    wire.FileTransferPart,
-)
 _SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
 
 
@@ -148,6 +136,13 @@ def _to_page(connection: ServerConnection, request: Request) -> Response:
     return response
 
 
+def _finish(connection: SecureConnection, _: Request, response: Response) -> None:
+    """Complete a response: the headers of all of them, and only these if no more was asked for."""
+    add_headers(response)
+    if connection.is_head:
+        response.body = b""
+
+
 _patching = threading.Lock()
 
 
@@ -163,11 +158,10 @@ def _guarded_serve(
     library: Any = websockets.asyncio.server
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
-        async def answer_request(
-            connection: CountedConnection, request: Request
-        ) -> Response | None:
+        async def answer_request(connection: SecureConnection, request: Request) -> Response | None:
             await _opened(requests)
-            if refusal := requests.refusal(request):  # or the health report, even when full
+            without_repeats(request, connection.is_head)
+            if refusal := requests.refusal(request, connection.peer):  # or the health report
                 return connection.respond(*refusal)
             if not counts.admits(connection, request):
                 return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
@@ -178,10 +172,11 @@ def _guarded_serve(
         options["max_size"] = limits.max_message_bytes
         options["ping_interval"] = options["ping_timeout"] = limits.silence
         options["close_timeout"] = limits.farewell
-        options["create_connection"] = partial(_SecureConnection, limits=limits, connections=counts)
-        return genuine(
-            _of_our_version(handler), sock=listener, process_request=answer_request, **options
-        )
+        options["process_request"], options["process_response"] = answer_request, _finish
+        kept = UnfinishedMessages(limits.max_unfinished_bytes)
+        own = {"limits": limits, "connections": counts, "unfinished": kept}
+        options["create_connection"] = partial(SecureConnection, **own)
+        return genuine(_of_our_version(handler), sock=listener, **options)
 
     with _patching:
         genuine = library.serve  # read under the lock: else it may be another thread's patch
@@ -210,51 +205,6 @@ async def _opened(requests: RequestFilter) -> None:
     until = time.monotonic() + STARTING
     while not requests.open and time.monotonic() < until:
         await asyncio.sleep(0.02)
-
-
-@cache
-def _forms(max_magnitude: float) -> MessageSchemas:
-    return MessageSchemas(_FROM_BROWSER, max_magnitude)
-
-
-class _SecureConnection(CountedConnection):
-    """A websocket that yields only valid messages, and is closed when there are too many."""
-
-    def __init__(self, *args: Any, limits: Limits, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self._limits, self._forms = limits, _forms(limits.max_magnitude)
-        self._allowance = limits.message_burst
-        self._counted_at = time.monotonic()
-        self._closing: asyncio.Task[None] | None = None
-
-    def process_event(self, event: Any) -> None:
-        """Count all frames, including pings and fragments, and drop those that exceed the rate."""
-        if isinstance(event, Frame) and event.opcode is not Opcode.CLOSE:
-            if self._closing is None and not self._affords(event):
-                warn_once(self, "a flood of messages")
-                reason = f"more than {self._limits.messages_per_second:g} messages per second"
-                self._closing = self.loop.create_task(
-                    self.close(CloseCode.POLICY_VIOLATION, reason)
-                )
-            if self._closing is not None:
-                return
-        super().process_event(event)
-
-    def _affords(self, frame: Frame) -> bool:
-        now = time.monotonic()
-        earned = (now - self._counted_at) * self._limits.messages_per_second
-        self._allowance = min(self._allowance + earned, self._limits.message_burst)
-        self._counted_at = now
-        self._allowance -= 1 + len(frame.data) / 4096
-        return self._allowance >= 0
-
-    async def recv(self, decode: bool | None = None) -> Any:
-        while True:
-            raw = await super().recv(decode)
-            wrong = self._forms.fault(raw)
-            if wrong is None:
-                return raw
-            warn_once(self, wrong)
 
 
 def _log_outcome(done: Any) -> None:

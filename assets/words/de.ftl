@@ -132,6 +132,8 @@ keep-report = Meine Lektionen als Bericht (HTML)
 keep-failed = Dein Labor kann gerade nicht gespeichert werden. Du kannst weitermachen: lass diese Seite offen, bis sie sagt, dass es wieder gespeichert ist.
 keep-again = Dein Labor ist wieder gespeichert.
 keep-anew = Die Datei, in der Labore gespeichert werden, wurde gelöscht oder ersetzt. Dein Labor wird in einer neuen gespeichert.
+keep-with_code = Den Code meines Labors in den Bericht schreiben
+keep-with_code_means = Wer den Code hat, kann dein Labor öffnen, sehen, was du getan hast, und es ändern. Lass ihn weg, wenn du den Bericht abgibst.
 
 ## Die Klasse
 
@@ -372,6 +374,7 @@ export-table = CSV, letzte 60 s
 export-picture = Bild der Verläufe
 export-film = Aufnahme (HTML), letzte 10 s
 export-making = { $name } entsteht …
+export-busy = Eine Datei nach der anderen: die zuletzt verlangte entsteht noch.
 export-ready = { $name } ist fertig.
 export-failed = { $name } ist misslungen.
 export-nothing = Es gibt noch nichts mitzunehmen: Lass es erst laufen.

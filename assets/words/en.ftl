@@ -134,6 +134,8 @@ keep-report = Record of my lessons (HTML)
 keep-failed = Your lab cannot be saved at the moment. You can go on: keep this page open until it says that the lab is saved again.
 keep-again = Your lab is saved again.
 keep-anew = The file in which labs are saved was deleted or replaced. Your lab is being saved in a new one.
+keep-with_code = Put my lab's code into the record
+keep-with_code_means = Whoever has the code can open your lab, see what you did and change it. Leave it out of what you hand in.
 
 ## The class
 
@@ -374,6 +376,7 @@ export-table = CSV, last 60 s
 export-picture = Picture of the plots
 export-film = Recording (HTML), last 10 s
 export-making = Making { $name } …
+export-busy = One file at a time: the last one you asked for is still being made.
 export-ready = { $name } is ready.
 export-failed = { $name } could not be made.
 export-nothing = There is nothing to export yet: let it run first.

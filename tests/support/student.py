@@ -112,8 +112,12 @@ class Student:
     def set(self, label: str, value: Any) -> None:
         """Set the value of a widget, as by moving a slider or pressing a button."""
         widget = self.find(label)
+        self.send("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value})
+
+    def send(self, kind: str, **fields: Any) -> None:
+        """Any message."""
         assert self._socket is not None
-        self._socket.send(packed("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value}))
+        self._socket.send(packed(kind, **fields))
 
     def has_widget(self, label: str) -> bool:
         """Whether the page has a widget whose label or option begins with `label`."""

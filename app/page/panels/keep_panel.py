@@ -10,7 +10,7 @@ from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.page_context import PageContext
-from onpath.app.page.panels.widgets import Post, on_press, on_slow_press
+from onpath.app.page.panels.widgets import Post, note, on_press, on_slow_press
 from onpath.lessons.words import Words
 
 
@@ -33,15 +33,22 @@ class KeepPanel:
             pasted = gui.add_text(words("keep.paste"), "", hint=words("keep.paste_hint"))
             use = gui.add_button(words("keep.use"), color="gray", icon=viser.Icon.DOWNLOAD)
             report = gui.add_button(words("keep.report"), color="gray", icon=viser.Icon.REPORT)
+            if desk.keeps:
+                self._with_code = gui.add_checkbox(words("keep.with_code"), initial_value=False)
+                gui.add_html(note(words("keep.with_code_means"), small=True))
         on_press(share, lambda: post(c.Share()))
         on_press(use, lambda: post(c.UseShared(pasted.value)))
-        on_press(report, lambda: exporter.report(desk.code if desk.keeps else ""))
+        on_press(report, lambda: exporter.report(self._code_in_report()))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the requested share code."""
         if snapshot.shared != self._code:
             self._code = snapshot.shared
             self._share.content = _code(self._words("keep.shared"), snapshot.shared)
+
+    def _code_in_report(self) -> str:
+        """The session code if the user wants it in the report: whoever reads it can use it."""
+        return self._desk.code if self._desk.keeps and self._with_code.value else ""
 
     def _enter(self) -> None:
         self._say(self._words("keep.moment"))

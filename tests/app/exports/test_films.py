@@ -166,10 +166,32 @@ def test_pressed_a_hundred_times_it_makes_one_film(lab: Lab) -> None:
             exporter.recording()
             exporter.serve(lab)
         wait_for(lambda: client.notes)
-        wait_for(lambda: exporter._latest.get(FILM))
+        wait_for(lambda: exporter._latest)
         others.end()
         wait_for(lambda: client.answered)
         assert (len(client.notes), len(client.files)) == (1, 1)
+
+
+def test_while_one_file_is_made_others_are_refused_and_the_user_is_told(lab: Lab) -> None:
+    lab.clear_message()
+    others, busy = Occupied(), lab.words("export.busy")
+    with tab() as (client, exporter):
+        exporter.recording()
+        exporter.serve(lab)
+        assert lab.message != busy
+        for _ in range(100):
+            for ask in (exporter.csv, exporter.picture, exporter.report, exporter.recording):
+                ask()
+        assert len(exporter._wanted) == 1  # a word, once
+        exporter.serve(lab)
+        assert lab.message == busy
+        others.end()
+        wait_for(lambda: not exporter._under_way)
+        assert (len(client.notes), len(client.files)) == (1, 1)
+        exporter.csv()  # the next one is made
+        exporter.serve(lab)
+        wait_for(lambda: len(client.files) == 2)
+    lab.clear_message()
 
 
 def test_nothing_is_made_for_who_has_left_the_queue(
@@ -180,7 +202,7 @@ def test_nothing_is_made_for_who_has_left_the_queue(
     others = Occupied()
     with tab() as (client, exporter):
         press_at_once(lab, [exporter])
-        wait_for(lambda: exporter._latest.get(FILM))
+        wait_for(lambda: exporter._latest)
     others.end()
     assert not made and not client.files
 

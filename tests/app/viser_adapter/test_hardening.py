@@ -339,6 +339,17 @@ def test_a_disabled_button_can_be_neither_pressed_nor_held(lab: Lab, attacker: B
 
 
 @pytest.mark.usefixtures("no_errors")
+def test_to_hold_what_is_no_button_has_no_effect(
+    lab: Lab, attacker: Browser, bystander: Browser
+) -> None:
+    errors = error_log._seen.copy()
+    for widget in lab.widgets[attacker.id].values():
+        attacker.send("GuiButtonHoldMessage", uuid=widget._impl.uuid, frequency=10.0)
+    attacker.settle()
+    assert lab.heard(attacker) == [] and error_log._seen == errors
+
+
+@pytest.mark.usefixtures("no_errors")
 def test_no_client_reaches_the_widgets_or_nodes_of_another(
     lab: Lab, attacker: Browser, bystander: Browser
 ) -> None:

@@ -1,0 +1,175 @@
+"""A browser's websocket: it yields only valid messages, neither too many nor too slow ones."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from functools import cache
+from typing import Any
+
+from viser import _messages as wire
+from websockets.frames import CloseCode, Frame, Opcode
+from websockets.protocol import State
+
+from onpath.app.viser_adapter.connection_limits import CountedConnection
+from onpath.app.viser_adapter.message_filter import Limits, warn_once
+from onpath.app.viser_adapter.message_schema import MessageSchemas
+
+FROM_BROWSER: tuple[type[Any], ...] = (
+    wire.ViewerCameraMessage,
+    wire.ScenePointerMessage,
+    wire.SceneNodeClickMessage,
+    wire.SceneNodeDragMessage,
+    wire.TransformControlsDragStartMessage,
+    wire.TransformControlsUpdateMessage,
+    wire.TransformControlsDragEndMessage,
+    wire.GuiUpdateMessage,
+    wire.GuiButtonHoldMessage,
+    wire.GuiFormDirtyMessage,
+    wire.GuiFormSubmitMessage,
+    wire.CommandTriggerMessage,
+    wire.GetRenderResponseMessage,
+    wire.LocalStorageGetItemResponseMessage,
+    wire.FileTransferStartUpload,
+    wire.FileTransferPart,
+)
+_DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
+
+
+class UnfinishedMessages:
+    """The memory of messages of which only a part has come. Use it on one event loop.
+
+    Args:
+        most: in total, [B].
+    """
+
+    def __init__(self, most: int) -> None:
+        self._most, self._total = most, 0
+        self._held: dict[SecureConnection, int] = {}
+
+    def hold(self, connection: SecureConnection, size: int) -> None:
+        """Note what a connection holds now, [B]; those that hold most are cut off if needed."""
+        self._total += size - self._held.pop(connection, 0)
+        if size:
+            self._held[connection] = size
+        while self._total > self._most:
+            largest = max(self._held, key=self._held.__getitem__)
+            self._total -= self._held.pop(largest)  # it may be lost only later
+            largest.cut_off()
+
+
+@cache
+def _forms(max_magnitude: float) -> MessageSchemas:
+    return MessageSchemas(FROM_BROWSER, max_magnitude)
+
+
+class SecureConnection(CountedConnection):
+    """A websocket that yields only valid messages, and is closed when there are too many.
+
+    websockets answers GET alone; a HEAD request is passed on to it as GET.
+
+    Attributes:
+        is_head: whether the request was HEAD, so that the response has no body.
+    """
+
+    def __init__(
+        self, *args: Any, limits: Limits, unfinished: UnfinishedMessages, **kwargs: Any
+    ) -> None:
+        super().__init__(*args, **kwargs)
+        self._limits, self._forms = limits, _forms(limits.max_magnitude)
+        self._allowance = limits.message_burst
+        self._counted_at = time.monotonic()
+        self._closing: asyncio.Task[None] | None = None
+        self._unfinished = unfinished
+        self._deadline: asyncio.TimerHandle | None = None
+        self._begun: bytes | None = b""  # of the request, while its method is not known
+        self._request_size, self.is_head = 0, False
+
+    def data_received(self, data: bytes) -> None:
+        """See `asyncio.Protocol`."""
+        if self.request is None:
+            data = self._of_request(data)
+        if data:
+            super().data_received(data)
+            self._limit_unfinished()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """See `asyncio.Protocol`."""
+        super().connection_lost(exc)
+        self._stop_waiting()
+        self._unfinished.hold(self, 0)
+
+    def process_event(self, event: Any) -> None:
+        """Count all frames, including pings and fragments, and drop those that exceed the rate."""
+        if isinstance(event, Frame) and event.opcode is not Opcode.CLOSE:
+            if self._closing is None and not self._affords(event):
+                warn_once(self, "a flood of messages")
+                reason = f"more than {self._limits.messages_per_second:g} messages per second"
+                self._closing = self.loop.create_task(
+                    self.close(CloseCode.POLICY_VIOLATION, reason)
+                )
+            if self._closing is not None:
+                return
+            if event.fin and event.opcode in _DATA:
+                self._stop_waiting()
+        super().process_event(event)
+
+    def cut_off(self) -> None:
+        """Close a connection whose unfinished message takes too much memory, or too long."""
+        warn_once(self, "an unfinished message")
+        self.transport.abort()
+
+    def _of_request(self, data: bytes) -> bytes:
+        """What to pass on of the bytes of a request; nothing while its method is not known."""
+        self._request_size += len(data)
+        if self._begun is not None:
+            self._begun += data
+            if b"HEAD ".startswith(self._begun):
+                return b""
+            data, self._begun = self._begun, None
+            self.is_head = data.startswith(b"HEAD ")
+            data = b"GET " + data[5:] if self.is_head else data
+        return data
+
+    def _limit_unfinished(self) -> None:
+        """Cut off whoever holds too much; begin or end the time of an unfinished message."""
+        if self.request is None:
+            if self._request_size > self._limits.max_request_bytes:
+                self.transport.abort()
+            return
+        protocol = self.protocol
+        is_open = protocol.state is State.OPEN
+        size = len(protocol.reader.buffer) + (protocol.current_size or 0) if is_open else 0
+        if not size:
+            self._stop_waiting()
+        elif self._deadline is None:
+            self._deadline = self.loop.call_later(self._limits.message_seconds, self._overdue)
+        self._unfinished.hold(self, size)
+
+    def _overdue(self) -> None:
+        self._deadline = None
+        if self.recv_messages.paused:  # it is we who do not read
+            self._deadline = self.loop.call_later(self._limits.message_seconds, self._overdue)
+        else:
+            self.cut_off()
+
+    def _stop_waiting(self) -> None:
+        if self._deadline is not None:
+            self._deadline.cancel()
+            self._deadline = None
+
+    def _affords(self, frame: Frame) -> bool:
+        now = time.monotonic()
+        earned = (now - self._counted_at) * self._limits.messages_per_second
+        self._allowance = min(self._allowance + earned, self._limits.message_burst)
+        self._counted_at = now
+        self._allowance -= 1 + len(frame.data) / 4096
+        return self._allowance >= 0
+
+    async def recv(self, decode: bool | None = None) -> Any:
+        while True:
+            raw = await super().recv(decode)
+            wrong = self._forms.fault(raw)
+            if wrong is None:
+                return raw
+            warn_once(self, wrong)

@@ -1,0 +1,201 @@
+"""Every kind of message, every field of it, with hostile values: no handler raises anything."""
+
+from __future__ import annotations
+
+import dataclasses
+import logging
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from onpath.app.bench.client_protocol import CAMERA
+from onpath.app.common import error_log
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.server.lab_server import LabServer
+from onpath.app.viser_adapter.secure_connection import FROM_BROWSER
+from onpath.app.viser_adapter.secure_server import Limits
+from onpath.lessons.words import ENGLISH
+from tests.support.lab import assert_sound
+from tests.support.student import Student
+from tests.support.waiting import wait_for
+
+WAIT = 60.0  # [s]; only ends a test that would hang
+WIDE = Limits(messages_per_second=1e6, message_burst=1_000_000)
+ROOM = "/"
+RAY = {"ray_origin": [0.0, -2.0, 0.0], "ray_direction": [0.0, 1.0, 0.0]}
+POSE = {"wxyz": [1.0, 0.0, 0.0, 0.0], "position": [0.0, 0.0, 0.0]}
+DRAG = {
+    "phase": "start",
+    "name": ROOM,
+    "instance_index": 0,
+    "owner": "0",
+    "start_position": [0.3, 0.0, 0.2],
+    "start_screen_pos": [0.5, 0.5],
+    "end_position": [0.3, 0.0, 0.3],
+    "end_screen_pos": [0.5, 0.4],
+    "button": "left",
+    "modifier": None,
+}
+CLICK = {"name": ROOM, "instance_index": 0, "screen_pos": [0.5, 0.5], "modifier": None}
+UPLOAD = {"source_component_uuid": "x", "transfer_uuid": "x"}
+HONEST: dict[str, dict[str, Any]] = {
+    "ViewerCameraMessage": CAMERA,
+    "ScenePointerMessage": {
+        "event_type": "click",
+        "screen_pos": [[0.5, 0.5]],
+        "modifier": None,
+        **RAY,
+    },
+    "SceneNodeClickMessage": {**CLICK, **RAY, "owner": "0"},
+    "SceneNodeDragMessage": DRAG,
+    "TransformControlsDragStartMessage": {"name": ROOM, "owner": "0"},
+    "TransformControlsUpdateMessage": {"name": ROOM, "owner": "0", **POSE},
+    "TransformControlsDragEndMessage": {"name": ROOM, "owner": "0"},
+    "GuiUpdateMessage": {"uuid": "x", "updates": {"value": 0.0}},
+    "GuiButtonHoldMessage": {"uuid": "x", "frequency": 10.0},
+    "GuiFormDirtyMessage": {"uuid": "x"},
+    "GuiFormSubmitMessage": {"uuid": "x"},
+    "CommandTriggerMessage": {"uuid": "x"},
+    "GetRenderResponseMessage": {"payload": b"", "render_uuid": "x"},
+    "LocalStorageGetItemResponseMessage": {"value": None, "error": None, "request_uuid": "x"},
+    "FileTransferStartUpload": {
+        **UPLOAD,
+        "filename": "x",
+        "mime_type": "x",
+        "part_count": 1,
+        "size_bytes": 1,
+    },
+    "FileTransferPart": {**UPLOAD, "part_index": 0, "content": b"x"},
+}
+"""A message of each kind that passes the checks of its form."""
+HOSTILE: list[Any] = [
+    *(None, True, -1, 0, 1, 7, 2**31, 2**63, 1.5, 1e9, 1e300, -1e300, math.nan, math.inf),
+    *("", "x" * 5000, "\x00", "../..", b"", b"\xff" * 100, [], {}, [[[]]], {"value": 1}),
+    *([0.0] * 3, [0.0] * 4, [1e9] * 3, [-1e9] * 3, [math.nan] * 3, [1e-300] * 3),
+    *("start", "update", "end", "click", "rect-select", "left", "right", "shift"),
+]
+INDEXES = (None, 2**30, 10**9, 999, 64, 19, 8, 5, 3, 2, 1, 0)
+UPDATES = ({}, {"value": None}, {"value": math.nan}, {"value": []}, {"no": 1}, {"removed": True})
+
+
+@dataclasses.dataclass(frozen=True)
+class Tab:
+    """A tab of a real lab, with everything that may be hit by a message."""
+
+    student: Student
+    server: LabServer
+    lab: Lab
+
+    @property
+    def client(self) -> Any:
+        (client,) = self.server.server.get_clients().values()
+        return client
+
+    @property
+    def gain(self) -> float:
+        return self.lab.session.parameters.K2
+
+    def settle(self) -> None:
+        """Return when everything that was sent has been handled."""
+        gain = 45.0 if self.gain == 44.0 else 44.0
+
+        def arrived() -> bool:
+            if self.gain != gain:  # a lab whose inbox is full drops a command
+                self.student.set("K2", gain)
+            return self.gain == gain
+
+        self.student.read(arrived)  # reads as a browser does; who does not is closed
+
+    def nodes(self) -> list[str]:
+        return list(self.client.scene._handle_from_node_name)
+
+    def uuids(self) -> list[str]:
+        gui = self.client.gui
+        known = [*gui._gui_input_handle_from_uuid, *gui._container_handle_from_uuid]
+        return [*known, "", "invented"]
+
+
+@pytest.fixture
+def tab() -> Iterator[Tab]:
+    server = LabServer("127.0.0.1", 0, LoopCache(), limits=WIDE)
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+        student.open()
+        student.read(lambda: student.moving > 3 and student.may("K2"))
+        (entry,) = server.sessions._entries.values()
+        yield Tab(student, server, entry.scheduled.lab)
+    server.stop()
+
+
+@pytest.fixture(autouse=True)
+def nothing_raises(caplog: pytest.LogCaptureFixture, tab: Tab) -> Iterator[None]:
+    """Errors are counted, because each is logged in full only once in a process."""
+    caplog.set_level(logging.WARNING)
+    before = error_log._seen.copy()
+    yield
+    tab.settle()
+    assert error_log._seen - before == {}
+    told = caplog.get_records("call")
+    assert [each.getMessage() for each in told if each.levelno > logging.WARNING] == []
+    assert_sound(tab.lab)
+
+
+def test_there_is_an_honest_message_of_every_kind() -> None:
+    forms = {form.__name__: form for form in FROM_BROWSER}
+    assert forms.keys() == HONEST.keys()
+    for name, form in forms.items():
+        assert {field.name for field in dataclasses.fields(form)} == HONEST[name].keys()
+
+
+def test_every_field_of_every_message_with_every_value(tab: Tab) -> None:
+    for kind, honest in HONEST.items():
+        for field in honest:
+            for value in HOSTILE:
+                tab.student.send(kind, **honest | {field: value})
+            tab.student.send(kind, **{k: v for k, v in honest.items() if k != field})
+        tab.student.send(kind, **honest, surplus=1)
+        tab.settle()
+
+
+def test_every_message_at_every_widget(tab: Tab) -> None:
+    for uuid in tab.uuids():
+        for updates in UPDATES:
+            tab.student.send("GuiUpdateMessage", uuid=uuid, updates=updates)
+        for frequency in (10.0, 0.0, -1.0, 1e9):
+            tab.student.send("GuiButtonHoldMessage", uuid=uuid, frequency=frequency)
+        for kind in ("GuiFormDirtyMessage", "GuiFormSubmitMessage", "CommandTriggerMessage"):
+            tab.student.send(kind, uuid=uuid)
+        upload = HONEST["FileTransferStartUpload"] | {"source_component_uuid": uuid}
+        tab.student.send("FileTransferStartUpload", **upload)
+
+
+def hit_every_node(tab: Tab) -> None:
+    """With every index, in every phase of a drag."""
+    owner = {"owner": str(tab.client.client_id)}
+    for name in tab.nodes():
+        for index in INDEXES:
+            at = {"name": name, "instance_index": index, **owner}
+            tab.student.send("SceneNodeClickMessage", **HONEST["SceneNodeClickMessage"] | at)
+            for phase in ("update", "end", "start", "start", "update"):
+                for button in ("right", "left"):
+                    drag = {"phase": phase, "button": button, **at}
+                    tab.student.send("SceneNodeDragMessage", **DRAG | drag)
+        for kind in [kind for kind in HONEST if kind.startswith("Transform")]:
+            tab.student.send(kind, **HONEST[kind] | {"name": name, **owner})
+        tab.settle()
+
+
+@pytest.mark.parametrize("path", ["circle", "clover", "segment"])
+def test_every_node_with_every_index(tab: Tab, path: str) -> None:
+    tab.lab.post(c.ChoosePath(path))
+    wait_for(lambda: tab.lab.session.editor.design.name == path, WAIT)
+    hit_every_node(tab)
+
+
+def test_a_sheet_to_draw_on_with_every_index(tab: Tab) -> None:
+    tab.student.set(ENGLISH("design.draw"), True)
+    wait_for(lambda: any("freehand" in name for name in tab.nodes()), WAIT)
+    hit_every_node(tab)

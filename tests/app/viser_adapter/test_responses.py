@@ -1,0 +1,141 @@
+"""What the server answers to HTTP: headers for browsers, HEAD, odd requests, and /health."""
+
+from __future__ import annotations
+
+import http.client
+import socket
+from collections.abc import Iterator
+
+import pytest
+from websockets import Headers
+from websockets.http11 import Request
+
+from onpath.app.viser_adapter.request_filter import RequestFilter
+from onpath.app.viser_adapter.secure_server import make_server
+
+WAIT = 10.0  # [s]
+METRICS = "pid, memory"
+
+
+@pytest.fixture(scope="module")
+def port() -> Iterator[int]:
+    server = make_server(port=0, health=lambda query: METRICS + query)
+    yield server.get_port()
+    server.stop()
+
+
+def ask(
+    port: int, method: str = "GET", path: str = "/", headers: list[tuple[str, str]] | None = None
+) -> tuple[http.client.HTTPResponse, bytes]:
+    """A response and its body; headers may be repeated."""
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=WAIT)
+    named = {name for name, _ in headers or ()}
+    connection.putrequest(method, path, skip_host="Host" in named, skip_accept_encoding=True)
+    for name, value in headers or ():
+        connection.putheader(name, value)
+    connection.endheaders()
+    response = connection.getresponse()
+    body = response.read()
+    connection.close()
+    return response, body
+
+
+@pytest.mark.parametrize("path", ["/", "/index.html", "/nothing", "/health", "/../x"])
+def test_every_response_tells_a_browser_what_it_may_do(port: int, path: str) -> None:
+    response, _ = ask(port, path=path)
+    policy = (response.getheader("Content-Security-Policy") or "").split("; ")
+    assert "frame-ancestors 'self'" in policy and "object-src 'none'" in policy
+    assert response.headers.get_all("X-Frame-Options") == ["SAMEORIGIN"]
+    assert response.headers.get_all("X-Content-Type-Options") == ["nosniff"]
+    assert response.getheader("Referrer-Policy") == "no-referrer"
+
+
+@pytest.mark.parametrize("path", ["/", "/index.html?x=1", "/nothing", "/health"])
+def test_head_is_answered_as_get_without_a_body(port: int, path: str) -> None:
+    (head, body), (get, shown) = ask(port, "HEAD", path), ask(port, "GET", path)
+    assert body == b"" and head.status == get.status
+    for name in ("Content-Length", "Content-Type", "Content-Security-Policy"):
+        assert head.getheader(name) == get.getheader(name)
+    if shown:
+        assert int(head.getheader("Content-Length") or 0) == len(shown)
+
+
+def test_a_head_that_comes_in_pieces_is_one(port: int) -> None:
+    with socket.create_connection(("127.0.0.1", port), WAIT) as raw:
+        raw.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        for part in (b"H", b"EA", b"D", b" /health HTTP/1.1\r\n", b"Host: x\r\n\r\n"):
+            raw.sendall(part)
+        answer = b"".join(iter(lambda: raw.recv(1 << 16), b""))
+    assert answer.startswith(b"HTTP/1.1 200 ") and answer.endswith(b"\r\n\r\n")
+
+
+HANDSHAKE = [
+    ("Upgrade", "websocket"),
+    ("Connection", "Upgrade"),
+    ("Sec-WebSocket-Key", "dGhlIHNhbXBsZSBub25jZQ=="),
+    ("Sec-WebSocket-Version", "13"),
+]
+
+
+def test_head_opens_no_websocket(port: int) -> None:
+    assert ask(port, "HEAD", "/", HANDSHAKE)[0].status == 200
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ([("Accept-Encoding", "br"), ("Accept-Encoding", "gzip")], 200),
+        ([("Upgrade", "websocket"), *HANDSHAKE], 400),
+        ([("Upgrade", "h2c"), *HANDSHAKE], 400),
+        ([*HANDSHAKE, ("Sec-WebSocket-Version", "13")], 400),
+        ([*HANDSHAKE, ("Sec-WebSocket-Key", "x")], 400),
+        ([("Host", "localhost"), ("Host", "evil.example")], 200),
+        ([("Origin", "http://a"), ("Origin", "http://b"), *HANDSHAKE], 403),
+        ([("Connection", "close"), ("Connection", "close")], 200),
+    ],
+)
+def test_repeated_headers_are_no_error_of_the_server(
+    port: int, headers: list[tuple[str, str]], status: int
+) -> None:
+    response, _ = ask(port, headers=headers)
+    assert response.status == status
+    if headers[0][0] == "Accept-Encoding":
+        assert response.getheader("Content-Encoding") == "gzip"
+
+
+# Health.
+
+
+def health(peer: str, **headers: str) -> str:
+    door = RequestFilter((), local_only=False, health=lambda _: METRICS)
+    named = Headers({name.replace("_", "-"): text for name, text in headers.items()})
+    answer = door.refusal(Request("/health?seconds=3", named), peer)
+    assert answer is not None and answer[0] == 200
+    return answer[1]
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1:8080", "localhost", "localhost:8080", "[::1]:8080"])
+def test_this_machine_is_told_the_metrics(host: str) -> None:
+    assert health("127.0.0.1", Host=host) == health("::1", Host=host) == METRICS
+
+
+@pytest.mark.parametrize(
+    ("peer", "headers"),
+    [
+        ("192.0.2.7", {"Host": "localhost"}),
+        ("", {"Host": "localhost"}),  # a Unix socket, behind which is a proxy
+        ("127.0.0.1", {"Host": "lab.example.org"}),  # rebound, or a proxy
+        ("127.0.0.1", {"Host": "localhost.evil.example"}),
+        ("127.0.0.1", {"Host": "[::1"}),
+        ("127.0.0.1", {}),
+        ("127.0.0.1", {"Host": "localhost", "X_Forwarded_For": "192.0.2.7"}),
+        ("127.0.0.1", {"Host": "localhost", "Origin": "http://evil.example"}),
+    ],
+)
+def test_others_are_told_no_more_than_a_probe_needs(peer: str, headers: dict[str, str]) -> None:
+    assert health(peer, **headers) == "well\n"
+
+
+def test_health_over_the_wire(port: int) -> None:
+    assert ask(port, path="/health?seconds=3")[1] == METRICS.encode() + b"seconds=3"
+    assert ask(port, path="/health", headers=[("Host", "lab.example.org")])[1] == b"well\n"
