@@ -169,6 +169,28 @@ class Records:
         """Close the database."""
         self._engine.dispose()
 
+    def _reopen_if_replaced(self, until: float) -> None:
+        """Open the file anew if it has been deleted or replaced: the old one is nobody's any more.
+
+        Raises:
+            NotKept: it cannot be opened or created.
+        """
+        if self._file is None or self.warning or identity(self._file) == self._identity:
+            return
+        try:
+            if self._file.parent.exists():
+                discard_journals(self._file, self._journals)
+            self._engine.dispose()
+            left = max(until - time.monotonic(), 0.0)
+            self._engine, self._identity = opened_file(self._url, self._clock, left)
+        except NotKept:
+            raise
+        except OSError as error:
+            raise NotKept("error.database", reason=error.strerror or str(error)) from error
+        self._journals = journals_of(self._file)
+        self.generation += 1
+        log.warning("%s was deleted or replaced: labs in use are kept anew in it", self._file)
+
     @contextmanager
     def transaction(self) -> Iterator[sa.Connection]:
         """A transaction; serialised with all others in SQLite.
@@ -195,28 +217,6 @@ class Records:
             raise NotKept("error.database", reason=words(error)) from error
         finally:
             self._lock.release()
-
-    def _reopen_if_replaced(self, until: float) -> None:
-        """Open the file anew if it has been deleted or replaced: the old one is nobody's any more.
-
-        Raises:
-            NotKept: it cannot be opened or created.
-        """
-        if self._file is None or self.warning or identity(self._file) == self._identity:
-            return
-        try:
-            if self._file.parent.exists():
-                discard_journals(self._file, self._journals)
-            self._engine.dispose()
-            left = max(until - time.monotonic(), 0.0)
-            self._engine, self._identity = opened_file(self._url, self._clock, left)
-        except NotKept:
-            raise
-        except OSError as error:
-            raise NotKept("error.database", reason=error.strerror or str(error)) from error
-        self._journals = journals_of(self._file)
-        self.generation += 1
-        log.warning("%s was deleted or replaced: labs in use are kept anew in it", self._file)
 
     def _opened(self) -> sa.Engine:
         if self._url.get_backend_name() != "sqlite":

@@ -35,8 +35,8 @@ def test_the_report_has_the_code_only_when_its_owner_says_so(
     student.set(button, True)
     student.read(lambda: len(codes) == 1 and student.code)
     assert codes == [""]
-    kept = student.may(ENGLISH("keep.other"))
-    assert student.may(choice) == student.sees(ENGLISH("keep.with_code_means")) == kept
+    kept = student.has_widget(ENGLISH("keep.other"))
+    assert student.has_widget(choice) == student.sees(ENGLISH("keep.with_code_means")) == kept
     if kept:
         for chosen in (True, False):
             student.set(choice, chosen)

@@ -124,7 +124,7 @@ def tab() -> Iterator[Tab]:
     server = LabServer("127.0.0.1", 0, LoopCache(), limits=WIDE)
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.moving > 3 and student.may("K2"))
+        student.read(lambda: student.moving > 3 and student.has_widget("K2"))
         (entry,) = server.sessions._entries.values()
         yield Tab(student, server, entry.scheduled.lab)
     server.stop()
