@@ -86,12 +86,15 @@ def opened_file(
         OSError: it cannot be used.
     """
     file = file_of(url)
-    for _ in range(3):
+    for _ in range(5):
         if file is not None:
             make_private_file(file)
         before = identity(file)
         try:
-            return _prepared(url, patience), before
+            engine = _prepared(url, patience)
+            if identity(file) == before:
+                return engine, before
+            engine.dispose()  # another process has replaced it: which one is open?
         except _Broken as error:
             if file is not None:
                 _move_aside(file, before, str(error), clock)
@@ -117,10 +120,11 @@ def identity(file: Path | None) -> Identity | None:
     return None if found is None else (found.st_dev, found.st_ino)
 
 
-def journals_of(file: Path | None) -> dict[Path, Identity | None]:
-    """The journals of a database that is open, and which files they are."""
+def journals_of(file: Path | None, known: Identity | None) -> dict[Path, Identity | None]:
+    """The journals of an open database, and which files they are; none if it has been replaced."""
     parts = [] if file is None else [file.with_name(file.name + tail) for tail in JOURNALS]
-    return {part: identity(part) for part in parts}
+    found = {part: identity(part) for part in parts}
+    return found if identity(file) == known else {}
 
 
 def discard_journals(file: Path, journals: dict[Path, Identity | None]) -> None:

@@ -98,7 +98,7 @@ class Records:
         self._file = file_of(self._url)
         self._identity: Identity | None = None
         self._engine = self._opened()
-        self._journals = journals_of(self._file)
+        self._journals = journals_of(self._file, self._identity)
 
     def load(self, code: str) -> dict[str, Any] | None:
         """The state of a lab; None if there is none.
@@ -187,7 +187,7 @@ class Records:
             raise
         except OSError as error:
             raise NotKept("error.database", reason=error.strerror or str(error)) from error
-        self._journals = journals_of(self._file)
+        self._journals = journals_of(self._file, self._identity)
         self.generation += 1
         log.warning("%s was deleted or replaced: labs in use are kept anew in it", self._file)
 

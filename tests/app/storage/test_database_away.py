@@ -158,7 +158,7 @@ def test_while_one_lab_waits_for_the_database_those_behind_it_are_not_kept_eithe
             tries.append(code)
             if len(tries) == 1:
                 held.wait(60.0)
-                raise NotKept("database is locked")
+                raise NotKept("error.database", reason="database is locked")
             gate.wait(60.0)
 
     held = threading.Event()
