@@ -114,32 +114,31 @@ def _advance(loop: Loop, members: Sequence[Row]) -> None:
         ticks.count,
     )
     faults = _faults(members, states, log.unpack(rows))
-    if any(faults):
-        sound = np.array([fault is None for fault in faults])
-        for (run, own), each, fault in zip(members, rows, faults, strict=True):
-            if fault is not None:
-                run.stop(fault, each, own.time + fault[0] * own.dt)
-        states, rows = states[sound], rows[sound]
-        members = [member for member, good in zip(members, sound, strict=True) if good]
-        if not members:
-            return
-    curves = [own.curve for _, own in members]
-    distances = _distances(first.robot, first.kind, curves, log.unpack(rows))
-    last, most = distances[:, -1].tolist(), np.fmax.reduce(distances, axis=1).tolist()
-    for (run, _), *result in zip(members, states, rows[:, -1], last, most, strict=True):
-        run.take(*result)
+    good = [i for i, fault in enumerate(faults) if fault is None]
+    if good:
+        states, moved = (states, rows) if len(good) == len(rows) else (states[good], rows[good])
+        curves = [members[i][1].curve for i in good]
+        distances = _distances(first.robot, first.kind, curves, log.unpack(moved))
+        last, most = distances[:, -1].tolist(), np.fmax.reduce(distances, axis=1).tolist()
+        for i, *result in zip(good, states, moved[:, -1], last, most, strict=True):
+            members[i][0].take(*result)
+    for (run, own), each, fault in zip(members, rows, faults, strict=True):
+        if fault is not None:
+            run.stop(fault, each, own.time + fault[0] * own.dt)
 
 
 def _faults(
     members: Sequence[Row], states: Array, log: dict[str, Array]
 ) -> list[tuple[int, Message] | None]:
     """The first bad tick of each, and why; None if there is none."""
-    (first, ticks), finite = members[0], np.isfinite(states).all(axis=1)
-    robot, q, v = first.robot, log["q"], log["v"]
-    every = (each.reshape(-1, each.shape[-1]) for each in (q, v))
-    if finite.all() and robot.fault(*every, ticks.parameters) is None:
+    first, ticks = members[0]
+    robot = first.robot
+    finite = [bool(row.all()) for row in np.isfinite(states)]
+    q, v = log["q"], log["v"]
+    every = q.reshape(-1, q.shape[-1]), v.reshape(-1, v.shape[-1])
+    if all(finite) and robot.fault(*every, ticks.parameters) is None:
         return [None] * len(members)
-    found = [robot.fault(*own, m.parameters) for *own, (_, m) in zip(q, v, members, strict=True)]
+    found = [robot.fault(q[i], v[i], own.parameters) for i, (_, own) in enumerate(members)]
     return [
         (ticks.count, NOT_FINITE) if fault is None and not good else fault
         for fault, good in zip(found, finite, strict=True)

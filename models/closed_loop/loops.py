@@ -97,14 +97,14 @@ class CompiledLoop:
     """Runs machine code through ctypes. Thread-safe.
 
     Calls of more than `SHORT` ticks release the interpreter's lock. Shorter ones keep it: they take
-    less than a few milliseconds, for which reacquiring the lock from a busy thread can take as
-    long.
+    half a millisecond, or a few with a flexible robot, while reacquiring the lock from a busy
+    thread may take 5 ms.
 
     Args:
         kernel: what was compiled.
         address: of `void onpath_run(const double* settings, const double* curves, double* states,
             double* logs, long long ticks, long long robots)`, which advances the states and fills
-            the logs. Each argument has the arrays of one robot after those of the other.
+            the logs. Each argument holds the arrays of one robot after those of another.
         owner: the object that keeps the machine code in memory.
     """
 

@@ -108,7 +108,7 @@ def near_distances(frame: Frame, curves: Sequence[Curve], y: Array, theta: Array
     better, distances = _refined(frame, every, y, theta)
     guessed = np.sqrt(((frame.lift(every.at(theta)) - y) ** 2).sum(-1))
     astray = ~((np.abs(better - theta) < NEAR) & (distances <= guessed + 1e-12))
-    for i in np.flatnonzero(astray.any(axis=1)):
+    for i in np.flatnonzero(astray.any(axis=1)).tolist():
         own = astray[i]
         distances[i, own] = path_distance(frame, curves[i], y[i, own], 64)
     return distances
