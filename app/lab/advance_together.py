@@ -133,15 +133,15 @@ def _faults(
     """The first bad tick of each, and why; None if there is none."""
     first, ticks = members[0]
     robot = first.robot
-    finite = [bool(row.all()) for row in np.isfinite(states)]
+    finite = np.isfinite(states)
     q, v = log["q"], log["v"]
     every = q.reshape(-1, q.shape[-1]), v.reshape(-1, v.shape[-1])
-    if all(finite) and robot.fault(*every, ticks.parameters) is None:
+    if finite.all() and robot.fault(*every, ticks.parameters) is None:
         return [None] * len(members)
     found = [robot.fault(q[i], v[i], own.parameters) for i, (_, own) in enumerate(members)]
     return [
-        (ticks.count, NOT_FINITE) if fault is None and not good else fault
-        for fault, good in zip(found, finite, strict=True)
+        (ticks.count, NOT_FINITE) if fault is None and not numbers.all() else fault
+        for fault, numbers in zip(found, finite, strict=True)
     ]
 
 
