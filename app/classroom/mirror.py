@@ -7,11 +7,13 @@ received state to the next, with the same loop and the same pushes, and never be
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Generator
 
 import numpy as np
 
 from onpath.app.classroom.moment import Moment, read_moment, take_over
 from onpath.app.common.error_log import log_warning
+from onpath.app.lab.advance_together import Frame, Ticks
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import MOST_TICKS
 from onpath.app.simulation.simulation_thread import FRAME, ScheduledLab
@@ -65,12 +67,12 @@ class Mirror(ScheduledLab):
         """See `ScheduledLab.achieved`."""
         return self._now.achieved
 
-    def advance(self, seconds: float) -> None:
-        """Advance by one frame; see `Lab.advance`."""
+    def frame(self, seconds: float) -> Frame:
+        """Advance by one frame; see `ScheduledLab.frame`."""
         self._take_over_due()
         self._owed += self._step()
         while self._coming and self._runs():
-            if not self._run_towards(self._coming[0]):
+            if not (yield from self._run_towards(self._coming[0])):
                 return
             self._take_over_due()
         self._owed = 0.0
@@ -103,7 +105,7 @@ class Mirror(ScheduledLab):
             or self._coming[-1].time - self.session.time > FURTHEST * new.rate
         )
 
-    def _run_towards(self, new: Moment) -> bool:
+    def _run_towards(self, new: Moment) -> Generator[Ticks, None, bool]:
         """Simulate towards a state as far as this frame allows; returns whether it was reached."""
         session, dt = self.session, time_step(self.session.parameters)
         there = max(1, round((new.time - session.time) / dt))
@@ -112,7 +114,7 @@ class Mirror(ScheduledLab):
             return False
         self._owed = min(self._owed - ticks * dt, FRAME * session.rate)
         self._move_hands(new, session.time + ticks * dt)
-        session.simulate(ticks)
+        yield from session.frame_of(ticks)
         self.lab.show_faults()
         if ticks == there:
             session.time = new.time

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
 
 import numpy as np
 
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.segments import Drive, Input
+from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loops import CompiledLoop, Loop
 from onpath.models.closed_loop.simulation import (
     Push,
     first_state,
@@ -23,9 +24,7 @@ from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import near_distance
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.robots import NOT_FINITE, Robot
-
-DISTANCE_INTERVAL = 4  # rows between evaluations of the distance, where the loop does not log it
+from onpath.models.systems.robots import Robot
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +46,7 @@ class ClosedLoopRun:
         self.diverged: Diverged | None = None
         self.distance = self.max_distance = 0.0
         self._inputs: tuple[object, object, object] = (None, None, None)
-        self._configure(parameters, curve, Push())
+        self.configure(parameters, curve, Push())
         self._input = Input(self.kind, self.settings, frozen=False)
         self.reset(curve, start)
 
@@ -101,55 +100,43 @@ class ClosedLoopRun:
             self._input = Input(self.kind, self.settings, frozen)
         return self._input
 
-    def advance(
-        self,
-        store: LoopCache,
-        parameters: Parameters,
-        curve: Curve,
-        table: np.ndarray,
-        push: Push,
-        ticks: int,
-        time: float,
-        dt: float,
-    ) -> None:
-        """Simulate some ticks; on a fault stop at the last good state and report why."""
-        self._configure(parameters, curve, push)
-        if self.diverged is not None:
-            return
-        state, rows = store.get(self.robot, self.kind).run(self.state, self.settings, table, ticks)
-        slices = self.log.slices
-        fault = self.robot.fault(rows[:, slices["q"]], rows[:, slices["v"]], parameters)
-        if fault is None and not isfinite(sum(state.tolist())):
-            fault = (len(rows), NOT_FINITE)
-        if fault is not None:
-            self.diverged = Diverged(fault[1], time + fault[0] * dt)
-            good = np.flatnonzero(np.isfinite(rows[: fault[0]]).all(axis=1))
-            if good.size:
-                self.row = rows[good[-1]].copy()
-            return
-        self.state, self.row = state, rows[-1].copy()
-        distances = self._distances(curve, rows)
-        self.distance = distances[-1]
-        self.max_distance = max(self.max_distance, *distances)
+    def loop(self, store: LoopCache) -> Loop:
+        """The fastest loop of its kind available now."""
+        if not isinstance(self._loop, CompiledLoop):
+            self._loop = store.get(self.robot, self.kind)
+        return self._loop
 
-    def _distances(self, curve: Curve, rows: np.ndarray) -> list[float]:
-        """Distances of the end-point to the path, including the last row, [m]."""
-        system, slices = self.robot.system, self.log.slices
-        seen = system.controlled_output is system.output and not self.kind.encoder
-        if seen and not self.kind.level_set and system.p == 2:
-            return [abs(xi) for xi in rows[:, slices["xi"].start].tolist()]
-        some = rows[(len(rows) - 1) % DISTANCE_INTERVAL :: DISTANCE_INTERVAL]
-        return near_distance(
-            self.robot.frame, curve, some[:, slices["y"]], some[:, slices["theta"].start]
-        ).tolist()
+    def take(self, state: Array, row: Array, distance: float, largest: float) -> None:
+        """Take over the results of some ticks.
 
-    def _configure(self, parameters: Parameters, curve: Curve, push: Push) -> None:
-        """Pack a new settings vector if an input changed."""
+        Args:
+            state, row: at the end; copied, because they may be parts of large arrays.
+            distance, largest: at the end, and the largest during these ticks, [m].
+        """
+        self.state, self.row, self.distance = state.copy(), row.copy(), distance
+        self.max_distance = max(self.max_distance, largest)
+
+    def stop(self, fault: tuple[int, Message], rows: Array, time: float) -> None:
+        """Stop at the last good state, and show the last good row before the fault.
+
+        Args:
+            fault: tick and reason.
+            rows: log rows of the ticks.
+            time: of the fault, [s].
+        """
+        self.diverged = Diverged(fault[1], time)
+        good = np.flatnonzero(np.isfinite(rows[: fault[0]]).all(axis=1))
+        if good.size:
+            self.row = rows[good[-1]].copy()
+
+    def configure(self, parameters: Parameters, curve: Curve, push: Push) -> None:
+        """Set the inputs; packs a new settings vector if one has changed."""
         before, self._inputs = self._inputs, (parameters, curve, push)
         same = before[0] is parameters and before[1] is curve
         if same and before[2] is push:
             return
         self.kind: Kind = kind_of(self.controller, parameters, curve, push)
+        self._loop: Loop | None = None
         kernel = kernel_of(self.robot, self.kind)
         self.log: Layout = kernel.log
         if same:

@@ -12,6 +12,7 @@ from math import inf
 from time import perf_counter
 from typing import ClassVar
 
+from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.script_player import ScriptPlayer
@@ -151,11 +152,15 @@ class Lab:
 
     # The simulated lab
 
-    def advance(self, seconds: float) -> None:
-        """Simulate `seconds` of simulated time, if running and not frozen."""
+    def frame(self, seconds: float) -> Frame:
+        """Simulate `seconds` if running and not frozen; see `advance_together`."""
         if not self.frozen:
-            self.session.advance(seconds)
+            yield from self.session.frame(seconds)
             self.show_faults()
+
+    def advance(self, seconds: float) -> None:
+        """Simulate `seconds` of simulated time of this lab alone."""
+        advance_together([self.frame(seconds)])
 
     def set_up(self, setup: Setup) -> None:
         """Apply a set-up, with both robots at the start of the path. The old path is one undo away.

@@ -11,6 +11,7 @@ from operator import is_
 
 import numpy as np
 
+from onpath.app.lab.advance_together import Frame, Ticks, advance_together
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.history import History
@@ -106,8 +107,8 @@ class Session:
 
     # Time
 
-    def advance(self, seconds: float) -> None:
-        """Simulate `seconds` of simulated time, if running."""
+    def frame(self, seconds: float) -> Frame:
+        """Simulate `seconds` of simulated time, if running; see `advance_together`."""
         if not self.running:
             self._owed = 0.0
             if self.viewing is None:
@@ -118,17 +119,27 @@ class Session:
         ticks = min(int(self._owed / dt + 1e-9), MOST_TICKS)
         self._owed = min(self._owed - ticks * dt, MOST_TICKS * dt)
         if ticks:
-            self.simulate(ticks)
+            yield from self.frame_of(ticks)
 
     def simulate(self, ticks: int) -> None:
+        """Simulate some ticks of this session alone."""
+        advance_together([self.frame_of(ticks)])
+
+    def frame_of(self, ticks: int) -> Frame:
         """Simulate both robots for some ticks, with the same path, settings and external forces."""
-        dt = time_step(self.parameters)
+        dt, parameters = time_step(self.parameters), self.parameters
         self._bend(ticks * dt)
-        curve, runs = self.editor.curve, list(self.runs.values())
+        curve, table, runs = self.editor.curve, self.editor.table, list(self.runs.values())
+        for run in runs:
+            run.configure(parameters, curve, self.grips.pushes[run.controller])
         states, most = [run.state for run in runs], [run.max_distance for run in runs]
         rows, distances = [run.row for run in runs], [run.distance for run in runs]
-        for run in runs:
-            self._advance(run, ticks, dt)
+        moving = [(run, run.loop(self._store)) for run in runs if run.diverged is None]
+        yield Ticks(moving, ticks, self.time, dt, parameters, curve, table)
+        for run, _ in moving:
+            if run.diverged is not None:
+                self.note("diverged", controllers=(run.controller,))
+                self.faults.append(run.controller)
         inputs = {run.controller: run.input() for run in runs}
         if self._inputs is None or not self._inputs.are(curve, dt, inputs.values()):
             self._inputs = Inputs(curve, dt, inputs)
@@ -136,16 +147,6 @@ class Session:
             HistoryFrame(self.time, ticks, self._inputs, states, most, rows, distances)
         )
         self.time += ticks * dt
-
-    def _advance(self, run: ClosedLoopRun, ticks: int, dt: float) -> None:
-        was, name = run.diverged, run.controller
-        editor, push = self.editor, self.grips.pushes[name]
-        run.advance(
-            self._store, self.parameters, editor.curve, editor.table, push, ticks, self.time, dt
-        )
-        if run.diverged is not None and was is None:
-            self.note("diverged", controllers=(name,))
-            self.faults.append(name)
 
     def _bend(self, seconds: float) -> None:
         """Advance the blend of an edited path."""

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from onpath.app.common.error_log import log_error
+from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import DisplayRate
 
@@ -69,13 +70,16 @@ class ScheduledLab:
         self._credit = min(self._credit, 0.0) + COMMANDS
         self._credit -= self.lab.drain(self._credit)
 
-    def advance(self, seconds: float) -> None:
-        """Simulate a frame of this length. Simulated time is paused while nobody looks."""
+    def frame(self, seconds: float) -> Frame:
+        """Simulate a frame of this length; see `advance_together`.
+
+        Simulated time is paused while nobody looks.
+        """
         session = self.session
         if self.view is None:
             return
         before = session.time
-        self.lab.advance(session.rate * FRAME)
+        yield from self.lab.frame(session.rate * FRAME)
         if session.running and not self.lab.frozen:
             self._simulated += session.time - before - self._simulated * FADING
             self._passed += seconds - self._passed * FADING
@@ -163,14 +167,14 @@ class SimulationThread:
             last, count = now, count + 1
 
     def _frame(self, seconds: float, count: int, stride: float) -> float:
-        """Run one frame: each step for all labs in turn, which is faster than lab by lab (cache).
+        """Run one frame: each step for all labs, which is faster than lab by lab.
 
         Returns:
             Time spent on the display, [s].
         """
         labs = self._labs
         _do(ScheduledLab.drain, labs)
-        _do(lambda lab: lab.advance(seconds), labs)
+        advance_together([lab.frame(seconds) for lab in labs], log_error)
         begun = self._clock()
         _do(lambda lab: lab.show(count, stride), labs)
         _do(ScheduledLab.send, labs)

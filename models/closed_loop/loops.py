@@ -1,13 +1,14 @@
 """Two ways to run a kernel: interpreted by CasADi's virtual machine, or compiled to machine code.
 
-Both run many ticks per call and agree bit by bit. The interpreted loop is available at once. The
-compiled loop (translated_loop.py) is an order of magnitude faster and, in long calls, releases the
-Python interpreter's lock.
+Both run many ticks per call, of one robot or of several, and agree bit by bit. The interpreted loop
+is available at once. The compiled loop (translated_loop.py) is an order of magnitude faster and, in
+long calls, releases the Python interpreter's lock.
 """
 
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -15,9 +16,11 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.paths.curves import TABLE_SHAPE
 
+TABLE_SIZE = TABLE_SHAPE[0] * TABLE_SHAPE[1]
 BLOCK = 16  # ticks per call of the interpreted loop, about one frame of the display
-SHORT = 100  # ticks up to which a compiled loop does not release the interpreter's lock
+SHORT = 1000  # ticks, of all robots, up to which a compiled loop keeps the interpreter's lock
 
 
 class Loop(Protocol):
@@ -37,6 +40,21 @@ class Loop(Protocol):
 
         Returns:
             The new state, shape (kernel.state.size,), and the log rows, (ticks, kernel.log.size).
+        """
+        ...
+
+    def run_many(
+        self,
+        states: Sequence[Array],
+        settings: Sequence[Array],
+        tables: Sequence[Array],
+        ticks: int,
+    ) -> tuple[Array, Array]:
+        """Advance several robots by `ticks`; the arguments of `run`, one per robot.
+
+        Returns:
+            The new states, (robots, kernel.state.size), and log rows, (robots, ticks,
+            kernel.log.size), bit by bit those of `run`.
         """
         ...
 
@@ -62,40 +80,73 @@ class InterpretedLoop:
             done += size
         return state.copy(), rows
 
+    def run_many(
+        self,
+        states: Sequence[Array],
+        settings: Sequence[Array],
+        tables: Sequence[Array],
+        ticks: int,
+    ) -> tuple[Array, Array]:
+        """See `Loop.run_many`."""
+        inputs = zip(states, settings, tables, strict=True)
+        after, rows = zip(*[self.run(*own, ticks) for own in inputs], strict=True)
+        return np.stack(after), np.stack(rows)
+
 
 class CompiledLoop:
     """Runs machine code through ctypes. Thread-safe.
 
-    Calls of more than `SHORT` ticks release the interpreter's lock. Shorter ones keep it: a frame's
-    worth of ticks takes some microseconds, while reacquiring the lock from a busy thread takes
-    about a hundred times as long.
+    Calls of more than `SHORT` ticks release the interpreter's lock. Shorter ones keep it: they take
+    half a millisecond, or a few with a flexible robot, while reacquiring the lock from a busy
+    thread may take 5 ms.
 
     Args:
         kernel: the kernel that was compiled.
-        address: of `void onpath_run(const double* settings, const double* curve, double* state,
-            double* log, long long ticks)`, which advances the state and fills the log.
+        address: of `void onpath_run(const double* settings, const double* curves, double* states,
+            double* logs, long long ticks, long long robots)`, which advances the states and fills
+            the logs. Each argument holds the arrays of one robot after those of another.
         owner: the object that keeps the machine code in memory.
     """
 
     def __init__(self, kernel: Kernel, address: int, owner: object) -> None:
         self.kernel = kernel
-        self._width = kernel.log.size
         self._short = ctypes.PYFUNCTYPE(*_SIGNATURE)(address)
         self._long = ctypes.CFUNCTYPE(*_SIGNATURE)(address)
         self._owner = owner
 
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """See `Loop.run`."""
-        after = np.array(state, dtype=float)
-        rows = np.empty((ticks, self._width))
-        settings = np.ascontiguousarray(settings, dtype=float)
-        table = np.ascontiguousarray(table, dtype=float)
-        run = self._short if ticks <= SHORT else self._long
-        run(_address(settings), _address(table), _address(after), _address(rows), ticks)
+        after, rows = self.run_many([state], [settings], [table], ticks)
+        return after[0], rows[0]
+
+    def run_many(
+        self,
+        states: Sequence[Array],
+        settings: Sequence[Array],
+        tables: Sequence[Array],
+        ticks: int,
+    ) -> tuple[Array, Array]:
+        """See `Loop.run_many`."""
+        kernel, robots = self.kernel, len(states)
+        after = _stacked(states, robots, kernel.state.size)
+        own = _stacked(settings, robots, kernel.settings.size)
+        curves = _stacked(tables, robots, TABLE_SIZE)
+        rows = np.empty((robots, ticks, kernel.log.size))
+        run = self._short if ticks * robots <= SHORT else self._long
+        run(_address(own), _address(curves), _address(after), _address(rows), ticks, robots)
         return after, rows
 
 
-_SIGNATURE = (None, *[ctypes.c_void_p] * 4, ctypes.c_longlong)
+def _stacked(vectors: Sequence[Array], count: int, size: int) -> Array:
+    """A new array (count, size) of flat vectors; faster than `np.stack`.
+
+    Raises:
+        ValueError: there are not so many vectors, or not of this size.
+    """
+    return np.concatenate(vectors, dtype=float).reshape(count, size)
+
+
+_SIGNATURE = (None, *[ctypes.c_void_p] * 4, *[ctypes.c_longlong] * 2)
 _begin = (ctypes.c_char * 0).from_buffer
 _addressof = ctypes.addressof
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import casadi as ca
 
 from onpath.models.closed_loop.kernel import Kernel
-from onpath.models.closed_loop.loops import CompiledLoop
+from onpath.models.closed_loop.loops import TABLE_SIZE, CompiledLoop
 
 _LIBRARY = ("sin", "cos")  # LLVM calls these from the C library
 OPERATIONS = {
@@ -40,14 +40,14 @@ OPERATIONS = {
     "  {v} = select i1 {v}.is, double {1}, double 0.0",
 }
 _LOOP = """
-define void @onpath_run(ptr noalias %settings, ptr noalias %curve, ptr noalias %state,
-                        ptr noalias %log, i64 %ticks) {{
+define internal void @one_robot(ptr noalias %settings, ptr noalias %curve, ptr noalias %state,
+                                ptr noalias %log, i64 %ticks) {{
 before:
   %any = icmp sgt i64 %ticks, 0
   br i1 %any, label %tick, label %after
 tick:
   %k = phi i64 [0, %before], [%later, %tick]
-  %offset = mul i64 %k, {width}
+  %offset = mul i64 %k, {log}
   %row = getelementptr double, ptr %log, i64 %offset
   {tick}
   %later = add i64 %k, 1
@@ -56,18 +56,48 @@ tick:
 after:
   ret void
 }}
+
+define void @onpath_run(ptr %settings, ptr %curves, ptr %states, ptr %logs, i64 %ticks,
+                        i64 %robots) {{
+before:
+  %length = mul i64 %ticks, {log}
+  %any = icmp sgt i64 %robots, 0
+  br i1 %any, label %robot, label %after
+robot:
+  %i = phi i64 [0, %before], [%next, %robot]
+  %i.settings = mul i64 %i, {settings}
+  %i.curve = mul i64 %i, {curve}
+  %i.state = mul i64 %i, {state}
+  %i.log = mul i64 %i, %length
+  %own.settings = getelementptr double, ptr %settings, i64 %i.settings
+  %own.curve = getelementptr double, ptr %curves, i64 %i.curve
+  %own.state = getelementptr double, ptr %states, i64 %i.state
+  %own.log = getelementptr double, ptr %logs, i64 %i.log
+  call void @one_robot(ptr %own.settings, ptr %own.curve, ptr %own.state, ptr %own.log, i64 %ticks)
+  %next = add i64 %i, 1
+  %more = icmp slt i64 %next, %robots
+  br i1 %more, label %robot, label %after
+after:
+  ret void
+}}
 """
 
 
 def translate(kernel: Kernel) -> str:
-    """LLVM assembly of `onpath_run`, the loop around the kernel's tick; see `CompiledLoop`.
+    """LLVM assembly of `onpath_run`, the loops around the kernel's tick; see `CompiledLoop`.
 
     Raises:
         NotImplementedError: the tick contains an operation without a translation; the message names
             it.
     """
     tick = instructions(kernel.tick(), ("%state", "%settings", "%curve"), ("%state", "%row"))
-    return _LOOP.format(width=kernel.log.size, tick="\n  ".join(tick))
+    return _LOOP.format(
+        settings=kernel.settings.size,
+        curve=TABLE_SIZE,
+        state=kernel.state.size,
+        log=kernel.log.size,
+        tick="\n  ".join(tick),
+    )
 
 
 def instructions(function: ca.Function, inputs: Sequence[str], outputs: Sequence[str]) -> list[str]:

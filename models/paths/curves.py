@@ -11,7 +11,7 @@ Outside [-π, π] an open curve continues along its end tangents.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,7 +63,7 @@ class Curve:
         return value if order == 1 else np.where(beyond == 0, value, 0.0)
 
     def all_orders(self, theta: Array) -> list[Array]:
-        """[σ, σ', σ'', σ'''] at θ, shape (n,) -> four arrays (n, 2).
+        """[σ, σ', σ'', σ'''] at θ, shape (..., n) -> four arrays (..., n, 2).
 
         Equal to four calls of `at`, but evaluates the basis once.
         """
@@ -71,7 +71,7 @@ class Curve:
         basis = _basis(inner, self.closed)
         values = [basis @ self.series[order] for order in range(ORDERS)]
         if not self.closed:
-            beyond = (theta - inner)[:, None]
+            beyond = (theta - inner)[..., None]
             values[0] = values[0] + beyond * values[1]
             values[2:] = [np.where(beyond == 0, value, 0.0) for value in values[2:]]
         return values
@@ -146,6 +146,17 @@ class Curve:
         if not self.closed or a * b == 0 or skew + np.abs(others).max() > 1e-9:
             return None
         return table[0], np.array([b / a, a / b]), float(a * b)
+
+
+def stacked(curves: Sequence[Curve]) -> Curve:
+    """Several curves as one, which maps θ of shape (curves, n) to points (curves, n, 2).
+
+    Bit by bit the same as curve by curve.
+
+    Args:
+        curves: all closed, or all open.
+    """
+    return Curve(curves[0].closed, np.stack([curve.series for curve in curves], axis=1))
 
 
 def nearest(curve: Callable[[Array], Array], grid: Array, points: Array) -> tuple[Array, Array]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
-from onpath.models.paths.curves import Curve, local_minima
+from onpath.models.paths.curves import Curve, local_minima, stacked
 from onpath.models.paths.frames import Frame
 
 CHUNK = 4096  # points per array operation, which bounds the memory
@@ -88,11 +90,27 @@ def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:
     Returns:
         Shape (n,), [m].
     """
-    better, distances = _refined(frame, curve, y, theta)
-    guessed = np.sqrt(((frame.lift(curve.at(theta)) - y) ** 2).sum(-1))
+    return near_distances(frame, [curve], y[None], theta[None])[0]
+
+
+def near_distances(frame: Frame, curves: Sequence[Curve], y: Array, theta: Array) -> Array:
+    """`near_distance` to several curves at once, bit by bit the same as one by one.
+
+    Args:
+        curves: all closed, or all open.
+        y: points, shape (curves, n, p), [m].
+        theta: guesses, shape (curves, n), [rad].
+
+    Returns:
+        Shape (curves, n), [m].
+    """
+    every = stacked(curves)
+    better, distances = _refined(frame, every, y, theta)
+    guessed = np.sqrt(((frame.lift(every.at(theta)) - y) ** 2).sum(-1))
     astray = ~((np.abs(better - theta) < NEAR) & (distances <= guessed + 1e-12))
-    if astray.any():
-        distances[astray] = path_distance(frame, curve, y[astray], 64)
+    for i in np.flatnonzero(astray.any(axis=1)).tolist():
+        own = astray[i]
+        distances[i, own] = path_distance(frame, curves[i], y[i, own], 64)
     return distances
 
 
@@ -110,19 +128,19 @@ def _refined(
             that steps can be long where nearly all of the curve is equally far away.
 
     Returns:
-        θ + δ [rad] and |P(δ) - y| [m], each shape (n,).
+        θ + δ [rad] and |P(δ) - y| [m], each of the shape of θ.
     """
     origin = frame.lift(np.zeros(2))
     sigma, *derivatives = curve.all_orders(theta)
     point = frame.lift(sigma)
     first, second, third = (frame.lift(derivative) - origin for derivative in derivatives)
-    step = np.zeros((len(theta), 1))
+    step = np.zeros((*theta.shape, 1))
     least = 0.2 if reach == np.inf else 1e-4  # smallest derivative, in units of |P'|²
     for _ in range(2):
         gap = point + step * (first + step / 2 * (second + step / 3 * third)) - y
         tangent = first + step * (second + step / 2 * third)
         squared = (tangent**2).sum(-1)
         slope = np.maximum(squared + (gap * (second + step * third)).sum(-1), least * squared)
-        step = np.clip(step - ((gap * tangent).sum(-1) / slope)[:, None], -reach, reach)
+        step = np.clip(step - ((gap * tangent).sum(-1) / slope)[..., None], -reach, reach)
     gap = point + step * (first + step / 2 * (second + step / 3 * third)) - y
-    return theta + step[:, 0], np.sqrt((gap**2).sum(-1))
+    return theta + step[..., 0], np.sqrt((gap**2).sum(-1))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -19,8 +18,6 @@ from onpath.models.systems.robots import BalancedLinkage, PlanarRobot, RobotEntr
 from onpath.models.systems.system import MechanicalSystem
 
 COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed
-SHORT = 20  # rows, one per tick
-SLOW, FAR = 20.0, 0.5  # [rad/s], |sin(q1 - q2)|: too far from a fault to have had one in SHORT rows
 DRAWING = Drawing(box=((-0.16, -0.03, -0.19), (0.31, 0.03, 0.425)))
 
 
@@ -87,7 +84,7 @@ class RigidFiveBar(PlanarRobot):
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """See `Robot.fault`."""
-        return None if is_calm(q, v) else first_fault(q, v, collapse(q))
+        return first_fault(q, v, collapse(q))
 
     def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
         """See `Robot.skeleton`; rigid links have no deflection to exaggerate."""
@@ -132,17 +129,6 @@ def collapse(q: Array) -> tuple[NDArray[np.bool_], Message]:
     with np.errstate(invalid="ignore"):  # `first_fault` finds numbers that are not finite
         collapsed = five_bar.singularity_margin(q) < COLLAPSED
     return collapsed, Message("stop.collapsed")
-
-
-def is_calm(q: Array, v: Array) -> bool:
-    """Whether the last row is so far from any fault that none of the rows before can have one.
-
-    Args:
-        q, v: shape (rows, 2), at most `SHORT` rows. NaN and infinity persist to the last row.
-    """
-    (first, second), (fast, faster) = q[-1].tolist(), v[-1].tolist()
-    apart = abs(math.sin(first - second))  # comparisons with NaN are false
-    return len(q) <= SHORT and abs(fast) < SLOW and abs(faster) < SLOW and apart > FAR
 
 
 def _own(parameters: Parameters) -> FiveBarParameters:

@@ -132,6 +132,9 @@ class Robot(Protocol):
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """The first row in which the simulation has diverged, and why; None if in none.
 
+        Whether a row has diverged depends on that row alone, so that the rows of several robots can
+        be searched together; the reason may depend on the parameters.
+
         Args:
             q, v: shape (rows, n).
         """

@@ -189,10 +189,16 @@ static void tick(const Settings *s, const double *table, State *x, Row *row) {
   x->phase = x->phase + 1 < s->hold_ticks - 0.5 ? x->phase + 1 : 0;
 }
 
-void onpath_run(const double *settings, const double *table, double *state, double *log,
+static void run(const Settings *settings, const double *table, State *state, Row *log,
                 long long ticks) {
-  State x = *(const State *)state;
-  for (long long k = 0; k < ticks; ++k)
-    tick((const Settings *)settings, table, &x, (Row *)log + k);
-  *(State *)state = x;
+  State x = *state;
+  for (long long k = 0; k < ticks; ++k) tick(settings, table, &x, log + k);
+  *state = x;
+}
+
+void onpath_run(const double *settings, const double *tables, double *states, double *logs,
+                long long ticks, long long robots) {
+  for (long long i = 0; i < robots; ++i)
+    run((const Settings *)settings + i, tables + ROWS * COLUMNS * i, (State *)states + i,
+        (Row *)logs + ticks * i, ticks);
 }

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from onpath.app.classroom.mirror import BEHIND, Mirror
 from onpath.app.classroom.moment import Moment, read_moment, tell
 from onpath.app.lab import commands as c
+from onpath.app.lab.advance_together import advance_together
 from onpath.app.lab.commands import Freeze
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
@@ -77,7 +78,7 @@ class Followed:
             while self._under_way and self._under_way[0][0] <= self.frames:
                 self.mirror.tell(self._under_way.pop(0)[1])
             before = self.mirror.session.time
-            self.mirror.advance(FRAME)
+            advance_together([self.mirror.frame(FRAME)])
             self.jumps.append(self.mirror.session.time - before)
             self.frames += 1
 
@@ -223,10 +224,10 @@ TEXT = told(ScheduledLab(new_lab(0.2)))
 @given(st.one_of(st.text(), spoilt(TEXT)))
 def test_what_comes_is_a_lab_or_is_left_out(text: str) -> None:
     mirror = Mirror(Lab(store()), TEXT)
-    mirror.advance(FRAME)
+    advance_together([mirror.frame(FRAME)])
     mirror.tell(text)
     for _ in range(3):
-        mirror.advance(FRAME)
+        advance_together([mirror.frame(FRAME)])
     assert_drawable(take_snapshot(mirror.lab, 1.0))
     try:
         assert isinstance(read_moment(text), Moment)

@@ -23,6 +23,7 @@ from onpath.app.classroom.watches import GONE, LASTS, NONSENSE, Watches
 from onpath.app.common.access_codes import new_code, shown
 from onpath.app.common.throttle import TRIES
 from onpath.app.lab import commands as c
+from onpath.app.lab.advance_together import advance_together
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setup import capture
@@ -483,7 +484,7 @@ def test_a_lab_elsewhere_is_mirrored_as_long_as_a_teacher_looks(two: Two) -> Non
             mirror = here.mirror(7, "a")
             if mirror is not None:
                 for _ in range(8):
-                    mirror.advance(FRAME)
+                    advance_together([mirror.frame(FRAME)])
             two.clock.now += 0.125
         return here.mirror(7, "a")
 

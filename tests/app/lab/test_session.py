@@ -634,19 +634,21 @@ def test_frozen_robot_shows_the_last_instant_that_is_all_numbers() -> None:
 
         kernel = kernel_of(lab.session.robot, run_.kind)
 
-        def run(self, state: np.ndarray, *_: object) -> tuple[np.ndarray, np.ndarray]:
-            rows = np.tile(run_.row, (9, 1))
+        def run_many(self, states: list[np.ndarray], *_: object) -> tuple[np.ndarray, np.ndarray]:
+            rows = np.tile(run_.row, (len(states), 9, 1))
             fields = self.kernel.log.unpack(rows)
-            fields["y"][:, 0] = np.arange(9)
-            fields["theta"][4:] = np.nan
-            fields["q"][6:] = np.inf
-            return state * np.nan, rows
+            fields["y"][..., 0] = np.arange(9)
+            fields["theta"][:, 4:] = np.nan
+            fields["q"][:, 6:] = np.inf
+            return np.stack(states) * np.nan, rows
 
     class Store:
         def get(self, *_: object) -> Breaking:
             return Breaking()
 
     lab.session._store = Store()  # pyright: ignore[reportAttributeAccessIssue]
+    for each in lab.session.runs.values():
+        each._loop = None
     before = run_.state.copy()
     lab.session.simulate(9)
     assert run_.diverged and run_.diverged.time == pytest.approx(lab.session.time - 9e-3 + 6e-3)

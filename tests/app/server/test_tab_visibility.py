@@ -12,6 +12,7 @@ import pytest
 
 from onpath.app.bench.client_protocol import answer
 from onpath.app.lab import commands as c
+from onpath.app.lab.advance_together import advance_together
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server import tab_visibility as onlooker
 from onpath.app.server.lab_server import LabServer
@@ -60,7 +61,7 @@ class Browser:
             self.now += TICK
             if tells and self.scheduled.view is not None:
                 self.scheduled.drain()
-                self.scheduled.advance(TICK)
+                advance_together([self.scheduled.frame(TICK)])
                 self.scheduled.show(0, 1)
             before = self.asked
             self.onlooker.look()

@@ -11,6 +11,7 @@ from math import ceil
 import pytest
 
 from onpath.app.lab import commands as c
+from onpath.app.lab.advance_together import Frame
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import HURRIED, STRIDES, is_turn
 from onpath.app.simulation.simulation_thread import LATEST, ScheduledLab, SimulationThread
@@ -89,8 +90,8 @@ def drawn(
     frames = itertools.count()
 
     class Costly(Lab):
-        def advance(self, seconds: float) -> None:
-            super().advance(seconds)
+        def frame(self, seconds: float) -> Frame:
+            yield from super().frame(seconds)
             clock.work(cost(next(frames)))
 
     labs[0] = ScheduledLab(Costly(new_lab().session._store))
@@ -195,8 +196,9 @@ def test_simulated_time_follows_the_wanted_speed() -> None:
 
 def test_a_lab_that_raises_does_not_stop_the_others(caplog: pytest.LogCaptureFixture) -> None:
     class Broken(Lab):
-        def advance(self, seconds: float) -> None:
+        def frame(self, seconds: float) -> Frame:
             raise RuntimeError("this lab is broken")
+            yield  # a generator, as any frame
 
     blind = ScheduledLab(new_lab())
     blind.view = View(lambda _: 1 / 0)

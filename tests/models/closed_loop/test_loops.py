@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loops import BLOCK, InterpretedLoop, Loop
+from onpath.models.closed_loop.loops import BLOCK, SHORT, InterpretedLoop, Loop
 from onpath.models.control.laws import NAMES
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle
 from tests.support.rig import FOLLOWING, Rig
@@ -80,3 +80,24 @@ def test_results_are_not_overwritten_by_the_next_call(rig: Rig) -> None:
         kept = state.copy(), rows.copy()
         loop.run(state, settings, circle(0.05).table(), BLOCK)
         assert np.array_equal(state, kept[0]) and np.array_equal(rows, kept[1])
+
+
+def test_many_robots_are_each_as_alone(rig: Rig, random_curve: Callable[[int], Curve]) -> None:
+    starts = [rig.state(FOLLOWING, np.array([0.01 * k, 0.0])) for k in range(1, 6)]
+    settings = [rig.settings(FOLLOWING, K1=100.0 * k, speed=0.5 * k) for k in range(1, 6)]
+    tables = [random_curve(k).table() for k in range(1, 6)]
+    given = [start.copy() for start in starts]
+    for loop in every_loop(rig):
+        for ticks in (BLOCK + 1, SHORT):  # the second releases the interpreter's lock
+            states, rows = loop.run_many(starts, settings, tables, ticks)
+            assert rows.shape == (5, ticks, loop.kernel.log.size)
+            for i, inputs in enumerate(zip(starts, settings, tables, strict=True)):
+                state, own = loop.run(*inputs, ticks)
+                assert np.array_equal(states[i], state) and np.array_equal(rows[i], own)
+        assert np.array_equal(starts, given)
+
+
+def test_a_vector_of_another_size_is_refused(rig: Rig) -> None:
+    start, settings = rig.state(FOLLOWING, np.array([0.06, 0.0])), rig.settings(FOLLOWING)
+    with pytest.raises(ValueError, match="reshape"):
+        rig.loop(FOLLOWING).run(start, settings[:-1], circle(0.05).table(), 1)

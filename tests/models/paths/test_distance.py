@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from onpath.models.paths.curves import circle
-from onpath.models.paths.distance import near_distance, path_distance
+from onpath.models.paths.distance import near_distance, near_distances, path_distance
 from onpath.models.paths.frames import Plane, SlantedPlane
 from onpath.models.paths.path_design import presets
 
@@ -55,3 +55,17 @@ def test_no_point_of_the_curve_is_nearer_even_where_two_valleys_are_equally_deep
         nearest = np.minimum(nearest, ((y[:, None, :] - part) ** 2).sum(-1).min(axis=1))
     for found in (path_distance(Plane(), curve, y, 64), curve.nearest(y, 64)[1]):
         assert np.all(found <= np.sqrt(nearest) + 1e-12)
+
+
+@pytest.mark.parametrize("frame", [Plane(), SlantedPlane()], ids=["plane", "slanted"])
+@pytest.mark.parametrize("closed", [True, False])
+@pytest.mark.parametrize("n", [1, 2, 5])
+def test_several_curves_at_once_are_as_one_by_one(frame, closed, n):
+    curves = [design.curve for design in presets().values() if design.curve.closed == closed] * 9
+    rng = np.random.default_rng(4)
+    theta = rng.uniform(-3.5, 3.5, (len(curves), n))
+    points = [frame.lift(curve.at(own)) for curve, own in zip(curves, theta, strict=True)]
+    y = np.stack(points) + rng.normal(0.0, 0.01, (len(curves), n, frame.p))
+    together = near_distances(frame, curves, y, theta)
+    for i, curve in enumerate(curves):
+        assert np.array_equal(together[i], near_distance(frame, curve, y[i], theta[i]))

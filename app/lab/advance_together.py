@@ -1,0 +1,156 @@
+"""Advances the closed loops of many labs together: those of one kind are rows of arrays.
+
+A lab's frame is a generator. It pauses with the ticks that it needs, and is resumed when they have
+been simulated, together with those of all other labs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from onpath.app.lab.closed_loop_run import ClosedLoopRun
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loops import Loop
+from onpath.models.errors import Message
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.distance import near_distances
+from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import NOT_FINITE, Robot
+
+DISTANCE_INTERVAL = 4  # rows between evaluations of the distance, where the loop does not log it
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ticks:
+    """The ticks that a lab needs.
+
+    Attributes:
+        runs: the closed loops to advance, and the loop that computes each.
+        count: number of ticks.
+        time, dt: at the beginning, and length of a tick, [s].
+        parameters: of the robots.
+        curve, table: the path, and its coefficients for the loops.
+    """
+
+    runs: Sequence[tuple[ClosedLoopRun, Loop]]
+    count: int
+    time: float
+    dt: float
+    parameters: Parameters
+    curve: Curve
+    table: Array
+
+
+Frame = Generator[Ticks]
+"""A lab's frame, see above. If its ticks cannot be simulated, the error is raised inside it."""
+Row = tuple[ClosedLoopRun, Ticks]
+"""One closed loop of a frame."""
+
+
+def raise_error(error: Exception) -> None:
+    """Raise it."""
+    raise error
+
+
+def advance_together(
+    frames: Iterable[Frame], report: Callable[[Exception], None] = raise_error
+) -> None:
+    """Run the frames of some labs to their ends.
+
+    Args:
+        report: called with the error of a frame, which does not affect the others.
+    """
+    waiting = _resumed([(frame, None) for frame in frames], report)
+    while waiting:
+        errors = _simulate([ticks for _, ticks in waiting])
+        waiting = _resumed([(frame, errors.get(id(ticks))) for frame, ticks in waiting], report)
+
+
+def _resumed(
+    frames: Iterable[tuple[Frame, Exception | None]], report: Callable[[Exception], None]
+) -> list[tuple[Frame, Ticks]]:
+    """Resume frames, some with an error, until each ends or needs ticks."""
+    waiting = list[tuple[Frame, Ticks]]()
+    for frame, error in frames:
+        try:
+            waiting.append((frame, next(frame) if error is None else frame.throw(error)))
+        except StopIteration:
+            pass
+        except Exception as raised:
+            report(raised)
+    return waiting
+
+
+def _simulate(wanted: Iterable[Ticks]) -> dict[int, Exception]:
+    """Simulate the ticks; returns errors by the `id` of the ticks concerned."""
+    kinds: dict[tuple[Loop, int], list[Row]] = {}
+    for ticks in wanted:
+        for run, loop in ticks.runs:
+            kinds.setdefault((loop, ticks.count), []).append((run, ticks))
+    errors: dict[int, Exception] = {}
+    for (loop, _), rows in kinds.items():
+        try:
+            _advance(loop, rows)
+        except Exception:  # of one row: find out which
+            for row in rows:
+                try:
+                    _advance(loop, [row])
+                except Exception as error:
+                    errors[id(row[1])] = error
+    return errors
+
+
+def _advance(loop: Loop, members: Sequence[Row]) -> None:
+    """Advance closed loops of one kind by equally many ticks; on an error none has changed."""
+    (first, ticks), log = members[0], loop.kernel.log
+    states, rows = loop.run_many(
+        [run.state for run, _ in members],
+        [run.settings for run, _ in members],
+        [own.table for _, own in members],
+        ticks.count,
+    )
+    faults = _faults(members, states, log.unpack(rows))
+    good = [i for i, fault in enumerate(faults) if fault is None]
+    if good:
+        states, moved = (states, rows) if len(good) == len(rows) else (states[good], rows[good])
+        curves = [members[i][1].curve for i in good]
+        distances = _distances(first.robot, first.kind, curves, log.unpack(moved))
+        last, most = distances[:, -1].tolist(), np.fmax.reduce(distances, axis=1).tolist()
+        for i, *result in zip(good, states, moved[:, -1], last, most, strict=True):
+            members[i][0].take(*result)
+    for (run, own), each, fault in zip(members, rows, faults, strict=True):
+        if fault is not None:
+            run.stop(fault, each, own.time + fault[0] * own.dt)
+
+
+def _faults(
+    members: Sequence[Row], states: Array, log: dict[str, Array]
+) -> list[tuple[int, Message] | None]:
+    """The first bad tick of each, and why; None if there is none."""
+    first, ticks = members[0]
+    robot = first.robot
+    finite = np.isfinite(states)
+    q, v = log["q"], log["v"]
+    every = q.reshape(-1, q.shape[-1]), v.reshape(-1, v.shape[-1])
+    if finite.all() and robot.fault(*every, ticks.parameters) is None:
+        return [None] * len(members)
+    found = [robot.fault(q[i], v[i], own.parameters) for i, (_, own) in enumerate(members)]
+    return [
+        (ticks.count, NOT_FINITE) if fault is None and not numbers.all() else fault
+        for fault, numbers in zip(found, finite, strict=True)
+    ]
+
+
+def _distances(robot: Robot, kind: Kind, curves: Sequence[Curve], log: dict[str, Array]) -> Array:
+    """Distances of end-points to their paths, with that of the last row, (runs, some rows), [m]."""
+    system = robot.system
+    seen = system.controlled_output is system.output and not kind.encoder
+    if seen and not kind.level_set and system.p == 2:
+        return np.abs(log["xi"][..., 0])
+    y, theta = log["y"], log["theta"][..., 0]
+    some = slice((theta.shape[1] - 1) % DISTANCE_INTERVAL, None, DISTANCE_INTERVAL)
+    return near_distances(robot.frame, curves, y[:, some], theta[:, some])

@@ -1,0 +1,141 @@
+"""Labs that advance together do what each does alone, to the last bit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.advance_together import advance_together
+from onpath.app.lab.lab import Lab
+from onpath.models.closed_loop.loops import CompiledLoop
+from onpath.models.control.laws import NAMES
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
+from tests.support.lab import FOLLOWER, FRAME, do, new_lab, store
+
+WILD = [("K1", 5000), ("K2", 0), ("control_rate", 50)]
+"""Settings with which a robot diverges once it is held."""
+
+
+def random_command(rng: np.random.Generator, lab: Lab) -> list[c.Command]:
+    """What a user might do; drawn from `rng` alone, so that equal labs get equal commands."""
+    target = rng.normal(0.0, 0.03, lab.session.robot.system.p)
+    parameter = [("K1", rng.uniform(50, 1500)), ("K3", rng.uniform(0, 40))][rng.integers(2)]
+    other = [("encoder_counts", 500), ("torque_limit", 1.0), ("across", "level_set")]
+    choices: list[list[c.Command]] = [
+        [c.SetParameter(*parameter)],
+        [c.SetParameter(*other[rng.integers(len(other))])],
+        [c.ChoosePath(str(rng.choice(list(presets()))))],
+        [c.Hold(bool(rng.integers(2)))],
+        [c.Grab(NAMES[rng.integers(2)], target)],
+        [c.Release()],
+        [c.SetRate(float(rng.choice([0.5, 1.0, 2.0])))],
+        [c.SetRunning(bool(rng.integers(3)))],
+        [*(c.SetParameter(*each) for each in WILD), c.Hold(True)],
+        [c.Reset()],
+    ]
+    return choices[rng.integers(len(choices))]
+
+
+def played(seed: int, together: bool, count: int = 9, frames: int = 240) -> Iterator[list[Lab]]:
+    """Labs with random robots and users, after each frame."""
+    rng = np.random.default_rng(seed)
+    entries = [*ROBOTS.values()] * 3
+    labs = [Lab(store(), entry) for entry in entries[:count]]
+    for _ in range(frames):
+        for lab in labs:
+            if rng.random() < 0.04:
+                do(lab, *random_command(rng, lab))
+        if together:
+            advance_together([lab.frame(lab.session.rate * FRAME) for lab in labs])
+        else:
+            for lab in labs:
+                lab.advance(lab.session.rate * FRAME)
+        yield labs
+
+
+def now(lab: Lab) -> list[object]:
+    """Everything that simulating changes, but for the history."""
+    session = lab.session
+    runs = [
+        (run.state.tobytes(), run.row.tobytes(), run.distance, run.max_distance, run.diverged)
+        for run in session.runs.values()
+    ]
+    return [session.time, lab.message, runs]
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_together_is_one_by_one(seed: int) -> None:
+    stopped, labs, others = set[str](), list[Lab](), list[Lab]()
+    for labs, others in zip(played(seed, True), played(seed, False), strict=True):
+        for lab, other in zip(labs, others, strict=True):
+            assert now(lab) == now(other)
+            stopped |= {
+                run.diverged.reason.code for run in lab.session.runs.values() if run.diverged
+            }
+    assert stopped
+    for lab, other in zip(labs, others, strict=True):
+        columns, alone = (each.session.history.copy().columns for each in (lab, other))
+        assert columns.keys() == alone.keys()
+        for name in columns.keys() - {"inputs"}:
+            assert columns[name].tobytes() == alone[name].tobytes()
+        assert [vars_of(event) for event in lab.session.events] == [
+            vars_of(event) for event in other.session.events
+        ]
+
+
+def vars_of(event: object) -> list[object]:
+    return [getattr(event, name) for name in ("run", "time", "name", "detail", "controllers")]
+
+
+def compiled_labs(count: int) -> list[Lab]:
+    """Equal labs whose loops are compiled."""
+    labs = [new_lab(FRAME) for _ in range(count)]
+    for wanted in list(store()._wanted.values()):
+        wanted.result(60.0)
+    return labs
+
+
+def test_a_frame_is_one_call_per_kind_of_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls, run_many = list[int](), CompiledLoop.run_many
+
+    def counted(self: CompiledLoop, states: list[np.ndarray], *others: object) -> object:
+        calls.append(len(states))
+        return run_many(self, states, *others)  # pyright: ignore[reportArgumentType]
+
+    labs = compiled_labs(7)
+    for lab, gain in zip(labs, range(400, 1100, 100), strict=True):
+        do(lab, c.SetParameter("K1", gain))
+    monkeypatch.setattr(CompiledLoop, "run_many", counted)
+    advance_together([lab.frame(FRAME) for lab in labs])
+    assert calls == [len(labs)] * len(NAMES)
+
+
+def test_one_lab_s_error_leaves_the_others_alone() -> None:
+    labs, alone, errors = compiled_labs(4), new_lab(FRAME), list[Exception]()
+    labs[1].session.editor.table = np.zeros(3)
+    labs[2].session.grips.pushes.clear()
+    for _ in range(3):
+        advance_together([lab.frame(FRAME) for lab in labs], errors.append)
+        alone.advance(FRAME)
+    assert [type(error) for error in errors] == [KeyError, ValueError] * 3
+    for lab in (labs[0], labs[3]):
+        assert now(lab) == now(alone) and len(lab.session.history) == len(alone.session.history)
+    assert labs[1].session.time == new_lab(FRAME).session.time
+    with pytest.raises(ValueError, match="reshape"):
+        labs[1].advance(FRAME)
+
+
+def test_no_lab_keeps_the_arrays_of_all() -> None:
+    labs = compiled_labs(5)
+    advance_together([lab.frame(FRAME) for lab in labs])
+    for run in (run for lab in labs for run in lab.session.runs.values()):
+        assert run.state.base is None and run.row.base is None
+    do(labs[0], *(c.SetParameter(*each) for each in WILD), c.Hold(True))
+    while labs[0].session.runs[FOLLOWER].diverged is None:
+        advance_together([lab.frame(FRAME) for lab in labs])
+    assert labs[0].session.runs[FOLLOWER].row.base is None
+    assert all(run.diverged is None for lab in labs[1:] for run in lab.session.runs.values())
