@@ -16,6 +16,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import Loop
 from onpath.models.errors import Message
+from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import near_distances
 from onpath.models.systems.parameters import Parameters
@@ -113,12 +114,12 @@ def _advance(loop: Loop, members: Sequence[Row]) -> None:
         [own.table for _, own in members],
         ticks.count,
     )
-    faults = _faults(members, states, log.unpack(rows))
+    faults = _faults(members, states, rows[..., log.slices["q"]], rows[..., log.slices["v"]])
     good = [i for i, fault in enumerate(faults) if fault is None]
     if good:
         states, moved = (states, rows) if len(good) == len(rows) else (states[good], rows[good])
         curves = [members[i][1].curve for i in good]
-        distances = _distances(first.robot, first.kind, curves, log.unpack(moved))
+        distances = _distances(first.robot, first.kind, curves, moved, log)
         last, most = distances[:, -1].tolist(), np.fmax.reduce(distances, axis=1).tolist()
         for i, *result in zip(good, states, moved[:, -1], last, most, strict=True):
             members[i][0].take(*result)
@@ -128,13 +129,12 @@ def _advance(loop: Loop, members: Sequence[Row]) -> None:
 
 
 def _faults(
-    members: Sequence[Row], states: Array, log: dict[str, Array]
+    members: Sequence[Row], states: Array, q: Array, v: Array
 ) -> list[tuple[int, Message] | None]:
     """The first bad tick of each, and why; None if there is none."""
     first, ticks = members[0]
     robot = first.robot
     finite = np.isfinite(states)
-    q, v = log["q"], log["v"]
     every = q.reshape(-1, q.shape[-1]), v.reshape(-1, v.shape[-1])
     if finite.all() and robot.fault(*every, ticks.parameters) is None:
         return [None] * len(members)
@@ -145,12 +145,15 @@ def _faults(
     ]
 
 
-def _distances(robot: Robot, kind: Kind, curves: Sequence[Curve], log: dict[str, Array]) -> Array:
+def _distances(
+    robot: Robot, kind: Kind, curves: Sequence[Curve], rows: Array, log: Layout
+) -> Array:
     """Distances of end-points to their paths, with that of the last row, (runs, some rows), [m]."""
-    system = robot.system
+    system, slices = robot.system, log.slices
     seen = system.controlled_output is system.output and not kind.encoder
     if seen and not kind.level_set and system.p == 2:
-        return np.abs(log["xi"][..., 0])
-    y, theta = log["y"], log["theta"][..., 0]
-    some = slice((theta.shape[1] - 1) % DISTANCE_INTERVAL, None, DISTANCE_INTERVAL)
-    return near_distances(robot.frame, curves, y[:, some], theta[:, some])
+        return np.abs(rows[..., slices["xi"].start])
+    some = rows[:, (rows.shape[1] - 1) % DISTANCE_INTERVAL :: DISTANCE_INTERVAL]
+    return near_distances(
+        robot.frame, curves, some[..., slices["y"]], some[..., slices["theta"].start]
+    )
