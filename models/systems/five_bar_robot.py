@@ -18,6 +18,11 @@ from onpath.models.systems.robots import BalancedLinkage, PlanarRobot, RobotEntr
 from onpath.models.systems.system import MechanicalSystem
 
 COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed
+SHORT = 20  # ticks
+SLOW, FAR = (
+    20.0,
+    0.5,
+)  # [rad/s], |sin(q1 - q2)|: too far from a fault to have had one in SHORT ticks
 DRAWING = Drawing(box=((-0.16, -0.03, -0.19), (0.31, 0.03, 0.425)))
 
 
@@ -81,6 +86,12 @@ class RigidFiveBar(PlanarRobot):
         squared = (z[..., 0] + l4) ** 2 + (z[..., 1] + l1) ** 2
         cosine = (l1**2 + l4**2 - squared) / (2 * l1 * l4)
         return np.sqrt(np.maximum(1 - cosine**2, 0.0))
+
+    def is_calm(self, q: Array, v: Array) -> bool:
+        """See `Robot.is_calm`."""
+        if q.shape[1] > SHORT or not np.abs(v[:, -1]).max() < SLOW:  # false for NaN
+            return False
+        return bool(np.abs(np.sin(q[:, -1, 0] - q[:, -1, 1])).min() > FAR)
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """See `Robot.fault`."""

@@ -151,6 +151,10 @@ class FlexibleFiveBar:
         columns = _decoupling(self)(q.T, self.plant(FlexibleParameters())).full()
         return columns.reshape(RIGID, len(q), RIGID).transpose(1, 0, 2)
 
+    def is_calm(self, q: Array, v: Array) -> bool:
+        """See `Robot.is_calm`."""
+        return False
+
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """See `Robot.fault`."""
         with np.errstate(invalid="ignore"):  # `first_fault` finds numbers that are not finite

@@ -129,6 +129,16 @@ class Robot(Protocol):
         """
         ...
 
+    def is_calm(self, q: Array, v: Array) -> bool:
+        """Whether runs are so far from any fault at their ends that none had one on the way.
+
+        A cheap answer for most frames; false may mean that it is not known.
+
+        Args:
+            q, v: shape (runs, ticks, n). NaN and infinity persist to the last tick.
+        """
+        ...
+
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """The first row in which the simulation has diverged, and why; None if in none.
 
@@ -209,6 +219,10 @@ class PlanarRobot:
     def substeps(self) -> int:
         """See `Robot.substeps`."""
         return 1
+
+    def is_calm(self, q: Array, v: Array) -> bool:
+        """See `Robot.is_calm`."""
+        return False
 
     @property
     def grip(self) -> Grip:
