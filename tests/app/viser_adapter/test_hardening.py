@@ -26,7 +26,7 @@ from websockets.frames import Frame, Opcode
 from websockets.typing import Origin, Subprotocol
 
 from onpath.app.common import error_log
-from onpath.app.viser_adapter import secure_server
+from onpath.app.viser_adapter import secure_connection
 from onpath.app.viser_adapter.compression import LEVEL, compress
 from onpath.app.viser_adapter.secure_server import Limits, PortInUse, make_server
 from tests.support import waiting
@@ -556,7 +556,7 @@ def test_a_brisk_but_honest_client_is_served(monkeypatch: pytest.MonkeyPatch) ->
     """60 drags a second, each with a camera message, for as long as a burst cannot carry."""
     limits = Limits(messages_per_second=500, message_burst=30)
     clock = SimpleNamespace(monotonic=lambda: clock.now, now=0.0)
-    monkeypatch.setattr(secure_server, "time", clock)
+    monkeypatch.setattr(secure_connection, "time", clock)
     brisk = Lab(limits=limits)
     browser = Browser(brisk)
     for _ in range(60):
