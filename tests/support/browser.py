@@ -310,9 +310,10 @@ class Tab:
         wait_for(lambda: control.evaluate("control => control === document.activeElement"))
 
     def blur(self) -> None:
-        """Remove the focus from the focused control."""
-        self.page.evaluate("document.activeElement?.blur()")
-        self.page.wait_for_function("document.activeElement === document.body")
+        """Remove the focus from the focused control, again if the page gives it back meanwhile."""
+        self.page.wait_for_function(
+            "() => { document.activeElement?.blur(); return document.activeElement === document.body }"
+        )
 
     def slider(self, label: str) -> Locator:
         """Return the handle of a slider."""
