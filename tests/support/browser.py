@@ -312,7 +312,7 @@ class Tab:
     def blur(self) -> None:
         """Remove the focus from the focused control, again if the page gives it back meanwhile."""
         self.page.wait_for_function(
-            "() => { document.activeElement?.blur(); return document.activeElement === document.body }"
+            "() => (document.activeElement?.blur(), document.activeElement === document.body)"
         )
 
     def slider(self, label: str) -> Locator:
