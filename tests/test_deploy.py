@@ -12,7 +12,7 @@ import yaml
 from sqlalchemy import make_url
 
 from onpath.app.cli.serve import Serve
-from onpath.app.storage.given_url import DATABASE
+from onpath.app.storage.database_url import DATABASE
 from onpath.app.viser_adapter.connection_limits import Proxies
 from onpath.app.viser_adapter.request_filter import HEALTH
 from tests.support.checkout import ROOT

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from onpath.app.common.access_codes import ALPHABET, normalised
 from onpath.app.common.throttle import Throttle
-from onpath.app.common.visible_text import compared, is_visible, without_surplus_marks
+from onpath.app.common.visible_text import comparison_key, is_visible, without_surplus_marks
 from onpath.models.errors import CodedError
 
 LONGEST_NAME = 24  # [characters]
@@ -95,10 +95,10 @@ def not_among(others: set[str], name: str) -> str:
     """The name, with a number appended if it is taken.
 
     Args:
-        others: names of the others, as `compared` has them.
+        others: names of the others, as `comparison_key` has them.
     """
     count, unique = 1, name
-    while compared(unique) in others:
+    while comparison_key(unique) in others:
         count += 1
         tail = f" {count}"
         unique = name[: LONGEST_NAME - len(tail)].rstrip() + tail

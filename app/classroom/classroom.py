@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from onpath.app.classroom.admission import cleaned, not_among
-from onpath.app.common.visible_text import compared
+from onpath.app.common.visible_text import comparison_key
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.lessons.progress import Progress
 from onpath.models.errors import CodedError
@@ -169,7 +169,7 @@ def seated(members: Mapping[str, Member], session: str, name: str, new: Member) 
     name, old = cleaned(name), members.get(session)
     if old is None and len(members) >= MOST_MEMBERS:
         raise CodedError("error.class_full")
-    others = {compared(member.name) for code, member in members.items() if code != session}
+    others = {comparison_key(member.name) for code, member in members.items() if code != session}
     return replace(old or new, name=not_among(others, name))
 
 

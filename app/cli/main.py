@@ -107,10 +107,10 @@ class Forget:
 
     def run(self) -> None:
         """Delete the labs, and print their number."""
+        from onpath.app.storage.database_url import database_url
         from onpath.app.storage.forget import forget
-        from onpath.app.storage.given_url import given_url
 
-        gone = forget(given_url(self.database))
+        gone = forget(database_url(self.database))
         print(f"deleted: {gone.labs} labs, {len(gone.files)} files moved aside as broken")
 
 

@@ -57,10 +57,10 @@ class Serve:
         if self.most_clients < 1:
             raise ValueError(f"--most-clients {self.most_clients}: expected 1 or more")
         from onpath.app.server.workers import is_worker
+        from onpath.app.storage.database_url import database_url
         from onpath.app.storage.expiry import Retention
-        from onpath.app.storage.given_url import given_url
 
-        retention, database = Retention(self.keep_days, self.most_labs), given_url(self.database)
+        retention, database = Retention(self.keep_days, self.most_labs), database_url(self.database)
         if self.workers != 1:
             replace(self, database=database)._supervise()
             return

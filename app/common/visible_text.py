@@ -35,6 +35,6 @@ def without_surplus_marks(text: str) -> str:
     return "".join(kept)
 
 
-def compared(name: str) -> str:
+def comparison_key(name: str) -> str:
     """A form in which names are equal that differ in width, ligatures or case alone."""
     return unicodedata.normalize("NFKC", name).casefold()

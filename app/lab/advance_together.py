@@ -135,8 +135,11 @@ def _faults(
     first, ticks = members[0]
     robot = first.robot
     finite = np.isfinite(states)
-    every = q.reshape(-1, q.shape[-1]), v.reshape(-1, v.shape[-1])
-    if finite.all() and (robot.is_calm(q, v) or robot.fault(*every, ticks.parameters) is None):
+    joined = (-1, q.shape[-1])
+    if finite.all() and (
+        robot.is_calm(q, v)
+        or robot.fault(q.reshape(joined), v.reshape(joined), ticks.parameters) is None
+    ):
         return [None] * len(members)
     found = [robot.fault(q[i], v[i], own.parameters) for i, (_, own) in enumerate(members)]
     return [

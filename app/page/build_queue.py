@@ -40,22 +40,22 @@ class BuildQueue:
             build: called even if the client has disconnected by then.
         """
         with self._lock:
-            told = _tell(client) if self._ahead >= FEW else None
+            close_notice = _show_notice(client) if self._ahead >= FEW else None
             self._ahead += 1
         with suppress(RuntimeError):  # the server has stopped
-            self._pool.submit(self._build, client.client_id, told, build)
+            self._pool.submit(self._build, client.client_id, close_notice, build)
 
     def stop(self) -> None:
         """Finish the page under construction and discard the queue."""
         self._pool.shutdown(cancel_futures=True)
 
     def _build(
-        self, client: int, told: Callable[[], None] | None, build: Callable[[], None]
+        self, client: int, close_notice: Callable[[], None] | None, build: Callable[[], None]
     ) -> None:
         begun = time.monotonic()
         try:
-            if told is not None and client in self._server.get_clients():
-                told()
+            if close_notice is not None and client in self._server.get_clients():
+                close_notice()
             build()
         except Exception as error:
             log_error(error)
@@ -64,7 +64,7 @@ class BuildQueue:
             self._ahead -= 1
 
 
-def _tell(client: viser.ClientHandle) -> Callable[[], None]:
+def _show_notice(client: viser.ClientHandle) -> Callable[[], None]:
     """Show the waiting notice; returns a function that removes it."""
     words = Words()
     return show_notice(client, words("coming.title"), words("coming.text"))

@@ -96,7 +96,7 @@ class Page:
         self._channel.send()
 
     @property
-    def told(self) -> int:
+    def updates(self) -> int:
         """See `app.server.tab_visibility.CountingDisplay`."""
         return self._channel.frames
 

@@ -8,16 +8,16 @@ address has the fewest, and among those to the one that has waited longest.
 from __future__ import annotations
 
 import threading
-from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import viser
 
 from onpath.app.page.notice import show_notice
+from onpath.app.viser_adapter.connection_limits import PerAddress
 from onpath.lessons.words import Words
 
-KEPT_FREE = 16  # one place in so many is not for an address that has all the others
+RESERVED = 16  # one place in 16 is reserved for other addresses
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +42,8 @@ class AdmissionQueue:
 
     def __init__(self, places: int) -> None:
         self._places = places
-        self._places_each = places - places // KEPT_FREE
-        self._inside: dict[int, str] = {}  # address by client
+        self._places_each = places - places // RESERVED
+        self._inside = PerAddress[int](places, self._places_each)
         self._waiting: dict[int, Waiting] = {}
         self._lock = threading.Lock()
 
@@ -59,10 +59,10 @@ class AdmissionQueue:
         """
         number = client.client_id
         with self._lock:
-            if always or self._has_room(address):
-                self._inside[number] = address
+            if always or self._inside.has_room(address):
+                self._inside.add(number, address)
             else:
-                self._waiting[number] = Waiting(address, self._tell(client, enter))
+                self._waiting[number] = Waiting(address, self._show_notice(client, enter))
                 return
         enter()
 
@@ -70,25 +70,25 @@ class AdmissionQueue:
         """Remove a client; another one may take its place."""
         with self._lock:
             self._waiting.pop(number, None)
-            self._inside.pop(number, None)
+            self._inside.discard(number)
             first = self._first()
             if first is None:
                 return
             waiting = self._waiting.pop(first)
-            self._inside[first] = waiting.address
+            self._inside.add(first, waiting.address)
         waiting.enter()
-
-    def _has_room(self, address: str) -> bool:
-        each = list(self._inside.values()).count(address)
-        return len(self._inside) < self._places and each < self._places_each
 
     def _first(self) -> int | None:
         """Which of the waiting clients may enter now, if any."""
-        have = Counter(self._inside.values())
-        may = [number for number, each in self._waiting.items() if self._has_room(each.address)]
-        return min(may, key=lambda number: have[self._waiting[number].address], default=None)
+        inside = self._inside
+        may = [number for number, each in self._waiting.items() if inside.has_room(each.address)]
+        return min(
+            may, key=lambda number: inside.count(self._waiting[number].address), default=None
+        )
 
-    def _tell(self, client: viser.ClientHandle, enter: Callable[[], None]) -> Callable[[], None]:
+    def _show_notice(
+        self, client: viser.ClientHandle, enter: Callable[[], None]
+    ) -> Callable[[], None]:
         """Show that the lab is full. Returns a function that removes the notice and enters."""
         words = Words()
         if len(self._inside) >= self._places:

@@ -83,6 +83,6 @@ class LabFeed:
         self.page.send()
 
     @property
-    def told(self) -> int:
+    def updates(self) -> int:
         """See `app.server.tab_visibility.CountingDisplay`."""
-        return self.page.told
+        return self.page.updates

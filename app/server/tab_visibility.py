@@ -27,7 +27,7 @@ class CountingDisplay(Display, Protocol):
     """A view that counts its updates."""
 
     @property
-    def told(self) -> int:
+    def updates(self) -> int:
         """Number of updates sent to the browser."""
         ...
 
@@ -43,7 +43,7 @@ class TabVisibility:
         self._lab: ScheduledLab | None = None
         self._view: CountingDisplay | None = None
         self._heard = self._questioned = clock()
-        self._told = 0  # number of updates when the last reply came
+        self._updates = 0  # number of updates when the last reply came
         self._unanswered: float | None = None  # time of the unanswered question, [s]
         client.camera.on_update(self._hear)
 
@@ -51,7 +51,7 @@ class TabVisibility:
         """Show a lab from now on."""
         with self._lock:
             self._lab, self._view = lab, view
-            self._heard, self._told, self._unanswered = self._clock(), view.told, None
+            self._heard, self._updates, self._unanswered = self._clock(), view.updates, None
             lab.view = view
 
     def leave(self) -> None:
@@ -69,7 +69,7 @@ class TabVisibility:
             if lab is None or view is None:
                 return
             if self._unanswered is None:
-                if view.told == self._told or now - self._heard < QUESTION_INTERVAL:
+                if view.updates == self._updates or now - self._heard < QUESTION_INTERVAL:
                     return
                 self._unanswered = now
             elif now - self._questioned < QUESTION_INTERVAL:
@@ -86,7 +86,7 @@ class TabVisibility:
             self._heard, self._unanswered = self._clock(), None
             if self._lab is None or self._view is None:
                 return
-            self._told = self._view.told
+            self._updates = self._view.updates
             if self._lab.view is None:
                 self._lab.view = self._view
 

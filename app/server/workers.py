@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Protocol
 
 from onpath.app.server.handover import CAN_HAND_OVER, CHANNEL, Reception
-from onpath.app.storage.given_url import DATABASE
+from onpath.app.storage.database_url import DATABASE
 from onpath.app.viser_adapter.sockets import listen, reserve
 from onpath.assets import asset_path
 

@@ -25,10 +25,10 @@ from onpath.models.errors import Coded
 log = logging.getLogger(__name__)
 
 VERSION = 1  # of the tables and of what `state` holds
-PATIENCE = 10.0  # [s] to wait for a lock that another process holds, while opening
-TRANSACTION_WAIT = 2.0  # [s] the same for a transaction: somebody may be waiting for its end
+PATIENCE = 10.0  # [s] to wait, while opening, for a lock that another process holds
+TRANSACTION_WAIT = 2.0  # [s], the same for a transaction, for which a user may be waiting
 Identity = tuple[int, int]
-"""Device and inode: which file stands under a name."""
+"""Device and inode of a file."""
 _BROKEN = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 
 
@@ -97,7 +97,7 @@ def opened_file(
             engine.dispose()  # another process has replaced it: which one is open?
         except _Broken as error:
             if file is not None:
-                _move_aside(file, before, str(error), clock)
+                _move_aside(file, before, str(error), clock, patience)
         except exc.SQLAlchemyError as error:
             raise NotKept("error.database", reason=words(error)) from error
     raise NotKept("error.database_keeps_breaking")
@@ -112,7 +112,7 @@ def file_of(url: sa.URL) -> Path | None:
 
 
 def identity(file: Path | None) -> Identity | None:
-    """Which file stands under this name now; None if there is none."""
+    """Identity of the file that has this name now; None if there is none."""
     try:
         found = None if file is None else file.stat()
     except OSError:
@@ -121,22 +121,25 @@ def identity(file: Path | None) -> Identity | None:
 
 
 def journals_of(file: Path | None, known: Identity | None) -> dict[Path, Identity | None]:
-    """The journals of an open database, and which files they are; none if it has been replaced."""
+    """The journals of an open database and their identities; none if it has been replaced."""
     parts = [] if file is None else [file.with_name(file.name + tail) for tail in JOURNALS]
     found = {part: identity(part) for part in parts}
     return found if identity(file) == known else {}
 
 
-def discard_journals(file: Path, journals: dict[Path, Identity | None]) -> None:
+def discard_journals(
+    file: Path, journals: dict[Path, Identity | None], patience: float = PATIENCE
+) -> None:
     """Delete the journals of a database that has been deleted or replaced.
 
-    SQLite would apply them to the file that stands under its name now. Those that another process
-    has begun for that file stay.
+    SQLite would apply them to the file that has its name now. Journals that another process has
+    begun for that file are kept.
 
     Args:
         journals: as `journals_of` found them; the database is still open.
+        patience: how long to wait for another process that moves or opens the file, [s].
     """
-    with _locked(file.with_name(f"{file.name}.lock")):
+    with _locked(file, patience):
         for part, known in journals.items():
             if known is not None and identity(part) == known:
                 part.unlink()
@@ -147,20 +150,23 @@ def words(error: Exception) -> str:
     return str(getattr(error, "orig", None) or type(error).__name__).strip().splitlines()[0]
 
 
-def _move_aside(file: Path, broken: Identity | None, why: str, clock: Callable[[], float]) -> None:
-    with _locked(file.with_name(f"{file.name}.lock")):
+def _move_aside(
+    file: Path, broken: Identity | None, why: str, clock: Callable[[], float], patience: float
+) -> None:
+    with _locked(file, patience):
         if identity(file) == broken:  # no other process has replaced it
             _rename(file, why, clock)
 
 
 @contextmanager
-def _locked(beside: Path) -> Iterator[None]:
-    """Mutual exclusion between processes, by SQLite's lock on an empty file.
+def _locked(file: Path, patience: float) -> Iterator[None]:
+    """Mutual exclusion between processes, by SQLite's lock on an empty file beside the database.
 
     The lock is released when the process ends, however it ends.
     """
+    beside = file.with_name(f"{file.name}.lock")
     try:
-        with closing(sqlite3.connect(beside, timeout=PATIENCE, isolation_level=None)) as lock:
+        with closing(sqlite3.connect(beside, timeout=patience, isolation_level=None)) as lock:
             lock.execute("BEGIN EXCLUSIVE")
             yield
     except sqlite3.Error as error:

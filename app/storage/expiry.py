@@ -1,4 +1,4 @@
-"""Deletes kept labs that nobody has used for long, and the oldest of too many."""
+"""Deletes stored labs that have not been used for long, and the oldest if there are too many."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class Retention:
     shares the database, is never deleted.
 
     Attributes:
-        days: after so many days without use a lab is deleted.
-        most: of more labs in a database, those that were not used for longest are deleted.
+        days: a lab that has not been used for this number of days is deleted.
+        most: if a database holds more labs, the least recently used are deleted.
 
     Raises:
         ValueError: a number is not positive.
@@ -64,11 +64,11 @@ class Expiry:
         self._rounds.start()
 
     def stop(self) -> None:
-        """Stop."""
+        """Stop the daily deletion."""
         self._rounds.stop()
 
     def delete(self) -> int:
-        """Delete what is too old or too many. Returns the number of labs.
+        """Delete labs by age and by number. Returns how many were deleted.
 
         Raises:
             NotKept: the database cannot be used.
@@ -84,6 +84,6 @@ class Expiry:
     def _run(self) -> None:
         try:
             if count := self.delete():
-                log.info("%d labs are deleted: nobody has used them for long", count)
+                log.info("%d labs deleted: not used for long, or too many", count)
         except NotKept as error:
             log.warning("old labs are not deleted: %s", error)

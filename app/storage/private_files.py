@@ -1,4 +1,4 @@
-"""Files for their owner alone: a lab is opened by its code, and the database holds all codes."""
+"""Files that only their owner can read: the database holds the codes that open the labs."""
 
 from __future__ import annotations
 
@@ -10,38 +10,38 @@ from pathlib import Path
 
 log = logging.getLogger(__name__)
 
-JOURNALS = ("-wal", "-shm")  # SQLite's, by the ends of their names
-OWNER_S_FILE, OWNER_S_FOLDER = 0o600, 0o700
+JOURNALS = ("-wal", "-shm")  # suffixes of SQLite's journal files
+OWNER_FILE, OWNER_FOLDER = 0o600, 0o700  # permissions of the owner alone
 OTHERS = 0o077  # permissions of everybody else
 
 
 def make_private_file(file: Path) -> None:
-    """Create an empty database file for its owner alone, in a folder like that.
+    """Create an empty database file, and its folder, that only their owner can use.
 
-    A file that exists is withdrawn from other users, with its journals; where that is not allowed,
-    a warning is logged. A folder that exists is left alone. SQLite gives new journals the
-    permissions of the file.
+    The permissions of an existing file and its journals are restricted to the owner; if that is not
+    allowed, a warning is logged. An existing folder is left unchanged. SQLite gives new journals
+    the permissions of the file.
 
     Raises:
         OSError: it cannot be created.
     """
-    file.parent.mkdir(OWNER_S_FOLDER, parents=True, exist_ok=True)
+    file.parent.mkdir(OWNER_FOLDER, parents=True, exist_ok=True)
     with suppress(FileExistsError):
-        os.close(os.open(file, os.O_CREAT | os.O_EXCL | os.O_WRONLY, OWNER_S_FILE))
+        os.close(os.open(file, os.O_CREAT | os.O_EXCL | os.O_WRONLY, OWNER_FILE))
     for tail in ("", *JOURNALS):
-        _withdraw(file.with_name(file.name + tail))
+        _restrict(file.with_name(file.name + tail))
 
 
 def make_private_folder(folder: Path) -> None:
-    """Withdraw a folder from other users, if it exists; see `make_private_file`."""
-    _withdraw(folder)
+    """Restrict an existing folder to its owner; see `make_private_file`."""
+    _restrict(folder)
 
 
-def _withdraw(path: Path) -> None:
+def _restrict(path: Path) -> None:
     try:
         mode = path.stat().st_mode
         if mode & OTHERS:
-            path.chmod(OWNER_S_FOLDER if stat.S_ISDIR(mode) else OWNER_S_FILE)
+            path.chmod(OWNER_FOLDER if stat.S_ISDIR(mode) else OWNER_FILE)
     except FileNotFoundError:
         return
     except OSError as error:

@@ -170,7 +170,7 @@ class Records:
         self._engine.dispose()
 
     def _reopen_if_replaced(self, until: float) -> None:
-        """Open the file anew if it has been deleted or replaced: the old one is nobody's any more.
+        """Open the file again if it has been deleted or replaced under its name.
 
         Raises:
             NotKept: it cannot be opened or created.
@@ -179,10 +179,9 @@ class Records:
             return
         try:
             if self._file.parent.exists():
-                discard_journals(self._file, self._journals)
+                discard_journals(self._file, self._journals, _left(until))
             self._engine.dispose()
-            left = max(until - time.monotonic(), 0.0)
-            self._engine, self._identity = opened_file(self._url, self._clock, left)
+            self._engine, self._identity = opened_file(self._url, self._clock, _left(until))
         except NotKept:
             raise
         except OSError as error:
@@ -207,8 +206,7 @@ class Records:
             raise NotKept("error.database_busy")
         try:
             self._reopen_if_replaced(until)
-            left = max(until - time.monotonic(), 0.0)
-            connection = self._engine.connect().execution_options(patience=left)
+            connection = self._engine.connect().execution_options(patience=_left(until))
             with connection, connection.begin():
                 yield connection
         except exc.IntegrityError:
@@ -242,3 +240,8 @@ def _text(code: str, state: dict[str, Any]) -> str:
         size = f"{len(text) / 1e6:.1f} MB, at most {LARGEST / 1e6:g} MB"
         raise ValueError(f"there is too much in this lab to be kept: {size}")
     return text
+
+
+def _left(until: float) -> float:
+    """Time that is left until a deadline by `time.monotonic`, [s]."""
+    return max(until - time.monotonic(), 0.0)

@@ -37,6 +37,10 @@ class PerAddress(Generic[T]):
     def __len__(self) -> int:
         return len(self._held)
 
+    def count(self, address: str) -> int:
+        """Number of items of an address."""
+        return self._each[address]
+
     def has_room(self, address: str) -> bool:
         """Whether one more item of this address stays within both limits."""
         return len(self._held) < self._most and self._each[address] < self._most_each

@@ -29,7 +29,7 @@ _HEADERS = {
 
 
 def add_headers(response: Response) -> None:
-    """Tell browsers what the page may do, unless the response opens a websocket."""
+    """Add the security headers, unless the response opens a websocket."""
     if response.status_code != HTTPStatus.SWITCHING_PROTOCOLS:
         for name, value in _HEADERS.items():
             response.headers.pop(name, None)
@@ -37,10 +37,7 @@ def add_headers(response: Response) -> None:
 
 
 def without_repeats(request: Request, is_head: bool) -> None:
-    """Make a request one that viser can read, which fails at repeated headers.
-
-    A HEAD request opens no websocket.
-    """
+    """Join repeated headers, at which viser would fail, and let HEAD requests open no websocket."""
     encodings = request.headers.get_all("Accept-Encoding")
     if len(encodings) > 1:
         del request.headers["Accept-Encoding"]
@@ -119,7 +116,7 @@ class RequestFilter:
 
 
 def _is_asked_here(request: Request, peer: str) -> bool:
-    """Whether a program of this machine asks for this machine, and no page or proxy does."""
+    """Whether the request comes from this machine, from no proxy and from no web page."""
     headers = request.headers
     if not is_loopback(peer) or any(name in headers for name in ("Origin", "X-Forwarded-For")):
         return False

@@ -1,4 +1,4 @@
-"""A browser's websocket: it yields only valid messages, neither too many nor too slow ones."""
+"""A browser's websocket: yields only valid messages, and limits their rate, size and duration."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 
 
 class UnfinishedMessages:
-    """The memory of messages of which only a part has come. Use it on one event loop.
+    """Limits the memory of messages received in part. Use it on one event loop.
 
     Args:
         most: in total, [B].
@@ -48,13 +48,13 @@ class UnfinishedMessages:
         self._held: dict[SecureConnection, int] = {}
 
     def hold(self, connection: SecureConnection, size: int) -> None:
-        """Note what a connection holds now, [B]; those that hold most are cut off if needed."""
+        """Set what a connection holds, [B]; beyond the limit, those that hold most are cut off."""
         self._total += size - self._held.pop(connection, 0)
         if size:
             self._held[connection] = size
         while self._total > self._most:
             largest = max(self._held, key=self._held.__getitem__)
-            self._total -= self._held.pop(largest)  # it may be lost only later
+            self._total -= self._held.pop(largest)  # connection_lost comes later
             largest.cut_off()
 
 
@@ -120,7 +120,7 @@ class SecureConnection(CountedConnection):
         self.transport.abort()
 
     def _of_request(self, data: bytes) -> bytes:
-        """What to pass on of the bytes of a request; nothing while its method is not known."""
+        """The bytes of a request to pass on; none until its method is known."""
         self._request_size += len(data)
         if self._begun is not None:
             self._begun += data
@@ -132,7 +132,7 @@ class SecureConnection(CountedConnection):
         return data
 
     def _limit_unfinished(self) -> None:
-        """Cut off whoever holds too much; begin or end the time of an unfinished message."""
+        """Limit the size of a request, and the memory and duration of an unfinished message."""
         if self.request is None:
             if self._request_size > self._limits.max_request_bytes:
                 self.transport.abort()
@@ -148,7 +148,7 @@ class SecureConnection(CountedConnection):
 
     def _overdue(self) -> None:
         self._deadline = None
-        if self.recv_messages.paused:  # it is we who do not read
+        if self.recv_messages.paused:  # this process is not reading
             self._deadline = self.loop.call_later(self._limits.message_seconds, self._overdue)
         else:
             self.cut_off()

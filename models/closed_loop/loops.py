@@ -104,7 +104,7 @@ class CompiledLoop:
         kernel: the kernel that was compiled.
         address: of `void onpath_run(const double* settings, const double* curves, double* states,
             double* logs, long long ticks, long long robots)`, which advances the states and fills
-            the logs. Each argument holds the arrays of one robot after those of another.
+            the logs. Each array holds the robots' data one after the other.
         owner: the object that keeps the machine code in memory.
     """
 

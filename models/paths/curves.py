@@ -11,7 +11,7 @@ Outside [-π, π] an open curve continues along its end tangents.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -146,17 +146,6 @@ class Curve:
         if not self.closed or a * b == 0 or skew + np.abs(others).max() > 1e-9:
             return None
         return table[0], np.array([b / a, a / b]), float(a * b)
-
-
-def stacked(curves: Sequence[Curve]) -> Curve:
-    """Several curves as one, which maps θ of shape (curves, n) to points (curves, n, 2).
-
-    Bit by bit the same as curve by curve.
-
-    Args:
-        curves: all closed, or all open.
-    """
-    return Curve(curves[0].closed, np.stack([curve.series for curve in curves], axis=1))
 
 
 def nearest(curve: Callable[[Array], Array], grid: Array, points: Array) -> tuple[Array, Array]:

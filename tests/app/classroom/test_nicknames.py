@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from onpath.app.classroom.admission import LONGEST_NAME, cleaned, not_among
 from onpath.app.classroom.classroom import Member
 from onpath.app.classroom.results import class_csv
-from onpath.app.common.visible_text import MOST_MARKS, compared, is_visible
+from onpath.app.common.visible_text import MOST_MARKS, comparison_key, is_visible
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Notes, Progress
 from tests.support.lesson_texts import LESSON, write_lesson
@@ -72,7 +72,7 @@ def test_names_of_many_languages_stay_as_they_are(name: str) -> None:
 
 
 def test_names_that_differ_in_width_alone_are_told_apart() -> None:
-    assert not_among({compared("Ada")}, cleaned("Ａｄａ")) == "Ａｄａ 2"
+    assert not_among({comparison_key("Ada")}, cleaned("Ａｄａ")) == "Ａｄａ 2"
 
 
 @pytest.fixture(scope="module")

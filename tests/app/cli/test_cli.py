@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from onpath.app.cli.main import run_command
-from onpath.app.storage.given_url import DATABASE
+from onpath.app.storage.database_url import DATABASE
 from onpath.app.storage.records import Records, file_url
 from onpath.models.closed_loop.trajectory import read_csv
 from onpath.models.control.laws import NAMES

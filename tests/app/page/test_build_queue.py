@@ -72,6 +72,11 @@ def wait_for_clients(server: LabServer, count: int) -> None:
     wait_for(lambda: len(server.server.get_clients()) == count, 60)
 
 
+def wait_for_queue(server: LabServer, count: int) -> None:
+    """Wait until so many clients are in the queue, which they enter some time after connecting."""
+    wait_for(lambda: server._newcomers._ahead == count, 60)
+
+
 def wait_for_views(server: LabServer, count: int) -> None:
     wait_for(lambda: len(server._views) == count, 60)
 
@@ -142,7 +147,7 @@ def test_who_leaves_while_waiting_is_built_nothing(server: LabServer, builds: Bu
     crowd = [Comer(address, patient=number < FEW + 1) for number in range(CROWD)]
     for number, comer in enumerate(crowd):
         comer.start()
-        wait_for_clients(server, number + 1) if number <= FEW else comer.join(60)
+        wait_for_queue(server, number + 1) if number <= FEW else comer.join(60)
     wait_for_clients(server, FEW + 1)
     builds.may_begin.set()
     for comer in crowd:

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.app.server import admission_queue
-from onpath.app.server.admission_queue import KEPT_FREE, AdmissionQueue
+from onpath.app.server.admission_queue import RESERVED, AdmissionQueue
 
 PLACES = 32
 
@@ -42,7 +42,7 @@ def test_one_address_leaves_places_for_others(notices: Notices) -> None:
     queue, inside = AdmissionQueue(PLACES), list[int]()
     for number in range(2 * PLACES):
         come(queue, number, "203.0.113.1", inside)
-    assert len(inside) == PLACES - PLACES // KEPT_FREE
+    assert len(inside) == PLACES - PLACES // RESERVED
     assert "for one network" in notices.shown[2 * PLACES - 1]
     come(queue, 1000, "198.51.100.1", inside)
     assert inside[-1] == 1000
@@ -72,5 +72,5 @@ def test_who_waits_could_not_be_inside(steps: list[tuple[int, str, bool]]) -> No
                 come(queue, 100 + step, address, inside)
             else:
                 queue.leave(100 + number)
-            have = list(queue._inside.values())
-            assert len(have) <= 3 and not (queue._waiting and len(have) < 3)
+            count = len(queue._inside)
+            assert count <= 3 and not (queue._waiting and count < 3)

@@ -31,7 +31,7 @@ class Browser:
 
     def __init__(self) -> None:
         self.now = 100.0
-        self.told, self.asked = 0, 0
+        self.updates, self.asked = 0, 0
         self._answer: Any = None
         self.camera = SimpleNamespace(
             up_direction=np.array([0.0, 0.0, 1.0]),
@@ -43,7 +43,7 @@ class Browser:
         self.onlooker.watch(self.scheduled, self)
 
     def show(self, lab: object, achieved: float, frame: int, stride: float) -> None:
-        self.told += 1
+        self.updates += 1
 
     def send(self) -> None:
         pass
@@ -82,14 +82,14 @@ def test_a_lab_waits_for_who_does_not_answer_and_goes_on() -> None:
     lab = browser.scheduled.lab
     browser.wait(QUIET)
     assert browser.scheduled.view is None
-    told, asked, simulated = browser.told, browser.asked, lab.session.time
+    told, asked, simulated = browser.updates, browser.asked, lab.session.time
     browser.wait(100.0)
-    assert (browser.told, lab.session.time) == (told, simulated) and simulated > 0
+    assert (browser.updates, lab.session.time) == (told, simulated) and simulated > 0
     assert browser.asked - asked <= 100 / QUESTION_INTERVAL
     browser.answer()
     assert browser.scheduled.view is browser
     browser.wait(10.0, answers=True)
-    assert browser.told > told and lab.session.time > simulated
+    assert browser.updates > told and lab.session.time > simulated
 
 
 def test_who_is_told_nothing_is_asked_nothing() -> None:

@@ -17,7 +17,7 @@ import viser
 from onpath.app.cli.main import run_command
 from onpath.app.exports.export_process import ExportProcess
 from onpath.app.server.workers import Worker, shares
-from onpath.app.storage.given_url import DATABASE, given_url
+from onpath.app.storage.database_url import DATABASE, database_url
 from onpath.app.viser_adapter import secure_server as hardening
 from onpath.app.viser_adapter.request_filter import RequestFilter
 from onpath.app.viser_adapter.sockets import PortInUse, listen, reserve
@@ -76,9 +76,9 @@ def test_the_database_is_on_no_worker_s_command_line(supervisor: Supervisor) -> 
 
 def test_child_processes_do_not_inherit_the_database(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(DATABASE, "sqlite:///secret.db")
-    assert given_url("sqlite://") == "sqlite://"
+    assert database_url("sqlite://") == "sqlite://"
     monkeypatch.setenv(DATABASE, "sqlite:///secret.db")
-    assert given_url(None) == "sqlite:///secret.db" and given_url(None) is None
+    assert database_url(None) == "sqlite:///secret.db" and database_url(None) is None
     exports = ExportProcess()
     try:
         assert exports.call(60.0, os.getenv, DATABASE) is None

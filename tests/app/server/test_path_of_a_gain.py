@@ -27,7 +27,7 @@ GAIN = 905.0  # no other number of the lab has this value
 PACKED = struct.pack(">d", GAIN)  # as in a message of the browser
 
 
-def told_in_readme() -> list[str]:
+def files_in_readme() -> list[str]:
     """The files of the list, in its order."""
     text = (ROOT / "app" / "README.md").read_text(encoding="utf-8")
     section = text.split("## From a slider to the torque")[1].split("\n## ")[0]
@@ -112,10 +112,10 @@ def test_a_gain_passes_the_files_of_the_readme_in_their_order(
     followed: tuple[Guest, Follower],
 ) -> None:
     guest, follower = followed
-    told, session = told_in_readme(), guest.scheduled.session
+    stated, session = files_in_readme(), guest.scheduled.session
     follower.on = True
     guest.update(guest.labelled("K1"), GAIN)
-    wait_for(lambda: told[-1] in follower.own)
+    wait_for(lambda: stated[-1] in follower.own)
     wait_for(lambda: [packed_gain(session, run) for run in session.runs.values()] == [GAIN, GAIN])
     follower.on = False
-    assert [file for file in follower.own if file in told] == told
+    assert [file for file in follower.own if file in stated] == stated

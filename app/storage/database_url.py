@@ -7,7 +7,7 @@ import os
 DATABASE = "ONPATH_DATABASE"  # environment variable
 
 
-def given_url(option: str | None) -> str | None:
+def database_url(option: str | None) -> str | None:
     """The URL of the command line or else of the environment.
 
     Child processes do not inherit the variable: the URL may hold a password.
