@@ -30,6 +30,7 @@ from onpath.app.scene.stage import (
     set_text,
     view_of,
 )
+from onpath.app.viser_adapter.camera import place_camera
 from onpath.lessons.words import ENGLISH, Words
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ ZONE_DEPTH = 0.052
 """y of the shading of singular places [m]: behind the links."""
 ZONE_WIDTH = 0.02
 """Width of the shading at a singular circle [m]."""
+UP = np.array([0.0, 0.0, 1.0])
+"""Direction that is upwards in the picture."""
 WITHIN = 0.01
 """Picking radius of a control point that the end-point covers [m]."""
 
@@ -179,10 +182,7 @@ class Scene:
         camera = self._client.camera
         size = (max(camera.image_width, 1), max(camera.image_height, 1))
         pose = view_of(self._stage, size, insets or Insets())
-        camera.fov = float(FIELD_OF_VIEW)
-        camera.up_direction = (0.0, 0.0, 1.0)
-        camera.position = pose.position
-        camera.look_at = pose.look_at
+        place_camera(self._client, pose.position, pose.look_at, UP, float(FIELD_OF_VIEW))
 
     def begin_freehand(self, on_stroke: Callable[[np.ndarray], None]) -> None:
         """Lets the user draw one stroke on a robot's plane; calls back with (n, 3), [m]."""

@@ -282,7 +282,10 @@ class Tab:
         return feed.page._built == (page_key(self.lab),)
 
     def press(self, name: str) -> None:
-        """Press a button."""
+        """Press a button once the page is built; one of the page before would do nothing."""
+        if isinstance(self.view, LabFeed):
+            wait_for(self.is_built)
+            self.answer()
         self.button(name).click()
 
     def button(self, name: str) -> Locator:

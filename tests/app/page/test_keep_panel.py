@@ -35,6 +35,7 @@ def test_the_report_has_the_code_only_when_its_owner_says_so(
     student.set(button, True)
     student.read(lambda: len(codes) == 1 and student.code)
     assert codes == [""]
+    student.read(lambda: student.has_widget(ENGLISH("controls.help")))  # the last widget
     kept = student.has_widget(ENGLISH("keep.other"))
     assert student.has_widget(choice) == student.sees(ENGLISH("keep.with_code_means")) == kept
     if kept:
