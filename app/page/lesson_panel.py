@@ -30,7 +30,7 @@ class LessonPanel:
     """Shows the open step, and redraws it when the state of the lessons has changed.
 
     Args:
-        submit: runs something in another thread.
+        change: changes widgets in another thread; see `RebuildThread.change`.
         tab: parent of the widgets; without one, a separate panel on the left.
     """
 
@@ -41,11 +41,11 @@ class LessonPanel:
         post: Post,
         course: Course,
         scene: Scene,
-        submit: Callable[[Callable[[], None]], None],
+        change: Callable[[Callable[[], None]], None],
         first: PageSnapshot,
         tab: viser.GuiTabHandle | None = None,
     ) -> None:
-        self._client, self._gui, self._post, self._submit = client, client.gui, post, submit
+        self._client, self._gui, self._post, self._change = client, client.gui, post, change
         self._scene, self._words, self._course = scene, words, course
         self._handles: list[Any] = []
         self._tasks: list[tuple[Task, viser.GuiHtmlHandle]] = []
@@ -73,7 +73,7 @@ class LessonPanel:
         run = self._view(snapshot)
         if run.version != self._version:
             self._busy = True
-            self._submit(lambda: self._rebuild(run))
+            self._change(lambda: self._rebuild(run))
             return
         for task, handle in self._tasks:
             content = page.task(task, run.verdicts.get(task.id, []), run)

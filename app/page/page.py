@@ -50,7 +50,7 @@ class Page:
         self._client = client
         self._desk = desk
         self._channel = FrameChannel(client)
-        self.exporter, self._rebuilds = Exporter(client), RebuildThread()
+        self.exporter, self._rebuilds = Exporter(client), RebuildThread(client)
         self._framed, self._settling = 0.0, SETTLING
         self._building, self.is_outdated = True, False
         client.gui.configure_theme(
@@ -60,7 +60,7 @@ class Page:
         if not self._is_narrow():
             client.gui.main_panel.dock_right()
             client.gui.main_panel.set_width(CONTROL_WIDTH)
-        with one_at_a_time:
+        with one_at_a_time, client.atomic():  # the browser gets no widget without its callbacks
             self._build(first)
 
     def close(self) -> None:
@@ -108,7 +108,7 @@ class Page:
             self._rebuilds.submit(lambda: self._rebuild(snapshot))
 
     def _rebuild(self, first: PageSnapshot) -> None:
-        with one_at_a_time:
+        with one_at_a_time, self._client.atomic():
             self._client.scene.reset()
             self._client.gui.reset()
             self._framed, self._settling = 0.0, SETTLING
@@ -140,7 +140,7 @@ class Page:
             self._build_head(first, words, post)
             self._parts += controls.everything(first)
             return
-        submit = self._rebuilds.submit
+        change = self._rebuilds.change
         tab = None
         if self._is_narrow():  # a single panel with tabs: the lesson first, then the lab
             tabs = gui.add_tab_group()
@@ -153,11 +153,11 @@ class Page:
             tabs = gui.add_tab_group()
             own = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
         course = self._desk.course
-        self._parts.append(StepControls(gui, own, words, course, controls, submit, first))
+        self._parts.append(StepControls(gui, own, words, course, controls, change, first))
         if not first.key.presenting:
             with tabs.add_tab(words("lesson.all_controls"), viser.Icon.ADJUSTMENTS_HORIZONTAL):
                 self._parts += controls.everything(first)
-        lesson = LessonPanel(self._client, words, post, course, self._scene, submit, first, tab=tab)
+        lesson = LessonPanel(self._client, words, post, course, self._scene, change, first, tab=tab)
         self._parts.append(lesson)
 
     def _controls(self, words: Words, post: Post) -> PanelFactory:

@@ -6,13 +6,16 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 
+import viser
+
 from onpath.app.common.error_log import log_error
 
 
 class RebuildThread:
     """Runs the changes of one page in the order in which they were submitted."""
 
-    def __init__(self) -> None:
+    def __init__(self, client: viser.ClientHandle) -> None:
+        self._client = client
         self._pool = ThreadPoolExecutor(1, "rebuild")
 
     def submit(self, work: Callable[[], None]) -> None:
@@ -26,6 +29,18 @@ class RebuildThread:
 
         with suppress(RuntimeError):  # the tab has closed
             self._pool.submit(guarded)
+
+    def change(self, work: Callable[[], None]) -> None:
+        """Queue a change of widgets, which the browser gets as a whole.
+
+        A widget that is pressed before its callbacks are set would do nothing.
+        """
+
+        def whole() -> None:
+            with self._client.atomic():
+                work()
+
+        self.submit(whole)
 
     def close(self) -> None:
         """Start no further work."""

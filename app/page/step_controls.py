@@ -18,7 +18,7 @@ class StepControls:
     """A folder whose contents are rebuilt for every step.
 
     Args:
-        submit: runs something in another thread.
+        change: changes widgets in another thread; see `RebuildThread.change`.
     """
 
     def __init__(
@@ -28,10 +28,10 @@ class StepControls:
         words: Words,
         course: Course,
         controls: PanelFactory,
-        submit: Callable[[Callable[[], None]], None],
+        change: Callable[[Callable[[], None]], None],
         first: PageSnapshot,
     ) -> None:
-        self._gui, self._controls, self._submit = gui, controls, submit
+        self._gui, self._controls, self._change = gui, controls, change
         self._tab, self._words, self._course = tab, words, course
         self._folder: viser.GuiFolderHandle | None = None
         self._scene: StepSetup | None = None
@@ -43,7 +43,7 @@ class StepControls:
         scene = self._setup_of(snapshot)
         if scene != self._scene:
             self._scene, self._parts = scene, []
-            self._submit(lambda: self._fill(scene, snapshot))
+            self._change(lambda: self._fill(scene, snapshot))
         for part in self._parts:
             part.follow(snapshot)
 

@@ -103,6 +103,7 @@ class Press:
     def __call__(self, hands: Hands) -> None:
         with hands.until_received():
             hands.press(hands.tab.button(self.label).first)
+        hands.tab.settle()  # what is typed next is not replaced by what the press changed
 
 
 @dataclass(frozen=True)

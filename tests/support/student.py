@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from types import TracebackType
 from typing import Any, Self
 
@@ -92,10 +93,15 @@ class Student:
                 raw = self._socket.recv(timeout=0.2)
             except TimeoutError:
                 continue
-            assert isinstance(raw, bytes)
-            self.received += len(raw)
-            for message in unpacked(raw):
-                self._take(message)
+            self._take_frame(raw)
+
+    def read_what_was_sent(self) -> None:
+        """Read what the server had sent when it heard of this."""
+        assert self._socket is not None
+        assert self._socket.ping().wait(PATIENCE)
+        with suppress(TimeoutError):
+            while True:
+                self._take_frame(self._socket.recv(timeout=0))
 
     def wait_until_closed(self) -> None:
         """Wait until the server has closed the connection."""
@@ -132,6 +138,12 @@ class Student:
         shown = [w for w in self.widgets.values() if w["value"] is not None]
         options = {option: w for w in shown for option in w.get("options") or ()}
         return {**options, **{str(w["label"]): w for w in shown if w.get("label")}}
+
+    def _take_frame(self, raw: str | bytes) -> None:
+        assert isinstance(raw, bytes)
+        self.received += len(raw)
+        for message in unpacked(raw):
+            self._take(message)
 
     def _take(self, message: dict[str, Any]) -> None:
         kind = message["type"]

@@ -114,6 +114,9 @@ def option_of(words: Words, name: str, option: Any) -> str:
 class ParameterWidgets:
     """Widgets for parameters that post changes and follow the lab's values.
 
+    A snapshot that is shown right after a change may have been taken before it, so it does not set
+    the changed widget back; the next one is right.
+
     Args:
         gui: parent of the widgets.
         post: receives the commands.
@@ -124,6 +127,7 @@ class ParameterWidgets:
         self, gui: viser.GuiApi, words: Words, post: Post, names: list[str], first: PageSnapshot
     ) -> None:
         self._handles: dict[str, Any] = {}
+        self._just_changed: set[str] = set()
         self._post, self._words = post, words
         self._specs = specs(ROBOTS[first.key.robot].parameters)
         for name in names:
@@ -134,9 +138,16 @@ class ParameterWidgets:
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's values where they differ."""
         for name, handle in self._handles.items():
+            if name in self._just_changed:
+                self._just_changed.discard(name)
+                continue
             shown = self._shown(name, snapshot.parameters)
             if handle.value != shown:
                 handle.value = shown
+
+    def _change(self, name: str, value: Any) -> None:
+        self._just_changed.add(name)
+        self._post(SetParameter(name, value))
 
     def _add_choice(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
         spec, words = self._specs[name], self._words
@@ -147,7 +158,7 @@ class ParameterWidgets:
             initial_value=shown,
             hint=help_of(words, name, spec),
         )
-        on_user_update(handle, lambda new: self._post(SetParameter(name, options[new])))
+        on_user_update(handle, lambda new: self._change(name, options[new]))
         return handle
 
     def _add_slider(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
@@ -161,7 +172,7 @@ class ParameterWidgets:
             initial_value=shown,
             hint=help_of(words, name, spec),
         )
-        on_user_update(handle, lambda new: self._post(SetParameter(name, new)))
+        on_user_update(handle, lambda new: self._change(name, new))
         return handle
 
     def _shown(self, name: str, parameters: ParameterValues) -> Any:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from itertools import count
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -14,10 +15,11 @@ from onpath.app.exports import exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page import build_queue
+from onpath.app.page import build_queue, page
 from onpath.app.page.build_queue import FEW, MOST_REST
 from onpath.app.page.page import Page
 from onpath.app.server.lab_server import LabServer
+from onpath.lessons.words import ENGLISH
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
@@ -160,3 +162,26 @@ def test_who_leaves_while_waiting_is_built_nothing(server: LabServer, builds: Bu
     wait_for_views(server, 0)
     assert all(lab.view is None for lab in server.simulation.labs)
     assert not server.sessions.held()
+
+
+def test_no_widget_arrives_before_its_callbacks_are_set(
+    server: LabServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pressed before, it would do nothing. The keys are set last."""
+    add_keys, begun, over = page.add_keys, threading.Event(), threading.Event()
+
+    def add_later(*what: Any) -> None:
+        begun.set()
+        assert over.wait(60)
+        add_keys(*what)
+
+    monkeypatch.setattr(page, "add_keys", add_later)
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+        student.open()
+        student.read(begun.is_set)
+        for _ in range(20):  # viser may take some turns of its event loop
+            student.read_what_was_sent()
+        widgets = len(student.widgets)
+        over.set()
+        student.read(lambda: student.has_widget(ENGLISH("controls.help")))
+    assert widgets == 0

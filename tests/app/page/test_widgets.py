@@ -1,16 +1,22 @@
-"""Detecting the release of a held button from repeated "held" messages alone."""
+"""Widgets that follow a lab, and the release of a held button from "held" messages alone."""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Coroutine
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from onpath.app.page.panels.widgets import PRESS_ENDS, on_hold
+from onpath.app.lab.commands import Command, SetParameter
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.page.panels.widgets import PRESS_ENDS, ParameterWidgets, on_hold
+from onpath.lessons.words import ENGLISH
+from tests.support.lab import store
 
 
 class Timer:
@@ -78,3 +84,43 @@ def test_a_press_lasts_as_long_as_messages_come(gaps: list[float]) -> None:
     presses = 1 + sum(gap > PRESS_ENDS for gap in gaps)
     assert kinds == ["begin", "end"] * presses
     assert heard[-1][1] == pytest.approx(last + PRESS_ENDS)
+
+
+class Slider:
+    """A slider that is moved by its user, or by the lab."""
+
+    def __init__(self, *_: object, initial_value: float, **__: object) -> None:
+        self.value = initial_value
+
+    def on_update(self, act: Callable[[Any], Coroutine[Any, Any, None]]) -> None:
+        self.act = act
+
+    def move(self, value: float) -> None:
+        """A message comes; nothing that follows from it waits."""
+        self.value = value
+        with pytest.raises(StopIteration):
+            self.act(SimpleNamespace(client="somebody")).send(None)
+
+
+def test_a_snapshot_from_before_a_change_does_not_set_the_slider_back() -> None:
+    lab, posted = Lab(store()), list[Command]()
+    before, sliders = take_page_snapshot(lab, 1.0), list[Slider]()
+
+    def add_slider(*args: object, **options: Any) -> Slider:
+        sliders.append(Slider(*args, **options))
+        return sliders[-1]
+
+    gui: Any = SimpleNamespace(add_slider=add_slider)
+    widgets = ParameterWidgets(gui, ENGLISH, posted.append, ["K1"], before)
+    (slider,) = sliders
+    slider.move(123.0)
+    widgets.follow(before)
+    assert slider.value == 123.0 and posted == [SetParameter("K1", 123.0)]
+    for command in posted:
+        command.apply(lab)
+    widgets.follow(take_page_snapshot(lab, 1.0))
+    assert slider.value == 123.0
+    slider.move(1e9)  # refused: the lab keeps its value, and so does the slider
+    widgets.follow(before)
+    widgets.follow(take_page_snapshot(lab, 1.0))
+    assert slider.value == 123.0
