@@ -124,11 +124,13 @@ def test_without_copy_only_the_robot_in_hand_is_pulled(tab: Tab) -> None:
 
 def test_dragging_a_control_point_bends_the_path_and_blends_in(tab: Tab) -> None:
     editor = tab.session.editor
+    stop_between_control_points(tab)
     old = editor.points().copy()
     index = int(np.argmax(old[:, 1]))
     start = tab.placed(FOLLOWER, old[index])
     end = tab.placed(FOLLOWER, old[index] + [0.0, 0.02])
     with tab.dragging(start, end):
+        tab.ask(c.SetRunning(True))
         wait_for(lambda: editor.proposed is not None)
         wait_for(lambda: np.linalg.norm(editor.points()[index] - old[index] - [0, 0.02]) < 3e-3)
         assert editor.selected == index

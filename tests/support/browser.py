@@ -331,7 +331,8 @@ class Tab:
         return self._row(label).locator("input:not([type=hidden])")
 
     def enter(self, label: str, text: str) -> None:
-        """Type a number into its box."""
+        """Type a number into its box once that shows what the lab has."""
+        self.settle()
         box = self.number(label)
         box.fill(text)
         box.press("Enter")

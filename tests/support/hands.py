@@ -150,8 +150,7 @@ class Slide:
         start = grip["x"] + grip["width"] / 2, grip["y"] + grip["height"] / 2
         shift = (self.value - now) / (high - low) * bar["width"]
         with hands.dragging(start, (start[0] + shift, start[1]), in_scene=False):
-            pass
-        wait_for(lambda: hands.has(self.label, self.value, self.near))
+            wait_for(lambda: hands.has(self.label, self.value, self.near))
 
 
 @dataclass(frozen=True)
