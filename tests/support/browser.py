@@ -21,6 +21,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import page_key
+from onpath.app.page.teacher_view import TeacherView
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
@@ -276,16 +277,15 @@ class Tab:
 
     def is_built(self) -> bool:
         """Whether the page is that of the current robot, and is not about to be rebuilt."""
-        feed = self.view
+        feed = self.scheduled.view  # a teacher's page is another view than the first one
         if not isinstance(feed, LabFeed) or not feed.page.is_ready:
             return False
-        return feed.page._built == (page_key(self.lab),)
+        return isinstance(feed.page, TeacherView) or feed.page._built == (page_key(self.lab),)
 
     def press(self, name: str) -> None:
         """Press a button once the page is built; one of the page before would do nothing."""
-        if isinstance(self.view, LabFeed):
-            wait_for(self.is_built)
-            self.answer()
+        wait_for(self.is_built)
+        self.answer()
         self.button(name).click()
 
     def button(self, name: str) -> Locator:
