@@ -49,7 +49,7 @@ def tab(shared: Tab) -> Iterator[Tab]:
     lab = shared.lab
     shared.page.keyboard.press("Escape")
     shared.page.mouse.move(1, 1)
-    shared.page.locator("body").evaluate("() => document.activeElement?.blur()")
+    shared.blur()
     shared.ask(c.ResetParameters(), c.ChoosePath("circle"), c.SelectPoint(None), c.Reset())
     shared.ask(c.SetCopy(True), c.SetRate(1.0), c.SetRunning(True))
     wait_for(lambda: lab.session.time > 0.1)

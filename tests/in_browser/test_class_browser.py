@@ -56,7 +56,7 @@ def fill(tab: Tab, label: str, text: str) -> None:
     box = tab.field(label)
     box.fill(text)
     box.press("Enter")
-    box.blur()
+    tab.blur()
 
 
 def test_students_join_and_the_teacher_sees_them(tabs: Class) -> None:

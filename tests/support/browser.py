@@ -47,6 +47,14 @@ THREE_FRAMES = """() => new Promise(done => {
     frame()
 })"""
 
+BLUR = """async () => {
+    const frame = () => new Promise(requestAnimationFrame)
+    do {
+        document.activeElement?.blur()
+        for (let i = 0; i < 3; i++) await frame()
+    } while (document.activeElement !== document.body)
+}"""
+
 
 class Note(Command):
     """A command that only records that it has been applied; not counted as one of the user's."""
@@ -313,10 +321,11 @@ class Tab:
         wait_for(lambda: control.evaluate("control => control === document.activeElement"))
 
     def blur(self) -> None:
-        """Remove the focus from the focused control, again if the page gives it back meanwhile."""
-        self.page.wait_for_function(
-            "() => (document.activeElement?.blur(), document.activeElement === document.body)"
-        )
+        """Remove the focus from the focused control.
+
+        A box for numbers takes it back when it places its caret, some time after a key.
+        """
+        self.page.evaluate(BLUR)
 
     def slider(self, label: str) -> Locator:
         """Return the handle of a slider."""
@@ -336,7 +345,7 @@ class Tab:
         box = self.number(label)
         box.fill(text)
         box.press("Enter")
-        box.blur()
+        self.blur()
 
     def _row(self, label: str) -> Locator:
         """The row of a widget: the smallest box around its label and an input."""
