@@ -57,7 +57,8 @@ class Page:
             show_logo=False, show_share_button=False, brand_color=FOLLOWER.rgb
         )
         client.gui.set_panel_label("OnPath")
-        if not self._is_narrow():
+        self._is_phone = self._is_narrow()
+        if not self._is_phone:
             client.gui.main_panel.dock_right()
             client.gui.main_panel.set_width(CONTROL_WIDTH)
         with one_at_a_time, client.atomic():  # the browser gets no widget without its callbacks
@@ -209,7 +210,7 @@ class Page:
         shape = width / max(height, 1)
         if width > 0 and abs(shape - self._framed) > 0.02 * shape:
             self._framed = shape
-            below = 0.6 * height if shape < NARROW else 0.0
+            below = 0.6 * height if self._is_phone else 0.0  # a tablet's panel is at the side
             self._scene.frame_camera(Insets(bottom=below))
 
 

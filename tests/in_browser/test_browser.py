@@ -459,6 +459,17 @@ def test_a_narrow_screen_shows_both_robots_and_the_buttons(
     context.close()
 
 
+def test_a_tablet_shows_both_robots_in_the_middle(browser: Browser, server: LabServer) -> None:
+    context = fresh(browser, viewport={"width": 820, "height": 1180}, has_touch=True)
+    tab = Tab(server, context, draws=False)
+    left, right = tab._canvas()["x"], tab._canvas()["x"] + tab._canvas()["width"]
+    for name in (TRACKER, FOLLOWER):
+        for point in tab.session.editor.points():
+            x, y = tab.placed(name, point)
+            assert left < x < right < 820 and 0.3 * 1180 < y < 0.6 * 1180
+    context.close()
+
+
 def test_hostile_text_is_not_rendered(tab: Tab) -> None:
     """No browser can make the lab show this text, but no code may rely on that."""
     tab.page.evaluate("window.harmed = false")
