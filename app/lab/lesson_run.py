@@ -116,6 +116,7 @@ class LessonRun(LessonState):
         self._begin_again(lab, running=lab.session.running)
         if self.before is not None:
             lab.set_up(self.before)
+            lab.session.editor.forget_edits()  # those of the lesson
             lab.session.running = True
         self.version += 1
 
@@ -237,6 +238,7 @@ class LessonRun(LessonState):
         lesson = self.lesson
         assert lesson is not None
         self.note(step=index, seen=max(self.notes.seen, index + 1))
+        lab.session.editor.forget_edits()  # an undo would bring the path of another step back
         self._begin_again(lab, lesson.scene_at(index).running)
 
     def _begin_again(self, lab: LessonLab, running: bool) -> None:

@@ -109,6 +109,11 @@ class PathEditor:
         """Redo one edit; False if there is none."""
         return self._swap(self._future, self._past)
 
+    def forget_edits(self) -> None:
+        """Leave nothing to undo or redo."""
+        self._past.clear()
+        self._future.clear()
+
     def clear_faults(self) -> None:
         """Clear the marks of the last refused edit."""
         if self.faults:

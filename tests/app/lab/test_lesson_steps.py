@@ -218,3 +218,14 @@ def test_what_a_step_keeps_is_what_the_step_before_has(
         do(lab, *ways, c.SetParameter("K1", 50.0), c.BeginStepAnew())
         assert lab.lessons.index == 2
         assert (lab.session.parameters.K1, lab.session.parameters.K2) == (300.0, 30.0)
+
+
+def test_no_undo_brings_the_path_of_another_step_back() -> None:
+    lab = new_lab()
+    do(lab, TakeStep(*STEPS[0]), c.ChoosePath("ellipse"), c.ChoosePath("clover"), c.Undo())
+    for leave in (c.GoToStep(1), c.GoToStep(-1), c.CloseLesson()):
+        do(lab, c.ChoosePath("ellipse"), leave)
+        design = lab.session.editor.design
+        for command in (c.Undo(), c.Redo()):
+            do(lab, command)
+            assert lab.session.editor.design is design
