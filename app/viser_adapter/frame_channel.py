@@ -9,7 +9,9 @@ browsers together (`FrameChannel`). This uses private parts of viser, which test
 from __future__ import annotations
 
 import asyncio
+import struct
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
 from threading import get_ident
@@ -25,13 +27,15 @@ from viser.infra._messages import wire_field_names
 from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
 
-from onpath.app.viser_adapter.compression import compress
+from onpath.app.viser_adapter.compression import compress, stored_head
 
+Templates = dict[tuple[tuple[object, ...], ...], bytes]
 UPDATES = {
     kind: wire_field_names(kind)
     for kind in (_messages.SceneNodeUpdateMessage, _messages.GuiUpdateMessage)
 }
 MOST_UNSENT = 1 << 16  # [B] unsent; beyond it, viser's queue merges outdated messages
+SMALL = 2048  # [B] of a frame without its arrays, up to which it is not compressed
 _DTYPES = {np.dtype(kind): np.dtype(kind).str for kind in (np.float32, np.float64)}  # .str is slow
 _ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[FrameChannel]] = WeakKeyDictionary()
 """Channels with pending messages, by the event loop that sends them."""
@@ -75,6 +79,7 @@ class FrameChannel:
         self._collector: int | None = None
         self.frames = 0
         self._messages: list[Message] = []
+        self._templates: Templates = {}
         self._queue = partial(type(connection).queue_message, connection)
         connection.queue_message = self._take  # of an earlier channel too, if there was one
 
@@ -111,7 +116,7 @@ class FrameChannel:
 
     def _packed(self) -> tuple[list[Message], bytes]:
         messages, self._messages = self._messages, []
-        return messages, packed(messages)
+        return messages, packed(messages, self._templates)
 
     def write(self, messages: list[Message], data: bytes) -> None:
         """Send a frame. Runs on the event loop."""
@@ -168,17 +173,48 @@ def _told(value: Any, arrays: list[memoryview]) -> Any:
     return {"__binary_index": len(arrays) - 1, "dtype": dtype}
 
 
-def packed(messages: list[Message]) -> bytes:
-    """Messages as viser sends them: lengths, compressed msgpack, then the raw arrays."""
-    arrays: list[memoryview] = []
-    window = {
-        "messages": [_wire(message, arrays) for message in messages],
-        "timestampSec": time.perf_counter(),
-        "binaryBufferLengths": [array.nbytes for array in arrays],
-    }
-    inner = msgspec.msgpack.encode(window)
-    outer = compress(inner)
-    lengths = (len(inner).to_bytes(8, "little"), len(outer).to_bytes(8, "little"))
-    parts: list[bytes | memoryview] = [*lengths, outer]
-    _infra._append_aligned_buffers(parts, arrays, 16 + len(outer))
+def _form(message: Message) -> tuple[object, ...]:
+    """Everything but the numbers in an update of a node's arrays; empty for other messages."""
+    if type(message) is not _messages.SceneNodeUpdateMessage:
+        return ()
+    form: list[object] = [message.name, message.owner]
+    for name, value in message.updates.items():
+        if type(value) is not np.ndarray or not value.flags.c_contiguous:
+            return ()
+        form += name, value.dtype, value.nbytes
+    return tuple(form)
+
+
+def packed(messages: Sequence[Message], templates: Templates) -> bytes:
+    """Messages as viser sends them: lengths, msgpack in a zstd frame, then the raw arrays.
+
+    Most frames differ from an earlier one only in the arrays and in the time, which stands last.
+
+    Args:
+        templates: earlier frames up to the time, by the forms of their messages.
+    """
+    arrays: list[Any] = []
+    forms = tuple(map(_form, messages))
+    head, time_sent = templates.get(forms), struct.pack(">d", time.perf_counter())
+    if head is not None:
+        arrays += [each for message in messages for each in vars(message)["updates"].values()]
+    else:
+        wire = [_wire(message, arrays) for message in messages]
+        lengths = [array.nbytes for array in arrays]
+        window = {"messages": wire, "binaryBufferLengths": lengths, "timestampSec": 0.0}
+        inner = msgspec.msgpack.encode(window)[: -len(time_sent)]
+        size = len(inner) + len(time_sent)
+        if size > SMALL:
+            head, time_sent = _started(size, compress(inner + time_sent)), b""
+        else:
+            head = _started(size, stored_head(size) + inner, len(time_sent))
+            if () not in forms:
+                templates[forms] = head
+    parts: list[Any] = [head, time_sent]
+    _infra._append_aligned_buffers(parts, arrays, len(head) + len(time_sent))
     return b"".join(parts)
+
+
+def _started(size: int, outer: bytes, missing: int = 0) -> bytes:
+    """The beginning of a frame: both lengths, and the compressed msgpack but its last bytes."""
+    return size.to_bytes(8, "little") + (len(outer) + missing).to_bytes(8, "little") + outer
