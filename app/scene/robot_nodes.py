@@ -12,7 +12,7 @@ from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import Counts, RobotView, TrackerName
 from onpath.app.scene import meshes
 from onpath.app.scene.poses import Poses, difference, trace_segments
-from onpath.app.scene.stage import IDENTITY, Stage, add_copies, add_text, set_text
+from onpath.app.scene.stage import IDENTITY, ChangingText, Stage, add_copies
 from onpath.app.viser_adapter.frame_channel import NodeGroup, update_node
 from onpath.lessons.words import ENGLISH, Words
 
@@ -237,7 +237,7 @@ class RobotNodes:
             self._traced = points
             update_node(self._traces, points=points)
         for robot, label in zip(robots, self._force_labels, strict=True):
-            set_text(label, self._force_words(hypot(*robot.force.tolist())))
+            label.show(self._force_words(hypot(*robot.force.tolist())))
 
     def _force_words(self, force: float) -> str:
         """Label with the magnitude of a force, [N]; empty when none is drawn."""
@@ -257,8 +257,6 @@ class RobotNodes:
             visible=False,
         )
         self._force_labels = [
-            add_text(scene, f"/force_labels/{name}", "", base + stage.force)
+            ChangingText(scene, f"/force_labels/{name}", base + stage.force)
             for name, base in stage.bases.items()
         ]
-        for label in self._force_labels:
-            label.visible = False

@@ -22,12 +22,11 @@ from onpath.app.scene.poses import poses_of
 from onpath.app.scene.robot_nodes import RobotNodes
 from onpath.app.scene.stage import (
     FIELD_OF_VIEW,
+    ChangingText,
     Insets,
     Stage,
     add_copies,
-    add_text,
     build_stage,
-    set_text,
     view_of,
 )
 from onpath.lessons.words import ENGLISH, Words
@@ -122,9 +121,8 @@ class Scene:
             self._client.scene, self._stage, motion.counts, poses, self._words
         )
         self._machine.grips.on_drag("left")(self._tip_dragged)
-        scale = self._words("scene.true_scale")
         self._notes = [
-            add_text(self._client.scene, f"/notes/{name}", scale, base + self._stage.note)
+            ChangingText(self._client.scene, f"/notes/{name}", base + self._stage.note)
             for name, base in self._stage.bases.items()
         ]
         self.update(motion)
@@ -148,7 +146,7 @@ class Scene:
         if freehand is not None:
             freehand.draw()
         for note in self._notes:
-            set_text(note, snapshot.note)
+            note.show(snapshot.note)
 
     def show_singular_zone(self, visible: bool = True) -> None:
         """Shades the neighbourhood of the singular circles about the base pivot."""
