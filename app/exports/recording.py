@@ -70,8 +70,7 @@ def record_scene(
         if time.monotonic() > until:
             raise TimeoutError("the recording takes too long")
         snapshot = _snapshot(robot, segment, number, frames[max(0, number - 45) : number])
-        scene.update(snapshot)
-        scene.update_path(snapshot)
+        scene.update(snapshot.motion)
         if number % 3 == 0:
             scene.update_traces(snapshot)
         serializer.insert_sleep(1 / RATE)

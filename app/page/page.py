@@ -9,7 +9,7 @@ from onpath.app.common.templates import render
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
-from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel
@@ -74,19 +74,20 @@ class Page:
         """Whether the page is built and its client is connected."""
         return not self._building and not self._channel.closed
 
-    def show(self, snapshot: Snapshot) -> None:
+    def show(self, snapshot: PageSnapshot | Motion) -> None:
         """Show a snapshot. Called on the simulation thread while the page is ready."""
         if self._key(snapshot) != self._built:
             self._renew(snapshot)
             return
         with self._channel:
-            self._scene.update(snapshot)
-            self._scene.update_path(snapshot)
-            if isinstance(snapshot, PageSnapshot):
-                self._scene.update_traces(snapshot)
-                self._frame_camera()
-                for part in self._parts:
-                    part.follow(snapshot)
+            if isinstance(snapshot, Motion):
+                self._scene.update(snapshot)
+                return
+            self._scene.update(snapshot.motion)
+            self._scene.update_traces(snapshot)
+            self._frame_camera()
+            for part in self._parts:
+                part.follow(snapshot)
 
     def reset_view(self) -> None:
         """Schedule a reset of the camera to its initial pose. Thread-safe."""
@@ -101,7 +102,7 @@ class Page:
         """See `app.server.tab_visibility.CountingDisplay`."""
         return self._channel.frames
 
-    def _renew(self, snapshot: Snapshot) -> None:
+    def _renew(self, snapshot: PageSnapshot | Motion) -> None:
         """Rebuild the page; nothing is shown until it is complete."""
         self.is_outdated = True
         if isinstance(snapshot, PageSnapshot):
@@ -115,7 +116,7 @@ class Page:
             self._framed, self._settling = 0.0, SETTLING
             self._build(first)
 
-    def _key(self, snapshot: Snapshot) -> tuple[object, ...]:
+    def _key(self, snapshot: PageSnapshot | Motion) -> tuple[object, ...]:
         """Key of everything the page layout depends on; a change triggers a rebuild."""
         return (snapshot.key,)
 

@@ -6,7 +6,7 @@ import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.teacher_controls import FollowedStudent, TeacherControls
@@ -33,7 +33,7 @@ class TeacherView(Page):
         self._own_words, self._teaching = Words(first.key.language), teaching
         super().__init__(client, first, desk)
 
-    def _key(self, snapshot: Snapshot) -> tuple[object, ...]:
+    def _key(self, snapshot: PageSnapshot | Motion) -> tuple[object, ...]:
         key = snapshot.key
         return key.student, key.robot, key.fields
 

@@ -4,42 +4,44 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
 from math import prod, sqrt
 
 import numpy as np
 
-from onpath.app.lab.snapshots.snapshot import Counts, RobotView
+from onpath.app.lab.snapshots.snapshot import Counts, Motion
 from onpath.app.scene.stage import Stage
 
 UNSEEN = 1e-5
 PLACED = ("bars", "parts", "tips")
 """Fields that are world positions; the others are directions, lengths and forces."""
+OF_BARS = ("bars", "quaternions", "lengths")
+"""Fields with one row for each bar: first the links of all robots, then the pieces of strips."""
 
 
 @dataclass(frozen=True, slots=True)
 class Poses:
-    """Poses of everything that moves, for all robots, in the world; float32, as sent to browsers.
+    """Poses of everything that moves, for all robots, in the world.
 
     Attributes:
-        whole: all following fields in one flat array.
-        bars: origins of the link meshes, shape (n, 3), [m].
-        quaternions: their orientations, scalar first, shape (n, 4).
-        lengths: of the bars, shape (n,), [m].
-        parts: for each robot its bearings, pen, two marker discs and extra points, (m, 3), [m].
-        turns: rotations of these parts about the vertical, scalar first, shape (m, 4).
-        tips: end-points, shape (k, 3), [m].
-        forces: on the end-points, shape (k, 3), [N].
+        whole: the fields of `PoseShapes`, one after the other, each of all robots; float32, as sent
+            to browsers.
+        fields: place and shape of each field within `whole`.
     """
 
     whole: np.ndarray
-    bars: np.ndarray
-    quaternions: np.ndarray
-    lengths: np.ndarray
-    parts: np.ndarray
-    turns: np.ndarray
-    tips: np.ndarray
-    forces: np.ndarray
+    fields: dict[str, tuple[slice, tuple[int, ...]]]
+
+    def __getitem__(self, field: str) -> np.ndarray:
+        """One field, a row for each bar, part or robot."""
+        place, shape = self.fields[field]
+        return self.whole[place].reshape(shape)
+
+    def place(self, field: str, rows: slice = slice(None)) -> slice:
+        """Where some rows of a field are in `whole`."""
+        place, shape = self.fields[field]
+        begin, end, _ = rows.indices(shape[0])
+        width = prod(shape[1:])
+        return slice(place.start + begin * width, place.start + end * width)
 
     def is_news(self, drawn: Poses) -> bool:
         """Whether it is finite and differs visibly from the last pose: by 10 µm or 10 µN."""
@@ -52,46 +54,45 @@ def difference(a: np.ndarray, b: np.ndarray) -> float:
     return sqrt(d.dot(d))
 
 
-def poses_of(stage: Stage, robots: list[RobotView]) -> Poses:
+def poses_of(stage: Stage, motion: Motion) -> Poses:
     """World poses of robots of the same kind at one instant."""
-    layout = _layout(stage, robots[0].counts)
-    flat = np.concatenate([robot.poses for robot in robots])
+    layout = _layout(stage, motion.counts)
+    whole = layout.offsets + motion.drawn.take(layout.order)
     with np.errstate(over="ignore"):  # non-finite values are then not drawn
-        whole = (flat.take(layout.order) + layout.offsets).astype(np.float32)
-    return Poses(whole, *[whole[place].reshape(shape) for place, shape in layout.fields])
+        return Poses(whole.astype(np.float32), layout.fields)
 
 
 @dataclass(frozen=True, slots=True)
 class _Layout:
-    """Mapping from the poses of each robot in its own frame to `Poses.whole`.
+    """Mapping from what is drawn of each robot, in its own frame, to `Poses`.
 
     Attributes:
-        order: source index of each entry of `Poses.whole`.
+        order: index in `Motion.drawn` of each entry of `Poses.whole`.
         offsets: added to each entry; the origins of the robots' frames.
-        fields: position and shape of each field of `Poses` within `whole`.
+        fields: see `Poses`.
     """
 
     order: np.ndarray
     offsets: np.ndarray
-    fields: list[tuple[slice, tuple[int, ...]]]
+    fields: dict[str, tuple[slice, tuple[int, ...]]]
 
 
 @lru_cache(maxsize=64)
 def _layout(stage: Stage, counts: Counts) -> _Layout:
-    own = counts.pose_shapes
-    sizes = [prod(shape) for shape in own]
-    starts = np.cumsum([0, *sizes]).tolist()
-    bases = stage.origins.tolist()
-    total, k = starts[-1], len(bases)
+    start, bases = 3 * counts.points, stage.origins.tolist()
     order, offsets = list[int](), list[float]()
-    for start, size, name in zip(starts[:-1], sizes, own._fields, strict=True):
-        for i, base in enumerate(bases):
-            order.extend(range(i * total + start, i * total + start + size))
-            offsets.extend(base * (size // 3) if name in PLACED else [0.0] * size)
-    ends = np.cumsum([0, *(k * size for size in sizes)]).tolist()
-    fields = [
-        (slice(*e), (k * n, *rest)) for e, (n, *rest) in zip(pairwise(ends), own, strict=True)
-    ]
+    fields = dict[str, tuple[slice, tuple[int, ...]]]()
+    for name, (rows, *rest) in counts.pose_shapes._asdict().items():
+        width, before = prod(rest), len(order)
+        places = [(i, row) for i in range(len(bases)) for row in range(rows)]
+        if name in OF_BARS:
+            places.sort(key=lambda place: place[1] >= counts.links)
+        for i, row in places:
+            at = i * counts.size + start + row * width
+            order.extend(range(at, at + width))
+            offsets.extend(bases[i] if name in PLACED else [0.0] * width)
+        fields[name] = (slice(before, len(order)), (len(places), *rest))
+        start += rows * width
     return _Layout(np.array(order), np.array(offsets), fields)
 
 

@@ -12,8 +12,8 @@ from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import Counts, RobotView, TrackerName
 from onpath.app.scene import meshes
 from onpath.app.scene.poses import Poses, difference, trace_segments
-from onpath.app.scene.stage import IDENTITY, Stage, add_copies, add_text, set_text
-from onpath.app.viser_adapter.frame_channel import update_node
+from onpath.app.scene.stage import IDENTITY, ChangingText, Stage, add_copies
+from onpath.app.viser_adapter.frame_channel import NodeGroup, update_node
 from onpath.lessons.words import ENGLISH, Words
 
 if TYPE_CHECKING:
@@ -98,8 +98,8 @@ class Bars:
     """Some of the bars as copies of one mesh along x from 0 to 1.
 
     Args:
-        which: selects from all bars: booleans, shape (n,), or a slice.
-        colours: linear colours of the selected bars, shape (k, 3).
+        rows: of these bars in `Poses`.
+        colours: linear colours of these bars, shape (k, 3).
     """
 
     def __init__(
@@ -107,23 +107,28 @@ class Bars:
         scene: viser.SceneApi,
         name: str,
         mesh: trimesh.Trimesh,
-        which: np.ndarray | slice,
+        rows: slice,
         colours: np.ndarray,
         poses: Poses,
     ) -> None:
-        self._which = which
-        self._lengths = poses.lengths[which]
+        self._rows = rows
+        self._lengths = poses["lengths"][rows]
         scales = link_scales(self._lengths)
-        self._node = add_copies(scene, name, mesh, poses.bars[which], colours, scales=scales)
+        self.node = add_copies(scene, name, mesh, poses["bars"][rows], colours, scales=scales)
 
-    def update(self, poses: Poses) -> None:
-        """Update the bars; sends one message."""
-        which, lengths = self._which, poses.lengths[self._which]
-        arrays = {"batched_positions": poses.bars[which], "batched_wxyzs": poses.quaternions[which]}
+    def update_lengths(self, poses: Poses) -> None:
+        """Rescale the bars if lengths have changed."""
+        lengths = poses["lengths"][self._rows]
         if difference(lengths, self._lengths) > 1e-4:
             self._lengths = lengths
-            arrays["batched_scales"] = link_scales(lengths)
-        update_node(self._node, **arrays)
+            update_node(self.node, batched_scales=link_scales(lengths))
+
+    def properties(self, poses: Poses) -> list[tuple[viser.BatchedMeshHandle, str, slice]]:
+        """What moves, and where it is in `Poses.whole`; see `NodeGroup`."""
+        return [
+            (self.node, "batched_positions", poses.place("bars", self._rows)),
+            (self.node, "batched_wxyzs", poses.place("quaternions", self._rows)),
+        ]
 
 
 class RobotNodes:
@@ -132,7 +137,7 @@ class RobotNodes:
     Args:
         scene: the client's scene.
         stage: where the robots stand.
-        robots: their initial states, in the same order.
+        counts: numbers of parts of each robot.
         poses: their initial poses.
         words: message catalogue for the labels.
     """
@@ -141,7 +146,7 @@ class RobotNodes:
         self,
         scene: viser.SceneApi,
         stage: Stage,
-        robots: list[RobotView],
+        counts: Counts,
         poses: Poses,
         words: Words = ENGLISH,
     ) -> None:
@@ -149,14 +154,14 @@ class RobotNodes:
         self._bases = bases = stage.bases
         self._force_scale = stage.force_scale
         self._drawn = poses
-        self._bars = self._add_bars(scene, robots, poses)
-        self._parts = self._add_parts(scene, stage, robots, poses)
-        self._turns = np.tile(IDENTITY, (len(poses.turns), 1))
+        self._bars = self._add_bars(scene, counts, poses)
+        self._parts = self._add_parts(scene, stage, counts, poses)
+        self._turns = np.tile(IDENTITY, (len(poses["turns"]), 1))
         self.grips = add_copies(
             scene,
             "/grips",
             meshes.grip(),
-            poses.tips,
+            poses["tips"],
             np.stack([palette.CONTROLLERS[name].linear for name in bases]),
             opacity=0.22,
         )
@@ -164,55 +169,65 @@ class RobotNodes:
         self._trace_origins = _trace_origins(stage.origins)
         self._traced = self._trace_origins
         self._add_force(scene, stage)
+        self._moving = NodeGroup(
+            [
+                *(each for bars in self._bars for each in bars.properties(poses)),
+                (self._parts, "batched_positions", poses.place("parts")),
+                (self.grips, "batched_positions", poses.place("tips")),
+            ]
+        )
         self._draw(poses)
 
-    def _add_bars(self, scene: viser.SceneApi, robots: list[RobotView], poses: Poses) -> list[Bars]:
-        counts = [robot.counts for robot in robots]
-        is_link = np.concatenate([np.arange(each.bars) < each.links for each in counts])
-        named = zip(self._bases, counts, strict=True)
-        colours = np.concatenate([bar_colours(name, each) for name, each in named])
-        if is_link.all():
-            return [Bars(scene, "/links", meshes.link(), slice(None), colours, poses)]
-        return [
-            Bars(scene, "/links", meshes.link(), is_link, colours[is_link], poses),
-            Bars(scene, "/beams", meshes.blade(), ~is_link, colours[~is_link], poses),
-        ]
+    def _add_bars(self, scene: viser.SceneApi, counts: Counts, poses: Poses) -> list[Bars]:
+        links = slice(len(self._bases) * counts.links)
+        strips = slice(links.stop, None)
+        is_link = np.arange(counts.bars) < counts.links
+        own = [bar_colours(name, counts) for name in self._bases]
+        of_links = np.concatenate([colours[is_link] for colours in own])
+        found = [Bars(scene, "/links", meshes.link(), links, of_links, poses)]
+        if counts.strip:
+            of_strips = np.concatenate([colours[~is_link] for colours in own])
+            found.append(Bars(scene, "/beams", meshes.blade(), strips, of_strips, poses))
+        return found
 
     def _add_parts(
-        self, scene: viser.SceneApi, stage: Stage, robots: list[RobotView], poses: Poses
+        self, scene: viser.SceneApi, stage: Stage, counts: Counts, poses: Poses
     ) -> viser.BatchedMeshHandle:
-        named = zip(self._bases, robots, strict=True)
-        looks = [part_looks(name, robot.counts, stage.motors) for name, robot in named]
+        looks = [part_looks(name, counts, stage.motors) for name in self._bases]
         return add_copies(
             scene,
             "/parts",
             meshes.bearing(),
-            poses.parts,
+            poses["parts"],
             np.stack([colour for _, colours in looks for colour in colours]),
             scales=np.array([scale for scales, _ in looks for scale in scales]),
         )
 
     def update(self, poses: Poses) -> None:
-        """Sends three messages, plus one each for forces and strips; none if nothing has moved."""
+        """Sends what moves, and forces, rotations and lengths if they change; not what is still."""
         if poses.is_news(self._drawn):
             self._drawn = poses
             self._draw(poses)
 
     def _draw(self, poses: Poses) -> None:
+        self._moving.update(poses.whole)
         for bars in self._bars:
-            bars.update(poses)
-        parts = {"batched_positions": poses.parts}
-        if difference(poses.turns, self._turns) > 1e-3:
-            self._turns = parts["batched_wxyzs"] = poses.turns
-        update_node(self._parts, **parts)
-        update_node(self.grips, batched_positions=poses.tips)
-        acts = max(map(abs, poses.forces.ravel().tolist())) > FORCE_SHOWN
+            bars.update_lengths(poses)
+        turns = poses["turns"]
+        if difference(turns, self._turns) > 1e-3:
+            self._turns = turns
+            update_node(self._parts, batched_wxyzs=turns)
+        self._draw_forces(poses)
+
+    def _draw_forces(self, poses: Poses) -> None:
+        forces = poses["forces"]
+        acts = max(map(abs, forces.ravel().tolist())) > FORCE_SHOWN
         if acts:
-            tails = poses.tips - [0.0, 0.01, 0.0]
-            arrows = np.stack([tails, tails + self._force_scale * poses.forces], axis=1)
+            tails = poses["tips"] - [0.0, 0.01, 0.0]
+            arrows = np.stack([tails, tails + self._force_scale * forces], axis=1)
             update_node(self._arrows, points=arrows)
-        if self._arrows.visible != acts:
-            self._arrows.visible = acts
+        if self._acting != acts:
+            self._acting = self._arrows.visible = acts
 
     def update_traces(self, robots: list[RobotView]) -> None:
         """Redraws the traces if they have changed, and updates the force labels."""
@@ -222,7 +237,7 @@ class RobotNodes:
             self._traced = points
             update_node(self._traces, points=points)
         for robot, label in zip(robots, self._force_labels, strict=True):
-            set_text(label, self._force_words(hypot(*robot.force.tolist())))
+            label.show(self._force_words(hypot(*robot.force.tolist())))
 
     def _force_words(self, force: float) -> str:
         """Label with the magnitude of a force, [N]; empty when none is drawn."""
@@ -231,6 +246,7 @@ class RobotNodes:
         return ""
 
     def _add_force(self, scene: viser.SceneApi, stage: Stage) -> None:
+        self._acting = False
         self._arrows = scene.add_arrows(
             "/force",
             np.zeros((len(self._bases), 2, 3)),
@@ -241,8 +257,6 @@ class RobotNodes:
             visible=False,
         )
         self._force_labels = [
-            add_text(scene, f"/force_labels/{name}", "", base + stage.force)
+            ChangingText(scene, f"/force_labels/{name}", base + stage.force)
             for name, base in stage.bases.items()
         ]
-        for label in self._force_labels:
-            label.visible = False

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshots.snapshot import PathView, RobotView, Snapshot
+from onpath.app.lab.snapshots.snapshot import END, TIP, Motion, PathView, Snapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.freehand import Freehand
 from onpath.app.scene.path_nodes import PathNodes
@@ -22,12 +22,11 @@ from onpath.app.scene.poses import poses_of
 from onpath.app.scene.robot_nodes import RobotNodes
 from onpath.app.scene.stage import (
     FIELD_OF_VIEW,
+    ChangingText,
     Insets,
     Stage,
     add_copies,
-    add_text,
     build_stage,
-    set_text,
     view_of,
 )
 from onpath.app.viser_adapter.camera import place_camera
@@ -102,7 +101,7 @@ class Scene:
         self._hooks = hooks or SceneCallbacks()
         self.pull = next(iter(stage.pulls))
         self.path_first = False
-        self._snapshot: Snapshot | None = None
+        self._motion: Motion | None = None
         self._grip: tuple[DragPlane, np.ndarray] | None = None
         self._path: PathView | None = None
         self._path_nodes = PathNodes(client.scene, self._origins, self._connect_points)
@@ -118,40 +117,39 @@ class Scene:
 
     def build(self, snapshot: Snapshot) -> None:
         """Creates all nodes once, with the snapshot's numbers of bars, joints and points."""
-        robots = self._robots(snapshot)
+        motion = snapshot.motion
         self._titles = build_stage(self._client.scene, self._stage, self._words)
-        poses = poses_of(self._stage, robots)
-        self._machine = RobotNodes(self._client.scene, self._stage, robots, poses, self._words)
+        poses = poses_of(self._stage, motion)
+        self._machine = RobotNodes(
+            self._client.scene, self._stage, motion.counts, poses, self._words
+        )
         self._machine.grips.on_drag("left")(self._tip_dragged)
-        self._snapshot = snapshot
-        scale = self._words("scene.true_scale")
         self._notes = [
-            add_text(self._client.scene, f"/notes/{name}", scale, base + self._stage.note)
+            ChangingText(self._client.scene, f"/notes/{name}", base + self._stage.note)
             for name, base in self._stage.bases.items()
         ]
-        self.update_path(snapshot)
+        self.update(motion)
         self.update_traces(snapshot)
 
-    def update(self, snapshot: Snapshot) -> None:
-        """Updates all poses; called at about 30 Hz. Non-finite poses are not drawn."""
-        self._snapshot = snapshot
-        self._machine.update(poses_of(self._stage, self._robots(snapshot)))
+    def update(self, motion: Motion) -> None:
+        """Updates all poses, and the path if its version changed; called at about 30 Hz.
+
+        Non-finite poses are not drawn.
+        """
+        self._motion = motion
+        self._machine.update(poses_of(self._stage, motion))
+        if self._path is None or motion.path.version != self._path.version:
+            self._path = motion.path
+            self._path_nodes.draw(motion.path)
 
     def update_traces(self, snapshot: Snapshot) -> None:
         """Redraws end-point traces, force labels and a stroke; called at 5 to 10 Hz."""
-        self._machine.update_traces(self._robots(snapshot))
+        self._machine.update_traces([snapshot.robots[name] for name in self._names])
         freehand = self._freehand  # another thread may end the stroke
         if freehand is not None:
             freehand.draw()
         for note in self._notes:
-            set_text(note, snapshot.note)
-
-    def update_path(self, snapshot: Snapshot) -> None:
-        """Redraws the path and its control points if the path's version changed."""
-        path = snapshot.path
-        if self._path is None or path.version != self._path.version:
-            self._path = path
-            self._path_nodes.draw(path)
+            note.show(snapshot.note)
 
     def show_singular_zone(self, visible: bool = True) -> None:
         """Shades the neighbourhood of the singular circles about the base pivot."""
@@ -195,9 +193,6 @@ class Scene:
             self._freehand.cancel()
             self._freehand = None
 
-    def _robots(self, snapshot: Snapshot) -> list[RobotView]:
-        return [snapshot.robots[name] for name in self._names]
-
     # Mouse callbacks. Coroutines without await, because viser runs those in order.
 
     async def _tip_dragged(self, event: DragEvent) -> None:
@@ -222,10 +217,10 @@ class Scene:
 
     def _grip_of(self, name: str) -> tuple[DragPlane, np.ndarray]:
         """Plane of a new pull, and offset from the drawn end-point to the actual one, [m]."""
-        assert self._snapshot is not None
-        robot = self._snapshot.robots[name]
-        normal = self._stage.pulls[self.pull].normal
-        return DragPlane(robot.tip, normal), robot.end - robot.tip
+        assert self._motion is not None
+        robot, normal = self._names.index(name), self._stage.pulls[self.pull].normal
+        tip, end = self._motion.point(robot, TIP), self._motion.point(robot, END)
+        return DragPlane(tip, normal), end - tip
 
     def _covered_point(self, event: DragEvent, name: str) -> int | None:
         """The control point to select when an end-point that covers it is pressed, if any."""

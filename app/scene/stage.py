@@ -196,12 +196,23 @@ def add_text(
     )
 
 
-def set_text(label: viser.LabelHandle, text: str) -> None:
-    """Replaces or removes a text in the scene."""
-    if text and label.text != text:
-        label.text = text
-    if label.visible != bool(text):
-        label.visible = bool(text)
+class ChangingText:
+    """A text in the scene that is replaced, or hidden while empty; see `add_text`."""
+
+    def __init__(self, scene: viser.SceneApi, name: str, position: np.ndarray) -> None:
+        self._label = add_text(scene, name, "", position)
+        self._label.visible = False
+        self._shown = ""
+
+    def show(self, text: str) -> None:
+        """Show a text; sends nothing if it is shown already."""
+        if text == self._shown:
+            return
+        self._shown = text
+        if text:
+            self._label.text = text
+        if self._label.visible != bool(text):
+            self._label.visible = bool(text)
 
 
 def add_copies(

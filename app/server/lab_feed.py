@@ -9,8 +9,8 @@ from collections.abc import Callable
 
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshots.snapshot import Snapshot
-from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot, take_snapshot
+from onpath.app.lab.snapshots.snapshot import Motion
+from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.page.page import Page
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.simulation.display_rate import STRIDES, is_turn
@@ -39,7 +39,7 @@ class LabFeed:
         self._offset, self._nickname, self._followed = offset, nickname, followed
         self._lab: Lab | None = None
         self._shown: tuple[object, ...] = ()
-        self._last: Snapshot | None = None
+        self._last: PageSnapshot | Motion | None = None
 
     def show(self, lab: Lab, achieved: float, frame: int, stride: float) -> None:
         """See `app.simulation.simulation_thread.Display`."""
@@ -72,7 +72,7 @@ class LabFeed:
             name = self._nickname()
             snapshot = take_page_snapshot(lab, achieved, before, student, name)
         else:
-            snapshot = take_snapshot(lab, achieved, False, before, student)
+            snapshot = take_motion(lab, before, student)
         self._last = snapshot
         self.page.show(snapshot)
         if isinstance(snapshot, PageSnapshot):

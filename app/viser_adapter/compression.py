@@ -11,12 +11,20 @@ from viser.infra import _infra
 from onpath.app.common.per_thread import per_thread
 
 LEVEL = 1  # the level that viser uses
+_MAGIC = (0xFD2FB528).to_bytes(4, "little")
 QUICK = -5  # for frames: a third of the time of LEVEL, and 15 % more bytes
 
 
 def compress(data: bytes) -> bytes:
     """Compress data so that viser's browsers can read it."""
     return _own_compressor(QUICK).compress(data)
+
+
+def stored_head(size: int) -> bytes:
+    """What makes `size` bytes behind it a zstd frame, uncompressed (RFC 8878, 3.1.1): a header with
+    a content size of 4 bytes, and that of one last, raw block, which must be below 128 kB.
+    """
+    return _MAGIC + b"\xa0" + size.to_bytes(4, "little") + (size << 3 | 1).to_bytes(3, "little")
 
 
 def decompress(data: bytes) -> bytes:

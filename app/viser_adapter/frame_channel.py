@@ -1,17 +1,22 @@
 """Batched scene updates: one network write per browser and frame.
 
 viser takes 60 µs for every assignment to a property, wakes its event loop for every message, and
-then waits for more of them; for twenty browsers that is more than one core. Here several properties
-of a node are one message (`update_node`), and all messages of a frame are one write, issued for all
-browsers together (`FrameChannel`). This uses private parts of viser, which tests pin.
+then waits for more of them; for twenty browsers that is more than one core. Here all messages of a
+frame are one write, issued for all browsers together (`FrameChannel`). Several properties of a node
+are one message (`update_node`). What moves in every frame (`NodeGroup`) makes no messages at all:
+its numbers follow a template. This uses private parts of viser, which tests pin.
 """
 
 from __future__ import annotations
 
 import asyncio
+import struct
 import time
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from threading import get_ident
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -25,13 +30,15 @@ from viser.infra._messages import wire_field_names
 from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
 
-from onpath.app.viser_adapter.compression import compress
+from onpath.app.viser_adapter.compression import compress, stored_head
 
+Templates = dict[tuple[object, ...], bytes]
 UPDATES = {
     kind: wire_field_names(kind)
     for kind in (_messages.SceneNodeUpdateMessage, _messages.GuiUpdateMessage)
 }
 MOST_UNSENT = 1 << 16  # [B] unsent; beyond it, viser's queue merges outdated messages
+SMALL = 2048  # [B] of a frame without its arrays, up to which it is not compressed
 _DTYPES = {np.dtype(kind): np.dtype(kind).str for kind in (np.float32, np.float64)}  # .str is slow
 _ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[FrameChannel]] = WeakKeyDictionary()
 """Channels with pending messages, by the event loop that sends them."""
@@ -44,6 +51,48 @@ def update_node(handle: Any, **arrays: np.ndarray) -> None:
         setattr(handle._impl.props, name, value)
     message = _messages.SceneNodeUpdateMessage(handle._impl.name, values)
     handle._impl.api._queue_scene_message(message)
+
+
+class NodeGroup:
+    """Float32 properties of some nodes that are always updated together, from one array.
+
+    The handles do not keep the values.
+
+    Args:
+        properties: node, property, and its place in the array; a node's properties in succession.
+    """
+
+    def __init__(self, properties: Sequence[tuple[Any, str, slice]]) -> None:
+        self._api = properties[0][0]._impl.api
+        self.properties = [(handle._impl.name, name, own) for handle, name, own in properties]
+        self.owner: str = self._api._owner_id
+
+    def update(self, numbers: np.ndarray) -> None:
+        """Set all properties; `numbers` is float32 and must not be modified afterwards."""
+        update = GroupUpdate(self, numbers)
+        channel = getattr(self._api._websock_interface.queue_message, "__self__", None)
+        if isinstance(channel, FrameChannel):
+            channel._take(update)
+        else:
+            for message in update.messages():
+                self._api._queue_scene_message(message)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroupUpdate:
+    """The update of a group; stands for `messages`."""
+
+    group: NodeGroup
+    numbers: np.ndarray
+    excluded_self_client: None = None
+
+    def messages(self) -> list[Message]:
+        """The same as viser's messages, one for each node."""
+        updates = dict[str, dict[str, Any]]()
+        for node, name, own in self.group.properties:
+            updates.setdefault(node, {})[name] = self.numbers[own]
+        owner = self.group.owner
+        return [_messages.SceneNodeUpdateMessage(*each, owner=owner) for each in updates.items()]
 
 
 def update_gui(handle: Any, name: str, value: str | tuple[np.ndarray, ...]) -> None:
@@ -74,7 +123,8 @@ class FrameChannel:
         self._recorders = connection._record_handles
         self._collector: int | None = None
         self.frames = 0
-        self._messages: list[Message] = []
+        self._messages: list[Message | GroupUpdate] = []
+        self._templates: Templates = {}
         self._queue = partial(type(connection).queue_message, connection)
         connection.queue_message = self._take  # of an earlier channel too, if there was one
 
@@ -101,19 +151,23 @@ class FrameChannel:
             with suppress(RuntimeError):  # the server has stopped
                 self._loop.call_soon_threadsafe(_write, frames)
 
-    def _take(self, message: Message) -> None:
+    def _take(self, message: Message | GroupUpdate) -> None:
         if message.excluded_self_client == self._client_id:
             return  # meant for other browsers that show the same page; there are none
         if self._collector == get_ident():
             self._messages.append(message)
         elif not self.closed:  # for example while a page is being built
+            self._enqueue(message)
+
+    def _enqueue(self, *messages: Message | GroupUpdate) -> None:
+        for message in _told_apart(messages):
             self._queue(message)
 
-    def _packed(self) -> tuple[list[Message], bytes]:
+    def _packed(self) -> tuple[list[Message | GroupUpdate], bytes]:
         messages, self._messages = self._messages, []
-        return messages, packed(messages)
+        return messages, packed(messages, self._templates)
 
-    def write(self, messages: list[Message], data: bytes) -> None:
+    def write(self, messages: list[Message | GroupUpdate], data: bytes) -> None:
         """Send a frame. Runs on the event loop."""
         socket = self._sockets.get(self._client_id)
         if self.closed or socket is None or socket.protocol.state is not State.OPEN:
@@ -122,15 +176,14 @@ class FrameChannel:
             socket.protocol.send_binary(data)
             socket.send_data()
         else:
-            for message in messages:
-                self._queue(message)
+            self._enqueue(*messages)
 
     def _is_free(self, socket: ServerConnection) -> bool:
         unsent = socket.transport.get_write_buffer_size()
         return not self._buffer.message_from_id and not self._recorders and unsent < MOST_UNSENT
 
 
-def _write(frames: list[tuple[FrameChannel, list[Message], bytes]]) -> None:
+def _write(frames: list[tuple[FrameChannel, list[Message | GroupUpdate], bytes]]) -> None:
     for channel, messages, data in frames:
         channel.write(messages, data)
 
@@ -168,17 +221,64 @@ def _told(value: Any, arrays: list[memoryview]) -> Any:
     return {"__binary_index": len(arrays) - 1, "dtype": dtype}
 
 
-def packed(messages: list[Message]) -> bytes:
-    """Messages as viser sends them: lengths, compressed msgpack, then the raw arrays."""
-    arrays: list[memoryview] = []
-    window = {
-        "messages": [_wire(message, arrays) for message in messages],
-        "timestampSec": time.perf_counter(),
-        "binaryBufferLengths": [array.nbytes for array in arrays],
-    }
-    inner = msgspec.msgpack.encode(window)
-    outer = compress(inner)
-    lengths = (len(inner).to_bytes(8, "little"), len(outer).to_bytes(8, "little"))
-    parts: list[bytes | memoryview] = [*lengths, outer]
-    _infra._append_aligned_buffers(parts, arrays, 16 + len(outer))
+def _told_apart(messages: Iterable[Message | GroupUpdate]) -> list[Message]:
+    """The messages, with those that each group stands for."""
+    ways = (m.messages() if isinstance(m, GroupUpdate) else [m] for m in messages)
+    return [message for some in ways for message in some]
+
+
+def _form(message: Message | GroupUpdate) -> object:
+    """Everything but the numbers in an update of a node's arrays; None for other messages."""
+    if isinstance(message, GroupUpdate):
+        return message.group
+    if type(message) is not _messages.SceneNodeUpdateMessage:
+        return None
+    form: list[object] = [message.name, message.owner]
+    for name, value in message.updates.items():
+        if type(value) is not np.ndarray or not value.flags.c_contiguous:
+            return None
+        form += name, value.dtype, value.nbytes
+    return tuple(form)
+
+
+def _arrays(message: Any) -> Iterable[np.ndarray]:
+    """The arrays in the update of a node or a group."""
+    if isinstance(message, GroupUpdate):
+        numbers = message.numbers
+        return [numbers[own] for _, _, own in message.group.properties]
+    return message.updates.values()
+
+
+def packed(messages: Sequence[Message | GroupUpdate], templates: Templates) -> bytes:
+    """Messages as viser sends them: lengths, msgpack in a zstd frame, then the raw arrays.
+
+    Most frames differ from an earlier one only in the arrays and in the time, which stands last.
+
+    Args:
+        templates: earlier frames up to the time, by the forms of their messages.
+    """
+    arrays: list[Any] = []
+    forms = tuple(map(_form, messages))
+    head, time_sent = templates.get(forms), struct.pack(">d", time.perf_counter())
+    if head is not None:
+        arrays += chain.from_iterable(map(_arrays, messages))
+    else:
+        wire = [_wire(message, arrays) for message in _told_apart(messages)]
+        lengths = [array.nbytes for array in arrays]
+        window = {"messages": wire, "binaryBufferLengths": lengths, "timestampSec": 0.0}
+        inner = msgspec.msgpack.encode(window)[: -len(time_sent)]
+        size = len(inner) + len(time_sent)
+        if size > SMALL:
+            head, time_sent = _started(size, compress(inner + time_sent)), b""
+        else:
+            head = _started(size, stored_head(size) + inner, len(time_sent))
+            if None not in forms:
+                templates[forms] = head
+    parts: list[Any] = [head, time_sent]
+    _infra._append_aligned_buffers(parts, arrays, len(head) + len(time_sent))
     return b"".join(parts)
+
+
+def _started(size: int, outer: bytes, missing: int = 0) -> bytes:
+    """The beginning of a frame: both lengths, and the compressed msgpack but its last bytes."""
+    return size.to_bytes(8, "little") + (len(outer) + missing).to_bytes(8, "little") + outer

@@ -11,7 +11,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.snapshot import Snapshot
-from onpath.app.lab.snapshots.take_snapshot import take_snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.control.laws import NAMES
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.systems.parameters import checked, specs

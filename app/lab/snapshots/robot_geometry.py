@@ -44,21 +44,20 @@ def robot_views(
         traces: recent positions of their end-points, shape (n, robots, p), [m].
         exaggeration: magnification of the deflection of the bars and the drawn end-point.
     """
-    geometry = _geometry_of(robot, curve.closed)
-    drawn = geometry(instant, curve, exaggeration)
-    points = [drawn[own].reshape(-1, 3) for own in geometry.points]
+    drawn, counts = drawn_robots(robot, curve, instant, exaggeration)
+    middle = 3 * counts.points
+    points = drawn[:, :middle].reshape(len(NAMES), -1, 3)
     trails = UNTRACED
     if traces is not None:
-        ends = np.stack([each[END] for each in points])
-        trails = np.concatenate([robot.place(traces), ends[None]])
+        trails = np.concatenate([robot.place(traces), points[None, :, END]])
     sample, slices = instant.sample, sample_layout(robot).slices
     speeds, distances = (sample[:, slices[name].start].tolist() for name in ("speed", "distance"))
     bent = slices.get("deflection")
     return {
         name: RobotView(
             points=points[i],
-            poses=drawn[geometry.poses[i]],
-            counts=geometry.counts,
+            poses=drawn[i, middle:],
+            counts=counts,
             trace=trails[:, i],
             distance=distances[i],
             max_distance=instant.max_distances[i],
@@ -70,30 +69,33 @@ def robot_views(
     }
 
 
+def drawn_robots(
+    robot: Robot, curve: Curve, instant: Instant, exaggeration: float = 1.0
+) -> tuple[Array, Counts]:
+    """`Motion.drawn` of both robots at one instant, and their numbers of parts."""
+    geometry = _geometry_of(robot, curve.closed)
+    return geometry(instant, curve, exaggeration), geometry.counts
+
+
 class RobotGeometry:
     """The geometry of one kind of robot on open or on closed paths. Not thread-safe.
 
     Attributes:
         counts: numbers of parts.
-        points, poses: slices of `RobotView.points` and `RobotView.poses` in the result.
     """
 
     def __init__(self, robot: Robot, closed: bool) -> None:
         function, self.counts = geometry_function(robot, closed)
         self._draw = Buffered(function)
-        size, middle = function.nnz_out(0) // len(NAMES), 3 * self.counts.points
-        begins = range(0, size * len(NAMES), size)
-        self.points = [slice(begin, begin + middle) for begin in begins]
-        self.poses = [slice(begin + middle, begin + size) for begin in begins]
         self._joints = robot.system.n
         self._seen = np.array(_seen(robot))
 
     def __call__(self, instant: Instant, curve: Curve, exaggeration: float) -> Array:
-        """The points and poses of all robots, flat."""
+        """See `Motion.drawn`."""
         q = [state[: self._joints] for state in instant.states]
         seen = instant.sample.take(self._seen)
         flat = self._draw(np.concatenate(q), seen, curve.table(), exaggeration)[0]
-        return flat.copy()
+        return flat.reshape(len(NAMES), -1).copy()
 
 
 @per_thread

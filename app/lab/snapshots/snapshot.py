@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -63,6 +64,11 @@ class Counts:
         """Shapes in `RobotView.poses`; parts are bearings, pen, two marker discs, and marks."""
         bars, parts = self.bars, self.joints + 3 + self.marks
         return PoseShapes((bars, 3), (bars, 4), (bars,), (parts, 3), (parts, 4), (1, 3), (1, 3))
+
+    @property
+    def size(self) -> int:
+        """Number of all coordinates of points and poses."""
+        return 3 * self.points + sum(prod(shape) for shape in self.pose_shapes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,6 +179,28 @@ class PageKey:
 
 
 @dataclass(frozen=True, slots=True)
+class Motion:
+    """Where everything in the scene is at one instant: what is shown most often.
+
+    Attributes:
+        key: see `PageKey`.
+        path: followed by both robots.
+        counts: numbers of parts of each robot.
+        drawn: `RobotView.points` and `RobotView.poses` of each robot, tracker first, shape
+            (robots, counts.size).
+    """
+
+    key: PageKey
+    path: PathView
+    counts: Counts
+    drawn: np.ndarray
+
+    def point(self, robot: int, index: int) -> np.ndarray:
+        """A point of one robot, shape (3,); see `RobotView.points`."""
+        return self.drawn[robot, : 3 * self.counts.points].reshape(-1, 3)[index]
+
+
+@dataclass(frozen=True, slots=True)
 class Snapshot:
     """Everything that the scene of a lab shows at one instant; see `snapshot_codec`.
 
@@ -201,3 +229,10 @@ class Snapshot:
     message_level: str
     note: str = ""
     key: PageKey = PageKey()
+
+    @property
+    def motion(self) -> Motion:
+        """The part of it that is shown most often."""
+        views = list(self.robots.values())
+        drawn = np.stack([np.concatenate([view.points.ravel(), view.poses]) for view in views])
+        return Motion(self.key, self.path, views[0].counts, drawn)

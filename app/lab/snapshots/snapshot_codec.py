@@ -8,22 +8,22 @@ import msgspec
 import numpy as np
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.lab.snapshots.snapshot import Motion
 
 
-def to_bytes(snapshot: Snapshot) -> bytes:
+def to_bytes(snapshot: PageSnapshot | Motion) -> bytes:
     """Encode a snapshot as MessagePack; an array is its type, shape and numbers."""
     return _encoder.encode((isinstance(snapshot, PageSnapshot), snapshot))
 
 
-def from_bytes(data: bytes) -> Snapshot:
+def from_bytes(data: bytes) -> PageSnapshot | Motion:
     """Inverse of `to_bytes`.
 
     Raises:
         ValueError: the data is not a snapshot.
     """
     is_whole, content = _head.decode(data)
-    return (_whole if is_whole else _scene).decode(content)
+    return (_whole if is_whole else _motion).decode(content)
 
 
 def _encode(value: Any) -> Any:
@@ -43,5 +43,5 @@ def _decode(kind: type, data: Any) -> Any:
 
 _encoder = msgspec.msgpack.Encoder(enc_hook=_encode)
 _head = msgspec.msgpack.Decoder(tuple[bool, msgspec.Raw])
-_scene = msgspec.msgpack.Decoder(Snapshot, dec_hook=_decode)
+_motion = msgspec.msgpack.Decoder(Motion, dec_hook=_decode)
 _whole = msgspec.msgpack.Decoder(PageSnapshot, dec_hook=_decode)

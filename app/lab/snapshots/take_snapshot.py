@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.plot_samples import sample_layout
+from onpath.app.lab.segments import Instant
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.page_snapshot import (
     LessonSnapshot,
@@ -17,8 +19,8 @@ from onpath.app.lab.snapshots.page_snapshot import (
     PlotSamples,
     RunState,
 )
-from onpath.app.lab.snapshots.robot_geometry import robot_views
-from onpath.app.lab.snapshots.snapshot import FollowerName, PageKey, PathView, Snapshot
+from onpath.app.lab.snapshots.robot_geometry import drawn_robots, robot_views
+from onpath.app.lab.snapshots.snapshot import FollowerName, Motion, PageKey, PathView
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Sketch
 from onpath.lessons.words import Words
@@ -26,6 +28,7 @@ from onpath.models.arrays import Array
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.robots import Robot
 
 TRACE = 1.6  # [s]
 TRACE_POINTS = 120
@@ -35,36 +38,32 @@ PLOT_POINTS = 160
 DESIGN_POINTS = 32
 
 
-def take_snapshot(
-    lab: Lab,
-    achieved_speed: float,
-    traces: bool = True,
-    before: Snapshot | None = None,
-    student: int = 0,
-) -> Snapshot:
-    """Take a snapshot for the scene, now or at the past instant being viewed.
+def take_motion(lab: Lab, before: PageSnapshot | Motion | None = None, student: int = 0) -> Motion:
+    """Take what moves in the scene, now or at the past instant being viewed.
 
     Args:
-        traces: whether to include the end-points' traces.
         before: the previous snapshot of the same lab; unchanged parts are shared with it.
         student: see `PageKey`.
     """
-    return Snapshot(**_scene(lab, achieved_speed, traces, before, student))
+    session, key = lab.session, page_key(lab, student)
+    instant, curve, _ = _shown(session)
+    drawn, counts = drawn_robots(session.robot, curve, instant, session.exaggeration)
+    return Motion(key, _path_view(session, curve, key, before), counts, drawn)
 
 
 def take_page_snapshot(
     lab: Lab,
     achieved_speed: float,
-    before: Snapshot | None = None,
+    before: PageSnapshot | Motion | None = None,
     student: int = 0,
     nickname: str = "",
 ) -> PageSnapshot:
-    """Take a snapshot for the whole page; see `take_snapshot`.
+    """Take a snapshot for the whole page; see `take_motion`.
 
     Args:
         nickname: the student's nickname in the class, or empty.
     """
-    scene, session = _scene(lab, achieved_speed, True, before, student), lab.session
+    scene, session = _scene(lab, achieved_speed, before, student), lab.session
     follower = session.runs[FollowerName]
     return PageSnapshot(
         **scene,
@@ -87,26 +86,18 @@ def take_page_snapshot(
 
 
 def _scene(
-    lab: Lab, achieved: float, traces: bool, before: Snapshot | None, student: int
+    lab: Lab, achieved: float, before: PageSnapshot | Motion | None, student: int
 ) -> dict[str, Any]:
     """The fields of `Snapshot`."""
-    session = lab.session
-    past = None if session.viewing is None else session.history.at(session.viewing)
-    curve = session.editor.curve if past is None else past.curve
-    time = session.time if session.viewing is None else session.viewing
-    key = page_key(lab, student)
+    session, key = lab.session, page_key(lab, student)
+    instant, curve, time = _shown(session)
+    traces, larger = _traces(session, time), session.exaggeration
     message, level = lab.notice
     return {
         "time": time,
         "running": session.running,
         "achieved_speed": achieved,
-        "robots": robot_views(
-            session.robot,
-            curve,
-            session.instant() if past is None else past.instant(),
-            _traces(session, time) if traces else None,
-            session.exaggeration,
-        ),
+        "robots": robot_views(session.robot, curve, instant, traces, larger),
         "path": _path_view(session, curve, key, before),
         "held": bool(session.grips.held),
         "grabbed": session.grips.grabbed,
@@ -117,17 +108,29 @@ def _scene(
     }
 
 
+def _shown(session: Session) -> tuple[Instant, Curve, float]:
+    """The instant that is shown, its path and its time, [s]."""
+    past = None if session.viewing is None else session.history.at(session.viewing)
+    time = session.time if session.viewing is None else session.viewing
+    if past is None:
+        return session.instant(), session.editor.curve, time
+    return past.instant(), past.curve, time
+
+
 def page_key(lab: Lab, student: int = 0) -> PageKey:
     """Make the `PageKey` of a lab."""
-    run = lab.lessons
-    return PageKey(
-        robot=lab.session.entry.name,
-        fields=lab.session.sample_layout.fields,
-        language=run.words.language,
-        in_lesson=run.lesson is not None,
-        presenting=run.progress.presenting,
-        student=student,
+    run, session = lab.lessons, lab.session
+    progress, language = run.progress, run.words.language
+    in_lesson = run.lesson is not None
+    return _page_key(
+        session.entry.name, session.robot, language, in_lesson, progress.presenting, student
     )
+
+
+@lru_cache(maxsize=256)
+def _page_key(name: str, robot: Robot, *others: Any) -> PageKey:
+    """The key; the same object for the same page."""
+    return PageKey(name, sample_layout(robot).fields, *others)
 
 
 def scale_note(session: Session, words: Words) -> str:
@@ -144,7 +147,9 @@ def _traces(session: Session, time: float) -> Array:
     return samples if samples.size else np.zeros((0, len(session.runs), session.robot.system.p))
 
 
-def _path_view(session: Session, curve: Curve, key: PageKey, before: Snapshot | None) -> PathView:
+def _path_view(
+    session: Session, curve: Curve, key: PageKey, before: PageSnapshot | Motion | None
+) -> PathView:
     """The current path, or the past path `curve` without its control points."""
     editor, robot = session.editor, session.robot
     is_present = curve is editor.curve
@@ -206,7 +211,9 @@ def _truth(lab: Lab) -> Truth | None:
     return run.truth(lab.session)
 
 
-def _plots(session: Session, time: float, key: PageKey, before: Snapshot | None) -> PlotSamples:
+def _plots(
+    session: Session, time: float, key: PageKey, before: PageSnapshot | Motion | None
+) -> PlotSamples:
     if isinstance(before, PageSnapshot) and before.time == time and before.key == key:
         return before.plots
     history = session.history

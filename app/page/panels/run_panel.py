@@ -21,6 +21,7 @@ class RunPanel:
         self, gui: viser.GuiApi, words: Words, post: Post, reset_view: Callable[[], None]
     ) -> None:
         self._words = words
+        self._shown: tuple[object, ...] = ()
         self._hold = gui.add_button(
             words("run.hold_both"),
             icon=viser.Icon.HAND_STOP,
@@ -53,9 +54,13 @@ class RunPanel:
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show a snapshot."""
-        held = snapshot.held
+        held, run = snapshot.held, snapshot.run
+        shown = (held, run.copy, snapshot.running, run.rate, self._rate.value)
+        if shown == self._shown:
+            return
+        self._shown = shown
         label = self._words("run.let_both_go" if held else "run.hold_both")
-        if not snapshot.run.copy:
+        if not run.copy:
             label = self._words("run.let_go" if held else "run.hold")
         if self._hold.label != label:
             self._hold.label = label
@@ -64,6 +69,6 @@ class RunPanel:
         if self._run.label != label:
             self._run.label = label
             self._run.icon = viser.Icon.PLAYER_PAUSE if snapshot.running else viser.Icon.PLAYER_PLAY
-        rate = f"{snapshot.run.rate:g}×"
+        rate = f"{run.rate:g}×"
         if self._rate.value != rate:
             self._rate.value = rate

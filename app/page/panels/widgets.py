@@ -6,6 +6,7 @@ import asyncio
 import math
 import threading
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -180,8 +181,13 @@ class ParameterWidgets:
         spec, value = self._specs[name], parameters[name]
         if spec.options:
             return option_of(self._words, name, value)
-        digits = max(0, 2 - math.floor(math.log10(spec.step) + 1e-9)) - 1
-        return round(float(value), digits)
+        return round(float(value), _digits(spec.step))
+
+
+@cache
+def _digits(step: float) -> int:
+    """Decimals that show multiples of a tenth of the step."""
+    return max(0, 2 - math.floor(math.log10(step) + 1e-9)) - 1
 
 
 class SwitchedParameter(ParameterWidgets):

@@ -19,7 +19,7 @@ from onpath.app.lab.advance_together import advance_together
 from onpath.app.lab.commands import Freeze
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
-from onpath.app.lab.snapshots.take_snapshot import take_snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.models.control.laws import NAMES
 from tests.support.lab import FRAME, assert_drawable, do, new_lab, store, y

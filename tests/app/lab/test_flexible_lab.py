@@ -14,7 +14,7 @@ from onpath.app.exports.recording import record_scene
 from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.snapshots.take_snapshot import take_snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.page.panels.flexible_panel import alpha_bar
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.lessons.words import ENGLISH

@@ -17,7 +17,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.history import COARSE, LONGEST, MOST, RECENT, SECONDS, History
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.segments import HistoryFrame, Input, Inputs, Segment
-from onpath.app.lab.snapshots.take_snapshot import take_snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.control.laws import NAMES
 from onpath.models.paths.curves import Curve, circle

@@ -23,7 +23,7 @@ from onpath.app.lab.session import Session
 from onpath.app.lab.setup import capture, restore
 from onpath.app.lab.share_code import decode, encode
 from onpath.app.lab.snapshots.robot_geometry import geometry_function, robot_views
-from onpath.app.lab.snapshots.take_snapshot import take_snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.page import panel_factory
 from onpath.app.page.robot_picture import picture_of
 from onpath.app.scene.poses import poses_of
@@ -160,7 +160,7 @@ def test_bars_join_joints_and_end_at_the_end_point_also_in_the_scene(entry: Robo
     snapshot = take_snapshot(lab, 1.0)
     assert_drawable(snapshot)
     views = [snapshot.robots[name] for name in stage.bases]
-    poses = poses_of(stage, views)
+    poses = poses_of(stage, snapshot.motion)
     q = [session.runs[name].fields()["q"] for name in stage.bases]
     for i, (view, configuration) in enumerate(zip(views, q, strict=True)):
         ends, last = view.bars.reshape(-1, 3), robot.place(robot.endpoint(configuration))
@@ -169,17 +169,19 @@ def test_bars_join_joints_and_end_at_the_end_point_also_in_the_scene(entry: Robo
         np.testing.assert_allclose(view.end, robot.place(logged), atol=1e-12)
         for joint in view.joints:
             assert np.linalg.norm(ends - joint, axis=1).min() < 1e-9
-        one = slice(i * view.counts.bars, (i + 1) * view.counts.bars)
+        links, strip = view.counts.links, view.counts.strip
+        one = [*range(i * links, (i + 1) * links)]  # the links of all robots come first
+        one += range(len(views) * links + i * strip, len(views) * links + (i + 1) * strip)
         bars = view.bars
         lengths = np.linalg.norm(bars[:, 1] - bars[:, 0], axis=1)
-        np.testing.assert_allclose(poses.lengths[one], lengths, atol=1e-6)
-        np.testing.assert_allclose(np.linalg.norm(poses.quaternions[one], axis=1), 1, atol=1e-6)
-        begins = poses.bars[one] - stage.origins[i]
+        np.testing.assert_allclose(poses["lengths"][one], lengths, atol=1e-6)
+        np.testing.assert_allclose(np.linalg.norm(poses["quaternions"][one], axis=1), 1, atol=1e-6)
+        begins = poses["bars"][one] - stage.origins[i]
         depths = robot.drawing.depths
         layers = [depths.back if back else depths.front for back in view.counts.behind]
         off = np.linalg.norm(begins - bars[:, 0], axis=1)
         np.testing.assert_allclose(off, layers, atol=1e-6)
-        np.testing.assert_allclose(poses.tips[i], stage.origins[i] + view.tip, atol=1e-6)
+        np.testing.assert_allclose(poses["tips"][i], stage.origins[i] + view.tip, atol=1e-6)
 
 
 def test_one_function_gives_points_and_poses(entry: RobotEntry) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import threading
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -19,14 +19,14 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
-from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot, take_snapshot
+from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import ClassSeat, PageContext
 from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.server.lab_server import LabServer
-from onpath.app.viser_adapter.frame_channel import FrameChannel
+from onpath.app.viser_adapter.frame_channel import FrameChannel, GroupUpdate
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.schema import Sketch
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
@@ -64,7 +64,7 @@ class Drawing:
         self._client, self._course, self._patch = client, course, monkeypatch
         self.posted: list[c.Command] = []
 
-    def of(self, snapshots: list[Snapshot]) -> list[tuple[str, object]]:
+    def of(self, snapshots: list[PageSnapshot | Motion]) -> list[tuple[str, object]]:
         """What is told while a page is built from the first one, and shows the others.
 
         The camera is not of the lab: where it is now decides whether it must be moved.
@@ -72,7 +72,11 @@ class Drawing:
         told: list[tuple[str, object]] = []
         numbers, this = itertools.count(), threading.get_ident()
 
-        def take(_: FrameChannel, message: Message) -> None:
+        def take(_: FrameChannel, message: Message | GroupUpdate) -> None:
+            if isinstance(message, GroupUpdate):
+                for each in message.messages():
+                    take(_, each)
+                return
             kind = type(message).__name__
             if threading.get_ident() == this and not kind.startswith("SetCamera"):
                 content = {k: v for k, v in vars(message).items() if k != "counter"}
@@ -116,7 +120,7 @@ def plain(value: Any) -> object:
     return value if isinstance(value, bytes) else repr(value)
 
 
-def filmed(lab: Lab, *commands: c.Command) -> Iterator[Snapshot]:
+def filmed(lab: Lab, *commands: c.Command) -> Iterator[PageSnapshot | Motion]:
     """A lab that does something, and what is to be shown of it."""
     yield take_page_snapshot(lab, 1.0)
     for number, command in enumerate(commands):
@@ -124,18 +128,18 @@ def filmed(lab: Lab, *commands: c.Command) -> Iterator[Snapshot]:
         for _ in range(15):
             lab.drain()
             lab.advance(lab.session.rate * FRAME)
-        yield take_snapshot(lab, 0.9, traces=False)
+        yield take_motion(lab)
         yield take_page_snapshot(lab, 0.9, nickname="Ada <b>" if number else "")
 
 
-def sent(snapshot: Snapshot) -> Snapshot:
+def sent(snapshot: PageSnapshot | Motion) -> PageSnapshot | Motion:
     """The same, by way of bytes."""
     again = from_bytes(to_bytes(snapshot))
     assert type(again) is type(snapshot) and to_bytes(again) == to_bytes(snapshot)
     return again
 
 
-def assert_draws_the_same(drawing: Drawing, snapshots: list[Snapshot]) -> None:
+def assert_draws_the_same(drawing: Drawing, snapshots: list[PageSnapshot | Motion]) -> None:
     told, again = drawing.of(snapshots), drawing.of([sent(each) for each in snapshots])
     assert len(told) > 100
     for one, other in zip(told, again, strict=True):
@@ -178,13 +182,9 @@ def test_a_snapshot_holds_nothing_but_data() -> None:
     lab = Lab(store())
     snapshot = take_page_snapshot(lab, 1.0)
     with pytest.raises(NotImplementedError, match="Lab"):
-        to_bytes(Snapshot(**{**shallow(snapshot), "message": lab}))
+        to_bytes(replace(snapshot, message=lab))
     with pytest.raises(ValueError):
         from_bytes(to_bytes(snapshot)[:-9])
-
-
-def shallow(snapshot: Snapshot) -> dict[str, Any]:
-    return {field.name: getattr(snapshot, field.name) for field in fields(Snapshot)}
 
 
 def test_what_has_not_changed_is_shared_with_the_snapshot_before() -> None:

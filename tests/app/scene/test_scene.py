@@ -101,47 +101,47 @@ def lab(server, monkeypatch):
 
 
 def test_a_moving_frame_costs_at_most_four_messages(lab):
-    lab.scene.update(snapshot(1.4, 2.9))
+    lab.scene.update(snapshot(1.4, 2.9).motion)
     assert 0 < len(lab.sent) <= 4
 
 
 def test_a_still_frame_costs_nothing(lab):
-    lab.scene.update(snapshot())
-    lab.scene.update_path(snapshot())
+    lab.scene.update(snapshot().motion)
     assert lab.sent == []
 
 
 def test_a_force_shows_and_then_hides_its_arrow(lab):
     arrows = lab.api.get_handle_by_name("/force")
     pulled = {name: robot(1.5, 3.0, force=(10.0, 0.0, 0.0)) for name in NAMES}
-    lab.scene.update(snapshot(robots=pulled))
+    lab.scene.update(snapshot(robots=pulled).motion)
     assert arrows.visible
     lengths = np.linalg.norm(arrows.points[:, 1] - arrows.points[:, 0], axis=1)
-    lab.scene.update(snapshot(robots={n: robot(1.5, 3.0, force=(20.0, 0, 0)) for n in NAMES}))
+    twice_pulled = {n: robot(1.5, 3.0, force=(20.0, 0, 0)) for n in NAMES}
+    lab.scene.update(snapshot(robots=twice_pulled).motion)
     twice = np.linalg.norm(arrows.points[:, 1] - arrows.points[:, 0], axis=1)
     np.testing.assert_allclose(twice, 2.0 * lengths, rtol=1e-5)
-    lab.scene.update(snapshot())
+    lab.scene.update(snapshot().motion)
     assert not arrows.visible
 
 
 def test_poses_that_are_not_finite_are_not_sent(lab):
     broken = {name: robot(np.nan, 3.0) for name in NAMES}
-    lab.scene.update(snapshot(robots=broken))
+    lab.scene.update(snapshot(robots=broken).motion)
     lab.scene.update_traces(snapshot(robots=broken))
     assert lab.sent == []
 
 
 def test_path_is_redrawn_only_when_its_version_changes(lab):
     moved = replace(path(), points=path().points + 0.01)
-    lab.scene.update_path(snapshot(path=moved))
+    lab.scene.update(snapshot(path=moved).motion)
     assert lab.sent == []
-    lab.scene.update_path(snapshot(path=replace(moved, version=1)))
+    lab.scene.update(snapshot(path=replace(moved, version=1)).motion)
     assert 0 < len(lab.sent) <= 3
 
 
 @pytest.mark.parametrize("count", [0, 3, 9])
 def test_number_of_control_points_may_change(lab, count):
-    lab.scene.update_path(snapshot(path=path(1, count)))
+    lab.scene.update(snapshot(path=path(1, count)).motion)
     points = lab.api.get_handle_by_name("/path/points")
     assert (points is None) == (count == 0)
     if count:
@@ -158,7 +158,7 @@ def test_an_unscaled_control_point_covers_next_to_nothing(lab):
 def test_refused_places_come_and_go(lab):
     marks = replace(path(), refused=np.zeros((2, 3)))
     for version, refused in ((1, marks), (2, path())):
-        lab.scene.update_path(snapshot(path=replace(refused, version=version)))
+        lab.scene.update(snapshot(path=replace(refused, version=version)).motion)
         shown = lab.api.get_handle_by_name("/path/refused") is not None
         assert shown == (version == 1)
 
@@ -204,7 +204,7 @@ def test_where_an_end_point_covers_a_control_point_the_one_that_is_meant_is_take
     lab, path_first, selected, beside, taken
 ):
     lab.scene.path_first = path_first
-    lab.scene.update_path(snapshot(path=replace(path(1), selected=selected)))
+    lab.scene.update(snapshot(path=replace(path(1), selected=selected)).motion)
     name = NAMES[1]
     point = path().control_points[4] + [beside, 0.0, 0.0]
     pressed, shift = RIGID.bases[name] + point, np.array([0.02, 0.0, 0.01])

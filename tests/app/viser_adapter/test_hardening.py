@@ -27,7 +27,7 @@ from websockets.typing import Origin, Subprotocol
 
 from onpath.app.common import error_log
 from onpath.app.viser_adapter import secure_connection
-from onpath.app.viser_adapter.compression import LEVEL, compress
+from onpath.app.viser_adapter.compression import LEVEL, compress, stored_head
 from onpath.app.viser_adapter.secure_server import Limits, PortInUse, make_server
 from tests.support import waiting
 
@@ -798,3 +798,5 @@ def test_the_connections_of_a_thread_share_a_compressor() -> None:
     assert make(level=LEVEL) is one and others[0] is not one
     assert make(level=12, threads=-1) is not make(level=12, threads=-1)  # a recording's
     assert zstandard.decompress(compress(b"as it was" * 9)) == b"as it was" * 9
+    for size in (0, 1, 255, 256, 5000):
+        assert zstandard.decompress(stored_head(size) + bytes(size)) == bytes(size)
