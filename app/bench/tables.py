@@ -19,6 +19,7 @@ import numpy as np
 
 from onpath.app.bench.crowd import HEAD, ClientLoad, folders, measured
 from onpath.app.bench.mouse_latency import find_browser, mouse_latency
+from onpath.app.bench.reference import LANES, reference_loop
 from onpath.app.bench.server_process import serving
 from onpath.app.bench.simulated_browser import first_poses
 from onpath.app.lab.loop_cache import LoopCache
@@ -34,7 +35,7 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws import NAMES
 from onpath.models.paths.curves import circle
-from onpath.models.systems.catalogue import FLEXIBLE, ROBOTS
+from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import RobotEntry
@@ -47,6 +48,7 @@ def bench(quick: bool = False) -> None:
     _begin()
     with tempfile.TemporaryDirectory() as folder:
         _loops(Path(folder), 20 if quick else 60)
+        _yardstick(Path(folder), 20 if quick else 60)
         _modes(Path(folder), 10 if quick else 30)
     _making(3 if quick else 9)
     if not quick:
@@ -70,6 +72,27 @@ def _row(entry: RobotEntry, controller: str, lean: bool, folder: Path, repeats: 
     for tier, value in times.items():
         pushed = "no" if lean else "may be"
         print(f"{entry.name:12s} {controller:20s} {pushed:7s} {tier:12s} {value:8.2f}")
+
+
+def _yardstick(folder: Path, repeats: int) -> None:
+    """The compiled loop of the follower against C written by hand, for the same robots."""
+    entry, robots = FIVE_BAR, max(LANES)
+    parameters, curve = entry.parameters(), circle(0.05)
+    robot = entry.make(parameters)
+    kernel = kernel_of(robot, kind_of("path_following", parameters, curve))
+    start = robot.rest(robot.frame.lift(curve.at(np.array(0.0))))
+    state = first_state(robot, kernel, curve, start)
+    settings = settings_vector(robot, kernel, parameters, curve, FREE)
+    call = [state] * robots, [settings] * robots, [curve.table()] * robots, TICKS
+    known = {lanes: reference_loop(kernel, folder, lanes) for lanes in LANES}
+    loops: dict[str, Loop] = {"compiled": translate_loop(kernel)}
+    loops |= {f"C, {n} at a time": loop for n, loop in known.items() if loop is not None}
+    calls = {name: partial(loop.run_many, *call) for name, loop in loops.items()}
+    times = {name: each / robots for name, each in _per_tick(calls, repeats).items()}
+    print(f"{robots} robots of kind {entry.name}   µs/ms each   compiled loop takes")
+    for name, value in times.items():
+        print(f"{name:24s} {value:14.3f} {times['compiled'] / value:14.1f} times")
+    print()
 
 
 def _prepared(

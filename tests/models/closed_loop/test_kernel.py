@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from onpath.app.bench.reference import LANES, reference_loop
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
@@ -18,7 +19,6 @@ from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle, ellipse, segment
 from onpath.models.paths.frames import Plane
 from onpath.models.systems.five_bar import end_point, inverse_kinematics
-from tests.support.reference import reference_loop
 from tests.support.rig import DEFAULTS, FOLLOWING, TRACKING, Rig
 
 BOTH = pytest.mark.parametrize("kind", [FOLLOWING, TRACKING], ids=lambda kind: kind.controller)
@@ -360,19 +360,29 @@ def test_row_tells_the_instant_a_tick_begins(rig: Rig) -> None:
     ],
     ids=["plain", "hand", "hold", "position", "saturated"],
 )
+@pytest.mark.parametrize("lanes", LANES)
 def test_hand_written_c_loop_agrees(
-    rig: Rig, random_curve: Callable[[int], Curve], tmp_path: Path, changes: dict[str, object]
+    rig: Rig,
+    random_curve: Callable[[int], Curve],
+    tmp_path: Path,
+    changes: dict[str, object],
+    lanes: int,
 ) -> None:
-    reference = reference_loop(rig.kernel(FOLLOWING), tmp_path)
+    reference = reference_loop(rig.kernel(FOLLOWING), tmp_path, lanes)
     if reference is None:
-        pytest.skip("no C compiler")
+        pytest.skip("no C compiler, or no such lanes")
     settings = rig.settings(FOLLOWING, plant=rig.spoiled, **changes)
     for curve in (CIRCLE, random_curve(1), random_curve(2)):
-        start = rig.state(FOLLOWING, np.array([0.052, 0.012]), np.array([0.1, 0.1]), theta=0.2)
-        arguments = start, settings, curve.table(), 1000
+        starts = [
+            rig.state(
+                FOLLOWING, np.array([0.052, 0.012]), np.array([0.1, 0.1]), theta=0.2 + 0.1 * i
+            )
+            for i in range(lanes)
+        ]
+        arguments = starts, [settings] * lanes, [curve.table()] * lanes, 1000
         for ours, theirs in zip(
-            InterpretedLoop(rig.kernel(FOLLOWING)).run(*arguments),
-            reference.run(*arguments),
+            InterpretedLoop(rig.kernel(FOLLOWING)).run_many(*arguments),
+            reference.run_many(*arguments),
             strict=True,
         ):
             assert np.abs(ours - theirs).max() < 1e-9

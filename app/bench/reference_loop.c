@@ -1,0 +1,269 @@
+/* The rigid five-bar under path following on a closed curve, written by hand.
+ *
+ * An independent derivation of what models/closed_loop/kernel.py assembles from symbols, and the
+ * yardstick for its speed. LANES robots advance together, one in each lane of a SIMD register; with
+ * LANES = 1 this is ordinary C. Vectors are laid out as the kernel says; the curve's table is 25
+ * columns of 8.
+ */
+#include <math.h>
+#include <string.h>
+
+#if LANES == 1
+typedef double Real;
+typedef int Mask;
+static Real all(double value) { return value; }
+static Real choose(Mask mask, Real yes, Real no) { return mask ? yes : no; }
+static Mask not(Mask mask) { return !mask; }
+static Real sine(Real x) { return sin(x); }
+static Real cosine(Real x) { return cos(x); }
+#else
+typedef double Real __attribute__((vector_size(8 * LANES)));
+typedef long long Mask __attribute__((vector_size(8 * LANES)));
+static Real all(double value) { return (Real){0} + value; }
+static Real choose(Mask mask, Real yes, Real no) {
+  return (Real)((mask & (Mask)yes) | (~mask & (Mask)no));
+}
+static Mask not(Mask mask) { return ~mask; }
+#if LANES == 8 && defined(__AVX512F__)
+extern Real _ZGVeN8v_sin(Real), _ZGVeN8v_cos(Real); /* of glibc's libmvec */
+static Real sine(Real x) { return _ZGVeN8v_sin(x); }
+static Real cosine(Real x) { return _ZGVeN8v_cos(x); }
+#elif LANES == 4 && defined(__AVX2__)
+extern Real _ZGVdN4v_sin(Real), _ZGVdN4v_cos(Real);
+static Real sine(Real x) { return _ZGVdN4v_sin(x); }
+static Real cosine(Real x) { return _ZGVdN4v_cos(x); }
+#endif
+#endif
+
+/* A function of one number, for every lane; the compiler makes it one instruction. */
+#define FOR_EACH_LANE(name, function)                       \
+  static Real name(Real x) {                                \
+    double lanes[LANES];                                    \
+    memcpy(lanes, &x, sizeof x);                            \
+    for (int i = 0; i < LANES; ++i) lanes[i] = function(lanes[i]); \
+    memcpy(&x, lanes, sizeof x);                            \
+    return x;                                               \
+  }
+FOR_EACH_LANE(root, sqrt)
+FOR_EACH_LANE(magnitude, fabs)
+FOR_EACH_LANE(whole, floor)
+
+enum { HARMONICS = 12, COLUMNS = 2 * HARMONICS + 1, ROWS = 8, NEWTON_STEPS = 2 };
+
+typedef struct { Real x, y; } Vec;
+typedef struct {
+  Vec q, v;
+  Real theta, theta_rate, theta_ref;
+  Vec integral, encoder, encoder_rate, u;
+  Real phase;
+} State;
+typedef struct { Real M11, M22, M12, G1, G2, b1, b2, l1, l4; } Plant;
+typedef struct {
+  Real K1, K2, K3, K4, K5, position, target, speed;
+  Vec level_centre, level_weights;
+  Real level_constant;
+  Real torque_limit, coulomb, encoder_step, encoder_filter, hold_ticks, dt;
+  Real hand_active;
+  Vec hand_target;
+  Real hold_active;
+  Vec hold_anchor, hold_tangent;
+  Plant plant, model;
+} Settings;
+typedef struct {
+  Vec q, v, y;
+  Real theta, theta_rate, speed, theta_ref, xi, xi_rate;
+  Vec u, force;
+} Row;
+typedef struct { Vec sigma, first, second, third; } Local;
+typedef struct { Real c1, s1, c2, s2; } Angles;
+
+static Vec add(Vec a, Vec b) { return (Vec){a.x + b.x, a.y + b.y}; }
+static Vec sub(Vec a, Vec b) { return (Vec){a.x - b.x, a.y - b.y}; }
+static Vec scaled(Real k, Vec a) { return (Vec){k * a.x, k * a.y}; }
+static Vec along(Vec a, Real k, Vec b) { return (Vec){a.x + k * b.x, a.y + k * b.y}; }
+static Real dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y; }
+static Real larger(Real a, Real b) { return choose(a > b, a, b); }
+static Real clamp(Real x, Real low, Real high) {
+  return choose(x < low, low, choose(x > high, high, x));
+}
+static Real wrap(Real a) { return a - 2 * M_PI * whole(a / (2 * M_PI) + 0.5); }
+static Angles angles(Vec q) {
+  return (Angles){cosine(q.x), sine(q.x), cosine(q.y), sine(q.y)};
+}
+
+static Vec tip(const Plant *p, Angles a) {
+  return (Vec){p->l1 * a.c1 - p->l4 * a.c2 - p->l4, p->l1 * a.s1 - p->l4 * a.s2 - p->l1};
+}
+static Vec tip_rate(const Plant *p, Angles a, Vec v) {
+  return (Vec){-p->l1 * a.s1 * v.x + p->l4 * a.s2 * v.y, p->l1 * a.c1 * v.x - p->l4 * a.c2 * v.y};
+}
+
+/* The curve and three derivatives at theta. */
+static Local curve_at(const Real *restrict table, Real theta) {
+  Real c = cosine(theta), s = sine(theta), basis[COLUMNS], sum[ROWS];
+  basis[0] = all(1);
+  Real ck = c, sk = s;
+  for (int k = 1; k <= HARMONICS; ++k) {
+    basis[k] = ck;
+    basis[HARMONICS + k] = sk;
+    Real turned = c * ck - s * sk;
+    sk = s * ck + c * sk;
+    ck = turned;
+  }
+  for (int i = 0; i < ROWS; ++i) sum[i] = table[i];
+  for (int k = 1; k < COLUMNS; ++k)
+    for (int i = 0; i < ROWS; ++i) sum[i] += table[ROWS * k + i] * basis[k];
+  return (Local){{sum[0], sum[1]}, {sum[2], sum[3]}, {sum[4], sum[5]}, {sum[6], sum[7]}};
+}
+
+/* The closest point to z by Newton on the curve's cubic polynomial; moves theta there. */
+static Local project(Local at, Vec z, Real *theta) {
+  for (int i = 0; i < NEWTON_STEPS; ++i) {
+    Vec gap = sub(at.sigma, z);
+    Real square = dot(at.first, at.first);
+    Real slope = larger(square + dot(gap, at.second), 0.05 * square);
+    Real h = -clamp(dot(gap, at.first) / slope, all(-0.5), all(0.5));
+    *theta += h;
+    at.sigma = along(at.sigma, h, along(at.first, h / 2, along(at.second, h / 3, at.third)));
+    at.first = along(at.first, h, along(at.second, h / 2, at.third));
+    at.second = along(at.second, h, at.third);
+  }
+  return at;
+}
+
+/* v' = M^-1 (tau - c). */
+static Vec acceleration(const Plant *p, Vec q, Vec v, Vec tau) {
+  Angles a = angles(q);
+  Real m12 = p->M12 * (a.c1 * a.c2 + a.s1 * a.s2), n12 = p->M12 * (a.s2 * a.c1 - a.c2 * a.s1);
+  Real f1 = tau.x - p->G1 * a.c1 - p->b1 * v.x + n12 * v.y * v.y;
+  Real f2 = tau.y - p->G2 * a.c2 - p->b2 * v.y - n12 * v.x * v.x;
+  Real inverse = 1 / (p->M11 * p->M22 - m12 * m12);
+  return (Vec){inverse * (p->M22 * f1 - m12 * f2), inverse * (p->M11 * f2 - m12 * f1)};
+}
+
+/* Torques that give the end-point the acceleration a_y, if the model is right. */
+static Vec torques(const Plant *p, Angles a, Vec v, Vec a_y) {
+  Real l1 = p->l1, l4 = p->l4, v1v1 = v.x * v.x, v2v2 = v.y * v.y;
+  Vec b = {a_y.x + l1 * a.c1 * v1v1 - l4 * a.c2 * v2v2,
+           a_y.y + l1 * a.s1 * v1v1 - l4 * a.s2 * v2v2};
+  Real sin12 = a.s1 * a.c2 - a.c1 * a.s2, cos12 = a.c1 * a.c2 + a.s1 * a.s2;
+  Real w1 = -(a.c2 * b.x + a.s2 * b.y) / (l1 * sin12);
+  Real w2 = -(a.c1 * b.x + a.s1 * b.y) / (l4 * sin12);
+  Real m12 = p->M12 * cos12, n12 = -p->M12 * sin12;
+  return (Vec){p->M11 * w1 + m12 * w2 + p->G1 * a.c1 + p->b1 * v.x - n12 * v2v2,
+               m12 * w1 + p->M22 * w2 + p->G2 * a.c2 + p->b2 * v.y + n12 * v1v1};
+}
+
+static Vec pushes(const Settings *s, Vec y, Vec y_rate) {
+  Vec hand = along(scaled(all(300), sub(s->hand_target, y)), all(-10), y_rate);
+  Real size = root(dot(hand, hand) + 1e-12);
+  Real brake = 2000 * dot(s->hold_tangent, sub(y, s->hold_anchor))
+               + 40 * dot(s->hold_tangent, y_rate);
+  hand = scaled(s->hand_active * choose(size > 15, 15 / size, all(1)), hand);
+  return along(hand, -s->hold_active * clamp(brake, all(-30), all(30)), s->hold_tangent);
+}
+
+static void integrate(const Plant *p, Vec *q, Vec *v, Vec tau, Real h) {
+  Vec a1 = acceleration(p, *q, *v, tau);
+  Vec v2 = along(*v, h / 2, a1), a2 = acceleration(p, along(*q, h / 2, *v), v2, tau);
+  Vec v3 = along(*v, h / 2, a2), a3 = acceleration(p, along(*q, h / 2, v2), v3, tau);
+  Vec v4 = along(*v, h, a3), a4 = acceleration(p, along(*q, h, v3), v4, tau);
+  *q = along(*q, h / 6, add(add(*v, v4), scaled(all(2), add(v2, v3))));
+  *v = along(*v, h / 6, add(add(a1, a4), scaled(all(2), add(a2, a3))));
+}
+
+/* Commanded y'' in the frame of the closest point: z = sigma + lambda N, differentiated twice. */
+static Vec command(const Settings *s, const State *x, Local at, Real theta, Vec z, Vec z_rate,
+                   Row *row) {
+  Real length = root(dot(at.first, at.first));
+  Vec T = scaled(1 / length, at.first), N = {-T.y, T.x};
+  Real lambda = dot(N, sub(z, at.sigma)), lambda_rate = dot(N, z_rate);
+  Real stretch = dot(T, at.second), curvature = dot(N, at.second) / (length * length);
+  Real bent = 1 - lambda * curvature, g = length * bent;
+  Real theta_rate = dot(T, z_rate) / g, turn = curvature * length * theta_rate;
+  Real curving = dot(N, at.third) / (length * length) - 3 * curvature * stretch / length;
+  Real g_rate = theta_rate * (stretch * bent - length * lambda * curving)
+                - length * lambda_rate * curvature;
+  Real across = -s->K1 * lambda - s->K2 * lambda_rate - s->K3 * x->integral.x;
+  Real to_target = -s->K4 * wrap(theta - s->target) - s->K5 * theta_rate;
+  Real onward = choose(s->position != 0, to_target, s->K5 * (s->speed - theta_rate));
+  row->theta = theta, row->theta_rate = theta_rate;
+  row->xi = lambda, row->xi_rate = lambda_rate;
+  Vec tangential = scaled(g * onward + g_rate * theta_rate - lambda_rate * turn, T);
+  return along(tangential, across + g * theta_rate * turn, N);
+}
+
+static void tick(const Settings *s, const Real *table, State *x, Row *row) {
+  Real half = s->dt / 2;
+  Vec gain = scaled(half, acceleration(&s->model, x->q, x->v, x->u));
+  Vec q = along(x->q, half, along(x->v, all(0.5), gain)), v = add(x->v, gain);
+  Angles a = angles(q);
+  Vec z = tip(&s->model, a), z_rate = tip_rate(&s->model, a, v);
+  Real theta = x->theta + s->dt * x->theta_rate;
+  Local at = project(curve_at(table, theta), z, &theta);
+  Vec wanted = torques(&s->model, a, v, command(s, x, at, theta, z, z_rate, row));
+
+  Real length = root(dot(at.first, at.first));
+  Real bend = (at.first.x * at.second.y - at.first.y * at.second.x) / (length * length * length);
+  Real now = dot(at.first, tip_rate(&s->model, a, x->v))
+             / (length * length * (1 - row->xi * bend));
+
+  Real limit = s->torque_limit;
+  Mask acts = x->phase < 0.5;
+  Mask saturated = larger(magnitude(wanted.x), magnitude(wanted.y)) > limit;
+  Vec u = {choose(acts, clamp(wanted.x, -limit, limit), x->u.x),
+           choose(acts, clamp(wanted.y, -limit, limit), x->u.y)};
+
+  a = angles(x->q);
+  Vec y = tip(&s->plant, a), force = pushes(s, y, tip_rate(&s->plant, a, x->v));
+  Vec tau = {s->plant.l1 * (a.c1 * force.y - a.s1 * force.x)
+                 + u.x - s->coulomb * x->v.x / root(x->v.x * x->v.x + 0.0025),
+             s->plant.l4 * (a.s2 * force.x - a.c2 * force.y)
+                 + u.y - s->coulomb * x->v.y / root(x->v.y * x->v.y + 0.0025)};
+  row->q = x->q, row->v = x->v, row->y = y, row->theta_ref = x->theta_ref;
+  row->u = u, row->force = force;
+
+  integrate(&s->plant, &x->q, &x->v, tau, s->dt);
+  Mask integrates = acts & not(saturated) & (s->hold_active == 0);
+  Real more = choose(integrates, s->dt * s->hold_ticks * row->xi, all(0));
+  x->integral.x = choose(s->K3 == 0, all(0), x->integral.x + more);
+  x->integral.y = choose(s->K3 == 0, all(0), x->integral.y);
+  Real top = magnitude(s->speed), gap = wrap(s->target - x->theta_ref) / s->dt;
+  x->theta_ref += s->dt * choose(s->position != 0, clamp(gap, -top, top), s->speed);
+  x->theta = theta, x->theta_rate = row->theta_rate;
+  row->speed = now * (length - half * now * dot(at.first, at.second) / length);
+  row->theta_rate = now, row->theta -= half * now, row->xi -= half * row->xi_rate;
+  x->encoder = row->q, x->encoder_rate = row->v, x->u = u;
+  x->phase = choose(x->phase + 1 < s->hold_ticks - 0.5, x->phase + 1, all(0));
+}
+
+/* Vectors of LANES robots, one after the other, to and from one vector of lanes. */
+static void load(Real *to, const double *from, int size) {
+  for (int j = 0; j < size; ++j)
+    for (int lane = 0; lane < LANES; ++lane) ((double *)(to + j))[lane] = from[lane * size + j];
+}
+static void store(double *to, long long stride, const Real *from, int size) {
+  for (int lane = 0; lane < LANES; ++lane)
+    for (int j = 0; j < size; ++j) to[lane * stride + j] = ((const double *)(from + j))[lane];
+}
+
+#define SIZE(type) ((int)(sizeof(type) / sizeof(Real)))
+
+/* The number of robots must be a multiple of LANES. */
+void onpath_run(const double *settings, const double *tables, double *states, double *logs,
+                long long ticks, long long robots) {
+  for (long long i = 0; i < robots; i += LANES) {
+    Settings s;
+    State x;
+    Real table[ROWS * COLUMNS];
+    load((Real *)&s, settings + i * SIZE(Settings), SIZE(Settings));
+    load((Real *)&x, states + i * SIZE(State), SIZE(State));
+    load(table, tables + i * SIZE(table), SIZE(table));
+    for (long long k = 0; k < ticks; ++k) {
+      Row row;
+      tick(&s, table, &x, &row);
+      store(logs + (ticks * i + k) * SIZE(Row), ticks * SIZE(Row), (Real *)&row, SIZE(Row));
+    }
+    store(states + i * SIZE(State), SIZE(State), (Real *)&x, SIZE(State));
+  }
+}
