@@ -43,6 +43,11 @@ class Poses:
         width = prod(shape[1:])
         return slice(place.start + begin * width, place.start + end * width)
 
+    @property
+    def steadier(self) -> np.ndarray:
+        """Lengths, rotations and forces, which rarely change; flat."""
+        return self.whole[self.fields["lengths"][0].start :]
+
     def is_news(self, drawn: Poses) -> bool:
         """Whether it is finite and differs visibly from the last pose: by 10 µm or 10 µN."""
         return UNSEEN < difference(self.whole, drawn.whole) < np.inf  # false for NaN

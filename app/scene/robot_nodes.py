@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 FORCE_SHOWN = 0.05
 """Forces below this are not drawn [N]."""
+STEADY = 1e-6
+"""Changes of lengths, rotations and forces below this are not drawn [m, N]."""
 TRACE_SEGMENTS = 120
 TRACE_DEPTHS = (0.012, 0.002)
 """Depth of the trace behind the path, and of older laps behind newer ones [m]."""
@@ -176,6 +178,7 @@ class RobotNodes:
                 (self.grips, "batched_positions", poses.place("tips")),
             ]
         )
+        self._steadier = np.zeros_like(poses.steadier)
         self._draw(poses)
 
     def _add_bars(self, scene: viser.SceneApi, counts: Counts, poses: Poses) -> list[Bars]:
@@ -211,15 +214,18 @@ class RobotNodes:
 
     def _draw(self, poses: Poses) -> None:
         self._moving.update(poses.whole)
+        if self._acting or difference(poses.steadier, self._steadier) > STEADY:
+            self._steadier = poses.steadier
+            self._draw_steadier(poses)
+
+    def _draw_steadier(self, poses: Poses) -> None:
+        """Draw lengths and rotations if they have changed, and forces with their arrows."""
         for bars in self._bars:
             bars.update_lengths(poses)
         turns = poses["turns"]
         if difference(turns, self._turns) > 1e-3:
             self._turns = turns
             update_node(self._parts, batched_wxyzs=turns)
-        self._draw_forces(poses)
-
-    def _draw_forces(self, poses: Poses) -> None:
         forces = poses["forces"]
         acts = max(map(abs, forces.ravel().tolist())) > FORCE_SHOWN
         if acts:

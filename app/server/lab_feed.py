@@ -16,7 +16,8 @@ from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.simulation.display_rate import STRIDES, is_turn
 
 AT_EASE = STRIDES[0]  # the stride of a thread that is not overloaded
-SLOW, SLOWER = 6, 12  # frames per update of traces, plots, readouts: 10 Hz; 5 Hz with many labs
+SLOW, SLOWER = 3, 5  # frames of display per update of traces, plots, readouts: 10 Hz, and
+# with many labs 5, 4 or 3 Hz
 
 
 class LabFeed:
@@ -46,12 +47,13 @@ class LabFeed:
         student, other = 0, self._followed.find() if self._followed is not None else None
         if other is not None:
             lab, achieved, student = other[0].lab, other[0].achieved, other[1]
+        at_rest = stride
         if lab.session.grips.grabbed and stride == AT_EASE:
             stride = 1.0  # every frame of delay is felt while dragging
         count = frame + self._offset
         if not is_turn(count, stride) or not self.page.is_ready:
             return
-        every = stride * round((SLOW if stride <= AT_EASE else SLOWER) / stride)
+        every = at_rest * (SLOW if at_rest <= AT_EASE else SLOWER)
         whole = is_turn(count, every) or self.page.is_outdated
         if self._has_news(lab) or whole:
             self._show(lab, achieved, student, whole)

@@ -64,18 +64,19 @@ class NodeGroup:
 
     def __init__(self, properties: Sequence[tuple[Any, str, slice]]) -> None:
         self._api = properties[0][0]._impl.api
+        channel = getattr(self._api._websock_interface.queue_message, "__self__", None)
+        self._channel = channel if isinstance(channel, FrameChannel) else None
         self.properties = [(handle._impl.name, name, own) for handle, name, own in properties]
         self.owner: str = self._api._owner_id
 
     def update(self, numbers: np.ndarray) -> None:
         """Set all properties; `numbers` is float32 and must not be modified afterwards."""
         update = GroupUpdate(self, numbers)
-        channel = getattr(self._api._websock_interface.queue_message, "__self__", None)
-        if isinstance(channel, FrameChannel):
-            channel._take(update)
-        else:
-            for message in update.messages():
-                self._api._queue_scene_message(message)
+        if self._channel is not None:
+            self._channel._take(update)
+            return
+        for message in update.messages():
+            self._api._queue_scene_message(message)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -175,10 +175,10 @@ def _poses(
     return (
         begins + normal @ layers,
         bar_quaternions(along, waist),
-        ca.sqrt(ca.sum1(along**2)),
         ca.horzcat(machined, *discs, further),
-        ca.horzcat(*[turned] * (counts.joints + 1), *[still] * (2 + counts.marks)),
         tip,
+        ca.sqrt(ca.sum1(along**2)),
+        ca.horzcat(*[turned] * (counts.joints + 1), *[still] * (2 + counts.marks)),
         force,
     )
 

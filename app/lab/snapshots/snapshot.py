@@ -19,19 +19,19 @@ class PoseShapes(NamedTuple):
     Attributes:
         bars: beginnings of the link meshes, in their layers, [m].
         quaternions: orientations of the link meshes, scalar first.
-        lengths: of the bars, [m].
         parts: positions of bearings, pen, two marker discs and further points, [m].
-        turns: rotations of these about the vertical axis, scalar first.
         tips: drawn end-point, [m].
+        lengths: of the bars, [m].
+        turns: rotations of the parts about the vertical axis, scalar first.
         forces: on the end-point, [N].
     """
 
     bars: tuple[int, ...]
     quaternions: tuple[int, ...]
-    lengths: tuple[int, ...]
     parts: tuple[int, ...]
-    turns: tuple[int, ...]
     tips: tuple[int, ...]
+    lengths: tuple[int, ...]
+    turns: tuple[int, ...]
     forces: tuple[int, ...]
 
 
@@ -63,7 +63,7 @@ class Counts:
     def pose_shapes(self) -> PoseShapes:
         """Shapes in `RobotView.poses`; parts are bearings, pen, two marker discs, and marks."""
         bars, parts = self.bars, self.joints + 3 + self.marks
-        return PoseShapes((bars, 3), (bars, 4), (bars,), (parts, 3), (parts, 4), (1, 3), (1, 3))
+        return PoseShapes((bars, 3), (bars, 4), (parts, 3), (1, 3), (bars,), (parts, 4), (1, 3))
 
     @property
     def size(self) -> int:
