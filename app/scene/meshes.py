@@ -6,10 +6,10 @@ Edges sharper than 30 degrees are split, so that the viewer's smooth shading doe
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import trimesh
 
 SHARP = np.radians(30.0)
 ROUND = 40  # points of a full circle
@@ -19,7 +19,32 @@ GRIP = (0.02, 0.009, 0.02)  # half-axes of the area at an end-point that can be 
 FLOOR_DEPTH = 0.17  # depth of the floor below the base pivot [m]
 
 
-def loft(rings: np.ndarray) -> trimesh.Trimesh:
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles, whose corners are counter-clockwise as seen from outside.
+
+    Attributes:
+        vertices: shape (n, 3), [m].
+        faces: indices of their corners, shape (k, 3).
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+
+    @property
+    def corners(self) -> np.ndarray:
+        """The corners of each face, shape (k, 3, 3), [m]."""
+        return self.vertices[self.faces]
+
+    @property
+    def normals(self) -> np.ndarray:
+        """Unit normals of the faces, shape (k, 3)."""
+        a, b, c = self.corners.transpose(1, 0, 2)
+        normals = np.cross(b - a, c - a)
+        return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def loft(rings: np.ndarray) -> Mesh:
     """A closed solid through rings.
 
     Args:
@@ -39,29 +64,43 @@ def loft(rings: np.ndarray) -> trimesh.Trimesh:
         np.column_stack([here + (m - 1) * n, there + (m - 1) * n, np.full(n, last)]),
     ]
     vertices = np.concatenate([rings.reshape(-1, 3), [rings[0].mean(0), rings[-1].mean(0)]])
-    mesh = trimesh.Trimesh(vertices, np.concatenate([sides, *caps]), process=False)
-    if mesh.volume < 0.0:
-        mesh.invert()
-    return mesh
+    mesh = Mesh(vertices, np.concatenate([sides, *caps]))
+    is_inside_out = np.linalg.det(mesh.corners).sum() < 0.0  # six times the volume
+    return Mesh(vertices, mesh.faces[:, ::-1]) if is_inside_out else mesh
 
 
-def crisp(*solids: trimesh.Trimesh) -> trimesh.Trimesh:
-    """The solids as one mesh with split edges."""
-    whole = trimesh.util.concatenate(
-        [trimesh.graph.smooth_shade(solid, angle=SHARP, facet_minarea=None) for solid in solids]
-    )
-    assert isinstance(whole, trimesh.Trimesh)
-    return whole
+def crisp(*solids: Mesh) -> Mesh:
+    """Closed solids as one mesh with split edges."""
+    return joined(*map(_with_split_edges, solids))
 
 
-def turned(profile: list[tuple[float, float]], points: int = ROUND) -> trimesh.Trimesh:
+def _with_split_edges(solid: Mesh) -> Mesh:
+    """Faces that are connected by edges that are not sharp share their vertices, others do not."""
+    faces, normals = solid.faces, solid.normals
+    edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2))
+    one, other = np.lexsort(edges.T).reshape(-1, 2).T // 3  # the two faces at each edge
+    is_smooth = (normals[one] * normals[other]).sum(1) > np.cos(SHARP)
+    one, other = one[is_smooth], other[is_smooth]
+    groups, spreads = np.arange(len(faces)), True
+    while spreads:  # the smallest number of a group's faces
+        before = groups.copy()
+        smaller = np.minimum(groups[one], groups[other])
+        np.minimum.at(groups, one, smaller)
+        np.minimum.at(groups, other, smaller)
+        spreads = bool((groups < before).any())
+    corners = np.column_stack([np.repeat(groups, 3), faces.ravel()])
+    kept, numbers = np.unique(corners, axis=0, return_inverse=True)
+    return Mesh(solid.vertices[kept[:, 1]], numbers.reshape(-1, 3))
+
+
+def turned(profile: list[tuple[float, float]], points: int = ROUND) -> Mesh:
     """A solid of revolution about y, from (radius, y) pairs, [m]."""
     angle = np.linspace(0.0, 2.0 * np.pi, points, endpoint=False)
     circle = np.column_stack([np.cos(angle), np.zeros(points), np.sin(angle)])
     return loft(np.stack([radius * circle + [0.0, y, 0.0] for radius, y in profile]))
 
 
-def extruded(outline: np.ndarray, front: float, back: float, chamfer: float) -> trimesh.Trimesh:
+def extruded(outline: np.ndarray, front: float, back: float, chamfer: float) -> Mesh:
     """A plate with chamfered edges.
 
     Args:
@@ -85,7 +124,7 @@ def _stadium(inset: float, half_width: float, cap: float) -> np.ndarray:
 
 
 @lru_cache
-def link() -> trimesh.Trimesh:
+def link() -> Mesh:
     """A machined bar from x = 0 to 1, to be scaled along x: chamfered, a pocket in either face.
 
     Scaling turns its round ends into half ellipses. They are circular for 0.2 m, and the bearings
@@ -100,14 +139,14 @@ def link() -> trimesh.Trimesh:
 
 
 @lru_cache
-def blade() -> trimesh.Trimesh:
+def blade() -> Mesh:
     """A piece of a thin upright strip from x = 0 to 1, slightly longer, so that pieces overlap."""
     outline = np.array([(1.03, 0.011), (-0.03, 0.011), (-0.03, -0.011), (1.03, -0.011)])
     return crisp(extruded(outline, -0.0022, 0.0022, 0.0008))
 
 
 @lru_cache
-def bearing() -> trimesh.Trimesh:
+def bearing() -> Mesh:
     """A bearing through both layers with a bolt head towards the camera, axis y, about its centre.
 
     Scaled per instance, it also serves as the pen and as the flat discs that mark points.
@@ -118,16 +157,17 @@ def bearing() -> trimesh.Trimesh:
 
 
 @lru_cache
-def grip() -> trimesh.Trimesh:
+def grip() -> Mesh:
     """A lens about an end-point, deep enough to be picked before a control point inside it.
 
     The scene then decides which of the two is selected.
     """
-    return ball(1.0).apply_scale(GRIP)
+    unit = ball(1.0)
+    return Mesh(unit.vertices * GRIP, unit.faces)
 
 
 @lru_cache
-def motors() -> trimesh.Trimesh:
+def motors() -> Mesh:
     """Two coaxial motors on the base pivot, in front of and behind the links."""
     front = [(0.024, -0.004), (0.026, -0.006), (0.026, -0.034), (0.0235, -0.037)]
     cap = [(0.018, -0.037), (0.018, -0.041), (0.0165, -0.0425)]
@@ -136,7 +176,7 @@ def motors() -> trimesh.Trimesh:
 
 
 @lru_cache
-def base(height: float = FLOOR_DEPTH) -> trimesh.Trimesh:
+def base(height: float = FLOOR_DEPTH) -> Mesh:
     """The base plate on the floor, and two uprights that carry the motors at a height, [m]."""
     floor = -height
     angle = np.linspace(0.0, np.pi, ROUND)
@@ -150,14 +190,14 @@ def base(height: float = FLOOR_DEPTH) -> trimesh.Trimesh:
     )
 
 
-def _upright(solid: trimesh.Trimesh) -> trimesh.Trimesh:
+def _upright(solid: Mesh) -> Mesh:
     """A solid of revolution about y, rotated so that its axis is z."""
-    solid.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, [1.0, 0.0, 0.0]))
-    return solid
+    x, y, z = solid.vertices.T
+    return Mesh(np.column_stack([x, -z, y]), solid.faces)
 
 
 @lru_cache
-def pedestal() -> trimesh.Trimesh:
+def pedestal() -> Mesh:
     """A round foot and column that carry a rotating waist."""
     floor = -FLOOR_DEPTH
     foot = [(0.1, floor), (0.1, floor + 0.012), (0.096, floor + 0.016)]
@@ -166,7 +206,7 @@ def pedestal() -> trimesh.Trimesh:
 
 
 @lru_cache
-def turntable() -> trimesh.Trimesh:
+def turntable() -> Mesh:
     """The rotating plate on the pedestal and its hub, both rotationally symmetric."""
     plate = [(0.062, -0.044), (0.064, -0.042), (0.064, -0.03), (0.061, -0.027)]
     hub = [(0.024, -0.027), (0.022, -0.014), (0.012, -0.01)]
@@ -174,29 +214,31 @@ def turntable() -> trimesh.Trimesh:
 
 
 @lru_cache
-def ball(radius: float) -> trimesh.Trimesh:
+def ball(radius: float) -> Mesh:
     """A sphere of the given radius, [m]."""
-    return trimesh.creation.icosphere(subdivisions=2, radius=radius)
+    angle = np.linspace(-0.45 * np.pi, 0.45 * np.pi, ROUND // 4)
+    profile = [(float(radius * np.cos(a)), float(radius * np.sin(a))) for a in angle]
+    return turned(profile, ROUND // 2)
 
 
 @lru_cache
-def cross() -> trimesh.Trimesh:
+def cross() -> Mesh:
     """An x of size 1 m in the plane y = 0, which marks a rejected position; to be scaled down."""
     arm = np.array([(0.5, 0.09), (-0.5, 0.09), (-0.5, -0.09), (0.5, -0.09)])
     turn = np.sqrt(0.5) * np.array([[1.0, 1.0], [-1.0, 1.0]])
     return crisp(*(extruded(arm @ r, -0.06, 0.06, 0.02) for r in (turn, turn.T)))
 
 
-def sheet(low: tuple[float, float], high: tuple[float, float], y: float) -> trimesh.Trimesh:
+def sheet(low: tuple[float, float], high: tuple[float, float], y: float) -> Mesh:
     """A rectangle in (x, z) at depth y, facing the camera, [m]."""
     (x0, z0), (x1, z1) = low, high
     corners = np.array([(x0, y, z0), (x1, y, z0), (x1, y, z1), (x0, y, z1)])
-    return trimesh.Trimesh(corners, [(0, 1, 2), (0, 2, 3)], process=False)
+    return Mesh(corners, np.array([(0, 1, 2), (0, 2, 3)]))
 
 
 def ring(
     inner: float, outer: float, low: tuple[float, float], high: tuple[float, float], y: float
-) -> trimesh.Trimesh:
+) -> Mesh:
     """The part of a flat ring about the origin that lies in a box in (x, z), at depth y, [m]."""
     angle = np.linspace(0.0, 2.0 * np.pi, 361)
     circle = np.column_stack([np.cos(angle), np.zeros_like(angle), np.sin(angle)])
@@ -207,11 +249,11 @@ def ring(
     )
     middle = vertices[faces].mean(axis=1)[:, [0, 2]]
     inside = ((middle >= low) & (middle <= high)).all(axis=1)
-    return trimesh.Trimesh(vertices, faces[inside], process=False)
+    return Mesh(vertices, faces[inside])
 
 
-def joined(*parts: trimesh.Trimesh) -> trimesh.Trimesh:
+def joined(*parts: Mesh) -> Mesh:
     """The parts as one mesh."""
-    whole = trimesh.util.concatenate(list(parts))
-    assert isinstance(whole, trimesh.Trimesh)
-    return whole
+    begins = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])
+    faces = [part.faces + begin for part, begin in zip(parts, begins, strict=True)]
+    return Mesh(np.concatenate([part.vertices for part in parts]), np.concatenate(faces))

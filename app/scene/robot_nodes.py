@@ -17,7 +17,6 @@ from onpath.app.viser_adapter.frame_channel import NodeGroup, update_node
 from onpath.lessons.words import ENGLISH, Words
 
 if TYPE_CHECKING:
-    import trimesh
     import viser
 
 FORCE_SHOWN = 0.05
@@ -108,7 +107,7 @@ class Bars:
         self,
         scene: viser.SceneApi,
         name: str,
-        mesh: trimesh.Trimesh,
+        mesh: meshes.Mesh,
         rows: slice,
         colours: np.ndarray,
         poses: Poses,

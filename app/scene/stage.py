@@ -8,9 +8,9 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
-import trimesh
 
 from onpath.app.common import palette
+from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.pointer_projection import Box, DragPlane
 from onpath.lessons.words import ENGLISH, Words
 
@@ -62,7 +62,7 @@ class Stage:
     force_scale: float
     sheet: tuple[tuple[float, float], tuple[float, float], float]
     motors: tuple[int, ...]
-    parts: Callable[[], list[tuple[str, trimesh.Trimesh, palette.Colour]]]
+    parts: Callable[[], list[tuple[str, Mesh, palette.Colour]]]
 
     @property
     def origins(self) -> np.ndarray:
@@ -218,7 +218,7 @@ class ChangingText:
 def add_copies(
     scene: viser.SceneApi,
     name: str,
-    mesh: trimesh.Trimesh,
+    mesh: Mesh,
     positions: np.ndarray,
     colour: palette.Colour | np.ndarray,
     *,

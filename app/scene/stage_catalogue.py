@@ -6,7 +6,6 @@ from functools import lru_cache
 
 import casadi as ca
 import numpy as np
-import trimesh
 
 from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import FollowerName, TrackerName
@@ -26,7 +25,7 @@ ASIDE, ABOVE, BELOW = 0.045, 0.11, 0.05
 THIN = 0.03
 """Half of the depth of robots in the vertical plane [m]."""
 
-Parts = list[tuple[str, trimesh.Trimesh, palette.Colour]]
+Parts = list[tuple[str, meshes.Mesh, palette.Colour]]
 
 
 @lru_cache(maxsize=64)

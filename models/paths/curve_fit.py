@@ -7,13 +7,17 @@ of that degree, fitted by least squares.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Literal
+
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.interpolate import CubicSpline
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import HARMONICS, Curve, chebyshev_curve, fourier
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 SAMPLES = 256  # points at equal arc length that a series is fitted to
 SHORTEST = 0.02  # [m], shortest total length of a path
@@ -37,7 +41,7 @@ def closed_through(points: Array) -> Curve:
     """
     points = _distinct(points, least=3)
     ring = np.vstack([points, points[:1]])
-    spline = CubicSpline(_chords(ring), ring, bc_type="periodic")
+    spline = _spline_through(ring, "periodic")
     samples = _equal_arc(spline, endpoint=False)
     spectrum = np.fft.rfft(samples, axis=0) / SAMPLES
     harmonics = spectrum[1 : HARMONICS + 1] * _half_turns()[:, None]
@@ -59,7 +63,7 @@ def open_through(points: Array) -> Curve:
     points = _distinct(points, least=2)
     if len(points) == 2:
         return chebyshev_curve(np.stack([points.mean(0), (points[1] - points[0]) / 2]))
-    spline = CubicSpline(_chords(points), points, bc_type="natural")
+    spline = _spline_through(points, "natural")
     samples = _equal_arc(spline, endpoint=True)
     x = _even(-1, 1, SAMPLES)
     coefficients: Array = chebyshev.chebfit(x, samples, HARMONICS).astype(np.float64)
@@ -147,6 +151,12 @@ def _arc_length(points: Array) -> Array:
 def _even(low: float, high: float, count: int, endpoint: bool = True) -> Array:
     """`count` evenly spaced numbers from `low` to `high`, shape (count,)."""
     return np.linspace(float(low), float(high), count, endpoint=endpoint, dtype=np.float64)
+
+
+def _spline_through(points: Array, ends: Literal["periodic", "natural"]) -> CubicSpline:
+    from scipy.interpolate import CubicSpline  # slow to import; see app/server/lazy_imports.py
+
+    return CubicSpline(_chords(points), points, bc_type=ends)
 
 
 def _chords(points: Array) -> Array:

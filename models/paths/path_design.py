@@ -5,10 +5,9 @@ A `PathDesign` is immutable; every edit returns a new one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
-from types import MappingProxyType
+from functools import cache, partial
 
 import numpy as np
 
@@ -127,11 +126,6 @@ def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
     return PathDesign("drawn", curve, control_points(curve, 10 if closed else 6))
 
 
-def _designed(name: str, curve: Curve, count: int) -> PathDesign:
-    """A design with `count` control points on a given curve."""
-    return PathDesign(name, curve, control_points(curve, count))
-
-
 def _rounded_square(half: float = 0.05, power: float = 5.0) -> Curve:
     """The superellipse |z1|^power + |z2|^power = half^power, half in [m]."""
     angle = np.linspace(-np.pi, np.pi, 96, endpoint=False)
@@ -159,8 +153,26 @@ def _figure_eight() -> Curve:
     return fourier(np.zeros(2), cosine, np.array([[0.0, 0.0], [0.0, 0.04]]))
 
 
+class Presets(Mapping[str, PathDesign]):
+    """Designs by name, each computed when it is first looked up. Thread-safe."""
+
+    def __init__(self, making: Mapping[str, Callable[[], PathDesign]]) -> None:
+        self._making, self._made = making, dict[str, PathDesign]()
+
+    def __getitem__(self, name: str) -> PathDesign:
+        if name not in self._made:
+            self._made.setdefault(name, self._making[name]())
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._making)
+
+    def __len__(self) -> int:
+        return len(self._making)
+
+
 @cache
-def presets(radius: float = 0.05) -> Mapping[str, PathDesign]:
+def presets(radius: float = 0.05) -> Presets:
     """The predefined paths by name.
 
     The figure of eight intersects itself: it shows how a path is refused.
@@ -169,11 +181,17 @@ def presets(radius: float = 0.05) -> Mapping[str, PathDesign]:
         radius: of the circle, [m]; the ellipse and the rounded square scale with it.
     """
     designs = (
-        _designed("circle", circle(radius), 8),
-        _designed("ellipse", ellipse((1.4 * radius, 0.7 * radius)), 8),
-        _designed("rounded square", _rounded_square(radius), 12),
-        _designed("clover", _clover(), 16),
-        _designed("segment", segment((-0.06, -0.02), (0.06, 0.03)), 2),
-        _designed("figure of eight", _figure_eight(), 12),
+        ("circle", partial(circle, radius), 8),
+        ("ellipse", partial(ellipse, (1.4 * radius, 0.7 * radius)), 8),
+        ("rounded square", partial(_rounded_square, radius), 12),
+        ("clover", _clover, 16),
+        ("segment", partial(segment, (-0.06, -0.02), (0.06, 0.03)), 2),
+        ("figure of eight", _figure_eight, 12),
     )
-    return MappingProxyType({design.name: design for design in designs})
+    return Presets({name: partial(_designed, name, make, count) for name, make, count in designs})
+
+
+def _designed(name: str, make: Callable[[], Curve], count: int) -> PathDesign:
+    """A design with `count` control points on a curve."""
+    curve = make()
+    return PathDesign(name, curve, control_points(curve, count))

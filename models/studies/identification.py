@@ -22,7 +22,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.polynomial import Polynomial
-from scipy.linalg import lstsq
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
@@ -200,11 +199,10 @@ def _trusted(result: Identified) -> Identified:
 
 def _solved(regressor: Array, torque: Array) -> tuple[Array, float]:
     """Least-squares solution (unknowns,) and condition number of the regressor."""
-    solution = lstsq(regressor.reshape(-1, regressor.shape[-1]), torque.ravel())
-    singular = solution[3]
-    assert singular is not None  # LAPACK's default driver returns them
+    flat = regressor.reshape(-1, regressor.shape[-1])
+    solution, _, _, singular = np.linalg.lstsq(flat, torque.ravel())
     condition = float(singular[0] / singular[-1]) if singular[-1] > 0 else np.inf
-    return solution[0], condition
+    return np.asarray(solution, dtype=float), condition
 
 
 def _standard_errors(regressor: Array, residual: Array) -> Array:

@@ -285,15 +285,6 @@ def test_camera_shows_both_robots_clear_of_the_panels(size, insets, stage: Stage
     assert widest > 0.8
 
 
-@pytest.mark.parametrize(
-    "part", ["link", "bearing", "grip", "motors", "base", "cross", "blade", "pedestal", "turntable"]
-)
-def test_parts_are_solids_that_look_outward(part):
-    mesh = getattr(meshes, part)().copy()
-    mesh.merge_vertices()
-    assert mesh.is_watertight and mesh.volume > 0.0
-
-
 def test_layers_keep_links_apart():
     assert BACK_LAYER - FRONT_LAYER > meshes.LINK_THICKNESS
 
