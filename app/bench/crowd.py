@@ -18,6 +18,7 @@ import msgspec
 
 from onpath.app.bench.server_process import Server, serving
 from onpath.app.bench.simulated_browser import Observations
+from onpath.app.server.admission_queue import RESERVED
 from onpath.app.server.workers import MOST as MOST_WORKERS
 from onpath.app.simulation.metrics import LONGEST, Metrics
 from onpath.app.viser_adapter.message_filter import Limits
@@ -105,7 +106,7 @@ def measured(crowd: ClientLoad, environment: Mapping[str, str]) -> Iterator[Row]
     Raises:
         ValueError: the server does not serve all clients.
     """
-    with serving(environment, crowd.workers, max(crowd.clients, 64)) as server:
+    with serving(environment, crowd.workers, places_for(crowd.clients)) as server:
         alone = server.at_rest()
         with _load(server, crowd.clients, crowd.seconds) as seen:
             settled = next(seen).seconds
@@ -116,6 +117,11 @@ def measured(crowd: ClientLoad, environment: Mapping[str, str]) -> Iterator[Row]
                 stolen = (now[0] - spent[0]) / max(now[1] - spent[1], 1.0)
                 yield _row(during, settled, stolen, alone, before, after)
                 before, spent = after, now
+
+
+def places_for(clients: int) -> int:
+    """Places of a server that admits so many clients of one address; see `AdmissionQueue`."""
+    return clients * RESERVED // (RESERVED - 1) + 1
 
 
 def folders(folder: Path, name: str) -> dict[str, str]:

@@ -8,12 +8,15 @@ import subprocess
 import sys
 from contextlib import ExitStack
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-from onpath.app.bench.crowd import HEAD, ClientLoad, folders, measured
+from onpath.app.bench.crowd import HEAD, MOST, ClientLoad, folders, measured, places_for
 from onpath.app.bench.server_process import serving
 from onpath.app.cli.main import run_command
+from onpath.app.server.admission_queue import AdmissionQueue
 from tests.support.waiting import wait_for
 
 CLIENTS, SECONDS = 3, 1.0
@@ -39,6 +42,15 @@ def test_a_small_crowd_on_a_real_server(tmp_path: Path) -> None:
             assert 0 < row.memory_mb < 100 and 0 <= row.stolen < 1
         assert len(str(row).rpartition(" ")[0]) == len(HEAD.splitlines()[1])
     assert (tmp_path / "data" / "onpath" / "onpath.db").exists()
+
+
+def test_a_server_for_so_many_admits_them_all_from_one_address() -> None:
+    for clients in range(1, MOST + 1):
+        queue, inside = AdmissionQueue(places_for(clients)), list[int]()
+        for number in range(clients):
+            client: Any = SimpleNamespace(client_id=number)
+            queue.admit(client, lambda n=number: inside.append(n), "127.0.0.1", always=False)
+        assert inside == list(range(clients))
 
 
 @pytest.mark.parametrize(
