@@ -64,6 +64,7 @@ def make_server(
     unix_socket: Path | None = None,
     listener: socket.socket | None = None,
     health: Callable[[str], str] = well,
+    trouble: Callable[[], str] = str,
     verbose: bool = False,
 ) -> viser.ViserServer:
     """A protected server that listens on exactly this address; port 0 takes a free one.
@@ -76,7 +77,7 @@ def make_server(
         unix_socket: listen on this file only, for a proxy of the same user that serves the page in
             a folder of its own.
         listener: listen with this socket instead.
-        health: see `RequestFilter`.
+        health, trouble: see `RequestFilter`.
 
     Raises:
         ValueError: a proxy is malformed.
@@ -90,7 +91,7 @@ def make_server(
         listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
     port = 0 if unix_socket else listener.getsockname()[1]
     local_only = is_loopback(host) and not unix_socket
-    door = RequestFilter(allowed_origins, local_only=local_only, health=health)
+    door = RequestFilter(allowed_origins, local_only=local_only, health=health, trouble=trouble)
     with _guarded_serve(listener, door, limits, connections, in_folder=unix_socket is not None):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     harden(server, limits=limits)
