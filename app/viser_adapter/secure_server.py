@@ -9,6 +9,7 @@ the private names.
 from __future__ import annotations
 
 import asyncio
+import logging
 import socket
 import threading
 import time
@@ -87,6 +88,7 @@ def make_server(
     connections = ConnectionLimits(limits, Proxies(trusted_proxies))
     _cache_icons()
     share_compressors()
+    logging.getLogger("websockets.server").addFilter(_is_news)
     if listener is None:
         listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
     port = 0 if unix_socket else listener.getsockname()[1]
@@ -206,6 +208,14 @@ async def _opened(requests: RequestFilter) -> None:
     until = time.monotonic() + STARTING
     while not requests.open and time.monotonic() < until:
         await asyncio.sleep(0.02)
+
+
+def _is_news(record: logging.LogRecord) -> bool:
+    """Whether to log a record: not each connection on which no request, or no good one, came.
+
+    viser has the same filter, but only from the first page that is asked for.
+    """
+    return record.getMessage() != "opening handshake failed"
 
 
 def _log_outcome(done: Any) -> None:
