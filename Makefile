@@ -2,6 +2,7 @@
 # make test  all tests, headless Chromium included; adds what they need to the environment
 # make fuzz  the property tests with random inputs; make test has the same ones every time
 # make check lint, format, types      make bench  the speed table
+# make soak  40 labs under attack for half an hour: lateness, memory and log stay within bounds
 
 PYTHON ?= python3
 VENV   ?= .venv
@@ -10,7 +11,7 @@ LAB     = $(VENV)/.installed
 TOOLS   = $(VENV)/.tools
 PYTEST  = $(BIN)/pytest -n 2 --dist loadfile
 
-.PHONY: run test fuzz check format bench wheel clean
+.PHONY: run test fuzz check format bench soak wheel clean
 .DEFAULT_GOAL := run
 
 # What running needs; --clear takes the tools away, too, and their stamp with them.
@@ -49,6 +50,9 @@ format: $(TOOLS)
 
 bench: $(TOOLS)
 	$(BIN)/onpath bench $(ARGS)
+
+soak: $(TOOLS)
+	$(BIN)/onpath bench --soak 30 $(ARGS)
 
 # The sdist, and the wheel from it.
 wheel: $(TOOLS)

@@ -108,7 +108,7 @@ def measured(crowd: ClientLoad, environment: Mapping[str, str]) -> Iterator[Row]
     """
     with serving(environment, crowd.workers, places_for(crowd.clients)) as server:
         alone = server.at_rest()
-        with _load(server, crowd.clients, crowd.seconds) as seen:
+        with simulated_crowd(server, crowd.clients, crowd.seconds) as seen:
             settled = next(seen).seconds
             before, spent = server.metrics(), _processor()
             for _ in range(crowd.rows):
@@ -130,7 +130,9 @@ def folders(folder: Path, name: str) -> dict[str, str]:
 
 
 @contextmanager
-def _load(server: Server, clients: int, seconds: float) -> Iterator[Iterator[Observations]]:
+def simulated_crowd(
+    server: Server, clients: int, seconds: float
+) -> Iterator[Iterator[Observations]]:
     """What the browsers observe: first when all have settled, then every `seconds`."""
     command = [
         sys.executable,

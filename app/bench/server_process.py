@@ -8,7 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from http.client import HTTPConnection, HTTPException
@@ -85,6 +85,10 @@ class Server:
         finally:
             connection.close()
 
+    def log_bytes(self) -> int:
+        """Size of its output so far, [B]."""
+        return os.fstat(self.said.fileno()).st_size
+
     def at_rest(self) -> dict[int, Metrics]:
         """Metrics before any client has come, after `warm_up` has finished."""
         sizes: list[tuple[float, float]] = []
@@ -98,13 +102,18 @@ class Server:
 
 
 @contextmanager
-def serving(environment: Mapping[str, str], workers: int = 1, most: int = 64) -> Iterator[Server]:
+def serving(
+    environment: Mapping[str, str],
+    workers: int = 1,
+    most: int = 64,
+    options: Sequence[str] = ("--log-level", "error"),
+) -> Iterator[Server]:
     """A running server; each worker takes `most` clients."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = int(probe.getsockname()[1])
     command = [sys.executable, "-m", "onpath", "serve", "--port", str(port)]
-    command += ["--workers", str(workers), "--most-clients", str(most), "--log-level", "error"]
+    command += ["--workers", str(workers), "--most-clients", str(most), *options]
     with tempfile.TemporaryFile() as said:
         begun = time.monotonic()
         process = subprocess.Popen(

@@ -75,12 +75,14 @@ class Browser:
     Attributes:
         port: of the server.
         number: shifts its actions in time against those of the others.
+        source: address from which it connects; any if None.
         shown: times at which it received new poses, [s].
         received: [B].
     """
 
     port: int
     number: int
+    source: str | None = None
     shown: list[float] = field(default_factory=list)
     received: int = 0
     _slider: str = ""
@@ -95,6 +97,7 @@ class Browser:
         address = f"ws://127.0.0.1:{self.port}"
         options: dict[str, Any] = {"max_size": None, "compression": None}
         options |= {"open_timeout": None, "ping_interval": None}  # as a browser, it just waits
+        options |= {"local_addr": (self.source, 0)} if self.source else {}
         async with connect(address, subprotocols=[Subprotocol(SUBPROTOCOL)], **options) as socket:
             await socket.send(packed("ViewerCameraMessage", **CAMERA))
             until = time.monotonic() + seconds
@@ -115,11 +118,15 @@ class Browser:
             assert isinstance(raw, bytes)
             self.received += len(raw)
             messages = message_headers(raw)
-            if any(message.type in ANSWERED for message in messages):
+            if any(self._heeds(message.type) for message in messages):
                 for message in unpacked(raw):
                     await self._answer(socket, message)
             if any(m.name == MOVING and m.type == "SceneNodeUpdateMessage" for m in messages):
                 self.shown.append(time.monotonic())
+
+    def _heeds(self, kind: str) -> bool:
+        """Whether `_answer` is to be called for messages of a kind."""
+        return kind in ANSWERED
 
     async def _answer(self, socket: ClientConnection, message: dict[str, Any]) -> None:
         kind = message["type"]
@@ -253,7 +260,7 @@ async def _report(port: int, clients: int, seconds: float) -> None:
             sys.stdout.flush()
 
 
-def _stand_back() -> None:
+def stand_back() -> None:
     """Lower the priority of this process, to leave the processor to the server.
 
     Linux may first share the processor among sessions; the priority of a process counts within its
@@ -267,7 +274,7 @@ def _stand_back() -> None:
 
 
 if __name__ == "__main__":
-    _stand_back()
+    stand_back()
     try:
         asyncio.run(_report(int(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])))
     except NotServed as unserved:

@@ -22,6 +22,8 @@ from onpath.app.bench.mouse_latency import find_browser, mouse_latency
 from onpath.app.bench.reference import LANES, reference_loop
 from onpath.app.bench.server_process import serving
 from onpath.app.bench.simulated_browser import first_poses
+from onpath.app.bench.soak import HEAD as SOAK_HEAD
+from onpath.app.bench.soak import SoakRow, soak, verdict
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.loops import InterpretedLoop, Loop
@@ -166,6 +168,20 @@ def bench_crowds(crowds: list[ClientLoad]) -> None:
     """Print the table of loads, with the requested number of rows for each."""
     _begin()
     _crowds(crowds)
+
+
+def bench_soak(honest: int, minutes: int) -> int:
+    """Print the table of a soak and its verdict; return 1 if a bound was broken, else 0."""
+    _begin()
+    print(SOAK_HEAD, flush=True)
+    rows: list[SoakRow] = []
+    with tempfile.TemporaryDirectory() as folder:
+        for row in soak(honest, minutes, folders(Path(folder), "data")):
+            rows.append(row)
+            print(row, flush=True)
+    broken = verdict(rows, honest)
+    print("", *broken or ["all bounds are kept"], sep="\n")
+    return 1 if broken else 0
 
 
 def _begin() -> None:

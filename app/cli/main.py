@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 COMMANDS = ("serve", "experiment", "zero-dynamics", "lessons", "bench", "forget")
 INTERRUPTED = 130
+SOAKED = 40  # honest clients
 
 
 @dataclass(frozen=True)
@@ -75,9 +76,24 @@ class BenchCommand:
     """Duration of the measurement, once all browsers are shown moving robots."""
     minutes: int = 0
     """Measure a row per minute for this long, to see whether memory use is constant."""
+    soak: int = 0
+    """Attack a server for so many minutes while 40 simulated browsers (--clients) use labs."""
 
-    def run(self) -> None:
-        """Print the table."""
+    def run(self) -> int:
+        """Print the table; return exit code 1 if a bound of the soak is broken."""
+        if self.soak:
+            return self._soak()
+        self._measure()
+        return 0
+
+    def _soak(self) -> int:
+        from onpath.app.bench.tables import bench_soak
+
+        if self.soak < 0 or len(self.clients) > 1 or self.quick or self.minutes:
+            raise ValueError("--soak: expected minutes, and only --clients with one number")
+        return bench_soak(self.clients[0] if self.clients else SOAKED, self.soak)
+
+    def _measure(self) -> None:
         from onpath.app.bench.crowd import ClientLoad
         from onpath.app.bench.mouse_latency import check_installed
         from onpath.app.bench.tables import bench, bench_crowds

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from onpath.app.storage.records import Records
 
 
+SHORTEST_HANG = 1.0  # [s]
+
+
 @dataclass(frozen=True)
 class Serve:
     """Serve the lab in the browser."""
@@ -47,6 +50,9 @@ class Serve:
     """Maximum number of browsers in each process; further ones wait."""
     workers: int = 1
     """Number of processes; they share the port and the database."""
+    hang_seconds: float = 10.0
+    """A process whose simulation or network hangs for this time answers 503 at /health, and ends
+    after twice this time, so that whatever supervises it starts another; 0 for never."""
     successive_ports: bool = False
     """Give each worker its own port, counting from --port, for a proxy in front."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
@@ -56,6 +62,8 @@ class Serve:
         """Serve until Ctrl-C."""
         if self.most_clients < 1:
             raise ValueError(f"--most-clients {self.most_clients}: expected 1 or more")
+        if self.hang_seconds and self.hang_seconds < SHORTEST_HANG:
+            raise ValueError(f"--hang-seconds {self.hang_seconds:g}: expected 1 or more, or 0")
         from onpath.app.server.workers import is_worker
         from onpath.app.storage.database_url import database_url
         from onpath.app.storage.expiry import Retention
@@ -80,6 +88,7 @@ class Serve:
             open_class=_opener(silent=worker) if self.classroom else None,
             most_clients=self.most_clients,
             retention=retention,
+            hang_seconds=self.hang_seconds,
             allowed_origins=self.origin,
             trusted_proxies=self.trusted_proxy,
             unix_socket=self.socket,

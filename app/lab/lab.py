@@ -100,6 +100,11 @@ class Lab:
         """Queue a command. Thread-safe."""
         self._inbox.append(command)
 
+    @property
+    def has_commands(self) -> bool:
+        """Whether commands wait to be applied."""
+        return bool(self._inbox)
+
     def drain(self, most: float = inf) -> float:
         """Apply the queued commands. If one is refused, the user is told why.
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 
 import viser
 
@@ -18,6 +18,15 @@ one_at_a_time = threading.Lock()
 """Held while a page is built or rebuilt, but never while waiting for a browser."""
 MOST_REST = 0.5  # [s], longest pause after a page; the pause is as long as the build, up to this
 FEW = 2  # from so many clients ahead on, a waiting client is shown a notice
+
+
+@contextmanager
+def in_turn() -> Iterator[None]:
+    """Build part of a page, one at a time and with a pause, however many tabs ask for it."""
+    with one_at_a_time:
+        begun = time.monotonic()
+        yield
+        time.sleep(min(time.monotonic() - begun, MOST_REST))
 
 
 class BuildQueue:

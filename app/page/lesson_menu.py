@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import viser
 
@@ -10,7 +11,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
 from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.panels.widgets import Post, on_press, on_user_update
+from onpath.app.page.panels.widgets import Post, close_once, on_menu_press, on_press, on_user_update
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words, languages
 
@@ -24,15 +25,16 @@ class LessonMenu:
         self._gui, self._words, self._post, self._course = gui, words, post, course
         self.follow(first)
         button = gui.add_button(words("lesson.lessons"), icon=viser.Icon.SCHOOL, color="green")
-        on_press(button, self._open)
+        on_menu_press(button, self._open)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Store the student's progress for the window."""
         self._run = LessonView(self._course, self._words, snapshot.lesson)
 
-    def _open(self) -> None:
+    def _open(self) -> Callable[[], None]:
         run, gui = self._run, self._gui
         with gui.add_modal(run.words("lesson.choose")) as modal:
+            close = partial(close_once, modal)
             for number, name in enumerate(run.course.lessons, start=1):
                 lesson = run.course.lesson(name, run.words.language)
                 gui.add_html(page.entry(lesson, run, number))
@@ -42,8 +44,9 @@ class LessonMenu:
                     color=None if begun else "gray",
                     hint=lesson.front.title,
                 )
-                on_press(open_it, self._then(modal.close, c.OpenLesson(name)))
-            self._add_choices(modal.close)
+                on_press(open_it, self._then(close, c.OpenLesson(name)))
+            self._add_choices(close)
+        return close
 
     def _add_choices(self, close: Callable[[], None]) -> None:
         run, gui = self._run, self._gui

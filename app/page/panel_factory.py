@@ -19,7 +19,13 @@ from onpath.app.page.panels.past_panel import PastPanel
 from onpath.app.page.panels.path_panel import PathChoice, PathPanel
 from onpath.app.page.panels.robot_panel import RobotPanel
 from onpath.app.page.panels.run_panel import RunPanel
-from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press, on_user_update
+from onpath.app.page.panels.widgets import (
+    ParameterWidgets,
+    Post,
+    on_menu_press,
+    on_press,
+    on_user_update,
+)
 from onpath.app.page.plots import MORE, LivePlot, MorePlots
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
@@ -70,7 +76,7 @@ class PanelFactory:
         """Build all panels."""
         parts = [part for name in ALL for part in self._add(name, first)]
         helping = self._gui.add_button(self._words("controls.help"), icon=viser.Icon.HELP)
-        on_press(helping, self._help)
+        on_menu_press(helping, self._help)
         return parts
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
@@ -143,19 +149,24 @@ class PanelFactory:
         )
         on_user_update(copy, lambda on: self._post(c.SetCopy(on)))
 
-    def _help(self) -> None:
+    def _help(self) -> Callable[[], None]:
         gui, words = self._gui, self._words
         escape = gui.add_command(words("help.escape"), hotkey="escape")
         with gui.add_modal(words("help.title")) as modal:
             gui.add_markdown(help_text(words))
             close = gui.add_button(words("help.close"))
 
-        async def shut(_: object) -> None:
-            escape.remove()
-            modal.close()
+        def shut() -> None:
+            if not modal.closed:
+                escape.remove()
+                modal.close()
 
-        close.on_click(shut)
-        escape.on_trigger(shut)
+        async def escaped(_: object) -> None:
+            shut()
+
+        on_press(close, shut)
+        escape.on_trigger(escaped)
+        return shut
 
 
 def _silent(_: object) -> None:

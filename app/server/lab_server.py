@@ -32,7 +32,9 @@ from onpath.app.server.class_service import TEACHER_KEY, ClassService
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.lazy_imports import warm_up
+from onpath.app.server.memory_release import MemoryRelease
 from onpath.app.server.tab_visibility import TabVisibilities
+from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.expiry import Expiry, Retention
@@ -60,6 +62,7 @@ class LabServer:
         classroom: the class that students may join, or None.
         most_clients: maximum number at once; others wait. A teacher is always admitted.
         retention: how long labs are kept, and how many; by default that of the command line.
+        hang_seconds: see `Watchdog`; 0 for no watchdog.
         listening: further arguments of `make_server`.
 
     Raises:
@@ -76,14 +79,17 @@ class LabServer:
         classroom: Classroom | None = None,
         most_clients: int = MOST_CLIENTS,
         retention: Retention | None = None,
+        hang_seconds: float = 0.0,
         **listening: Any,
     ) -> None:
         self._store = store
         self._room = AdmissionQueue(most_clients)
         self._course = lessons = course or read_course([BUILT_IN])[0]
         self.simulation = SimulationThread()
+        self._watchdog, self._memory = Watchdog(hang_seconds), MemoryRelease()
         health = partial(metrics_json, self.simulation)
-        self.server = make_server(host, port, label="OnPath", health=health, **listening)
+        well = {"health": health, "trouble": lambda: self._watchdog.trouble}
+        self.server = make_server(host, port, label="OnPath", **well, **listening)
         self._records = records
         self._leases = Leases(records) if records else None
         self._keeper = WriteBehind(self._leases) if self._leases else None
@@ -100,11 +106,16 @@ class LabServer:
         set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.lab)))
         self._arrivals = Arrivals(self.server, [STORAGE_KEY, TEACHER_KEY], self._connected)
         self.server.on_client_disconnect(self._disconnected)
+        self._start()
+
+    def _start(self) -> None:
         self.simulation.start()
+        self._memory.rounds.start()
         if self._leases is not None:
             self._leases.keep(self.sessions.held, self._lost)
         if self._expiry is not None:
             self._expiry.start()
+        self._watchdog.start(signs_of_life(self.simulation, self.server.get_event_loop()))
 
     @property
     def address(self) -> str:
@@ -115,6 +126,8 @@ class LabServer:
 
     def stop(self) -> None:
         """Stop the server and all its threads."""
+        self._watchdog.stop()
+        self._memory.rounds.stop()
         self._newcomers.stop()
         if self._class is not None:
             self._class.stop()
@@ -216,6 +229,7 @@ class LabServer:
         if view is not None:
             view.page.close()
         self._room.leave(client.client_id)
+        self._memory.note()
 
 
 def serve(

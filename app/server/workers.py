@@ -58,6 +58,8 @@ class Options(Protocol):
     @property
     def most_clients(self) -> int: ...
     @property
+    def hang_seconds(self) -> float: ...
+    @property
     def successive_ports(self) -> bool: ...
     @property
     def classroom(self) -> bool: ...
@@ -228,6 +230,7 @@ def _command(options: Options, port: int) -> list[str]:
     command = [sys.executable, "-P", "-m", "onpath", "serve"]
     command += ["--host", options.host, "--port", str(port), "--log-level", options.log_level]
     command += ["--most-clients", str(options.most_clients)]
+    command += ["--hang-seconds", str(options.hang_seconds)]
     command += ["--lessons", str(options.lessons)] if options.lessons else []
     command += ["--keep-days", str(options.keep_days), "--most-labs", str(options.most_labs)]
     command += ["--classroom"] if options.classroom else []

@@ -21,11 +21,13 @@ from onpath.app.simulation.display_rate import DisplayRate
 log = logging.getLogger(__name__)
 
 FRAME = 1 / 60  # [s]
+FORGETTING = 1 / 600  # low-pass gain of the computing time of a lab's commands, per frame
 FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; when further behind, the schedule restarts
 PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not starved
 SELDOM = (1_000, 4, 1_000)  # allocations before a collection, which stops all threads for 10 ms
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
+ALL_COMMANDS = 8e-3  # [s] of a frame for the commands of all labs
 
 
 class Display(Protocol):
@@ -47,12 +49,13 @@ class ScheduledLab:
         lab: the lab.
         session: its simulated part.
         view: its viewer, or None.
+        used: computing time of its commands in about the last ten seconds, [s].
     """
 
     def __init__(self, lab: Lab) -> None:
         self.lab, self.session = lab, lab.session
         self.view: Display | None = None
-        self._credit = 0.0  # [s] of computing time for commands
+        self._credit = self.used = 0.0
         self._simulated = self._passed = 1e-6  # recent, low-pass filtered over about a second
 
     @property
@@ -65,10 +68,21 @@ class ScheduledLab:
         """Recent simulated seconds per second."""
         return self._simulated / self._passed
 
-    def drain(self) -> None:
-        """Apply commands, within the time budget `COMMANDS`."""
-        self._credit = min(self._credit, 0.0) + COMMANDS
-        self._credit -= self.lab.drain(self._credit)
+    def drain(self, share: float = COMMANDS, may_begin: bool = True) -> float:
+        """Apply commands, and do whatever else a lab does before a frame.
+
+        Args:
+            share: computing time per frame, [s]; a command that takes longer delays the next.
+            may_begin: whether commands may be applied in this frame.
+
+        Returns:
+            Computing time of the commands, [s].
+        """
+        self._credit = min(self._credit, 0.0) + share
+        taken = self.lab.drain(self._credit if may_begin else 0.0)
+        self._credit -= taken
+        self.used += taken - FORGETTING * self.used
+        return taken
 
     def frame(self, seconds: float) -> Frame:
         """Simulate a frame of this length; see `advance_together`.
@@ -173,12 +187,28 @@ class SimulationThread:
             Time spent on the display, [s].
         """
         labs = self._labs
-        _do(ScheduledLab.drain, labs)
+        apply_commands(labs)
         advance_together([lab.frame(seconds) for lab in labs], log_error)
         begun = self._clock()
         _do(lambda lab: lab.show(count, stride), labs)
         _do(ScheduledLab.send, labs)
         return self._clock() - begun
+
+
+def apply_commands(labs: list[ScheduledLab]) -> None:
+    """Apply the commands of one frame within `ALL_COMMANDS`, exceeded by one command at most.
+
+    Labs whose commands took least time recently come first, so that no lab waits for another one
+    that keeps asking for long work.
+    """
+    share = min(COMMANDS, ALL_COMMANDS / max(sum(lab.lab.has_commands for lab in labs), 1))
+    left = ALL_COMMANDS
+
+    def drain(lab: ScheduledLab) -> None:
+        nonlocal left
+        left -= lab.drain(share, left > 0)
+
+    _do(drain, sorted(labs, key=lambda lab: lab.used))
 
 
 def _do(step: Callable[[ScheduledLab], None], labs: list[ScheduledLab]) -> None:

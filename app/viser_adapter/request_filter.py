@@ -60,6 +60,7 @@ class RequestFilter:
         *,
         local_only: bool,
         health: Callable[[str], str] = well,
+        trouble: Callable[[], str] = str,
     ) -> None:
         """Args:
         allowed_origins: pages of other sites that may connect, "https://lab.example:8443".
@@ -67,9 +68,10 @@ class RequestFilter:
             be a local name; else any site could point its own name at 127.0.0.1 (DNS rebinding).
         health: the metrics at `HEALTH`, given the query string. Only this machine gets them;
             others only learn that the server is well.
+        trouble: why the server is not well, which everybody may know; empty if it is.
         """
         self.open = False
-        self._health = health
+        self._health, self._trouble = health, trouble
         self._allowed = frozenset(origin.lower().rstrip("/") for origin in allowed_origins)
         self._local_only = local_only
 
@@ -81,6 +83,8 @@ class RequestFilter:
         """
         asked, _, query = request.path.partition("?")
         if asked == HEALTH:
+            if trouble := self._trouble():
+                return HTTPStatus.SERVICE_UNAVAILABLE, f"{trouble}\n"
             report = self._health if _is_asked_here(request, peer) else well
             return HTTPStatus.OK, report(query)
         path = unquote(asked).replace("\\", "/")

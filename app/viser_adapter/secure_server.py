@@ -9,6 +9,7 @@ the private names.
 from __future__ import annotations
 
 import asyncio
+import logging
 import socket
 import threading
 import time
@@ -64,6 +65,7 @@ def make_server(
     unix_socket: Path | None = None,
     listener: socket.socket | None = None,
     health: Callable[[str], str] = well,
+    trouble: Callable[[], str] = str,
     verbose: bool = False,
 ) -> viser.ViserServer:
     """A protected server that listens on exactly this address; port 0 takes a free one.
@@ -76,7 +78,7 @@ def make_server(
         unix_socket: listen on this file only, for a proxy of the same user that serves the page in
             a folder of its own.
         listener: listen with this socket instead.
-        health: see `RequestFilter`.
+        health, trouble: see `RequestFilter`.
 
     Raises:
         ValueError: a proxy is malformed.
@@ -86,11 +88,12 @@ def make_server(
     connections = ConnectionLimits(limits, Proxies(trusted_proxies))
     _cache_icons()
     share_compressors()
+    logging.getLogger("websockets.server").addFilter(_is_news)
     if listener is None:
         listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
     port = 0 if unix_socket else listener.getsockname()[1]
     local_only = is_loopback(host) and not unix_socket
-    door = RequestFilter(allowed_origins, local_only=local_only, health=health)
+    door = RequestFilter(allowed_origins, local_only=local_only, health=health, trouble=trouble)
     with _guarded_serve(listener, door, limits, connections, in_folder=unix_socket is not None):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     harden(server, limits=limits)
@@ -205,6 +208,14 @@ async def _opened(requests: RequestFilter) -> None:
     until = time.monotonic() + STARTING
     while not requests.open and time.monotonic() < until:
         await asyncio.sleep(0.02)
+
+
+def _is_news(record: logging.LogRecord) -> bool:
+    """Whether to log a record: not each connection on which no request, or no good one, came.
+
+    viser has the same filter, but only from the first page that is asked for.
+    """
+    return record.getMessage() != "opening handshake failed"
 
 
 def _log_outcome(done: Any) -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import viser
 
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseRobot
-from onpath.app.page.panels.widgets import Post, on_press
+from onpath.app.page.panels.widgets import Post, close_once, on_menu_press, on_press
 from onpath.app.page.robot_picture import picture_of
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
@@ -27,11 +28,12 @@ class RobotPanel:
             color="gray",
             hint=self._words("robots.hint", robot=label_of(self._chosen, self._words)),
         )
-        on_press(button, self._open)
+        on_menu_press(button, self._open)
 
-    def _open(self) -> None:
+    def _open(self) -> Callable[[], None]:
         words = self._words
         with self._gui.add_modal(words("robots.choose")) as modal:
+            close = partial(close_once, modal)
             for entry in ROBOTS.values():
                 label = label_of(entry, words)
                 text = words.get(f"machine.{entry.name}.text", entry.text)
@@ -42,7 +44,8 @@ class RobotPanel:
                     icon=viser.Icon.CHECK if now else viser.Icon.ROBOT,
                     color="gray" if now else None,
                 )
-                on_press(choose, lambda name=entry.name: self._choose(name, modal.close))
+                on_press(choose, lambda name=entry.name: self._choose(name, close))
+        return close
 
     def _choose(self, name: str, close: Callable[[], None]) -> None:
         close()

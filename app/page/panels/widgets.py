@@ -16,6 +16,7 @@ from onpath.app.common.error_log import log_error
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import Command, SetParameter
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues
+from onpath.app.page.build_queue import in_turn
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Spec, specs
@@ -90,6 +91,31 @@ def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
             threading.Thread(target=run, args=[under_way], name="press", daemon=True).start()
 
     handle.on_click(pressed)
+
+
+def on_menu_press(handle: Any, open_menu: Callable[[], Callable[[], None]]) -> None:
+    """Open a window when the button is pressed, in place of the one that it opened before.
+
+    A browser does not say that its user has closed a window, and a press may come at any rate.
+
+    Args:
+        open_menu: opens the window, and returns what closes it; called in a separate thread.
+    """
+    opened: list[Callable[[], None]] = []
+
+    def press() -> None:
+        with in_turn():
+            while opened:
+                opened.pop()()
+            opened.append(open_menu())
+
+    on_slow_press(handle, press)
+
+
+def close_once(window: Any) -> None:
+    """Close a window, unless it is closed already."""
+    if not window.closed:
+        window.close()
 
 
 def note(said: str, small: bool = False) -> str:

@@ -14,12 +14,12 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
+from onpath.app.bench.raw_socket import frames, is_closed, knock
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.arrivals import MOST_EACH, Arrivals, Kept
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.support import waiting
-from tests.support.raw_socket import frames, is_closed, knock
 from tests.support.student import Student
 
 WAIT = 30.0  # [s]; only ends a test that would hang

@@ -29,12 +29,14 @@ import numpy as np
 import pytest
 import websockets.sync.client
 from websockets.exceptions import ConnectionClosed
-from websockets.frames import Opcode
 from websockets.typing import Subprotocol
 
 from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
+from onpath.app.bench.hostile_messages import BROKEN, GARBAGE, VERSIONS
+from onpath.app.bench.raw_socket import WAIT, answer_questions, frames, is_closed, knock
 from onpath.app.bench.simulated_browser import Browser
 from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.page.build_queue import in_turn
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import FRAME
 from onpath.app.viser_adapter.frame_channel import MOST_UNSENT
@@ -42,7 +44,6 @@ from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.support import waiting
 from tests.support.checkout import ROOT
 from tests.support.lab import assert_sound
-from tests.support.raw_socket import WAIT, answer_questions, frames, is_closed, knock
 
 LEAST_RATE = 18.0  # frames that a witness is shown per second of processor time of this process
 LONGEST_GAP = 0.5  # [s] of processor time from one to the next
@@ -276,6 +277,23 @@ def test_long_work_asked_for_all_the_time_is_the_asker_s_to_wait_for(
     assert len(attacker.scheduled.lab._inbox) <= 500
 
 
+@pytest.mark.parametrize("label", ["Robot…", "Lessons", "Help and keys"])
+def test_a_window_that_is_opened_all_the_time_is_there_once(
+    attacker: Guest, witness: Witness, quiet_log: None, label: str
+) -> None:
+    attacker.update(attacker.labelled(label), True)
+    gui = attacker.client.gui
+    wait_for(lambda: gui._modal_handle_from_uuid)
+    with in_turn():  # nothing is being built
+        widgets, commands = len(attacker.handles), len(gui._command_handle_from_uuid)
+    with witness.served():
+        attacker.pour([attacker.labelled(label)], [True] * 600)
+    with in_turn():
+        assert len(gui._modal_handle_from_uuid) <= 1
+        assert len(attacker.handles) <= widgets
+        assert len(gui._command_handle_from_uuid) <= commands
+
+
 def test_a_flood_of_messages_closes_the_sender(
     server: LabServer, witness: Witness, quiet_log: None
 ) -> None:
@@ -295,9 +313,6 @@ def test_a_flood_of_messages_closes_the_sender(
 # Frames and handshakes.
 
 
-VERSIONS = [None, "viser-v0.0.0", "viser-v1.1.0", "viser-v[/bold]", "viser-v" + "9" * 4000, "chat"]
-
-
 def test_a_wrong_version_is_told_so_and_closed(
     server: LabServer, witness: Witness, quiet_log: None
 ) -> None:
@@ -310,18 +325,6 @@ def test_a_wrong_version_is_told_so_and_closed(
     assert set(server.server.get_clients()) == clients
 
 
-GARBAGE = {
-    "not HTTP": b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + bytes(200),
-    "no websocket key": b"GET / HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\n\r\n",
-    "an endless header": b"GET / HTTP/1.1\r\nX: " + b"x" * 100_000,
-    "many headers": b"GET / HTTP/1.1\r\n" + b"X: x\r\n" * 1000 + b"\r\n",
-    "another method": b"DELETE / HTTP/1.1\r\nHost: x\r\n\r\n",
-    "a body": b"POST / HTTP/1.1\r\nContent-Length: 1000000000\r\n\r\n" + bytes(1000),
-    "an old HTTP": b"GET / HTTP/0.9\r\n\r\n",
-    "nothing": b"",
-}
-
-
 def test_what_is_no_request_is_closed_and_not_logged_in_full(
     server: LabServer, witness: Witness, quiet_log: None
 ) -> None:
@@ -332,19 +335,6 @@ def test_what_is_no_request_is_closed_and_not_logged_in_full(
                     raw.sendall(garbage)
                     raw.shutdown(socket.SHUT_WR)
                 wait_for(lambda raw=raw: is_closed(raw))
-
-
-BROKEN = {
-    "reserved bits": b"\xf2\x80" + bytes(4),
-    "unmasked": b"\x82\x05hello",
-    "no such opcode": b"\x83\x80" + bytes(4),
-    "a continuation of nothing": b"\x80\x80" + bytes(4),
-    "a long ping": b"\x89\xfe\xff\xff" + bytes(4 + 0xFFFF),
-    "a petabyte": b"\x82\xff" + (2**50).to_bytes(8, "big") + bytes(4),
-    "a length of its own": b"\x82\xff" + (2**63 + 5).to_bytes(8, "big") + bytes(4),
-    "no text": frames(b"\xff\xff", opcode=Opcode.TEXT),
-    "a strange close": frames(b"\x00\x00bye", opcode=Opcode.CLOSE),
-}
 
 
 def test_a_broken_frame_closes_its_sender(

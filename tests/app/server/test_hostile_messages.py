@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from onpath.app.bench.client_protocol import CAMERA
+from onpath.app.bench.hostile_messages import DRAG, HONEST, HOSTILE, INDEXES
 from onpath.app.common import error_log
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
@@ -25,60 +25,6 @@ from tests.support.waiting import wait_for
 
 WAIT = 60.0  # [s]; only ends a test that would hang
 WIDE = Limits(messages_per_second=1e6, message_burst=1_000_000)
-ROOM = "/"
-RAY = {"ray_origin": [0.0, -2.0, 0.0], "ray_direction": [0.0, 1.0, 0.0]}
-POSE = {"wxyz": [1.0, 0.0, 0.0, 0.0], "position": [0.0, 0.0, 0.0]}
-DRAG = {
-    "phase": "start",
-    "name": ROOM,
-    "instance_index": 0,
-    "owner": "0",
-    "start_position": [0.3, 0.0, 0.2],
-    "start_screen_pos": [0.5, 0.5],
-    "end_position": [0.3, 0.0, 0.3],
-    "end_screen_pos": [0.5, 0.4],
-    "button": "left",
-    "modifier": None,
-}
-CLICK = {"name": ROOM, "instance_index": 0, "screen_pos": [0.5, 0.5], "modifier": None}
-UPLOAD = {"source_component_uuid": "x", "transfer_uuid": "x"}
-HONEST: dict[str, dict[str, Any]] = {
-    "ViewerCameraMessage": CAMERA,
-    "ScenePointerMessage": {
-        "event_type": "click",
-        "screen_pos": [[0.5, 0.5]],
-        "modifier": None,
-        **RAY,
-    },
-    "SceneNodeClickMessage": {**CLICK, **RAY, "owner": "0"},
-    "SceneNodeDragMessage": DRAG,
-    "TransformControlsDragStartMessage": {"name": ROOM, "owner": "0"},
-    "TransformControlsUpdateMessage": {"name": ROOM, "owner": "0", **POSE},
-    "TransformControlsDragEndMessage": {"name": ROOM, "owner": "0"},
-    "GuiUpdateMessage": {"uuid": "x", "updates": {"value": 0.0}},
-    "GuiButtonHoldMessage": {"uuid": "x", "frequency": 10.0},
-    "GuiFormDirtyMessage": {"uuid": "x"},
-    "GuiFormSubmitMessage": {"uuid": "x"},
-    "CommandTriggerMessage": {"uuid": "x"},
-    "GetRenderResponseMessage": {"payload": b"", "render_uuid": "x"},
-    "LocalStorageGetItemResponseMessage": {"value": None, "error": None, "request_uuid": "x"},
-    "FileTransferStartUpload": {
-        **UPLOAD,
-        "filename": "x",
-        "mime_type": "x",
-        "part_count": 1,
-        "size_bytes": 1,
-    },
-    "FileTransferPart": {**UPLOAD, "part_index": 0, "content": b"x"},
-}
-"""A message of each kind that passes the checks of its form."""
-HOSTILE: list[Any] = [
-    *(None, True, -1, 0, 1, 7, 2**31, 2**63, 1.5, 1e9, 1e300, -1e300, math.nan, math.inf),
-    *("", "x" * 5000, "\x00", "../..", b"", b"\xff" * 100, [], {}, [[[]]], {"value": 1}),
-    *([0.0] * 3, [0.0] * 4, [1e9] * 3, [-1e9] * 3, [math.nan] * 3, [1e-300] * 3),
-    *("start", "update", "end", "click", "rect-select", "left", "right", "shift"),
-]
-INDEXES = (None, 2**30, 10**9, 999, 64, 19, 8, 5, 3, 2, 1, 0)
 UPDATES = ({}, {"value": None}, {"value": math.nan}, {"value": []}, {"no": 1}, {"removed": True})
 
 

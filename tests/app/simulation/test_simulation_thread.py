@@ -14,7 +14,13 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import Frame
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import HURRIED, STRIDES, is_turn
-from onpath.app.simulation.simulation_thread import LATEST, ScheduledLab, SimulationThread
+from onpath.app.simulation.simulation_thread import (
+    ALL_COMMANDS,
+    LATEST,
+    ScheduledLab,
+    SimulationThread,
+    apply_commands,
+)
 from tests.support.lab import FRAME, new_lab
 
 
@@ -258,3 +264,53 @@ def test_labs_come_and_go_from_other_threads_while_it_runs() -> None:
     finally:
         thread.stop()
     assert not thread._thread.is_alive()
+
+
+class Asking(Lab):
+    """A lab of which something is asked all the time that takes so long, [s]."""
+
+    def __init__(self, cost: float) -> None:
+        self.cost, self.begun = cost, list[int]()
+        self.frame_number = 0
+
+    @property
+    def has_commands(self) -> bool:
+        return True
+
+    def drain(self, most: float = 0.0) -> float:
+        self.frame_number += 1
+        if most <= 0:
+            return 0.0
+        self.begun.append(self.frame_number)
+        return self.cost
+
+
+class Asked(ScheduledLab):
+    """Such a lab, with nothing to simulate."""
+
+    lab: Asking
+
+    def __init__(self, cost: float) -> None:
+        self.lab, self.used, self._credit = Asking(cost), 0.0, 0.0
+
+
+def spent(labs: list[Asked]) -> float:
+    return sum(len(lab.lab.begun) * lab.lab.cost for lab in labs)
+
+
+@pytest.mark.parametrize("cost", [1e-3, 12e-3, 60e-3])
+@pytest.mark.parametrize("count", [1, 8, 40])
+def test_long_work_for_many_labs_takes_a_part_of_each_frame_and_no_other_lab_waits(
+    cost: float, count: int
+) -> None:
+    labs = [*(Asked(cost) for _ in range(count)), Asked(1e-5)]
+    honest, frames, most = labs[-1].lab, 4000, 0.0
+    for _ in range(frames):
+        before = spent(labs)
+        apply_commands([*labs])
+        most = max(most, spent(labs) - before)
+    assert most <= ALL_COMMANDS + cost
+    assert spent(labs) <= frames * ALL_COMMANDS + 2 * cost * count
+    assert honest.begun[1:] == list(range(honest.begun[1], frames + 1)) and honest.begun[1] < 60
+    turns = [len(lab.lab.begun) for lab in labs[:-1]]
+    assert min(turns) > 0 and max(turns) <= 2 * min(turns) + 2  # all get their turn

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+import logging
 import socket
 from collections.abc import Iterator
 
@@ -139,3 +140,19 @@ def test_others_are_told_no_more_than_a_probe_needs(peer: str, headers: dict[str
 def test_health_over_the_wire(port: int) -> None:
     assert ask(port, path="/health?seconds=3")[1] == METRICS.encode() + b"seconds=3"
     assert ask(port, path="/health", headers=[("Host", "lab.example.org")])[1] == b"well\n"
+
+
+# The log.
+
+
+def test_a_connection_without_a_request_is_not_logged_before_the_first_page_either(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """viser's own filter begins with the first page, and a probe of the port asks for none."""
+    monkeypatch.setattr(logging.getLogger("websockets.server"), "filters", [])
+    server = make_server(port=0)
+    with socket.create_connection(("127.0.0.1", server.get_port())) as raw:
+        raw.shutdown(socket.SHUT_WR)
+        assert raw.recv(1) == b""
+    server.stop()
+    assert not [record for record in caplog.records if record.levelno >= logging.WARNING]

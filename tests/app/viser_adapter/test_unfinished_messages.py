@@ -14,10 +14,10 @@ import viser
 from websockets.frames import Frame, Opcode
 
 from onpath.app.bench.client_protocol import CAMERA, packed
+from onpath.app.bench.raw_socket import frames, is_closed, knock
 from onpath.app.viser_adapter.secure_connection import SecureConnection
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.support import waiting
-from tests.support.raw_socket import frames, is_closed, knock
 
 WAIT = 20.0  # [s]; only ends a test that would hang
 PENDING = 10.0  # [s] after which websockets closes what is no complete request

@@ -20,10 +20,8 @@ def frames(*payloads: bytes, opcode: Opcode = Opcode.BINARY) -> bytes:
     return b"".join(Frame(opcode, payload).serialize(mask=True) for payload in payloads)
 
 
-def knock(
-    port: int, subprotocol: str | None = SUBPROTOCOL, source: str = "127.0.0.1"
-) -> socket.socket:
-    """Open a socket and send the websocket handshake, without reading the answer."""
+def handshake(port: int, subprotocol: str | None = SUBPROTOCOL) -> bytes:
+    """The request for a websocket."""
     lines = [
         "GET / HTTP/1.1",
         f"Host: 127.0.0.1:{port}",
@@ -33,8 +31,15 @@ def knock(
         "Sec-WebSocket-Version: 13",
         *([f"Sec-WebSocket-Protocol: {subprotocol}"] if subprotocol is not None else []),
     ]
+    return ("\r\n".join(lines) + "\r\n\r\n").encode()
+
+
+def knock(
+    port: int, subprotocol: str | None = SUBPROTOCOL, source: str = "127.0.0.1"
+) -> socket.socket:
+    """Open a socket and send the websocket handshake, without reading the answer."""
     raw = socket.create_connection(("127.0.0.1", port), WAIT, source_address=(source, 0))
-    raw.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
+    raw.sendall(handshake(port, subprotocol))
     return raw
 
 

@@ -1,0 +1,88 @@
+"""Messages and bytes that no page of ours would send, for attackers and for tests."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from websockets.frames import Opcode
+
+from onpath.app.bench.client_protocol import CAMERA
+from onpath.app.bench.raw_socket import frames
+
+ROOM = "/"
+RAY = {"ray_origin": [0.0, -2.0, 0.0], "ray_direction": [0.0, 1.0, 0.0]}
+POSE = {"wxyz": [1.0, 0.0, 0.0, 0.0], "position": [0.0, 0.0, 0.0]}
+DRAG = {
+    "phase": "start",
+    "name": ROOM,
+    "instance_index": 0,
+    "owner": "0",
+    "start_position": [0.3, 0.0, 0.2],
+    "start_screen_pos": [0.5, 0.5],
+    "end_position": [0.3, 0.0, 0.3],
+    "end_screen_pos": [0.5, 0.4],
+    "button": "left",
+    "modifier": None,
+}
+CLICK = {"name": ROOM, "instance_index": 0, "screen_pos": [0.5, 0.5], "modifier": None}
+UPLOAD = {"source_component_uuid": "x", "transfer_uuid": "x"}
+HONEST: dict[str, dict[str, Any]] = {
+    "ViewerCameraMessage": CAMERA,
+    "ScenePointerMessage": {
+        "event_type": "click",
+        "screen_pos": [[0.5, 0.5]],
+        "modifier": None,
+        **RAY,
+    },
+    "SceneNodeClickMessage": {**CLICK, **RAY, "owner": "0"},
+    "SceneNodeDragMessage": DRAG,
+    "TransformControlsDragStartMessage": {"name": ROOM, "owner": "0"},
+    "TransformControlsUpdateMessage": {"name": ROOM, "owner": "0", **POSE},
+    "TransformControlsDragEndMessage": {"name": ROOM, "owner": "0"},
+    "GuiUpdateMessage": {"uuid": "x", "updates": {"value": 0.0}},
+    "GuiButtonHoldMessage": {"uuid": "x", "frequency": 10.0},
+    "GuiFormDirtyMessage": {"uuid": "x"},
+    "GuiFormSubmitMessage": {"uuid": "x"},
+    "CommandTriggerMessage": {"uuid": "x"},
+    "GetRenderResponseMessage": {"payload": b"", "render_uuid": "x"},
+    "LocalStorageGetItemResponseMessage": {"value": None, "error": None, "request_uuid": "x"},
+    "FileTransferStartUpload": {
+        **UPLOAD,
+        "filename": "x",
+        "mime_type": "x",
+        "part_count": 1,
+        "size_bytes": 1,
+    },
+    "FileTransferPart": {**UPLOAD, "part_index": 0, "content": b"x"},
+}
+"""A message of each kind that passes the checks of its form."""
+HOSTILE: list[Any] = [
+    *(None, True, -1, 0, 1, 7, 2**31, 2**63, 1.5, 1e9, 1e300, -1e300, math.nan, math.inf),
+    *("", "x" * 5000, "\x00", "../..", b"", b"\xff" * 100, [], {}, [[[]]], {"value": 1}),
+    *([0.0] * 3, [0.0] * 4, [1e9] * 3, [-1e9] * 3, [math.nan] * 3, [1e-300] * 3),
+    *("start", "update", "end", "click", "rect-select", "left", "right", "shift"),
+]
+INDEXES = (None, 2**30, 10**9, 999, 64, 19, 8, 5, 3, 2, 1, 0)
+VERSIONS = [None, "viser-v0.0.0", "viser-v1.1.0", "viser-v[/bold]", "viser-v" + "9" * 4000, "chat"]
+GARBAGE = {
+    "not HTTP": b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + bytes(200),
+    "no websocket key": b"GET / HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\n\r\n",
+    "an endless header": b"GET / HTTP/1.1\r\nX: " + b"x" * 100_000,
+    "many headers": b"GET / HTTP/1.1\r\n" + b"X: x\r\n" * 1000 + b"\r\n",
+    "another method": b"DELETE / HTTP/1.1\r\nHost: x\r\n\r\n",
+    "a body": b"POST / HTTP/1.1\r\nContent-Length: 1000000000\r\n\r\n" + bytes(1000),
+    "an old HTTP": b"GET / HTTP/0.9\r\n\r\n",
+    "nothing": b"",
+}
+BROKEN = {
+    "reserved bits": b"\xf2\x80" + bytes(4),
+    "unmasked": b"\x82\x05hello",
+    "no such opcode": b"\x83\x80" + bytes(4),
+    "a continuation of nothing": b"\x80\x80" + bytes(4),
+    "a long ping": b"\x89\xfe\xff\xff" + bytes(4 + 0xFFFF),
+    "a petabyte": b"\x82\xff" + (2**50).to_bytes(8, "big") + bytes(4),
+    "a length of its own": b"\x82\xff" + (2**63 + 5).to_bytes(8, "big") + bytes(4),
+    "no text": frames(b"\xff\xff", opcode=Opcode.TEXT),
+    "a strange close": frames(b"\x00\x00bye", opcode=Opcode.CLOSE),
+}

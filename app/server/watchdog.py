@@ -1,0 +1,116 @@
+"""Notices when the simulation thread or the event loop hangs, and ends the process.
+
+What supervises the process starts it again: the parent of workers, systemd, a container's restart
+policy.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import faulthandler
+import logging
+import os
+import signal
+import sys
+from collections import Counter
+from collections.abc import Callable, Mapping
+
+from onpath.app.common.periodic import Periodic
+from onpath.app.simulation.simulation_thread import SimulationThread
+
+log = logging.getLogger(__name__)
+
+EXIT_CODE = 70  # EX_SOFTWARE
+LOOKS = 20  # in the time after which something hangs
+BEAT = 0.1  # [s] between an event loop's signs of life
+
+Sign = Callable[[], object]
+
+
+class Watchdog:
+    """Watches signs of life, values that keep changing while something works.
+
+    Time is counted in looks of the watchdog's own thread. A process that was suspended is
+    suspended with its watchdog, and has missed one look at most.
+
+    Args:
+        seconds: after which what shows no sign of life hangs, [s]. After twice this time the
+            process ends. 0 for no watch.
+        end: ends the process.
+
+    Attributes:
+        trouble: what hangs, in words; empty if nothing does.
+    """
+
+    def __init__(self, seconds: float, end: Callable[[], object] | None = None) -> None:
+        self._seconds, self._end = seconds, end or _end_process
+        self._signs: Mapping[str, Sign] = {}
+        self._seen: dict[str, object] = {}
+        self._silent = Counter[str]()  # looks since the last sign of life
+        self._looks = Periodic("watchdog", seconds / LOOKS, self.look)
+        self.trouble = ""
+
+    def start(self, signs: Mapping[str, Sign]) -> None:
+        """Watch these signs of life, each under the name of what shows it."""
+        if not self._seconds:
+            return
+        self._signs = signs
+        if hasattr(signal, "SIGPROF"):
+            faulthandler.register(signal.SIGPROF, chain=True)
+        self._looks.start()
+
+    def stop(self) -> None:
+        """End the watch."""
+        self._looks.stop()
+        _limit_processor_time(0.0)
+
+    def look(self) -> None:
+        """Look once at all signs of life."""
+        _limit_processor_time(2 * self._seconds)
+        for name, sign in self._signs.items():
+            seen = sign()
+            self._silent[name] = self._silent[name] + 1 if seen == self._seen.get(name) else 0
+            self._seen[name] = seen
+        ((name, silent),) = self._silent.most_common(1)
+        before, self.trouble = self.trouble, f"{name} hangs" if silent >= LOOKS else ""
+        if self.trouble and not before:
+            log.critical(
+                "%s: no sign of life for %g s; without one in the next %g s this process ends",
+                *(self.trouble, self._seconds, self._seconds),
+            )
+        elif before and not self.trouble:
+            log.warning("no longer true: %s", before)
+        if silent >= 2 * LOOKS:
+            self._end()
+
+
+def signs_of_life(simulation: SimulationThread, loop: asyncio.AbstractEventLoop) -> dict[str, Sign]:
+    """The latest frame of a simulation thread, and a number that an event loop counts up."""
+    frames, count = simulation.frames, 0
+
+    def beat() -> None:
+        nonlocal count
+        count += 1
+        loop.call_later(BEAT, beat)
+
+    loop.call_soon_threadsafe(beat)
+    return {
+        "the simulation thread": lambda: frames[-1] if frames else None,
+        "the event loop": lambda: count,
+    }
+
+
+def _limit_processor_time(seconds: float) -> None:
+    """End the process by SIGPROF after so much processor time, unless called again; 0 for never.
+
+    This ends a process of which one thread never lets go of the interpreter, so that the watchdog
+    cannot look. A suspended process takes no processor time.
+    """
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_PROF, seconds)
+
+
+def _end_process() -> None:
+    """End the process at once, without waiting for any thread, and say where each of them is."""
+    faulthandler.dump_traceback(sys.stderr)
+    os._exit(EXIT_CODE)

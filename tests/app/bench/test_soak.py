@@ -1,0 +1,58 @@
+"""A minute of all attacks: honest labs go on, memory comes back, and the log stays short."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from onpath.app.bench.attacks import ATTACKS
+from onpath.app.bench.crowd import folders
+from onpath.app.bench.soak import LATEST, ROW, SoakRow, plan, soak, verdict
+from onpath.app.cli.main import run_command
+
+HONEST = 6
+
+
+def test_honest_labs_outlast_every_attack(tmp_path: Path) -> None:
+    """How late frames are is for `make soak`: a busy machine may be slow."""
+    rows = list(soak(HONEST, 1.0, folders(tmp_path, "data")))
+    assert verdict([replace(row, late_ms=0.0) for row in rows], HONEST) == []
+    assert {row.attack for row in rows} == {"", *ATTACKS}
+
+
+@pytest.mark.parametrize("minutes", [1, 7, 30, 100])
+def test_every_attack_is_made_and_all_is_quiet_before_and_after(minutes: float) -> None:
+    seconds, attacks = plan(minutes)
+    assert 0 < seconds <= ROW and not attacks[0] and not attacks[-1]
+    assert set(attacks) == {"", *ATTACKS}
+    attacked = len(attacks) - attacks.count("")
+    assert attacked * seconds == pytest.approx(60 * minutes, abs=seconds)
+
+
+GOOD = SoakRow(0.0, "strokes", HONEST, 20.0, 50.0, 300.0, 1000)
+QUIET = replace(GOOD, attack="", late_ms=2 * LATEST)
+
+
+@pytest.mark.parametrize(
+    ("during", "after", "broken"),
+    [
+        (GOOD, QUIET, 0),
+        (replace(GOOD, memory_mb=900.0), replace(QUIET, memory_mb=329.0), 0),
+        (replace(GOOD, late_ms=1.1 * LATEST), QUIET, 1),
+        (GOOD, replace(QUIET, memory_mb=331.0), 1),
+        (GOOD, replace(QUIET, log_bytes=1_000_001), 1),
+        (replace(GOOD, honest=HONEST - 1), QUIET, 1),
+        (replace(GOOD, slowest_hz=0.0), replace(QUIET, honest=HONEST - 1), 2),
+    ],
+)
+def test_the_verdict_names_the_bounds_that_are_broken(
+    during: SoakRow, after: SoakRow, broken: int
+) -> None:
+    assert len(verdict([QUIET, during, after], HONEST)) == broken
+
+
+def test_a_soak_takes_no_other_option() -> None:
+    assert run_command(["bench", "--soak", "1", "--quick"]) == 2
+    assert run_command(["bench", "--soak", "-1"]) == 2

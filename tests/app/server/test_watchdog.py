@@ -1,0 +1,187 @@
+"""A process that hangs says so, ends and is started again; a suspended one does not."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import suppress
+from functools import partial
+from http.client import HTTPConnection
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from onpath.app.server.watchdog import EXIT_CODE, LOOKS, Watchdog
+from onpath.app.server.workers import Worker
+from onpath.app.storage.records import Records
+from onpath.app.viser_adapter.sockets import reserve
+from tests.support import waiting
+from tests.support.student import Student
+
+WAIT = 60.0  # [s]; only ends a test that would hang
+HANG = 2  # [s]
+wait_for = partial(waiting.wait_for, seconds=WAIT)
+linux_only = pytest.mark.skipif(sys.platform != "linux", reason="tried on Linux only")
+
+# A lab in which some values of K1 hang whoever applies or handles them.
+HANGING = """
+import sys, threading, onpath.app.page.panels.widgets as widgets
+from onpath.app.cli.main import run_command
+from onpath.app.lab.commands import SetParameter
+
+def hang(value):
+    if value == 401.0:
+        threading.Event().wait()
+    if value == 402.0:
+        10 ** (10**9)  # never lets go of the interpreter
+
+def apply(self, lab):
+    hang(self.value if self.name == "K1" else 0.0)
+    applied(self, lab)
+
+def made(name, value):
+    hang(value - 10.0 if name == "K1" else 0.0)
+    return SetParameter(name, value)
+
+applied, SetParameter.apply, widgets.SetParameter = SetParameter.apply, apply, made
+sys.exit(run_command(["serve", *sys.argv[1:]]))
+"""
+
+
+class Look:
+    """A watchdog of two signs of life, which looks when it is told."""
+
+    def __init__(self) -> None:
+        self.signs, self.ended = {"a": 0, "b": 0}, 0
+        self.dog = Watchdog(0.0, self._end)
+        self.dog._signs = {name: partial(self.signs.__getitem__, name) for name in self.signs}
+
+    def _end(self) -> None:
+        self.ended += 1
+
+
+@given(st.lists(st.sets(st.sampled_from("ab")), max_size=4 * LOOKS))
+def test_what_has_shown_no_sign_of_life_in_so_many_looks_hangs(lives: list[set[str]]) -> None:
+    look, silent = Look(), {"a": 0, "b": 0}
+    look.dog.look()
+    for alive in [*lives, {"a"}]:
+        for name in silent:
+            silent[name] = 0 if name in alive else silent[name] + 1
+            look.signs[name] += name in alive
+        ended = look.ended
+        look.dog.look()
+        hangs = {name for name in silent if silent[name] >= LOOKS}
+        assert bool(hangs) == bool(look.dog.trouble)
+        assert not hangs or look.dog.trouble in {f"{name} hangs" for name in hangs}
+        assert (look.ended > ended) == (max(silent.values()) >= 2 * LOOKS)
+
+
+class Served:
+    """The lab of `HANGING` as one worker of a supervisor, which keeps its labs in a file."""
+
+    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        with reserve("127.0.0.1", 0) as place:
+            self.port: int = place.getsockname()[1]
+        monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, sys.path)))
+        options = ["--port", str(self.port), "--hang-seconds", str(HANG)]
+        self._records = Records(database := f"sqlite:///{folder / 'labs.db'}")
+        options += ["--database", database]
+        self.worker = Worker(1, [sys.executable, "-c", HANGING, *options])
+        self.worker.start()
+        wait_for(lambda: self.health() == (200, "well\n"))
+
+    def health(self) -> tuple[int, str]:
+        connection = HTTPConnection("127.0.0.1", self.port, timeout=1.0)
+        with suppress(OSError):
+            connection.request("GET", "/health", headers={"Host": "elsewhere"})
+            answer = connection.getresponse()
+            return answer.status, answer.read().decode()
+        return 0, ""
+
+    def has_kept(self, code: str, word: str) -> bool:
+        return word in str(self._records.load(code))
+
+    def end(self) -> None:
+        assert self.worker.process is not None
+        self.worker.process.kill()
+        self.worker.process.wait()
+        self._records.close()
+
+    def student(self) -> Student:
+        return Student(f"ws://127.0.0.1:{self.port}")
+
+    def exit_code(self) -> int:
+        assert self.worker.process is not None
+        return self.worker.process.wait(WAIT)
+
+    def is_started_again(self) -> bool:
+        """Whether the supervisor has replaced the process; to be asked again and again."""
+        self.worker.look()
+        return self.health()[0] == 200
+
+
+@pytest.fixture
+def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Served]:
+    served = Served(tmp_path, monkeypatch)
+    yield served
+    served.end()
+
+
+@linux_only
+def test_a_simulation_that_hangs_is_replaced_and_its_labs_go_on(
+    served: Served, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with served.student() as student:
+        student.open()
+        student.set("K2", 44.0)
+        student.read(lambda: served.has_kept(student.code, "'K2': 44.0"))
+        student.set("K1", 401.0)
+        wait_for(lambda: served.health() == (503, "the simulation thread hangs\n"))
+        assert served.exit_code() == EXIT_CODE
+        wait_for(served.is_started_again)
+        code = student.code
+        student.reopen()
+        assert student.code == code and student.find("K2")["value"] == 44.0
+    said = capfd.readouterr().err
+    assert said.count("the simulation thread hangs: no sign of life for 2 s") == 1
+    assert "threading.py" in said  # where it hangs
+
+
+@linux_only
+@pytest.mark.parametrize(
+    ("value", "code"),
+    [(411.0, EXIT_CODE), (402.0, -signal.SIGPROF), (412.0, -signal.SIGPROF)],
+    ids=["the event loop", "the interpreter", "both"],
+)
+def test_whatever_hangs_ends_the_process(
+    served: Served, value: float, code: int, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with served.student() as student:
+        student.open()
+        student.set("K1", value)
+        assert served.exit_code() == code
+        wait_for(served.is_started_again)
+    assert "most recent call first" in capfd.readouterr().err  # where each thread was
+
+
+@linux_only
+def test_a_suspended_process_does_not_hang(
+    served: Served, capfd: pytest.CaptureFixture[str]
+) -> None:
+    process = served.worker.process
+    assert process is not None
+    with served.student() as student:
+        student.open()
+        student.read(lambda: student.moving > 10)
+        process.send_signal(signal.SIGSTOP)
+        time.sleep(2.5 * HANG)  # this time must pass: the process sleeps through it
+        process.send_signal(signal.SIGCONT)
+        moving = student.moving
+        student.read(lambda: student.moving > moving + 60)
+        assert served.health() == (200, "well\n")
+    assert process.poll() is None and "hangs" not in capfd.readouterr().err
