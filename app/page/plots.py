@@ -101,8 +101,9 @@ class LivePlot:
                 series.append(line)
         begin = Layout(fields).slices[plot.field].start
         self._lines = slice(begin, begin + min(len(names), len(LINES)))
+        self._empty = tuple(np.zeros(2) for _ in series)
         self._handle = gui.add_uplot(
-            tuple(np.zeros(2) for _ in series),
+            self._empty,
             tuple(series),
             title=words(f"axis.{plot.name}"),
             scales={"x": uplot.Scale(time=False), "y": _at_least(plot.least)},
@@ -115,7 +116,8 @@ class LivePlot:
         if snapshot.time == self._shown:
             return
         self._shown, times = snapshot.time, snapshot.plots.times
-        if len(times) < 2:
+        if len(times) < 2:  # what was plotted before a reset is not of this run
+            update_gui(self._handle, "data", self._empty)
             return
         values = snapshot.plots.values[:, :, self._lines].astype(float) * self._plot.scale
         lines = np.vstack([times, values.reshape(len(times), -1).T])

@@ -1,4 +1,4 @@
-"""Inserts the scripts of assets/page before viser's own into the page that browsers get."""
+"""Gives the page that browsers get our title, and our scripts of assets/page before viser's own."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from functools import cache, lru_cache
 from websockets.http11 import Response
 
 from onpath.assets import asset_path
+
+TITLES = b"<title>Viser</title>", b"<title>OnPath</title>"
 
 
 def add_scripts(response: Response | None) -> Response | None:
@@ -39,5 +41,6 @@ def our_scripts() -> bytes:
 @lru_cache(maxsize=4)
 def _page(body: bytes, packed: bool) -> bytes:
     """The page with our scripts. Cached, because viser serves the same bytes every time."""
-    page = with_scripts(gzip.decompress(body) if packed else body, our_scripts())
+    page = gzip.decompress(body) if packed else body
+    page = with_scripts(page.replace(*TITLES, 1), our_scripts())
     return gzip.compress(page, mtime=0) if packed else page

@@ -268,10 +268,12 @@ def _command(
     speed = speed if beam is None else composite.wanted_speed(beam, output, k5)
     task = PathReference(settings["position"], settings["target"], speed)
     integral = state["integral"]
-    if not _tracks(kind):
+    if kind.controller == "path_following":
         across = integral[: frame.p - 1]
         command = controllers.path_following(output, kind.closed, gains, task, across)
         return command, ca.vertcat(output.xi, 0)
+    if kind.controller != "trajectory_tracking":
+        raise NotImplementedError(f"no command for the law {kind.controller!r}")
     theta_ref, rate = _reference(kind, state, settings)
     reference = LocalCurve.from_values(theta_ref, kind.closed, values[:, 1])
     error, error_rate, feedforward = controllers.tracking_error(reference, frame, *measured, rate)

@@ -52,6 +52,7 @@ class Predict(Command):
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         lab.lessons.predict(Answer(self.option, self.times, self.values), lab.session)
+        lab.show_message("")  # that a prediction is missing
 
 
 @dataclass(frozen=True, slots=True)

@@ -67,7 +67,7 @@ def test_nothing_happens_before_a_prediction(lab: Lab) -> None:
         assert lab.session.time == 0.0 and not lab.session.running
     assert lab.message == str(lab.locked) == ENGLISH("lesson.locked")
     do(lab, c.Predict(times=(0.0, 1.0, 2.0), values=(0.0, 40.0, 0.0)))
-    assert lab.locked is None
+    assert lab.locked is None and lab.message == ""
     do(lab, c.SetRunning(True))
     run(lab, 0.2)
     assert lab.session.time > 0.1

@@ -16,6 +16,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.control import laws as controllers
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle, ellipse, segment
 from onpath.models.paths.frames import Plane
 from onpath.models.systems.five_bar import end_point, inverse_kinematics
@@ -390,6 +391,15 @@ def test_hand_written_c_loop_agrees(
 
 def test_unknown_controller_is_refused(rig: Rig) -> None:
     with pytest.raises(ValueError, match=r"'pid'.*trajectory_tracking.*path_following"):
+        build_kernel(rig.system, Plane(), Kind("pid"))
+
+
+def test_a_law_that_is_named_but_not_called_is_refused(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is not taken for path following."""
+    monkeypatch.setattr(controllers, "NAMES", (*controllers.NAMES, "pid"))
+    with pytest.raises(NotImplementedError, match="pid"):
         build_kernel(rig.system, Plane(), Kind("pid"))
 
 

@@ -1,0 +1,33 @@
+"""What live plots show."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.page import plots
+from onpath.lessons.words import ENGLISH
+from tests.support.lab import do, run, store
+
+
+def test_a_reset_empties_the_plot(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else a step would begin with the curves of the one before, which may tell the answer."""
+    lab, shown = Lab(store()), list[tuple[np.ndarray, ...]]()
+    first = take_page_snapshot(lab, 1.0)
+    gui: Any = SimpleNamespace(add_uplot=lambda data, *_, **__: shown.append(data))
+    plot = plots.LivePlot(gui, ENGLISH, first.key.fields, plots.DISTANCE, 100)
+    monkeypatch.setattr(plots, "update_gui", lambda _, __, data: shown.append(data))
+    do(lab, c.Hold(True))
+    run(lab, 0.5)
+    plot.follow(take_page_snapshot(lab, 1.0))
+    assert shown[-1][0][-1] > 0.4 and max(line.max() for line in shown[-1][1:]) > 1.0
+    do(lab, c.Reset())
+    plot.follow(take_page_snapshot(lab, 1.0))
+    for data, empty in zip(shown[-1], shown[0], strict=True):
+        assert np.array_equal(data, empty)
