@@ -83,8 +83,7 @@ class History:
         columns["time"][rows] = [frame.time for frame in frames]
         columns["ticks"][rows] = [frame.ticks for frame in frames]
         columns["inputs"][rows] = [frame.inputs for frame in frames]
-        states = np.concatenate([state for frame in frames for state in frame.states])
-        columns["state"][rows] = states.reshape(len(frames), *columns["state"].shape[1:])
+        columns["state"][rows] = [frame.states for frame in frames]
         columns["most"][rows] = [frame.max_distances for frame in frames]
         columns["sample"][rows] = samples
         self._end = rows.stop

@@ -16,8 +16,8 @@ from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.simulation.display_rate import STRIDES, is_turn
 
 AT_EASE = STRIDES[0]  # the stride of a thread that is not overloaded
-SLOW, SLOWER = 3, 5  # frames of display per update of traces, plots, readouts: 10 Hz, and
-# with many labs 5, 4 or 3 Hz
+SLOW, SLOWER = 3, 5
+"""Frames of display per update of traces, plots and readouts: at ease, 10 Hz; else 5, 4 or 3 Hz."""
 
 
 class LabFeed:

@@ -162,6 +162,18 @@ def test_a_lab_is_drawn_from_data(robot: str, drawing: Drawing, course: Course) 
     assert_draws_the_same(drawing, list(film))
 
 
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_page_is_told_nothing_while_nothing_changes(
+    robot: str, drawing: Drawing, course: Course
+) -> None:
+    lab = Lab(store(), ROBOTS[robot], course)
+    lab.post(c.Hold(True))
+    *_, last = filmed(lab, c.SetExaggeration(2.0), c.SetRunning(False))
+    told = drawing.of([last, last, take_motion(lab)])
+    again = [last, take_page_snapshot(lab, 0.9, nickname="Ada <b>"), take_motion(lab)]
+    assert drawing.of([last, last, take_motion(lab), *again]) == told
+
+
 def test_a_lesson_is_drawn_from_data(drawing: Drawing, course: Course) -> None:
     name, step = next(
         (name, number)

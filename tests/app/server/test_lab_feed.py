@@ -1,0 +1,73 @@
+"""When a page is told of its lab: what moves at every turn, everything else more rarely."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any
+
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.server.lab_feed import AT_EASE, LabFeed
+from onpath.app.simulation.display_rate import STRIDES, is_turn
+from tests.support.lab import FOLLOWER, FRAME, do, new_lab, y
+
+FRAMES = 240
+
+
+class Paper:
+    """Stands in for a page; notes when it is shown what moves, and when everything."""
+
+    is_ready, is_outdated = True, False
+
+    def __init__(self) -> None:
+        self.exporter, self.now = self, 0
+        self.moved, self.whole = list[int](), list[int]()
+
+    def show(self, snapshot: object) -> None:
+        (self.whole if isinstance(snapshot, PageSnapshot) else self.moved).append(self.now)
+
+    def serve(self, lab: object) -> None:
+        """Nothing is exported."""
+
+
+def shown(stride: float, offset: int, *commands: c.Command) -> Paper:
+    """What a page is shown of a lab with this user."""
+    lab, paper = new_lab(FRAME), Paper()
+    page: Any = paper
+    feed = LabFeed(page, offset)
+    do(lab, *commands)
+    for paper.now in range(FRAMES):
+        lab.advance(FRAME)
+        feed.show(lab, 1.0, paper.now, stride)
+    return paper
+
+
+@pytest.mark.parametrize("stride", STRIDES)
+@pytest.mark.parametrize("offset", [0, 7])
+def test_slow_updates_are_even_and_take_turns_of_the_display(stride: float, offset: int) -> None:
+    paper = shown(stride, offset)
+    turns = [frame for frame in range(FRAMES) if is_turn(frame + offset, stride)]
+    assert sorted(paper.moved + paper.whole) == turns
+    gaps = {later - earlier for earlier, later in itertools.pairwise(paper.whole)}
+    every = 3 * stride if stride == AT_EASE else 5 * stride
+    assert gaps <= {math.floor(every), math.ceil(every)}
+
+
+def test_pages_do_not_all_take_the_same_turn() -> None:
+    at = [frame for offset in range(6) for frame in shown(AT_EASE, offset).whole]
+    assert sorted(at) == list(range(FRAMES))
+
+
+def test_a_hand_is_followed_in_every_frame_but_costs_no_more_slow_updates() -> None:
+    target = y(new_lab(FRAME).session, FOLLOWER) + 0.01
+    paper = shown(AT_EASE, 0, c.Grab(FOLLOWER, target))
+    assert sorted(paper.moved + paper.whole) == list(range(FRAMES))
+    assert paper.whole == shown(AT_EASE, 0).whole
+
+
+def test_of_a_lab_at_rest_only_slow_updates_are_shown() -> None:
+    paper = shown(AT_EASE, 0, c.SetRunning(False))
+    assert len(paper.moved) <= 1 and paper.whole == shown(AT_EASE, 0).whole
