@@ -32,7 +32,7 @@ from onpath.app.server.class_service import TEACHER_KEY, ClassService
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.lazy_imports import warm_up
-from onpath.app.server.memory_release import memory_release
+from onpath.app.server.memory_release import limit_heap, memory_release
 from onpath.app.server.tab_visibility import TabVisibilities
 from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
@@ -251,6 +251,7 @@ def serve(
     Raises:
         LessonError: a lesson has errors.
     """
+    limit_heap()
     course, problems = read_course([BUILT_IN, *([lessons] if lessons else [])])
     if problems:
         raise LessonError(problems)

@@ -9,6 +9,8 @@ import sys
 from onpath.app.common.periodic import Periodic
 
 INTERVAL = 2.0  # [s]
+LARGE = 256 * 1024  # [B]
+M_MMAP_THRESHOLD, M_ARENA_MAX = -3, -8  # of glibc's malloc.h
 MUCH = 10  # collections of the middle generation, each after some 5,000 new objects
 
 
@@ -27,11 +29,21 @@ def release() -> None:
     """
     if gc.get_count()[2] >= MUCH:
         gc.collect()
-        _trim()
+        _call_glibc("malloc_trim", 0)
 
 
-def _trim() -> None:
-    """Give back what the C library holds free between memory in use."""
-    trim = getattr(ctypes.CDLL(None), "malloc_trim", None) if sys.platform == "linux" else None
-    if trim is not None:  # glibc
-        trim(0)
+def limit_heap() -> None:
+    """Let the C library use one heap, not one for each thread, and none for large blocks.
+
+    Large messages would leave holes in it that cannot be given back. To be called before other
+    threads begin.
+    """
+    _call_glibc("mallopt", M_ARENA_MAX, 1)
+    _call_glibc("mallopt", M_MMAP_THRESHOLD, LARGE)
+
+
+def _call_glibc(name: str, *arguments: int) -> None:
+    """Call a function of glibc; do nothing with another C library."""
+    function = getattr(ctypes.CDLL(None), name, None) if sys.platform == "linux" else None
+    if function is not None:
+        function(*arguments)
