@@ -85,11 +85,9 @@ def test_together_they_stay_within_a_budget(part: Callable[[int], bytes]) -> Non
 def test_a_message_that_never_ends_closes_its_sender(part: Callable[[int], bytes]) -> None:
     with serving(message_seconds=0.2) as server:
         (raw,) = tabs(server, 1)
-        (connection,) = wait_for(lambda: list(server._websock_server._live_connections.values()))
         raw.sendall(part(10))
         wait_for(lambda: is_closed(raw))
         wait_for(lambda: not server._websock_server._live_connections)
-        assert not connection.protocol.reader.buffer  # also while the connection is garbage
         raw.close()
 
 
