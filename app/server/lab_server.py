@@ -32,7 +32,7 @@ from onpath.app.server.class_service import TEACHER_KEY, ClassService
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.lazy_imports import warm_up
-from onpath.app.server.memory_release import MemoryRelease
+from onpath.app.server.memory_release import limit_heap, memory_release
 from onpath.app.server.tab_visibility import TabVisibilities
 from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
@@ -86,7 +86,7 @@ class LabServer:
         self._room = AdmissionQueue(most_clients)
         self._course = lessons = course or read_course([BUILT_IN])[0]
         self.simulation = SimulationThread()
-        self._watchdog, self._memory = Watchdog(hang_seconds), MemoryRelease()
+        self._watchdog, self._memory = Watchdog(hang_seconds), memory_release()
         health = partial(metrics_json, self.simulation)
         well = {"health": health, "trouble": lambda: self._watchdog.trouble}
         self.server = make_server(host, port, label="OnPath", **well, **listening)
@@ -110,7 +110,7 @@ class LabServer:
 
     def _start(self) -> None:
         self.simulation.start()
-        self._memory.rounds.start()
+        self._memory.start()
         if self._leases is not None:
             self._leases.keep(self.sessions.held, self._lost)
         if self._expiry is not None:
@@ -127,7 +127,7 @@ class LabServer:
     def stop(self) -> None:
         """Stop the server and all its threads."""
         self._watchdog.stop()
-        self._memory.rounds.stop()
+        self._memory.stop()
         self._newcomers.stop()
         if self._class is not None:
             self._class.stop()
@@ -229,7 +229,6 @@ class LabServer:
         if view is not None:
             view.page.close()
         self._room.leave(client.client_id)
-        self._memory.note()
 
 
 def serve(
@@ -252,6 +251,7 @@ def serve(
     Raises:
         LessonError: a lesson has errors.
     """
+    limit_heap()
     course, problems = read_course([BUILT_IN, *([lessons] if lessons else [])])
     if problems:
         raise LessonError(problems)

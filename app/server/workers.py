@@ -30,7 +30,6 @@ MOST = 64
 AGAIN = 1.0  # [s] before a worker that died is restarted
 LAST_WORDS = 10.0  # [s] that a worker has to stop before it is killed
 MARK = "ONPATH_WORKER"  # environment variable of a worker
-ONE_HEAP = {"MALLOC_ARENA_MAX": "1"}  # one heap instead of one per thread: 5 % less memory
 USAGE = 2  # exit code for invalid options; restarting would not help
 
 
@@ -139,7 +138,7 @@ class Worker:
     def start(self) -> None:
         """Start or restart it, in a session of its own, so that it does not receive our Ctrl-C."""
         pipe = subprocess.PIPE
-        environment = {**ONE_HEAP, **os.environ, MARK: "1", **self.secrets}
+        environment = {**os.environ, MARK: "1", **self.secrets}
         channel = None if self.reception is None else self.reception.join()
         if channel is not None:
             environment[CHANNEL] = str(channel.fileno())

@@ -98,7 +98,6 @@ class SecureConnection(CountedConnection):
         super().connection_lost(exc)
         self._stop_waiting()
         self._unfinished.hold(self, 0)
-        self.protocol.reader.buffer.clear()  # the connection itself is freed by the next collection
 
     def process_event(self, event: Any) -> None:
         """Count all frames, including pings and fragments, and drop those that exceed the rate."""

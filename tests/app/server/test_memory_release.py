@@ -1,17 +1,15 @@
-"""What a tab that has left was made of is collected, and nothing is done while nobody leaves."""
+"""Garbage that only a complete collection finds does not pile up while tabs come and go."""
 
 from __future__ import annotations
 
 import gc
 import weakref
+from collections.abc import Iterator
 
-from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.server.lab_server import LabServer
-from onpath.app.server.memory_release import MemoryRelease
-from tests.support.student import Student
-from tests.support.waiting import wait_for
+import pytest
 
-WAIT = 60.0  # [s]; only ends a test that would hang
+from onpath.app.server.memory_release import MUCH, release
+from onpath.app.simulation.simulation_thread import SELDOM
 
 
 class Circle:
@@ -21,29 +19,28 @@ class Circle:
         self.itself = self
 
 
-def test_garbage_is_collected_once_after_somebody_has_left() -> None:
+@pytest.fixture(autouse=True)
+def as_served() -> Iterator[None]:
+    """Collections are as rare as while labs are served."""
+    before = gc.get_threshold()
     gc.collect()
-    gc.disable()
-    try:
-        memory, garbage = MemoryRelease(), weakref.ref(Circle())
-        memory.release()
+    gc.set_threshold(*SELDOM)
+    yield
+    gc.set_threshold(*before)
+
+
+def old_garbage() -> weakref.ref[Circle]:
+    """Something that has become old before it became garbage."""
+    thing = Circle()
+    gc.collect(1)
+    return weakref.ref(thing)
+
+
+def test_garbage_is_collected_when_many_objects_have_come() -> None:
+    garbage, kept = old_garbage(), list[Circle]()
+    while gc.get_count()[2] < MUCH:
         assert garbage() is not None
-        memory.note()
-        memory.release()
-        assert garbage() is None
-        later = weakref.ref(Circle())
-        memory.release()
-        assert later() is not None
-    finally:
-        gc.enable()
-
-
-def test_a_tab_that_closes_has_left() -> None:
-    server = LabServer("127.0.0.1", 0, LoopCache())
-    server._memory.rounds.stop()
-    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
-        student.open()
-        student.read(lambda: student.moving)
-        assert not server._memory._anybody_left
-    wait_for(lambda: server._memory._anybody_left, WAIT)
-    server.stop()
+        release()
+        kept.append(Circle())
+    release()
+    assert garbage() is None and gc.get_count()[2] == 0
