@@ -23,9 +23,9 @@ def test_honest_labs_outlast_every_attack(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("minutes", [1, 7, 30, 100])
-def test_every_attack_is_made_and_all_is_quiet_before_and_after(minutes: float) -> None:
+def test_every_attack_is_made_and_all_is_quiet_after_it(minutes: float) -> None:
     seconds, attacks = plan(minutes)
-    assert 0 < seconds <= ROW and not attacks[0] and not attacks[-1]
+    assert 0 < seconds <= ROW and not attacks[-1]
     assert set(attacks) == {"", *ATTACKS}
     attacked = len(attacks) - attacks.count("")
     assert attacked * seconds == pytest.approx(60 * minutes, abs=seconds)
