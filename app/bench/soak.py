@@ -14,7 +14,9 @@ from onpath.app.bench.attacks import ATTACKS
 from onpath.app.bench.crowd import simulated_crowd
 from onpath.app.bench.server_process import Server, serving
 
-QUIET = 70.0  # [s] before and after the attacks; a lab keeps its last minute
+LAST_MINUTE = 61.0  # [s] of simulated time; a lab keeps that of the last minute
+LONGEST_START = 300.0  # [s] to wait for that
+QUIET = 70.0  # [s] after the attacks
 ROW = 60.0  # [s], longest row of the table
 PLACES = 24  # for labs of attackers
 LATEST = 100.0  # [ms], 99th percentile of the lateness of frames
@@ -55,14 +57,14 @@ class SoakRow:
 
 
 def plan(minutes: float) -> tuple[float, list[str]]:
-    """Length of a row, [s], and what is tried in each; empty for nothing.
+    """Length of a row, [s], and what is tried in each, once memory is constant; empty for nothing.
 
     Args:
         minutes: duration of the attacks.
     """
     seconds = min(ROW, 60 * minutes / len(ATTACKS))
     quiet = [""] * math.ceil(QUIET / seconds)
-    return seconds, [*quiet, *islice(cycle(ATTACKS), round(60 * minutes / seconds)), *quiet]
+    return seconds, [*islice(cycle(ATTACKS), round(60 * minutes / seconds)), *quiet]
 
 
 def soak(honest: int, minutes: float, environment: Mapping[str, str]) -> Iterator[SoakRow]:
@@ -88,12 +90,17 @@ def _rows(server: Server, honest: int, seconds: float, attacks: list[str]) -> It
         _attackers(server) as attackers,
     ):
         next(seen)
-        for number, attack in enumerate(attacks):
+        simulated, number = 0.0, -1
+        while attacks:
+            number += 1
+            begins = simulated > LAST_MINUTE or number * seconds > LONGEST_START
+            attack = attacks.pop(0) if begins else ""
             assert attackers.stdin is not None
             attackers.stdin.write(f"{attack}\n".encode())
             attackers.stdin.flush()
             during = next(seen)
             (metrics,) = server.metrics(max(seconds, 1.0)).values()
+            simulated = max(simulated, min(metrics.simulated_s, default=0.0))
             yield SoakRow(
                 began=number * seconds,
                 attack=attack,
