@@ -7,29 +7,35 @@ import gc
 import sys
 
 from onpath.app.common.periodic import Periodic
+from onpath.app.viser_adapter.connection_limits import CountedConnection
 
-INTERVAL = 2.0  # [s]
+INTERVAL = 20.0  # [s]
 LARGE = 256 * 1024  # [B]
 M_MMAP_THRESHOLD, M_ARENA_MAX = -3, -8  # of glibc's malloc.h
-MUCH = 10  # collections of the middle generation, each after some 5,000 new objects
+MANY = 20  # connections
 
 
-def memory_release() -> Periodic:
-    """A thread that calls `release` from time to time."""
-    return Periodic("memory", INTERVAL, release)
-
-
-def release() -> None:
-    """Collect garbage and give free memory back, if many objects have come since the last time.
+class MemoryRelease:
+    """Collects the garbage of connections that have ended.
 
     What is kept of a tab or a connection refers to itself, thousands of objects, which only a
-    complete collection finds. `SELDOM` in `app.simulation.simulation_thread` makes these rare,
-    since each stops all threads for some 30 ms; without this, the garbage of those that come and
-    go would fill hundreds of megabytes.
+    complete collection finds. That stops all threads, with 60 labs for some 170 ms, so `SELDOM` in
+    `app.simulation.simulation_thread` makes it rare, and this does it only when many connections
+    have ended.
     """
-    if gc.get_count()[2] >= MUCH:
-        gc.collect()
-        _call_glibc("malloc_trim", 0)
+
+    def __init__(self) -> None:
+        self._seen = CountedConnection.ended
+        self._looks = Periodic("memory", INTERVAL, self.look)
+        self.start, self.stop = self._looks.start, self._looks.stop
+
+    def look(self) -> None:
+        """Collect garbage and give free memory back if many connections have ended since."""
+        ended = CountedConnection.ended
+        if ended - self._seen >= MANY:
+            self._seen = ended
+            gc.collect()
+            _call_glibc("malloc_trim", 0)
 
 
 def limit_heap() -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 from collections import Counter
 from ipaddress import IPv4Address, IPv6Address, ip_address, ip_network
-from typing import Any, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from websockets.asyncio.server import ServerConnection
 from websockets.http11 import Request
@@ -162,7 +162,10 @@ class CountedConnection(ServerConnection):
     Attributes:
         peer: the address at its other end, which may be a proxy's.
         address: the client's, as the limits count it.
+        ended: number of all connections of this process that have ended.
     """
+
+    ended: ClassVar[int] = 0
 
     def __init__(self, *args: Any, connections: ConnectionLimits, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -179,4 +182,5 @@ class CountedConnection(ServerConnection):
     def connection_lost(self, exc: Exception | None) -> None:
         """See `asyncio.Protocol`."""
         self._connections.closed(self)
+        CountedConnection.ended += 1
         super().connection_lost(exc)

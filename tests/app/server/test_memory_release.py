@@ -8,8 +8,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from onpath.app.server.memory_release import MUCH, release
+from onpath.app.server.memory_release import MANY, MemoryRelease
 from onpath.app.simulation.simulation_thread import SELDOM
+from onpath.app.viser_adapter.connection_limits import CountedConnection
 
 
 class Circle:
@@ -36,11 +37,16 @@ def old_garbage() -> weakref.ref[Circle]:
     return weakref.ref(thing)
 
 
-def test_garbage_is_collected_when_many_objects_have_come() -> None:
-    garbage, kept = old_garbage(), list[Circle]()
-    while gc.get_count()[2] < MUCH:
-        assert garbage() is not None
-        release()
-        kept.append(Circle())
-    release()
-    assert garbage() is None and gc.get_count()[2] == 0
+def test_garbage_is_collected_when_many_connections_have_ended(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    garbage, memory = old_garbage(), MemoryRelease()
+    monkeypatch.setattr(CountedConnection, "ended", CountedConnection.ended + MANY - 1)
+    memory.look()
+    assert garbage() is not None
+    CountedConnection.ended += 1
+    memory.look()
+    assert garbage() is None
+    left = old_garbage()
+    memory.look()
+    assert left() is not None  # nobody has left since
