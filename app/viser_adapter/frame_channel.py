@@ -38,6 +38,7 @@ UPDATES = {
     for kind in (_messages.SceneNodeUpdateMessage, _messages.GuiUpdateMessage)
 }
 MOST_UNSENT = 1 << 16  # [B] unsent; beyond it, viser's queue merges outdated messages
+MOST_TEMPLATES = 32  # for one browser; some five are in use
 SMALL = 2048  # [B] of a frame without its arrays, up to which it is not compressed
 _DTYPES = {np.dtype(kind): np.dtype(kind).str for kind in (np.float32, np.float64)}  # .str is slow
 _ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[FrameChannel]] = WeakKeyDictionary()
@@ -274,6 +275,8 @@ def packed(messages: Sequence[Message | GroupUpdate], templates: Templates) -> b
         else:
             head = _started(size, stored_head(size) + inner, len(time_sent))
             if None not in forms:
+                if len(templates) >= MOST_TEMPLATES:  # nodes come and go
+                    templates.clear()
                 templates[forms] = head
     parts: list[Any] = [head, time_sent]
     _infra._append_aligned_buffers(parts, arrays, len(head) + len(time_sent))

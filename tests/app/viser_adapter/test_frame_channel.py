@@ -18,6 +18,7 @@ from websockets.typing import Subprotocol
 
 from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, packed, unpacked
 from onpath.app.viser_adapter.frame_channel import (
+    MOST_TEMPLATES,
     FrameChannel,
     Templates,
     _wire,
@@ -231,6 +232,9 @@ def test_frames_of_other_nodes_owners_or_sizes_are_other_frames() -> None:
         assert told["updates"][field].dtype == value.dtype
         assert told["updates"][field].size == value.size
     assert len(templates) == 6
+    for number in range(3 * MOST_TEMPLATES):
+        packed_frame([NODE(f"/{number}", {"points": two}, owner="1")], templates)
+        assert len(templates) <= MOST_TEMPLATES
 
 
 def test_a_page_is_not_told_what_it_has_just_said(server: viser.ViserServer) -> None:
