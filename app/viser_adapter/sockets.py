@@ -77,7 +77,5 @@ def _address_named(host: str, port: int) -> Iterator[None]:
     except OSError as error:
         if error.errno != errno.EADDRINUSE:
             raise OSError(f"cannot listen on {host}: {error.strerror}") from None
-        way_out = (
-            "stop the program that has it, or choose another port (--port 0 takes any)"
-        )
+        way_out = "stop the program that has it, or choose another port (--port 0 takes any)"
         raise PortInUse(error.errno, f"port {port} on {host} is in use: {way_out}") from None
