@@ -9,7 +9,8 @@ VENV   ?= .venv
 BIN     = $(VENV)/bin
 LAB     = $(VENV)/.installed
 TOOLS   = $(VENV)/.tools
-PYTEST  = $(BIN)/pytest -n 2 --dist loadfile
+# In order, so that the longest test begins early: it would be the last one otherwise.
+PYTEST  = $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 .PHONY: run test fuzz check format bench soak wheel clean
 .DEFAULT_GOAL := run
