@@ -44,7 +44,7 @@ class Poses:
         return slice(place.start + begin * width, place.start + end * width)
 
     @property
-    def steadier(self) -> np.ndarray:
+    def seldom_changing(self) -> np.ndarray:
         """Lengths, rotations and forces, which rarely change; flat."""
         return self.whole[self.fields["lengths"][0].start :]
 

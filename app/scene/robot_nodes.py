@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 FORCE_SHOWN = 0.05
 """Forces below this are not drawn [N]."""
-STEADY = 1e-6
+NEGLIGIBLE = 1e-6
 """Changes of lengths, rotations and forces below this are not drawn [m, N]."""
 TRACE_SEGMENTS = 120
 TRACE_DEPTHS = (0.012, 0.002)
@@ -177,7 +177,7 @@ class RobotNodes:
                 (self.grips, "batched_positions", poses.place("tips")),
             ]
         )
-        self._steadier = np.zeros_like(poses.steadier)
+        self._seldom_changing = np.zeros_like(poses.seldom_changing)
         self._draw(poses)
 
     def _add_bars(self, scene: viser.SceneApi, counts: Counts, poses: Poses) -> list[Bars]:
@@ -213,11 +213,11 @@ class RobotNodes:
 
     def _draw(self, poses: Poses) -> None:
         self._moving.update(poses.whole)
-        if self._acting or difference(poses.steadier, self._steadier) > STEADY:
-            self._steadier = poses.steadier
-            self._draw_steadier(poses)
+        if self._acting or difference(poses.seldom_changing, self._seldom_changing) > NEGLIGIBLE:
+            self._seldom_changing = poses.seldom_changing
+            self._draw_seldom_changing(poses)
 
-    def _draw_steadier(self, poses: Poses) -> None:
+    def _draw_seldom_changing(self, poses: Poses) -> None:
         """Draw lengths and rotations if they have changed, and forces with their arrows."""
         for bars in self._bars:
             bars.update_lengths(poses)

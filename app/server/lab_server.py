@@ -16,6 +16,7 @@ import viser
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import normalised
 from onpath.app.common.error_log import log_error
+from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
@@ -32,7 +33,7 @@ from onpath.app.server.class_service import TEACHER_KEY, ClassService
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.lazy_imports import warm_up
-from onpath.app.server.memory_release import MemoryRelease, limit_heap
+from onpath.app.server.memory_release import INTERVAL, MemoryRelease, limit_heap
 from onpath.app.server.tab_visibility import TabVisibilities
 from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
@@ -86,7 +87,8 @@ class LabServer:
         self._room = AdmissionQueue(most_clients)
         self._course = lessons = course or read_course([BUILT_IN])[0]
         self.simulation = SimulationThread()
-        self._watchdog, self._memory = Watchdog(hang_seconds), MemoryRelease()
+        self._watchdog = Watchdog(hang_seconds)
+        self._memory = Periodic("memory", INTERVAL, MemoryRelease().look)
         health = partial(metrics_json, self.simulation)
         well = {"health": health, "trouble": lambda: self._watchdog.trouble}
         self.server = make_server(host, port, label="OnPath", **well, **listening)

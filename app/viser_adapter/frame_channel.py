@@ -162,7 +162,7 @@ class FrameChannel:
             self._enqueue(message)
 
     def _enqueue(self, *messages: Message | GroupUpdate) -> None:
-        for message in _told_apart(messages):
+        for message in _expanded(messages):
             self._queue(message)
 
     def _packed(self) -> tuple[list[Message | GroupUpdate], bytes]:
@@ -223,8 +223,8 @@ def _told(value: Any, arrays: list[memoryview]) -> Any:
     return {"__binary_index": len(arrays) - 1, "dtype": dtype}
 
 
-def _told_apart(messages: Iterable[Message | GroupUpdate]) -> list[Message]:
-    """The messages, with those that each group stands for."""
+def _expanded(messages: Iterable[Message | GroupUpdate]) -> list[Message]:
+    """The messages, each group replaced by viser's messages for its nodes."""
     ways = (m.messages() if isinstance(m, GroupUpdate) else [m] for m in messages)
     return [message for some in ways for message in some]
 
@@ -265,7 +265,7 @@ def packed(messages: Sequence[Message | GroupUpdate], templates: Templates) -> b
     if head is not None:
         arrays += chain.from_iterable(map(_arrays, messages))
     else:
-        wire = [_wire(message, arrays) for message in _told_apart(messages)]
+        wire = [_wire(message, arrays) for message in _expanded(messages)]
         lengths = [array.nbytes for array in arrays]
         window = {"messages": wire, "binaryBufferLengths": lengths, "timestampSec": 0.0}
         inner = msgspec.msgpack.encode(window)[: -len(time_sent)]
