@@ -90,8 +90,13 @@ def processes_of(folder: Path) -> list[str]:
 
 
 def has_browsers(folder: Path) -> bool:
-    """Whether a bench that was told of that folder simulates browsers by now."""
-    return any("onpath.app.bench.simulated_browser" in each for each in processes_of(folder))
+    """Whether a bench that was told of that folder simulates browsers that are connected by now.
+
+    One that is stopped while a process begins cannot know of that yet.
+    """
+    named = [p for p in processes_of(folder) if "onpath.app.bench.simulated_browser" in p]
+    ports = [f":{int(process.split()[-3]):04X} 01" for process in named]  # 01: established
+    return bool(ports) and ports[0] in Path("/proc/net/tcp").read_text()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")

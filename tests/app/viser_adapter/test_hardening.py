@@ -597,7 +597,7 @@ def test_uploads_within_the_limit_when_allowed() -> None:
     upload(browser, b"x" * 11)
     upload(browser, b"0123456789")
     browser.settle()
-    ((name, file),) = lab.heard(browser)
+    ((name, file),) = wait_for(lambda: lab.heard(browser))  # viser calls back in a thread
     assert (name, file.content) == ("upload", b"0123456789")
     upload(browser, b"more than it said", size=2)
     upload(browser, b"abc")
