@@ -1,5 +1,6 @@
 # make run   creates the environment, installs, starts the lab and prints its address
 # make test  all tests, headless Chromium included; adds what they need to the environment
+#            (.ci/run adds a minute of attacks: pytest -m soak)
 # make fuzz  the property tests with random inputs; make test has the same ones every time
 # make check lint, format, types      make bench  the speed table
 # make soak  40 labs under attack for half an hour: lateness, memory and log stay within bounds
@@ -33,7 +34,7 @@ run: $(LAB)
 # which other tests cannot share it.
 test: $(TOOLS)
 	@failed=0; \
-	$(PYTEST) --ignore=tests/in_browser $(ARGS) || failed=$$?; \
+	$(PYTEST) -m "not soak" --ignore=tests/in_browser $(ARGS) || failed=$$?; \
 	$(PYTEST) tests/in_browser $(ARGS) || failed=$$?; \
 	exit $$failed
 

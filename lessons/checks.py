@@ -9,6 +9,7 @@ from functools import singledispatch
 import msgspec
 import numpy as np
 
+from onpath.lessons.benches import law_label, robot_names
 from onpath.lessons.record import QUANTITIES, Mask, Record
 from onpath.lessons.schema import (
     Bound,
@@ -23,6 +24,7 @@ from onpath.lessons.schema import (
     Window,
 )
 from onpath.lessons.words import Words
+from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.systems.parameters import specs
 
 TINY = 1e-9  # smallest divisor of a ratio
@@ -54,12 +56,13 @@ def verdict(check: Check, record: Record, words: Words) -> Verdict:
 
 @verdict.register
 def _(check: Bound, record: Record, words: Words) -> Verdict:
+    robots = robot_names(record.laws, words)
     if record.stopped(check.robot):
-        return Verdict(False, words("check.stopped", robot=words(f"robot.{check.robot}")))
+        return Verdict(False, words("check.stopped", robot=robots[check.robot]))
     chosen = record.chosen(check.robot, check)
     enough, seconds = _seconds(check, record, chosen, words)
     names = {
-        "robot": words(f"robot.{check.robot}"),
+        "robot": robots[check.robot],
         "stat": _stat_words(check.stat, check.quantity, words),
         "during": words(f"during.{check.during}"),
         "wanted": _range_words(check.below, check.above, QUANTITIES[check.quantity], words),
@@ -74,9 +77,10 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
 
 @verdict.register
 def _(check: Compare, record: Record, words: Words) -> Verdict:
+    robots = robot_names(record.laws, words)
     smaller: RobotName = "follower" if check.larger == "tracker" else "tracker"
     if record.stopped(smaller):
-        return Verdict(False, words("check.stopped", robot=words(f"robot.{smaller}")))
+        return Verdict(False, words("check.stopped", robot=robots[smaller]))
     chosen = record.chosen(check.larger, check)
     both = [
         statistic(record, robot, check.quantity, check.stat, record.chosen(robot, check))
@@ -90,13 +94,13 @@ def _(check: Compare, record: Record, words: Words) -> Verdict:
     large, small = both
     if large is None or small is None:
         wanted = f"{check.ratio:g}×"
-        robot = words(f"robot.{check.larger}")
+        robot = robots[check.larger]
         said = words("check.nothing", robot=robot, seconds=seconds, wanted=wanted, **names)
         return Verdict(False, said)
     ratio = large / max(small, TINY)
     said = words(
         "check.compare",
-        larger=words(f"robot.{check.larger}"),
+        larger=robots[check.larger],
         ratio=_rounded(ratio, None, check.ratio) if ratio < 1000 else ">1000",
         wanted=f"{check.ratio:g}",
         **names,
@@ -132,6 +136,7 @@ def _(check: Order, record: Record, words: Words) -> Verdict:
 @verdict.register
 def _(check: Setting, record: Record, words: Words) -> Verdict:
     own: dict[str, object] = {"path": record.path, "robot": record.robot}
+    own |= {**DEFAULT_LAWS, **record.laws}
     value = own.get(check.name, getattr(record.parameters, check.name, None))
     if check.equals is not None:
         spec = specs(record.parameters).get(check.name)
@@ -230,6 +235,8 @@ def _range_words(below: float | None, above: float | None, unit: str, words: Wor
 
 def _event_words(check: Event, words: Words) -> str:
     key = f"event.{check.event}"
+    if check.event == "law" and check.name:
+        return words(key, detail=law_label(check.name, words))
     if check.name:
         return words(key, detail=check.name)
     return words.get(f"{key}_any", "") or words(key)

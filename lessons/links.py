@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from urllib.parse import unquote
 
-from onpath.lessons.schema import Action, Value
+from onpath.lessons.schema import Action, Laws, Value
+from onpath.models.control.benches import BENCHES
 
 SCHEME = "lab:"
 SIMPLE = {
@@ -37,6 +38,8 @@ def read_link(address: str) -> tuple[Action, ...]:
             actions.append(Action(path=value))
         elif name == "robot":
             actions.append(Action(robot=value))
+        elif name in BENCHES:
+            actions.append(Action(laws=Laws(**{name: value})))
         else:
             values[name] = _value(value)
     return (*actions, Action(set=values)) if values else tuple(actions)

@@ -13,11 +13,6 @@ from onpath.models.systems.parameters import Parameters
 
 Mask = NDArray[np.bool_]
 ROBOTS: tuple[RobotName, ...] = ("tracker", "follower")
-ROLES: dict[str, RobotName] = {
-    "path_following": "follower",
-    "trajectory_tracking": "tracker",
-}
-"""Controller -> name of its robot in the lessons."""
 QUANTITIES: dict[str, str] = {
     "distance": "mm",
     "lag": "mm",
@@ -71,6 +66,7 @@ class Record:
         parameters: their current values.
         end: end of the last instant, [s].
         path, robot: names of the path and of the robot model.
+        laws: current control law of each bench; a bench without one has that of a new lab.
     """
 
     times: Array
@@ -81,6 +77,7 @@ class Record:
     end: float
     path: str = "circle"
     robot: str = "five_bar"
+    laws: dict[str, str] = field(default_factory=dict[str, str])
     _masks: dict[tuple[RobotName, str], Mask] = field(
         default_factory=dict[tuple[RobotName, str], Mask]
     )

@@ -15,7 +15,17 @@ RobotName = Literal["follower", "tracker"]
 Stat = Literal["max", "min", "mean", "rms", "final"]
 During = Literal["always", "held", "pulled", "free"]
 EventName = Literal[
-    "hold", "let_go", "pull", "release", "set", "path", "reset", "identify", "diverged", "robot"
+    "hold",
+    "let_go",
+    "pull",
+    "release",
+    "set",
+    "path",
+    "reset",
+    "identify",
+    "diverged",
+    "robot",
+    "law",
 ]
 Value = float | int | str
 
@@ -24,22 +34,36 @@ class Data(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Base of everything that is read from TOML; unknown names are errors."""
 
 
+class Laws(Data, frozen=True):
+    """Control laws of the benches; empty: that of a new lab, or no change."""
+
+    left: str = ""
+    right: str = ""
+
+    @property
+    def named(self) -> dict[str, str]:
+        """Those that are named, by bench."""
+        return {bench: law for bench, law in msgspec.structs.asdict(self).items() if law}
+
+
 class StepSetup(Data, frozen=True):
     """The state of the lab at the beginning of a step.
 
     Attributes:
         robot: name of the robot; empty: that of the lesson.
         path: name of a preset; empty: the circle.
+        laws: control laws of the benches.
         set: parameters that differ from the lab's defaults; all others are reset to them.
         controls: controls that are shown: names of parameters, or of CONTROLS.
         plot: a plot to show besides the distance, one of PLOTS; empty for none.
         running: whether time runs.
-        keep: whether robot, path and parameters of the step before are kept, except those named
-            here.
+        keep: whether robot, path, laws and parameters of the step before are kept, except those
+            named here.
     """
 
     robot: str = ""
     path: str = ""
+    laws: Laws = Laws()
     set: dict[str, Value] = {}
     controls: tuple[str, ...] = ()
     plot: str = ""
@@ -52,7 +76,8 @@ class StepSetup(Data, frozen=True):
             return self
         kept = {**before.set, **self.set}
         robot, path = self.robot or before.robot, self.path or before.path
-        return msgspec.structs.replace(self, robot=robot, path=path, set=kept)
+        laws = Laws(**{**before.laws.named, **self.laws.named})
+        return msgspec.structs.replace(self, robot=robot, path=path, laws=laws, set=kept)
 
 
 class Action(Data, frozen=True):
@@ -67,6 +92,7 @@ class Action(Data, frozen=True):
         path: name of a preset.
         move: move a control point (index, right, up), by [mm].
         robot: change the robot.
+        laws: change the control laws of the benches.
         reset: put both robots back to the start.
         run: run or pause.
         identify: fit the controller's model to the measured motion.
@@ -81,6 +107,7 @@ class Action(Data, frozen=True):
     path: str | None = None
     move: tuple[int, float, float] | None = None
     robot: str | None = None
+    laws: Laws | None = None
     reset: bool | None = None
     run: bool | None = None
     identify: bool | None = None
@@ -100,7 +127,7 @@ class Action(Data, frozen=True):
 
 
 ACTIONS = (
-    *("hold", "pull", "release", "set", "path", "move", "robot", "reset", "run"),
+    *("hold", "pull", "release", "set", "path", "move", "robot", "laws", "reset", "run"),
     "identify",
 )
 
@@ -196,7 +223,8 @@ class Event(Data, frozen=True, tag="event", tag_field="kind"):
     """An event has happened.
 
     Attributes:
-        name: of a parameter for "set", a path for "path", a robot for "robot"; empty for any.
+        name: of a parameter for "set", a path for "path", a robot for "robot", a law for "law";
+            empty for any.
         times: least number of times.
     """
 
@@ -212,7 +240,11 @@ class Order(Data, frozen=True, tag="order", tag_field="kind"):
 
 
 class Setting(Data, frozen=True, tag="setting", tag_field="kind"):
-    """A parameter has a value or lies in a range. `path` and `robot` can be checked as well."""
+    """A parameter has a value or lies in a range.
+
+    Attributes:
+        name: of a parameter; or "path" or "robot"; or "left" or "right" for the law of a bench.
+    """
 
     name: str
     equals: Value | None = None
@@ -317,6 +349,14 @@ class Lesson(msgspec.Struct, frozen=True):
         for step in self.steps[: index + 1]:
             scene = step.scene.after(scene) if step.scene is not None else scene
         return scene
+
+    def laws_shown(self, index: int) -> dict[str, str]:
+        """Control laws, as in `Laws.named`, under which a prediction of a step is put to the test.
+
+        That is in the step after it if that one lets it happen, else in the step itself.
+        """
+        after = self.steps[index + 1 : index + 2]
+        return self.scene_at(index + (bool(after) and after[0].kind == "run")).laws.named
 
     def tasks(self) -> list[Task]:
         """The tasks of all steps."""

@@ -14,6 +14,7 @@ from onpath.lessons.schema import (
     Compare,
     Event,
     EventName,
+    Laws,
     Order,
     Prediction,
     Script,
@@ -23,13 +24,18 @@ from onpath.lessons.schema import (
     Task,
     Value,
 )
+from onpath.models.closed_loop.simulation import check_level_set, raised
+from onpath.models.control.benches import BENCHES, check_laws
+from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
-from onpath.models.systems.parameters import changed, specs, unknown_name
+from onpath.models.systems.parameter_specs import unknown_name
+from onpath.models.systems.parameters import changed, specs
 
 CONTROLS = (
-    *("hold", "path", "editor", "gains", "plots", "past", "robot", "copy", "flexible", "identify"),
+    *("hold", "path", "editor", "gains", "plots", "past", "robot", "laws", "copy", "flexible"),
+    "identify",
 )
 EVENTS: tuple[str, ...] = get_args(EventName)
 HIGHEST = 1e6
@@ -48,6 +54,7 @@ def scene_faults(scene: StepSetup, robot: str) -> Iterator[str]:
         yield from _one_of(scene.plot, PLOTS, "plot")
     entry = ROBOTS.get(scene.robot or robot)
     if entry is not None:
+        yield from _law_faults(scene.laws, entry)
         faults = list(_setting_faults(scene.set, entry))
         yield from faults or _path_faults(scene, entry)
         for name in scene.controls:
@@ -78,6 +85,8 @@ def action_faults(action: Action, robot: str) -> Iterator[str]:
         yield from _one_of(action.path or "", presets(), "path")
     elif what == "robot":
         yield from _one_of(action.robot or "", ROBOTS, "robot")
+    elif what == "laws" and action.laws is not None and robot in ROBOTS:
+        yield from _law_faults(action.laws, ROBOTS[robot])
 
 
 def prediction_faults(prediction: Prediction) -> Iterator[str]:
@@ -122,11 +131,16 @@ def _check_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
         equals = getattr(check, "equals", None)
         if check.below is None and check.above is None and equals is None:
             yield "a check needs below or above"
-    if isinstance(check, Setting) and check.name not in ("path", "robot") and entry is not None:
+    others = "path", "robot", *BENCHES
+    if isinstance(check, Setting) and check.name not in others and entry is not None:
         yield from _one_of(check.name, specs(entry.parameters), "parameter")
     if isinstance(check, Order):
         for event in check.events:
             yield from _one_of(event.partition(":")[0], EVENTS, "event")
+    if isinstance(check, Event) and check.event == "law" and check.name:
+        yield from _one_of(check.name, LAWS, "law")
+    if isinstance(check, Setting) and check.name in BENCHES and check.equals is not None:
+        yield from _one_of(str(check.equals), LAWS, "law")
     if isinstance(check, Event) and check.event == "set" and check.name and entry is not None:
         yield from _one_of(check.name, specs(entry.parameters), "parameter")
 
@@ -137,8 +151,19 @@ def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
         return
     for name, value in scene.set.items():
         parameters = changed(parameters, name, value)
-    for fault in curve_faults(entry.make(parameters).margin, design.curve):
+    try:
+        check_level_set(parameters, design.curve)
+    except ValueError as error:
+        yield f"path {scene.path!r}: {error}"
+    for fault in curve_faults(entry.make(parameters).margin, raised(design.curve, parameters)):
         yield f"path {scene.path!r}: {fault.reason}"
+
+
+def _law_faults(laws: Laws, entry: RobotEntry) -> Iterator[str]:
+    try:
+        check_laws(laws.named, entry)
+    except ValueError as error:
+        yield str(error)
 
 
 def _setting_faults(values: dict[str, Value], entry: RobotEntry) -> Iterator[str]:

@@ -8,7 +8,7 @@ from typing import Any
 from onpath.assets.messages import DEFAULT, Catalogue, catalogue, languages
 from onpath.models.errors import Coded, Message
 
-ELSEWHERE = ("parameter.", "machine.", "path.")
+ELSEWHERE = ("parameter.", "machine.", "path.", "law.")
 """Prefixes of keys whose English texts are in models/; only the other catalogues have them."""
 
 

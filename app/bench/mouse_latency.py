@@ -13,10 +13,10 @@ import viser
 
 from onpath.app.bench.client_protocol import unpacked
 from onpath.app.lab import commands as c
-from onpath.app.lab.snapshots.snapshot import FollowerName, TrackerName
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import ScheduledLab
+from onpath.models.control.benches import BENCHES, RIGHT
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 ARGUMENTS = (
@@ -29,8 +29,6 @@ NO_TRIANGLES = """
         WebGL2RenderingContext.prototype["draw" + what] = () => {}
 """
 WINDOW = {"width": 1000, "height": 700}
-ROBOT = "path_following"
-SHOWN = (TrackerName, FollowerName)  # from left to right
 STEP = 30.0  # [px]
 MOVED = 1e-4  # [m]
 
@@ -153,7 +151,7 @@ class _Watch:
         for message in unpacked(raw) if isinstance(raw, bytes) else ():
             tips = message.get("updates", {}).get("batched_positions")
             if message.get("name") == "/grips" and tips is not None:
-                self.tip = np.reshape(tips, (-1, 3))[SHOWN.index(ROBOT)]
+                self.tip = np.reshape(tips, (-1, 3))[BENCHES.index(RIGHT)]
                 if self.rest is None or np.abs(self.tip - self.rest).max() > MOVED:
                     self.moved_at = self.moved_at or now
 
@@ -161,5 +159,5 @@ class _Watch:
 def _tip(lab: ScheduledLab) -> np.ndarray:
     """The end-point in the world, shape (3,), [m]."""
     session = lab.session
-    base = stage_of(session.robot).bases[ROBOT]
-    return base + session.robot.place(session.runs[ROBOT].shown()["y"])
+    base = stage_of(session.robot).bases[RIGHT]
+    return base + session.robot.place(session.runs[RIGHT].shown()["y"])

@@ -25,8 +25,8 @@ def reference_loop(kernel: Kernel, folder: Path, lanes: int = 1) -> CompiledLoop
     """Compile the hand-written loop; None without a C compiler, or a processor with such lanes.
 
     Args:
-        kernel: of the rigid five-bar, path following, closed path, distance, no encoder; the C
-            code assumes its layouts.
+        kernel: of the rigid five-bar, path following, closed path, distance, ideal sensors and
+            motors; the C code assumes its layouts.
         folder: the library is written to it.
         lanes: robots that advance together, one of `LANES`. `run_many` takes multiples of this
             number, and `run` is for one lane only.

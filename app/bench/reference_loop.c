@@ -53,25 +53,31 @@ enum { HARMONICS = 12, COLUMNS = 2 * HARMONICS + 1, ROWS = 8, NEWTON_STEPS = 2 }
 typedef struct { Real x, y; } Vec;
 typedef struct {
   Vec q, v;
-  Real theta, theta_rate, theta_ref;
+  Real theta, theta_rate, theta_ref, speed_ref;
   Vec integral, encoder, encoder_rate, u;
-  Real phase;
+  Real phase, ticks;
+  Vec queue[8];
 } State;
 typedef struct { Real M11, M22, M12, G1, G2, b1, b2, l1, l4; } Plant;
 typedef struct {
-  Real K1, K2, K3, K4, K5, position, target, speed;
-  Vec level_centre, level_weights;
+  Real K1, K2, K3, K4, K5, position, target, speed, ramp, speed_limit, tracker_integral;
+  Real clock_gain, contour_ratio, field_circulation, field_energy, field_gain; /* of other laws */
+  Vec level_centre;
+  Real level_weights[3];
   Real level_constant;
   Real torque_limit, coulomb, encoder_step, encoder_filter, hold_ticks, dt;
+  Real stiction, torque_step, delay_ticks, sensor_noise, seed;
   Real hand_active;
   Vec hand_target;
   Real hold_active;
-  Vec hold_anchor, hold_tangent;
+  Vec hold_anchor, hold_tangent, hold_normal;
+  Real wall_active;
+  Vec wall_place, wall_normal;
   Plant plant, model;
 } Settings;
 typedef struct {
   Vec q, v, y;
-  Real theta, theta_rate, speed, theta_ref, xi, xi_rate;
+  Real theta, theta_rate, speed, theta_ref, speed_ref, xi, xi_rate;
   Vec u, force;
 } Row;
 typedef struct { Vec sigma, first, second, third; } Local;
@@ -154,13 +160,21 @@ static Vec torques(const Plant *p, Angles a, Vec v, Vec a_y) {
                m12 * w1 + p->M22 * w2 + p->G2 * a.c2 + p->b2 * v.y + n12 * v1v1};
 }
 
+static Real brake(const Settings *s, Vec y, Vec y_rate, Vec direction) {
+  Real pressed = 2000 * dot(direction, sub(y, s->hold_anchor)) + 40 * dot(direction, y_rate);
+  return -s->hold_active * clamp(pressed, all(-30), all(30));
+}
+
 static Vec pushes(const Settings *s, Vec y, Vec y_rate) {
   Vec hand = along(scaled(all(300), sub(s->hand_target, y)), all(-10), y_rate);
   Real size = root(dot(hand, hand) + 1e-12);
-  Real brake = 2000 * dot(s->hold_tangent, sub(y, s->hold_anchor))
-               + 40 * dot(s->hold_tangent, y_rate);
+  Real depth = dot(s->wall_normal, sub(s->wall_place, y));
+  Real pressed = 2000 * depth - 40 * dot(s->wall_normal, y_rate);
+  Real solid = s->wall_active * choose(depth > 0, clamp(pressed, all(0), all(30)), all(0));
   hand = scaled(s->hand_active * choose(size > 15, 15 / size, all(1)), hand);
-  return along(hand, -s->hold_active * clamp(brake, all(-30), all(30)), s->hold_tangent);
+  Vec held = along(scaled(brake(s, y, y_rate, s->hold_tangent), s->hold_tangent),
+                   brake(s, y, y_rate, s->hold_normal), s->hold_normal);
+  return along(add(hand, held), solid, s->wall_normal);
 }
 
 static void integrate(const Plant *p, Vec *q, Vec *v, Vec tau, Real h) {
@@ -170,6 +184,14 @@ static void integrate(const Plant *p, Vec *q, Vec *v, Vec tau, Real h) {
   Vec v4 = along(*v, h, a3), a4 = acceleration(p, along(*q, h, v3), v4, tau);
   *q = along(*q, h / 6, add(add(*v, v4), scaled(all(2), add(v2, v3))));
   *v = along(*v, h / 6, add(add(a1, a4), scaled(all(2), add(a2, a3))));
+}
+
+/* The speed reference at the beginning of a tick, and its rate. */
+static Real speed_ref(const Settings *s, const State *x) {
+  return choose(s->ramp > 0, x->speed_ref, s->speed);
+}
+static Real speed_ref_rate(const Settings *s, const State *x) {
+  return clamp((s->speed - x->speed_ref) / s->dt, -s->ramp, s->ramp);
 }
 
 /* Commanded y'' in the frame of the closest point: z = sigma + lambda N, differentiated twice. */
@@ -186,7 +208,8 @@ static Vec command(const Settings *s, const State *x, Local at, Real theta, Vec 
                 - length * lambda_rate * curvature;
   Real across = -s->K1 * lambda - s->K2 * lambda_rate - s->K3 * x->integral.x;
   Real to_target = -s->K4 * wrap(theta - s->target) - s->K5 * theta_rate;
-  Real onward = choose(s->position != 0, to_target, s->K5 * (s->speed - theta_rate));
+  Real speed_rate = speed_ref_rate(s, x), speed = speed_ref(s, x) + s->dt / 2 * speed_rate;
+  Real onward = choose(s->position != 0, to_target, speed_rate + s->K5 * (speed - theta_rate));
   row->theta = theta, row->theta_rate = theta_rate;
   row->xi = lambda, row->xi_rate = lambda_rate;
   Vec tangential = scaled(g * onward + g_rate * theta_rate - lambda_rate * turn, T);
@@ -221,15 +244,18 @@ static void tick(const Settings *s, const Real *table, State *x, Row *row) {
              s->plant.l4 * (a.s2 * force.x - a.c2 * force.y)
                  + u.y - s->coulomb * x->v.y / root(x->v.y * x->v.y + 0.0025)};
   row->q = x->q, row->v = x->v, row->y = y, row->theta_ref = x->theta_ref;
+  row->speed_ref = speed_ref(s, x);
   row->u = u, row->force = force;
 
   integrate(&s->plant, &x->q, &x->v, tau, s->dt);
-  Mask integrates = acts & not(saturated) & (s->hold_active == 0);
+  Mask integrates = acts & not(saturated);
   Real more = choose(integrates, s->dt * s->hold_ticks * row->xi, all(0));
   x->integral.x = choose(s->K3 == 0, all(0), x->integral.x + more);
   x->integral.y = choose(s->K3 == 0, all(0), x->integral.y);
-  Real top = magnitude(s->speed), gap = wrap(s->target - x->theta_ref) / s->dt;
-  x->theta_ref += s->dt * choose(s->position != 0, clamp(gap, -top, top), s->speed);
+  Real speed_rate = speed_ref_rate(s, x), speed = speed_ref(s, x) + half * speed_rate;
+  x->speed_ref = speed_ref(s, x) + s->dt * speed_rate;
+  Real top = magnitude(speed), gap = wrap(s->target - x->theta_ref) / s->dt;
+  x->theta_ref += s->dt * choose(s->position != 0, clamp(gap, -top, top), speed);
   x->theta = theta, x->theta_rate = row->theta_rate;
   row->speed = now * (length - half * now * dot(at.first, at.second) / length);
   row->theta_rate = now, row->theta -= half * now, row->xi -= half * row->xi_rate;

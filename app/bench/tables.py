@@ -35,7 +35,7 @@ from onpath.models.closed_loop.simulation import (
     settings_vector,
 )
 from onpath.models.closed_loop.translated_loop import translate_loop
-from onpath.models.control.laws import NAMES
+from onpath.models.control.laws.registry import NAMES
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -10,15 +10,17 @@ import numpy as np
 
 from onpath.app.classroom.classroom import Member
 from onpath.app.classroom.results import LETTERS, Distribution, tasks_passed
-from onpath.app.common.palette import AMBER, FOLLOWER, GREEN, GREY, SLATE, TRACKER
+from onpath.app.common.palette import AMBER, GREEN, GREY, OF_BENCH, SLATE
 from onpath.app.common.templates import render
+from onpath.lessons.benches import ROLES, robot_names
 from onpath.lessons.course import Course
 from onpath.lessons.progress import MOST_POINTS as MOST_OF_TRUTH
 from onpath.lessons.progress import Progress, Truth
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Choice, Prediction, Sketch
+from onpath.lessons.schema import Choice, Prediction, RobotName, Sketch
 from onpath.lessons.thinning import peaks
 from onpath.lessons.words import Words
+from onpath.models.control.benches import DEFAULT_LAWS
 
 IDLE = 60.0  # [s] without a command after which a student counts as idle
 WIDTH, HEIGHT, LEFT, BELOW = 640, 380, 50, 36  # size of a plot, [px]
@@ -85,11 +87,13 @@ def prediction_view(
     revealed: bool,
     words: Words,
     large: bool = False,
+    laws: Mapping[str, str] = DEFAULT_LAWS,
 ) -> str:
     """The answers of the class without names, and the truth once revealed.
 
     Args:
         large: whether to use large type for a projector.
+        laws: control laws under which the prediction is put to the test.
     """
     given = sum(found.counts) + len(found.sketches)
     facts = words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
@@ -103,7 +107,8 @@ def prediction_view(
             facts=facts,
             large=large,
         )
-    lines, names = _sketches(block, found, truth if revealed else None, words)
+    robots = robot_names(laws, words)
+    lines, names = _sketches(block, found, truth if revealed else None, words, robots)
     return render(
         "class/sketches.html",
         block=block,
@@ -146,7 +151,11 @@ class AxisMark:
 
 
 def _sketches(
-    block: Sketch, found: Distribution, truth: Truth | None, words: Words
+    block: Sketch,
+    found: Distribution,
+    truth: Truth | None,
+    words: Words,
+    robots: Mapping[RobotName, str],
 ) -> tuple[list[PlottedLine], list[tuple[str, str]]]:
     """All curves with a colour legend."""
     lines = [
@@ -155,10 +164,11 @@ def _sketches(
     ]
     names = [(SLATE.hex, words("class.predicted"))]
     if truth is not None:
-        for robot, colour in (("tracker", TRACKER), ("follower", FOLLOWER)):
-            points = _points(block, truth.times, getattr(truth, robot), MOST_OF_TRUTH)
-            lines.append(PlottedLine(points, colour.hex, 4, 1.0))
-            names.append((colour.hex, words(f"robot.{robot}")))
+        for bench, role in ROLES.items():
+            points, colour = getattr(truth, role), OF_BENCH[bench].hex
+            line = _points(block, truth.times, points, MOST_OF_TRUTH)
+            lines.append(PlottedLine(line, colour, 4, 1.0))
+            names.append((colour, robots[role]))
     return lines, names
 
 

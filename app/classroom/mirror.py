@@ -18,7 +18,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import MOST_TICKS
 from onpath.app.simulation.simulation_thread import FRAME, ScheduledLab
 from onpath.models.closed_loop.simulation import Push
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES
 from onpath.models.systems.parameters import time_step
 
 BEHIND = 0.4  # [s], intended delay behind the latest state
@@ -126,7 +126,7 @@ class Mirror(ScheduledLab):
         assert old is not None
         pushes = self.session.grips.pushes
         passed = (time - old.time) / (new.time - old.time)
-        for name, this, that in zip(NAMES, old.robots, new.robots, strict=True):
+        for bench, this, that in zip(BENCHES, old.robots, new.robots, strict=True):
             if this.hand and that.hand and this.hand != that.hand:
                 at = (1 - passed) * np.array(this.hand) + passed * np.array(that.hand)
-                pushes[name] = Push(at, pushes[name].hold)
+                pushes[bench] = Push(at, pushes[bench].hold)

@@ -21,7 +21,8 @@ from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import log_layout, state_layout
 from onpath.models.closed_loop.simulation import Push
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES, check_laws
+from onpath.models.control.laws.registry import LAWS
 from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import Fault
 from onpath.models.paths.curves import TERMS, Curve, from_terms, terms_of
@@ -33,13 +34,13 @@ MOST_MARKS = 2000  # numbers, two for each marked point
 INSTANT = 1e-6  # [s], shorter than any tick
 Text = Annotated[str, msgspec.Meta(max_length=2000)]
 Vector = Annotated[tuple[float, ...], msgspec.Meta(max_length=200)]
-Series = Annotated[tuple[float, ...], msgspec.Meta(max_length=2 * TERMS)]
+Series = Annotated[tuple[float, ...], msgspec.Meta(max_length=3 * TERMS)]
 Points = Annotated[tuple[float, ...], msgspec.Meta(max_length=2 * MOST_POINTS)]
 Marks = Annotated[tuple[float, ...], msgspec.Meta(max_length=MOST_MARKS)]
 
 
 class Line(msgspec.Struct, frozen=True):
-    """A curve by its coefficients, x and y alternating, [m]."""
+    """A curve by its coefficients, point by point, in two or three dimensions, [m]."""
 
     closed: bool
     terms: Series
@@ -72,6 +73,7 @@ class RobotMoment(msgspec.Struct, frozen=True):
     """One robot.
 
     Attributes:
+        law: name of its control law.
         state: see `models.closed_loop.loop_vectors.state_layout`.
         sample: see `app.lab.plot_samples`.
         max_distance: largest distance to the path so far, [m].
@@ -79,6 +81,7 @@ class RobotMoment(msgspec.Struct, frozen=True):
         hand, anchor, tangent: the push on it, in output coordinates; empty if there is none.
     """
 
+    law: Word
     state: Vector
     sample: Vector
     max_distance: float
@@ -126,13 +129,14 @@ def tell(scheduled: ScheduledLab) -> Moment:
     values = {name: getattr(own, name) for name in specs(own)}
     robots = tuple(
         _robot(
-            session.runs[name],
-            session.grips.pushes[name],
+            session.runs[bench],
+            session.grips.pushes[bench],
+            instant.laws[number],
             instant.states[number],
             instant.sample[number],
             instant.max_distances[number],
         )
-        for number, name in enumerate(NAMES)
+        for number, bench in enumerate(BENCHES)
     )
     return Moment(
         robot=session.entry.name,
@@ -155,9 +159,12 @@ def tell(scheduled: ScheduledLab) -> Moment:
     )
 
 
-def _robot(run: ClosedLoopRun, push: Push, state: Array, sample: Array, most: float) -> RobotMoment:
+def _robot(
+    run: ClosedLoopRun, push: Push, law: str, state: Array, sample: Array, most: float
+) -> RobotMoment:
     anchor, tangent = push.hold or (np.zeros(0), np.zeros(0))
     return RobotMoment(
+        law=law,
         state=tuple(state.tolist()),
         sample=tuple(np.nan_to_num(sample).tolist()),
         max_distance=float(most),
@@ -177,7 +184,7 @@ def _stopped(diverged: Diverged) -> Stopped:
 def _path(editor: PathEditor, past: Curve | None) -> PathMoment:
     followed = editor.blend if past is None else Blend(past)
     points, faults = (editor.points(), editor.faults) if past is None else (np.zeros(0), ())
-    marks = [number for fault in faults for number in fault.points.ravel().tolist()]
+    marks = [number for fault in faults for number in fault.points[:, :2].ravel().tolist()]
     return PathMoment(
         name=(editor.proposed or editor.design).name,
         target=_line(followed.target),
@@ -204,14 +211,18 @@ def read_moment(text: str) -> Moment:
         raise ValueError(f"no robot {moment.robot!r}")
     entry = ROBOTS[moment.robot]
     robot = entry.make(parameters_of(moment))
-    samples, fields = places(robot), state_layout(robot.system)
+    samples = places(robot)
     for line in (moment.path.target, moment.path.before):
         if line is not None:
-            _numbers(line.terms, 2 * terms_of(line.closed))
+            in_space = robot.frame.space is not None and len(line.terms) == 3 * terms_of(
+                line.closed
+            )
+            _numbers(line.terms, (3 if in_space else 2) * terms_of(line.closed))
     for numbers in (moment.path.points, moment.path.marks):
         _numbers(numbers, 2 * (len(numbers) // 2))
-    for each in moment.robots:
-        _numbers(each.state, fields.size)
+    check_laws(laws_of(moment), entry)
+    for each, law in zip(moment.robots, laws_of(moment).values(), strict=True):
+        _numbers(each.state, state_layout(robot.system, LAWS[law].memory).size)
         _numbers(each.sample, len(samples))
         for pull in (each.hand, each.anchor, each.tangent):
             _numbers(pull, robot.system.p if pull else 0)
@@ -221,9 +232,14 @@ def read_moment(text: str) -> Moment:
             raise ValueError("half a brake")
     most = [each.max_distance for each in moment.robots]
     _numbers((moment.time, moment.achieved, *most), 4)
-    if not {*moment.held, moment.grabbed} <= {*NAMES, None}:
+    if not {*moment.held, moment.grabbed} <= {*BENCHES, None}:
         raise ValueError("somebody else is held")
     return moment
+
+
+def laws_of(moment: Moment) -> dict[str, str]:
+    """Control law of each bench."""
+    return {bench: own.law for bench, own in zip(BENCHES, moment.robots, strict=True)}
 
 
 def parameters_of(moment: Moment) -> Parameters:
@@ -273,9 +289,10 @@ def take_over(lab: Lab, new: Moment, old: Moment | None) -> None:
     session.exaggeration, grips = new.exaggeration, session.grips
     grips.grabbed, grips.held = new.grabbed, {*new.held}
     lab.show_message(new.message, new.level)
-    for name, robot in zip(NAMES, new.robots, strict=True):
-        grips.pushes[name] = _push(robot)
-        _take_robot(session, session.runs[name], robot)
+    for bench, robot in zip(BENCHES, new.robots, strict=True):
+        grips.pushes[bench] = _push(robot)
+        session.change_law(bench, laws_of(new)[bench])
+        _take_robot(session, session.runs[bench], robot)
 
 
 def _take_path(editor: PathEditor, path: PathMoment) -> None:
@@ -283,13 +300,13 @@ def _take_path(editor: PathEditor, path: PathMoment) -> None:
     points = np.array(path.points).reshape(-1, 2)
     marked = np.array(path.marks).reshape(-1, 2)
     marks = [Fault(Message("fault.outside"), marked)] if path.marks else []
-    shown = PathDesign(path.name, target, points)
+    shown = PathDesign(path.name, target.plan, points)
     editor.show(shown, Blend(target, before, path.progress), marks)
     editor.select(path.selected)
 
 
 def _curve(line: Line) -> Curve:
-    return from_terms(line.closed, np.array(line.terms).reshape(-1, 2))
+    return from_terms(line.closed, np.array(line.terms).reshape(terms_of(line.closed), -1))
 
 
 def _push(robot: RobotMoment) -> Push:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 from onpath.app.exports.summary_text import summary_lines
+
+if TYPE_CHECKING:
+    from onpath.models.paths.curves import Curve
 
 
 @dataclass(frozen=True)
@@ -21,10 +24,16 @@ class ExperimentCommand:
     """position, obstruction or flexible (flexible link only)."""
     robot: str = ""
     """Name of the robot; by default the paper's."""
-    controller: Literal["path_following", "trajectory_tracking", "both"] = "both"
-    """Which controller to run."""
+    law: Annotated[str, tyro.conf.arg(aliases=("--controller",))] = "both"
+    """Laws to run: names with commas between, all, or both (tracking and following); or a law of
+    your own, as "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"."""
+    path: str | None = None
+    """Path: a preset, "circle R", "ellipse A B", "closed Z1 Z2 Z1 Z2 ...", "open ...", "segment
+    ...", or JSON with points; in metres. Or @FILE with such a text."""
+    profile: str | None = None
+    """Wanted speed over time, linear between points, as 0:0,1:6.28,4:6.28 in s and rad/s."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """Set any parameter, as name=value; repeat for more."""
+    """Set any parameter or part of the schedule, as name=value; repeat for more."""
     csv: Path | None = None
     """Write every millisecond to this CSV file."""
     plot: Path | None = None
@@ -36,9 +45,8 @@ class ExperimentCommand:
         """Simulate, then write and print the requested output."""
         from onpath.app.exports.figures import draw_experiment
         from onpath.models.closed_loop.trajectory import write_csv
-        from onpath.models.control.laws import NAMES
         from onpath.models.studies.experiments import experiments, run, summary
-        from onpath.models.systems.parameters import unknown_name
+        from onpath.models.systems.parameter_specs import unknown_name
 
         known = experiments(self.robot)
         if self.name not in known:
@@ -46,9 +54,12 @@ class ExperimentCommand:
         check_plot(self.plot)
         if self.csv:
             check_writable(self.csv)
-        chosen = known[self.name].with_values(_assignments(self.set))
-        names = NAMES if self.controller == "both" else (self.controller,)
-        runs = [run(chosen, name) for name in names]
+        chosen = known[self.name]
+        if self.path is not None:
+            chosen = chosen.along(read_path(self.path))
+        times = {} if self.profile is None else {"profile": self.profile}
+        chosen = chosen.with_values(assignments(self.set) | times)
+        runs = [run(chosen, name) for name in laws_named(self.law)]
         result = summary(chosen, runs)
         if self.csv:
             with whole_file(self.csv) as path, path.open("w", newline="") as file:
@@ -79,14 +90,58 @@ class ZeroDynamicsCommand:
         from onpath.app.exports.zero_dynamics import as_json, as_table, changed_all, study
 
         check_plot(self.plot)
-        result = study(changed_all(_assignments(self.set)), self.at)
+        result = study(changed_all(assignments(self.set)), self.at)
         if self.plot:
             with whole_file(self.plot) as path:
                 draw_zero_dynamics(result, path)
         print(json.dumps(as_json(result), indent=2) if self.json else as_table(result))
 
 
-def _assignments(pairs: tuple[str, ...]) -> dict[str, str]:
+def laws_named(text: str) -> list[str]:
+    """The laws that a text asks for: names with commas between, "all", "both", or a typed law.
+
+    Raises:
+        ValueError: an unknown name, or not a law.
+    """
+    from onpath.models.control.laws.own import is_text
+    from onpath.models.control.laws.registry import LAWS, NAMES, law_name
+    from onpath.models.systems.parameter_specs import unknown_name
+
+    if text in ("all", "both"):
+        return list(LAWS if text == "all" else NAMES)
+    if is_text(text):
+        return [law_name(text)]
+    names = list(dict.fromkeys(name.strip() for name in text.split(",")))
+    for name in names:
+        if name not in LAWS:
+            raise unknown_name(name, [*LAWS, "all", "both"], "law")
+    return names
+
+
+def read_path(text: str) -> Curve:
+    """The path that `--path` describes, or the file that it names.
+
+    Raises:
+        ValueError: not a path, or the file cannot be read.
+    """
+    from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text
+
+    if not text.startswith("@"):
+        return curve_from_text(text)
+    try:
+        with Path(text[1:]).open(encoding="utf-8") as file:
+            return curve_from_text(file.read(LONGEST_TEXT + 1))
+    except (OSError, UnicodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "not a text"
+        raise ValueError(f"--path {text}: {reason}") from None
+
+
+def assignments(pairs: tuple[str, ...]) -> dict[str, str]:
+    """The values of --set by name.
+
+    Raises:
+        ValueError: one of them is not of the form name=value.
+    """
     values: dict[str, str] = {}
     for pair in pairs:
         name, equals, value = pair.partition("=")
@@ -98,10 +153,12 @@ def _assignments(pairs: tuple[str, ...]) -> dict[str, str]:
 
 def _table(result: dict, reasons: dict[str, str]) -> str:
     """The summary as text."""
+    from onpath.models.control.laws.own import law_title
+
     lines = [result["experiment"]]
-    for controller, values in result["controllers"].items():
-        lines.append(f"  {controller.replace('_', ' ')}")
+    for law, values in result["laws"].items():
+        lines.append(f"  {law_title(law)}")
         lines += [f"    {line}" for line in summary_lines(values)]
-        if reasons[controller]:
-            lines.append(f"    {reasons[controller]}")
+        if reasons[law]:
+            lines.append(f"    {reasons[law]}")
     return "\n".join(lines)

@@ -12,14 +12,27 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
+from onpath.app.cli.compare import CompareCommand
 from onpath.app.cli.experiment import ExperimentCommand, ZeroDynamicsCommand
+from onpath.app.cli.figure import FigureCommand
+from onpath.app.cli.identify import IdentifyCommand
 from onpath.app.cli.serve import Serve
 
 if TYPE_CHECKING:
     from onpath.lessons.course import Course
     from onpath.lessons.problems import Problem
 
-COMMANDS = ("serve", "experiment", "zero-dynamics", "lessons", "bench", "forget")
+COMMANDS = (
+    "serve",
+    "experiment",
+    "compare",
+    "figure",
+    "identify",
+    "zero-dynamics",
+    "lessons",
+    "bench",
+    "forget",
+)
 INTERRUPTED = 130
 SOAKED = 40  # honest clients
 
@@ -164,13 +177,26 @@ def unknown_command(name: str) -> str:
 
 def _parse(
     arguments: list[str],
-) -> Serve | ExperimentCommand | ZeroDynamicsCommand | Lessons | BenchCommand | Forget:
+) -> (
+    Serve
+    | ExperimentCommand
+    | CompareCommand
+    | FigureCommand
+    | IdentifyCommand
+    | ZeroDynamicsCommand
+    | Lessons
+    | BenchCommand
+    | Forget
+):
     complaint = io.StringIO()
     try:
         with contextlib.redirect_stderr(complaint):
             return tyro.cli(
                 Annotated[Serve, tyro.conf.subcommand("serve")]
                 | Annotated[ExperimentCommand, tyro.conf.subcommand("experiment")]
+                | Annotated[CompareCommand, tyro.conf.subcommand("compare")]
+                | Annotated[FigureCommand, tyro.conf.subcommand("figure")]
+                | Annotated[IdentifyCommand, tyro.conf.subcommand("identify")]
                 | Annotated[ZeroDynamicsCommand, tyro.conf.subcommand("zero-dynamics")]
                 | Annotated[Lessons, tyro.conf.subcommand("lessons")]
                 | Annotated[BenchCommand, tyro.conf.subcommand("bench")]

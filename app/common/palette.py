@@ -1,7 +1,8 @@
 """The colours of the lab, with the same meanings in the scene, the plots and the figures.
 
-The controllers' colours are Okabe and Ito's vermillion and blue, which remain distinguishable for
-every common form of colour blindness and on a pale projector.
+The benches' colours are Okabe and Ito's vermillion and blue, which remain distinguishable for every
+common form of colour blindness and on a pale projector. Figures of several laws use further ones of
+theirs.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
+from onpath.models.control.laws.registry import LAWS
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +65,8 @@ BORDER = Colour(213, 218, 225)
 SHADE = Colour(238, 241, 245)
 PANEL = Colour(247, 249, 251)
 
-TRACKER = Colour(213, 94, 0)
-FOLLOWER = Colour(0, 114, 178)
+VERMILLION = Colour(213, 94, 0)
+AZURE = Colour(0, 114, 178)
 PATH = Colour(71, 80, 95)
 FORCE = Colour(154, 30, 122)
 WARNING = Colour(196, 18, 48)
@@ -77,7 +79,25 @@ STEEL = Colour(118, 128, 142)
 FLOOR = Colour(244, 246, 248)
 GRID = Colour(222, 226, 232)
 
-SEEN = FOLLOWER.toward(WHITE, 0.6)
+SEEN = AZURE.toward(WHITE, 0.6)
 """Colour of the steps of a lesson that have been opened."""
 
-CONTROLLERS: dict[str, Colour] = dict(zip(NAMES, (TRACKER, FOLLOWER), strict=True))
+OF_BENCH: dict[str, Colour] = {LEFT: VERMILLION, RIGHT: AZURE}
+OTHERS = (
+    *(Colour(0, 158, 115), Colour(204, 121, 167), Colour(230, 159, 0), Colour(86, 180, 233)),
+    *(INK, GREY),
+)
+"""Colours of further laws in a figure."""
+TYPED = Colour(140, 86, 75)
+"""Colour of a typed law in a figure."""
+
+
+def of_law(law: str) -> Colour:
+    """Colour of a control law in figures of several laws; those of a new lab have their bench's."""
+    benches = {own: bench for bench, own in DEFAULT_LAWS.items()}
+    if law in benches:
+        return OF_BENCH[benches[law]]
+    if law not in LAWS:
+        return TYPED
+    others = [name for name in LAWS if name not in benches]
+    return OTHERS[others.index(law) % len(OTHERS)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from datetime import datetime
@@ -12,10 +12,13 @@ from typing import Any
 import viser
 
 from onpath.app.common.error_log import log_error
+from onpath.app.exports.comparison import Results, compared
 from onpath.app.exports.export_process import ExportProcess
 from onpath.app.exports.files import csv_file, film_file, picture_file, report_file
 from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words
+from onpath.models.paths.curves import Curve
+from onpath.models.systems.parameters import Parameters
 
 PATIENCE = 120.0  # [s], time-out of a file, including the files queued before it
 process = ExportProcess()
@@ -45,6 +48,53 @@ class Exporter:
     def recording(self) -> None:
         """Request a standalone page with the scene of the last seconds."""
         self._ask("onpath.html", film_file, in_words=True)
+
+    def compare(
+        self, laws: Sequence[str], obstruction: str, show: Callable[[Results, bytes], None]
+    ) -> None:
+        """Request a comparison of laws, with the lab's robot, parameters and path.
+
+        Args:
+            show: called with the results so far and their picture, after each law.
+        """
+
+        def start(lab: Lab) -> None:
+            session = lab.session
+            own, curve = session.parameters, session.editor.curve
+            if not curve.closed or own.task != "speed" or own.speed == 0:
+                lab.show_message(lab.words("compare.path"), "warning")
+                self._under_way = False
+                return
+            what = session.entry.name, own, curve
+            with suppress(RuntimeError):  # the interpreter is shutting down
+                self._latest = _queue.submit(
+                    self._compare, what, list(laws), obstruction, lab.words.language, show
+                )
+
+        self._want(start)
+
+    def _compare(
+        self,
+        what: tuple[str, Parameters, Curve],
+        laws: list[str],
+        obstruction: str,
+        language: str,
+        show: Callable[[Results, bytes], None],
+    ) -> None:
+        """Compare one law after the other; other tabs' files come in between."""
+        results: Results = {}
+        try:
+            for law in laws:
+                arguments = *what, results, law, obstruction, language
+                results, picture = process.call(PATIENCE, compared, *arguments)
+                show(results, picture)
+        except Exception as error:  # reported to the user; the lab continues
+            log_error(error)
+            words = Words(language)
+            self._client.add_notification(
+                words("compare.title"), words("export.failed", name=words("compare.title"))
+            )
+        self._under_way = False
 
     def report(self, code: str = "") -> None:
         """Request the lesson report as a page.

@@ -10,10 +10,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from onpath.app.common.palette import CONTROLLERS
+from onpath.app.common.palette import OF_BENCH, Colour, of_law
+from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
+from onpath.models.control.laws.registry import law_named
 from onpath.models.studies.experiments import Experiment
+from onpath.models.systems.parameters import LEVEL_SET
 
 EXTRA = {"deflection": ("deflection of\nthe tip  [mm]", 1e3)}
 """Label and scale of those of `Robot.extra_fields` that are drawn."""
@@ -35,7 +38,7 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
 
 def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     """Plot the end-point in output space, and distance, xi, eta, speed and torque over time."""
-    panels = _panels()
+    panels = _panels(level_set=experiment.parameters.across == LEVEL_SET)
     panels[1:1] = _extra_panels(experiment)
     figure = ShownFigure(figsize=(13, 2.1 * len(panels)), layout="constrained")
     axes = figure.subplot_mosaic([["space", name] for name, _, _ in panels], width_ratios=(1, 1.25))
@@ -43,7 +46,7 @@ def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     _draw_space(axes["space"], experiment, runs)
     for name, label, column in panels:
         for run in runs:
-            _draw_column(axes[name], run, *column(run))
+            _draw_column(axes[name], run, of_law(run.controller), *column(run))
         axes[name].set_ylabel(label)
         axes[name].grid(alpha=0.25)
         _shade_held(axes[name], runs)
@@ -60,19 +63,26 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(path, metadata=_reproducible(path), dpi=110)
 
 
-def draw_history(runs: dict[str, Trajectory], words: Words = ENGLISH) -> bytes:
-    """Draw the lab's plots over the last minute as PNG."""
-    panels = _panels(words)
+def draw_history(runs: dict[str, list[Trajectory]], words: Words = ENGLISH) -> bytes:
+    """Draw the lab's plots over the last minute as PNG.
+
+    Args:
+        runs: what each bench did under its control laws, one after the other, by bench.
+    """
+    panels = _panels(words, any(run.level_set for parts in runs.values() for run in parts))
     figure = Figure(figsize=(11, 2.2 * len(panels)), layout="constrained")
     axes = figure.subplots(len(panels), 1, sharex=True)
     for axis, (_, label, column) in zip(axes, panels, strict=True):
-        for run in runs.values():
-            _draw_column(axis, run, *column(run))
+        for bench, parts in runs.items():
+            for run in parts:
+                _draw_column(axis, run, OF_BENCH[bench], *column(run))
+            for run in parts[1:]:
+                axis.axvline(run.t[0], color=OF_BENCH[bench].hex, linestyle=":", linewidth=1)
         axis.set_ylabel(label)
         axis.grid(alpha=0.25)
-    for name, run in runs.items():
-        title = words(f"controller.{name}.title")
-        axes[0].plot([], [], color=CONTROLLERS[run.controller].hex, label=title)
+    laws = {bench: tuple(run.controller for run in parts) for bench, parts in runs.items()}
+    for bench, title in bench_titles(laws, words).items():
+        axes[0].plot([], [], color=OF_BENCH[bench].hex, label=title)
     axes[0].legend(loc="upper right")
     axes[-1].set_xlabel("t  [s]")
     file = io.BytesIO()
@@ -80,15 +90,25 @@ def draw_history(runs: dict[str, Trajectory], words: Words = ENGLISH) -> bytes:
     return file.getvalue()
 
 
-def _panels(words: Words = ENGLISH):
-    """(axes name, label, run -> (values, lines' styles)) from top to bottom."""
+def _panels(words: Words = ENGLISH, level_set: bool = False):
+    """(axes name, label, run -> (values, lines' styles)) from top to bottom.
+
+    Args:
+        level_set: whether the first component of xi is in [m²].
+    """
+    xi = r"$\xi_1=s(y)$  [mm$^2$]" if level_set else r"$\xi_1$  [mm]"
     return [
         ("distance", words("figure.distance"), lambda r: (1e3 * r.distance[:, None],)),
-        ("xi", r"$\xi_1$  [mm]", lambda r: (1e3 * r.fields["xi"],)),
+        ("xi", xi, lambda r: (_shown_xi(r, level_set),)),
         ("eta1", r"$\eta_2^1=\theta$  [rad]", lambda r: (_wrapped(r.fields["theta"]),)),
         ("eta2", r"$\eta_2^2=\dot\theta$  [rad/s]", lambda r: (r.fields["theta_rate"],)),
         ("u", words("figure.torque"), lambda r: (r.fields["u"],)),
     ]
+
+
+def _shown_xi(run: Trajectory, level_set: bool) -> np.ndarray:
+    """xi in [mm], or without what else than s(y) it has, in [mm²]."""
+    return 1e6 * run.fields["xi"][:, :1] if level_set else 1e3 * run.fields["xi"]
 
 
 def _extra_panels(experiment: Experiment):
@@ -115,10 +135,10 @@ def _wrapped(theta: np.ndarray) -> np.ndarray:
     return wrapped
 
 
-def _draw_column(axes: Axes, run: Trajectory, values: np.ndarray) -> None:
+def _draw_column(axes: Axes, run: Trajectory, colour: Colour, values: np.ndarray) -> None:
     styles = ("-", "--", ":")
     for column, style in zip(values.T, styles, strict=False):
-        axes.plot(run.t, column, style, color=CONTROLLERS[run.controller].hex, linewidth=1.5)
+        axes.plot(run.t, column, style, color=colour.hex, linewidth=1.5)
 
 
 def _shade_held(axes: Axes, runs: list[Trajectory]) -> None:
@@ -129,26 +149,26 @@ def _shade_held(axes: Axes, runs: list[Trajectory]) -> None:
 
 def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> None:
     frame = experiment.robot().frame
-    path = 1e3 * experiment.curve().at(np.linspace(-np.pi, np.pi, 400))
+    path = 1e3 * experiment.curve().plan.at(np.linspace(-np.pi, np.pi, 400))
     axes.plot(*path.T, color="0.75", linewidth=6, solid_capstyle="round", label="path")
     for run in runs:
         z = 1e3 * frame.planar(run.fields["y"])
         axes.plot(
             *z.T,
-            color=CONTROLLERS[run.controller].hex,
+            color=of_law(run.controller).hex,
             linewidth=1.6,
-            label=ENGLISH(f"controller.{run.controller}.title"),
+            label=law_named(run.controller).label,
         )
-        axes.plot(*z[0], "o", color=CONTROLLERS[run.controller].hex, markersize=6)
-        axes.plot(*z[-1], "s", color=CONTROLLERS[run.controller].hex, markersize=7)
+        axes.plot(*z[0], "o", color=of_law(run.controller).hex, markersize=6)
+        axes.plot(*z[-1], "s", color=of_law(run.controller).hex, markersize=7)
     axes.plot([], [], "o", color="0.3", label="start")
     axes.plot([], [], "s", color="0.3", label="end")
     if any(run.held.any() for run in runs):
         axes.plot([], [], color="0.5", alpha=0.3, linewidth=10, label="held back (right)")
     axes.set_aspect("equal", adjustable="datalim")
-    first = 1 if frame.p == 2 else 2
+    first, second = frame.axes
     axes.set_xlabel(f"$y_{first}$  [mm]")
-    axes.set_ylabel(f"$y_{first + 1}$  [mm]")
+    axes.set_ylabel(f"$y_{second}$  [mm]")
     axes.grid(alpha=0.25)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=2, frameon=False)
 

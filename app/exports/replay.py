@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import lru_cache
 from itertools import groupby
 
@@ -18,33 +19,54 @@ from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.systems.robots import Robot
 
 
-def replay(robot: Robot, history: list[Segment]) -> dict[str, Trajectory]:
+def replay(robot: Robot, history: list[Segment]) -> dict[str, list[Trajectory]]:
     """Recompute the history, tick by tick, from its checkpoints and inputs.
 
     A robot that is stopped after a divergence has no data for that time.
 
+    Returns:
+        What each bench did, by bench: one trajectory for each time under one control law.
+
     Raises:
         ValueError: all robots were stopped all the time.
     """
-    found = {name: _replayed(robot, name, history) for name in history[0].drives}
-    runs = {name: join(name, parts) for name, parts in found.items() if parts}
+    found = {bench: _replayed(robot, bench, history) for bench in history[0].drives}
+    runs = {
+        bench: [join(law, list(same)) for law, same in groupby(parts, lambda p: p.controller)]
+        for bench, parts in found.items()
+        if parts
+    }
     if not runs:
         raise ValueError("both robots stood still: there is nothing to show")
     return runs
 
 
-def _replayed(robot: Robot, name: str, history: list[Segment]) -> list[Trajectory]:
+def _replayed(robot: Robot, bench: str, history: list[Segment]) -> list[Trajectory]:
     parts: list[Trajectory] = []
-    runs = groupby(history, key=lambda s: (id(s.curve), s.dt, s.drives[name].kind))
+    runs = groupby(history, key=lambda s: (id(s.curve), s.dt, s.drives[bench].kind))
     for (_, dt, kind), group in runs:
-        segments = [s for s in group if not s.drives[name].frozen]
+        segments = [s for s in group if not s.drives[bench].frozen]
         if not segments:
             continue
         loop = _fast_loop(robot, kind)
-        logged = [(rows, s.curve, held) for s, rows, held in _rows(loop, name, segments)]
+        logged = [(rows, s.curve, held) for s, rows, held in _rows(loop, bench, segments)]
         times = np.concatenate([s.time + dt * np.arange(s.ticks, dtype=float) for s in segments])
-        parts.append(record(robot, loop.kernel.log, name, merged(logged), dt, times).thinned())
-    return parts
+        log, law = loop.kernel.log, kind.controller
+        part = record(robot, log, law, merged(logged), dt, times).thinned()
+        parts.append(replace(part, level_set=kind.level_set))
+    return _of_one_unit(parts)
+
+
+def _of_one_unit(parts: list[Trajectory]) -> list[Trajectory]:
+    """The same parts, without the ξ of those in which it has another unit than in the last one."""
+
+    def kept(part: Trajectory) -> Trajectory:
+        if part.level_set == parts[-1].level_set:
+            return part
+        without = {name: np.full_like(part.fields[name], np.nan) for name in ("xi", "xi_rate")}
+        return replace(part, fields=part.fields | without, level_set=parts[-1].level_set)
+
+    return list(map(kept, parts))
 
 
 @lru_cache(maxsize=8)
@@ -57,9 +79,9 @@ def _fast_loop(robot: Robot, kind: Kind) -> Loop:
         return InterpretedLoop(kernel)
 
 
-def _rows(loop: Loop, name: str, segments: list[Segment]) -> Iterable[tuple[Segment, Array, bool]]:
+def _rows(loop: Loop, bench: str, segments: list[Segment]) -> Iterable[tuple[Segment, Array, bool]]:
     for segment in segments:
-        drive = segment.drives[name]
+        drive = segment.drives[bench]
         table = segment.curve.table()
         rows = loop.run(drive.state, drive.settings, table, segment.ticks)[1]
         held = loop.kernel.settings.unpack(drive.settings)["hold_active"][0] > 0

@@ -15,9 +15,10 @@ from onpath.app.common.templates import render
 from onpath.app.exports.report_facts import Chapter, chapters, predictions, quizzes
 from onpath.app.exports.report_plot import draw_prediction, number
 from onpath.app.lab.lesson_state import LessonState
+from onpath.lessons.benches import ROLES, robot_names
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Prediction, Quiz, Sketch, Task
+from onpath.lessons.schema import Prediction, Quiz, RobotName, Sketch, Task
 from onpath.lessons.words import DEFAULT, Words
 
 
@@ -112,7 +113,8 @@ def _record(chapter: Chapter, words: Words) -> ChapterRecord:
 
 def _asked(chapter: Chapter, key: str, block: Prediction, words: Words) -> AskedPrediction:
     answer, truth = chapter.notes.answers.get(key), chapter.notes.truths.get(key)
-    figure = _figure(block, answer, truth, words) if isinstance(block, Sketch) else None
+    names = robot_names(chapter.lesson.laws_shown(int(key)), words)
+    figure = _figure(block, answer, truth, words, names) if isinstance(block, Sketch) else None
     chosen = answer.option if answer else None
     return AskedPrediction(int(key), block, answer, truth, chosen, figure)
 
@@ -127,25 +129,33 @@ def _passed(task: Task, best: float | None, words: Words) -> str:
 
 
 def _figure(
-    block: Sketch, answer: Answer | None, truth: Truth | None, words: Words
+    block: Sketch,
+    answer: Answer | None,
+    truth: Truth | None,
+    words: Words,
+    names: dict[RobotName, str],
 ) -> SketchFigure | None:
-    """Figure of the sketch and the result on the same axes, with the peaks as text."""
+    """Figure of the sketch and the result on the same axes, with the peaks as text.
+
+    Args:
+        names: of the robots.
+    """
     unit, said = QUANTITIES[block.quantity], list[str]()
     if answer is not None and answer.times:
         value, time = _peak(answer.times, answer.values, words)
         said.append(words("report.drawn", value=value, unit=unit, time=time))
     if truth is not None:
-        peaks = {}
-        for robot, values in (("tracker", truth.tracker), ("follower", truth.follower)):
-            value, time = _peak(truth.times, values, words)
-            name = words(f"robot.{robot}")
-            peaks[robot] = words("report.peak", robot=name, value=value, unit=unit, time=time)
-        said.append(words("report.happened", first=peaks["tracker"], second=peaks["follower"]))
+        peaks = list[str]()
+        for role in ROLES.values():
+            value, time = _peak(truth.times, getattr(truth, role), words)
+            peak = {"robot": names[role], "value": value, "unit": unit, "time": time}
+            peaks.append(words("report.peak", **peak))
+        said.append(words("report.happened", first=peaks[0], second=peaks[1]))
     if not said:
         return None
-    robot, quantity = words(f"robot.{block.robot}"), words(f"quantity.{block.quantity}")
+    robot, quantity = names[block.robot], words(f"quantity.{block.quantity}")
     name = words("report.curve", robot=robot, quantity=quantity)
-    return SketchFigure(name, draw_prediction(block, answer, truth, words), " ".join(said))
+    return SketchFigure(name, draw_prediction(block, answer, truth, words, names), " ".join(said))
 
 
 def _peak(times: tuple[float, ...], values: tuple[float, ...], words: Words) -> tuple[str, str]:

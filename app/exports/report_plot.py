@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from threading import Lock
 from typing import Any
 
@@ -13,10 +13,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from onpath.app.common.palette import FOLLOWER, SELECTED, TRACKER
+from onpath.app.common.palette import OF_BENCH, SELECTED
+from onpath.lessons.benches import ROLES
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Sketch
+from onpath.lessons.schema import RobotName, Sketch
 from onpath.lessons.words import Words
 
 SIZE = (6.6, 2.9)  # [in]
@@ -30,22 +31,27 @@ def number(value: float, words: Words) -> str:
 
 
 def draw_prediction(
-    sketch: Sketch, answer: Answer | None, truth: Truth | None, words: Words
+    sketch: Sketch,
+    answer: Answer | None,
+    truth: Truth | None,
+    words: Words,
+    names: Mapping[RobotName, str],
 ) -> str:
-    """Data URI of an SVG: the sketch as a thick line, the robots as solid and dashed lines."""
+    """Data URI of an SVG: the sketch as a thick line, the robots as solid and dashed lines.
+
+    Args:
+        names: of the robots.
+    """
     figure = Figure(figsize=SIZE, layout="constrained")
     axes = figure.subplots()
     if answer is not None and answer.times:
         style = {"color": SELECTED.hex, "linewidth": 4.5, "solid_capstyle": "round"}
         _draw(axes, sketch, answer.times, answer.values, label=words("lesson.yours"), **style)
     if truth is not None:
-        lines = (
-            ("tracker", TRACKER, "-", truth.tracker),
-            ("follower", FOLLOWER, "--", truth.follower),
-        )
-        for robot, colour, dashes, values in lines:
-            style = {"color": colour.hex, "linestyle": dashes, "linewidth": 1.8}
-            _draw(axes, sketch, truth.times, values, label=words(f"robot.{robot}"), **style)
+        for (bench, role), dashes in zip(ROLES.items(), ("-", "--"), strict=True):
+            style = {"color": OF_BENCH[bench].hex, "linestyle": dashes, "linewidth": 1.8}
+            values = getattr(truth, role)
+            _draw(axes, sketch, truth.times, values, label=names[role], **style)
     _dress(axes, sketch, words)
     return _data_uri(figure)
 

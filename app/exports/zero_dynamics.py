@@ -114,6 +114,7 @@ def as_json(result: Study) -> dict[str, Any]:
     return {
         "plant": result.parameters.plant,
         "rho_kg_m": result.parameters.rho,
+        "zeta_of_every_mode": result.parameters.zeta,
         "at_m": list(result.at),
         "unit_1_s": finite(result.unit),
         "modes": {

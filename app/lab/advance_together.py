@@ -13,6 +13,7 @@ import numpy as np
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.faults import not_finite
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import Loop
 from onpath.models.errors import Message
@@ -20,7 +21,7 @@ from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import near_distances
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.robots import NOT_FINITE, Robot
+from onpath.models.systems.robots import Robot
 
 DISTANCE_INTERVAL = 4  # rows between evaluations of the distance, where the loop does not log it
 
@@ -143,8 +144,10 @@ def _faults(
         return [None] * len(members)
     found = [robot.fault(q[i], v[i], own.parameters) for i, (_, own) in enumerate(members)]
     return [
-        (ticks.count, NOT_FINITE) if fault is None and not numbers.all() else fault
-        for fault, numbers in zip(found, finite, strict=True)
+        (ticks.count, not_finite(run.kind.controller))
+        if fault is None and not numbers.all()
+        else fault
+        for fault, numbers, (run, _) in zip(found, finite, members, strict=True)
     ]
 
 

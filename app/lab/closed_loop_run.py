@@ -1,4 +1,4 @@
-"""One robot under one controller, as simulated in a session."""
+"""One bench, a robot under a control law, as simulated in a session."""
 
 from __future__ import annotations
 
@@ -16,13 +16,15 @@ from onpath.models.closed_loop.simulation import (
     first_state,
     kernel_of,
     kind_of,
+    primed,
     pushed,
     settings_vector,
 )
+from onpath.models.control.laws.registry import LAWS
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.distance import near_distance
+from onpath.models.paths.distance import closest_parameter, near_distance
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
@@ -36,23 +38,34 @@ class Diverged:
 
 
 class ClosedLoopRun:
-    """State and inputs of one closed loop; only the simulation thread touches it."""
+    """State and inputs of one closed loop; only the simulation thread touches it.
+
+    Attributes:
+        bench: name of the bench.
+        law: name of its control law.
+    """
 
     def __init__(
-        self, robot: Robot, controller: str, parameters: Parameters, curve: Curve, start: np.ndarray
+        self,
+        robot: Robot,
+        bench: str,
+        law: str,
+        parameters: Parameters,
+        curve: Curve,
+        start: np.ndarray,
     ) -> None:
         self.robot = robot
-        self.controller = controller
+        self.bench, self.law = bench, law
         self.diverged: Diverged | None = None
         self.distance = self.max_distance = 0.0
-        self._inputs: tuple[object, object, object] = (None, None, None)
+        self._inputs: tuple[Parameters, Curve, Push] | None = None
         self.configure(parameters, curve, Push())
-        self._input = Input(self.kind, self.settings, frozen=False)
+        self._input = self._made_input(frozen=False)
         self.reset(curve, start)
 
     def reset(self, curve: Curve, start: np.ndarray) -> None:
         """Place the end-point at `start`, (p,), at rest, and the reference point on `curve`."""
-        kernel = kernel_of(self.robot, self.kind)
+        kernel = self._kernel
         self.state = first_state(self.robot, kernel, curve, self.robot.rest(start))
         self.row = np.zeros(kernel.log.size)
         self._fill_row(curve)
@@ -60,12 +73,45 @@ class ClosedLoopRun:
         self.max_distance = self.distance
 
     def restore(self, drive: Drive, curve: Curve) -> None:
-        """Restore the state of a checkpoint, with the path of that time."""
-        self.state = drive.state.copy()
+        """Restore the state of a checkpoint, with the path of that time and the law of now."""
+        self._go_on_from(drive.state, drive.kind)
         self.max_distance = drive.max_distance
         if not drive.frozen:
             self.diverged = None
         self._fill_row(curve)
+
+    def kinds_under(self, law: str) -> tuple[Kind, Kind]:
+        """The kinds of loop that another law would need, now and when something acts on it."""
+        assert self._inputs is not None
+        return kind_of(law, *self._inputs), kind_of(law, *self._inputs[:2])
+
+    def change_law(self, law: str) -> None:
+        """Change the control law; the robot moves on from where it is."""
+        inputs, state, kind = self._inputs, self.state, self.kind
+        assert inputs is not None
+        self.law, self._inputs = law, None
+        self.configure(*inputs)
+        self._go_on_from(state, kind)
+        self.row = self.row.copy()  # the session detects a new row by identity
+        self.shown()["theta_ref"][:] = self.fields()["theta_ref"]
+
+    def _go_on_from(self, state: Array, kind: Kind) -> None:
+        """Go on from the state of a loop of some kind.
+
+        If that was under another law, the reference point starts at the closest point, and the
+        integral and the memory of the present law at 0.
+        """
+        self.state = state.copy() if kind.controller == self.law else self._under_law(state, kind)
+        self._prime(kind)
+
+    def _under_law(self, state: Array, kind: Kind) -> Array:
+        """The state of a loop under another law, as the loop of the present one begins with it."""
+        before, layout = kernel_of(self.robot, kind).state, self._kernel.state
+        values = {name: np.zeros(size) for name, size in layout.fields}
+        own = {name for name, _ in LAWS[self.law].memory}
+        values |= {n: v for n, v in before.unpack(state).items() if n in values and n not in own}
+        values |= {"theta_ref": values["theta"], "integral": np.zeros_like(values["integral"])}
+        return layout.pack(values)
 
     def change_path(self, curve: Curve) -> None:
         """Switch to another path: keep the reference point, search the closest point globally."""
@@ -78,8 +124,8 @@ class ClosedLoopRun:
         """Restart at the globally closest point, after a jump: reference there, integral zero."""
         self.state = self.state.copy()  # the history may share it
         fields = self.fields()
-        z = self.robot.frame.planar(self.robot.endpoint(fields["q"]))
-        fields["theta"][:] = curve.nearest(z[None])[0]
+        y = self.robot.endpoint(fields["q"])
+        fields["theta"][:] = closest_parameter(self.robot.frame, curve, y)
         fields["theta_rate"][:] = 0.0
         fields["theta_ref"][:] = fields["theta"]
         fields["integral"][:] = 0.0
@@ -87,7 +133,7 @@ class ClosedLoopRun:
 
     def fields(self) -> dict[str, np.ndarray]:
         """Views of the state by name."""
-        return kernel_of(self.robot, self.kind).state.unpack(self.state)
+        return self._kernel.state.unpack(self.state)
 
     def shown(self) -> dict[str, np.ndarray]:
         """The last log row by name."""
@@ -97,8 +143,17 @@ class ClosedLoopRun:
         """Current input, for the history; the same object until something changes."""
         frozen = self.diverged is not None
         if self._input.settings is not self.settings or self._input.frozen != frozen:
-            self._input = Input(self.kind, self.settings, frozen)
+            self._input = self._made_input(frozen)
         return self._input
+
+    def _made_input(self, frozen: bool) -> Input:
+        kernel, size = self._kernel, self._kernel.changed
+        return Input(self.kind, self.settings, frozen, size, kernel.state.size - size)
+
+    @property
+    def recorded(self) -> Array:
+        """The part of the state that the loop changes."""
+        return self.state[: self._kernel.changed]
 
     def loop(self, store: LoopCache) -> Loop:
         """The fastest loop of its kind available now."""
@@ -132,23 +187,31 @@ class ClosedLoopRun:
     def configure(self, parameters: Parameters, curve: Curve, push: Push) -> None:
         """Set the inputs; packs a new settings vector if one has changed."""
         before, self._inputs = self._inputs, (parameters, curve, push)
-        same = before[0] is parameters and before[1] is curve
-        if same and before[2] is push:
+        same = before is not None and before[0] is parameters and before[1] is curve
+        if before is not None and same and before[2] is push:
             return
-        self.kind: Kind = kind_of(self.controller, parameters, curve, push)
+        kind = None if before is None else self.kind
+        self.kind: Kind = kind_of(self.law, parameters, curve, push)
         self._loop: Loop | None = None
-        kernel = kernel_of(self.robot, self.kind)
+        self._kernel = kernel = kernel_of(self.robot, self.kind)
         self.log: Layout = kernel.log
         if same:
             self.settings = pushed(kernel, self.settings, push)
         else:
             self.settings = settings_vector(self.robot, kernel, parameters, curve, push)
+        if kind is not None:
+            self._prime(kind)
+
+    def _prime(self, before: Kind) -> None:
+        """Fill the queue of delayed torques if the loop of this kind did not keep it."""
+        if self.kind.delay and not before.delay:
+            self.state = primed(self._kernel, self.state)
 
     def _fill_row(self, curve: Curve) -> None:
         """Fill the log row of a robot that has not moved yet."""
         self.row = self.row.copy()  # the session detects a new row by identity
         row, state = self.shown(), self.fields()
-        for name in ("q", "v", "theta", "theta_rate", "theta_ref", "u"):
+        for name in ("q", "v", "theta", "theta_rate", "theta_ref", "speed_ref", "u"):
             row[name][:] = state[name]
         row["y"][:] = self.robot.endpoint(state["q"])
         row["force"][:] = 0.0

@@ -10,16 +10,16 @@ import numpy as np
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.simulation import FREE, Push, brake_at
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import Frame
 from onpath.models.systems.robots import Robot
 
 
 class Note(Protocol):
-    """Callback for events: what began or ended, and for which controllers."""
+    """Callback for events: what began or ended, and on which benches."""
 
-    def __call__(self, name: str, /, *, controllers: tuple[str, ...]) -> None: ...
+    def __call__(self, name: str, /, *, benches: tuple[str, ...]) -> None: ...
 
 
 def displaced(frame: Frame, y: Array, by: Array) -> Array:
@@ -33,13 +33,13 @@ class ExternalForces:
 
     Args:
         robot: the model of the robots.
-        runs: by controller.
+        runs: by bench.
         note: see `Note`.
 
     Attributes:
-        held: controllers whose robots are held back.
-        hands: targets of the pulling hands, by controller, in output coordinates, [m].
-        grabbed: controller of the end-point that was grabbed, or None.
+        held: benches whose robots are held back.
+        hands: targets of the pulling hands, by bench, in output coordinates, [m].
+        grabbed: bench of the end-point that was grabbed, or None.
         pushes: external force on each robot; the same object until something changes.
     """
 
@@ -48,14 +48,14 @@ class ExternalForces:
         self.held: set[str] = set()
         self.hands: dict[str, Array] = {}
         self.grabbed: str | None = None
-        self.pushes: dict[str, Push] = dict.fromkeys(NAMES, FREE)
+        self.pushes: dict[str, Push] = dict.fromkeys(BENCHES, FREE)
         self._offsets: dict[str, Array] = {}
 
     def hold(self, names: Sequence[str], on: bool, curve: Curve) -> None:
         """Begin or end holding robots back, each at its current position along the path."""
         changed = tuple(name for name in names if on != (name in self.held))
         if changed:
-            self._note("hold" if on else "let_go", controllers=changed)
+            self._note("hold" if on else "let_go", benches=changed)
         for name in changed:
             (self.held.add if on else self.held.discard)(name)
             brake = None
@@ -64,19 +64,19 @@ class ExternalForces:
                 brake = brake_at(self._robot, curve, row["y"], float(row["theta"][0]))
             self.pushes[name] = Push(self.hands.get(name), brake)
 
-    def grab(self, controller: str, target: Array, together: Sequence[str]) -> None:
+    def grab(self, bench: str, target: Array, together: Sequence[str]) -> None:
         """Pull an end-point towards a target, and others by the same displacement.
 
         Args:
             target: shape (p,), finite: the command has checked it, [m].
-            together: all controllers concerned; they stay the same until `release`.
+            together: all benches concerned; they stay the same until `release`.
         """
-        if self.grabbed != controller:
+        if self.grabbed != bench:
             self.release()
-            own = self._runs[controller].shown()["y"].copy()
-            self.grabbed = controller
+            own = self._runs[bench].shown()["y"].copy()
+            self.grabbed = bench
             self._offsets = {name: self._runs[name].shown()["y"] - own for name in together}
-            self._note("pull", controllers=tuple(self._offsets))
+            self._note("pull", benches=tuple(self._offsets))
         home, reach = self._robot.frame.lift(np.zeros(2)), self._robot.reach[1]
         for name, offset in self._offsets.items():
             self.hands[name] = (target + offset).clip(home - reach, home + reach)
@@ -85,7 +85,7 @@ class ExternalForces:
     def release(self) -> None:
         """Release all end-points; robots that are held back stay so."""
         if self.hands:
-            self._note("release", controllers=tuple(self.hands))
+            self._note("release", benches=tuple(self.hands))
         for name in self.hands:
             self.pushes[name] = Push(None, self.pushes[name].hold)
         self.hands.clear()

@@ -77,13 +77,18 @@ class History:
 
     def _put(self, frames: Sequence[HistoryFrame]) -> None:
         self._list, samples = None, self._sample(frames)
-        if not self._columns or self._end + len(frames) > len(self._columns["time"]):
-            self._make_room(frames, samples)
+        states = [np.concatenate(frame.states) for frame in frames]
+        width, columns = max(state.size for state in states), self._columns
+        if not columns or self._end + len(frames) > len(columns["time"]):
+            self._make_room(len(frames), samples)
+        if width > self._columns["state"].shape[1]:
+            self._widen(width)
         columns, rows = self._columns, slice(self._end, self._end + len(frames))
         columns["time"][rows] = [frame.time for frame in frames]
         columns["ticks"][rows] = [frame.ticks for frame in frames]
         columns["inputs"][rows] = [frame.inputs for frame in frames]
-        columns["state"][rows] = [frame.states for frame in frames]
+        for row, state in enumerate(states, rows.start):
+            columns["state"][row, : state.size] = state
         columns["most"][rows] = [frame.max_distances for frame in frames]
         columns["sample"][rows] = samples
         self._end = rows.stop
@@ -145,19 +150,25 @@ class History:
         times = self._columns["time"][self._begin : self._end]
         return self._begin + int(times.searchsorted(time, side))
 
-    def _make_room(self, frames: Sequence[HistoryFrame], samples: np.ndarray) -> None:
+    def _widen(self, width: int) -> None:
+        """Make room for longer states; all are padded to the same length."""
+        old = self._columns["state"]
+        self._columns["state"] = np.zeros((len(old), width))
+        self._columns["state"][:, : old.shape[1]] = old
+
+    def _make_room(self, frames: int, samples: np.ndarray) -> None:
         """Make free rows at the end: merge older rows, and enlarge the arrays if necessary."""
         kept, old, size = self._kept(), self._columns, len(self._columns.get("time", ()))
         if len(kept):
             old["ticks"][kept] = np.add.reduceat(old["ticks"][: self._end], kept)
-        if len(kept) + len(frames) > FULL * size:
-            rows, states = max(2 * size, FIRST), frames[0].states
-            robots = len(states)
+        if len(kept) + frames > FULL * size:
+            rows, robots = max(2 * size, FIRST), samples.shape[1]
+            width = old["state"].shape[1] if old else 0
             self._columns = {
                 "time": np.empty(rows),
                 "ticks": np.empty(rows, dtype=int),
                 "inputs": np.empty(rows, dtype=object),
-                "state": np.empty((rows, robots, len(states[0]))),
+                "state": np.zeros((rows, width)),
                 "most": np.empty((rows, robots)),
                 "sample": np.empty((rows, *samples.shape[1:]), dtype=np.float32),
             }

@@ -1,4 +1,4 @@
-"""Identification of the controllers' model from the follower's recent motion."""
+"""Identification of the controllers' model from the right robot's recent motion."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.simulation import kernel_of
+from onpath.models.control.benches import RIGHT
 from onpath.models.errors import CodedError
 from onpath.models.studies.identification import (
     BALANCE,
@@ -29,8 +30,9 @@ from onpath.models.systems.parameters import Parameters, changed, specs
 from onpath.models.systems.robots import BalancedLinkage, Robot
 
 MOST_TICKS = 3000  # maximum ticks to use, to keep the lab responsive
-FOLLOWER = "path_following"
-PLANT = ("plant", "coulomb", "encoder_step")  # the robot is the same while these are unchanged
+MEASURED = RIGHT  # the bench whose record is used; any would do, under any law
+# the robot is the same while these are unchanged
+PLANT = ("plant", "coulomb", "stiction", "encoder_step", "sensor_noise")
 UNITS = {"M": "kg m²", "b": "N m s", "c": "N m", "G": "N m"}
 POOR = 0.05  # unexplained share of the torque above which the report warns
 
@@ -38,7 +40,7 @@ POOR = 0.05  # unexplained share of the torque above which the report warns
 def identify_model(
     robot: Robot, parameters: Parameters, history: list[Segment], words: Words
 ) -> tuple[Parameters, str]:
-    """Identify the model from the follower's last seconds.
+    """Identify the model from the right robot's last seconds.
 
     Args:
         history: of the lab, oldest first.
@@ -66,7 +68,7 @@ def _learned(robot: Robot, segments: tuple[Segment, ...]) -> tuple[Identified, f
 
 
 def last_record(robot: Robot, history: list[Segment]) -> JointRecord:
-    """Sensor data of the follower's last seconds, while the robot was as it is now.
+    """Sensor data of the right robot's last seconds, while the robot was as it is now.
 
     Raises:
         ValueError: there is no data, or the robot is not a balanced linkage.
@@ -74,7 +76,7 @@ def last_record(robot: Robot, history: list[Segment]) -> JointRecord:
     linkage, segments = robot.linkage, _same_robot(robot, history)
     if linkage is None or not segments:
         raise CodedError("error.nothing_recorded")
-    drive, dt = segments[-1].drives[FOLLOWER], segments[-1].dt
+    drive, dt = segments[-1].drives[MEASURED], segments[-1].dt
     log = kernel_of(robot, drive.kind).log.unpack(_rows(robot, segments))
     q, v = log["q"], log["v"]
     torque = log["u"] + joint_torques(q, log["force"], linkage.l1, linkage.l4)
@@ -101,7 +103,7 @@ def _same_robot(robot: Robot, history: list[Segment]) -> list[Segment]:
     for segment in reversed(history):
         ticks += segment.ticks
         later = found[-1] if found else segment
-        drive, next_drive = segment.drives[FOLLOWER], later.drives[FOLLOWER]
+        drive, next_drive = segment.drives[MEASURED], later.drives[MEASURED]
         if ticks > MOST_TICKS or drive.frozen or segment.dt != later.dt:
             break
         if not _alike(robot, drive, next_drive):
@@ -123,12 +125,12 @@ def _setting(robot: Robot, drive: Drive, name: str) -> Array:
 
 
 def _rows(robot: Robot, segments: list[Segment]) -> Array:
-    """Recompute the follower's log rows, in one call for segments with the same inputs."""
+    """Recompute the right robot's log rows, in one call for segments with the same inputs."""
     rows = list[Array]()
-    runs = groupby(segments, lambda s: (id(s.drives[FOLLOWER].settings), id(s.curve)))
+    runs = groupby(segments, lambda s: (id(s.drives[MEASURED].settings), id(s.curve)))
     for _, group in runs:
         members = list(group)
-        drive, table = members[0].drives[FOLLOWER], members[0].curve.table()
+        drive, table = members[0].drives[MEASURED], members[0].curve.table()
         ticks = sum(member.ticks for member in members)
         loop = _loop(robot, drive.kind)
         rows.append(loop.run(drive.state, drive.settings, table, ticks)[1])

@@ -18,10 +18,13 @@ from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
 from onpath.app.lab.setup import Setup, restore
+from onpath.lessons.benches import bench_titles
 from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.simulation import has_level_set
 from onpath.models.errors import Message
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
+from onpath.models.systems.parameters import DISTANCE, LEVEL_SET, changed
 
 MOST_COMMANDS = 500  # maximum in the queue; further ones are dropped
 
@@ -126,6 +129,7 @@ class Lab:
         taken = perf_counter() - begun
         if not self.frozen:
             self._play()
+        self._end_level_set()
         self.lessons.follow(self)
         if self.watch is not None:
             self.watch(self)
@@ -143,6 +147,15 @@ class Lab:
         except ValueError as error:
             self.show_message(self.words.sentence(error), "warning")
         self.show_faults()
+
+    def _end_level_set(self) -> None:
+        """Measure the distance again, and say so, if the path has no level set any more."""
+        session = self.session
+        now, path = session.parameters, session.editor.blend.target
+        if now.across == LEVEL_SET and not has_level_set(path):
+            session.set_parameters(changed(now, "across", DISTANCE))
+            session.note("set", "across")
+            self.remark(self.words("say.level_set_ends"))
 
     def _play(self) -> None:
         """Queue the commands of the running script."""
@@ -219,9 +232,10 @@ class Lab:
         fault = self.session.runs[name].diverged
         if fault is None:
             return
+        titles = bench_titles(self.session.laws, self.words)
         said = self.words(
             "say.stopped",
-            robot=self.words(f"controller.{name}.title"),
+            robot=titles[name],
             time=f"{fault.time:.2f}",
             reason=self.words.sentence(fault.reason),
         )

@@ -8,12 +8,15 @@ import numpy as np
 
 from onpath.app.lab.session import Session
 from onpath.app.lab.timeline import LabEvent
+from onpath.lessons.benches import ROLES
 from onpath.lessons.progress import MOST_POINTS, Truth
-from onpath.lessons.record import ROBOTS, ROLES, Happening, Record
+from onpath.lessons.record import ROBOTS, Happening, Record
 from onpath.lessons.schema import RobotName
 from onpath.lessons.thinning import peaks
 from onpath.models.arrays import Array
+from onpath.models.control.benches import LEFT
 from onpath.models.layout import Layout
+from onpath.models.systems.parameters import LEVEL_SET
 
 MOST_SAMPLES = 3600
 
@@ -45,6 +48,7 @@ def record_of(session: Session, since: Beginning) -> Record:
         end=session.time,
         path=session.editor.design.name,
         robot=session.entry.name,
+        laws=session.laws,
     )
 
 
@@ -85,7 +89,7 @@ class Trace:
 
 def _happening(event: LabEvent) -> Happening:
     """Convert an event to the form used by the checks."""
-    robots = tuple[RobotName, ...](ROLES[name] for name in event.controllers)
+    robots = tuple[RobotName, ...](ROLES[name] for name in event.benches)
     return Happening(event.run, event.time, event.name, event.detail, robots)
 
 
@@ -96,10 +100,15 @@ def _nothing(session: Session) -> dict[RobotName, dict[str, Array]]:
 def _values(session: Session, samples: Array) -> dict[RobotName, dict[str, Array]]:
     """Quantities of samples, shape (n, robots, fields); see lessons.record.QUANTITIES."""
     layout, names = session.sample_layout, list(session.runs)
-    timetable = names.index(next(name for name in names if ROLES[name] == "tracker"))
+    timetable = names.index(LEFT)
     running = layout.unpack(samples[:, timetable])["theta_ref"][:, 0]
     point = session.robot.frame.lift(session.editor.curve.at(running))
-    return {ROLES[name]: _of(layout, samples[:, i], point) for i, name in enumerate(names)}
+    values: dict[RobotName, dict[str, Array]]
+    values = {ROLES[name]: _of(layout, samples[:, i], point) for i, name in enumerate(names)}
+    if session.parameters.across == LEVEL_SET or session.across_since > 0:  # not in mm throughout
+        for own in values.values():
+            del own["across"], own["across_rate"]
+    return values
 
 
 def _of(layout: Layout, samples: Array, point: Array) -> dict[str, Array]:

@@ -22,7 +22,7 @@ from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson, Prediction, Sketch, Task, Window
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError
-from onpath.models.systems.parameters import unknown_name
+from onpath.models.systems.parameter_specs import unknown_name
 
 CHECK_INTERVAL = 30  # frames between evaluations of the tasks
 
@@ -274,7 +274,7 @@ def setup_of(lesson: Lesson, index: int, exaggeration: float = 1.0) -> Setup:
     scene = lesson.scene_at(index)
     robot, path = scene.robot or lesson.front.robot, Path(scene.path or Path().name)
     own = {robot: RobotSetup(dict(scene.set), path)}
-    return Setup(robot, own, exaggeration=exaggeration)
+    return Setup(robot, own, exaggeration=exaggeration, laws=scene.laws.named)
 
 
 def _set_up(lab: LessonLab, lesson: Lesson, index: int) -> None:

@@ -1,7 +1,8 @@
 """Viewing the past of a lab, continuing from it, and undoing that.
 
 Only continuing discards history. What it discards can be restored until the next continuation,
-a reset, or a change of the robot.
+a reset, or a change of the robot. It continues with the path, the parameters and the control laws
+of now; a law that was not in force at that instant begins there as after any change of law.
 """
 
 from __future__ import annotations
@@ -35,6 +36,9 @@ def go_on(session: Session) -> tuple[float, float] | None:
         _take(session, _branch(session, segment))
         session.note("let_go")
         session.note("release")
+        for bench, drive in segment.drives.items():
+            if (law := session.laws[bench]) != drive.kind.controller:
+                session.note("law", law, (bench,))
         session.undo_timeline = left
     session.viewing, session.running = None, True
     return None if left is None else (session.time, left.time - session.time)

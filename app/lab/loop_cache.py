@@ -33,9 +33,18 @@ class LoopCache:
         if ready is not None:
             return ready
         if key not in self._interpreted:
-            self._interpreted[key] = InterpretedLoop(kernel_of(robot, kind))
+            self._interpreted.setdefault(key, InterpretedLoop(kernel_of(robot, kind)))
         self.prepare(robot, kind)
         return self._interpreted[key]
+
+    def is_ready(self, robot: Robot, kind: Kind) -> bool:
+        """Whether `get` returns a loop at once; if not, one is made in the background."""
+        key = (robot, kind)
+        if key in self._compiled or key in self._interpreted:
+            return True
+        self.prepare(robot, kind)
+        wanted = self._wanted.get(key)
+        return wanted is None or wanted.done()
 
     def prepare(self, robot: Robot, kind: Kind) -> None:
         """Compile a loop in the background, unless that was requested before."""
@@ -53,7 +62,10 @@ class LoopCache:
 
     def _compile(self, key: Key) -> None:
         try:
-            self._compiled[key] = translate_loop(kernel_of(*key))
+            kernel = kernel_of(*key)
+            if key not in self._interpreted:
+                self._interpreted.setdefault(key, InterpretedLoop(kernel))
+            self._compiled[key] = translate_loop(kernel)
         except Exception as error:  # the lab continues with interpreted loops
             log.warning("cannot compile a loop, the interpreted one goes on: %s", error)
             self.close()  # further compilations would fail, too

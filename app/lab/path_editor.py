@@ -6,13 +6,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from onpath.models.arrays import Array
+from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import Fault, curve_faults
-from onpath.models.paths.curves import Curve, blend
+from onpath.models.paths.curves import Curve, blend, saddle
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.robots import Robot
 
 BLEND = 0.3  # [s]
 DEPTH = 100
+HALVINGS = 6  # of a drag that leads to an invalid path: it ends within 1/64 of its length
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,9 +48,10 @@ class PathEditor:
 
     Attributes:
         robot: must be able to follow the path.
+        rise: of the path above the plane in which it is edited, see `saddle`, [m].
         design: the last valid design.
-        proposed: the design being dragged, valid or not; None if there is none.
-        faults: errors of the last refused edit.
+        proposed: the valid design to which an unfinished edit has led; None if there is none.
+        faults: why the last edit was refused, or went no further.
         selected: index of the selected control point.
         version: changes whenever the drawing does.
         blend: the followed path and its blend.
@@ -55,8 +59,8 @@ class PathEditor:
         table: its coefficients for the loop.
     """
 
-    def __init__(self, robot: Robot, design: PathDesign) -> None:
-        self.robot = robot
+    def __init__(self, robot: Robot, design: PathDesign, rise: float = 0.0) -> None:
+        self.robot, self.rise = robot, rise
         self._past: list[PathDesign] = []
         self._future: list[PathDesign] = []
         self.design = design
@@ -64,7 +68,23 @@ class PathEditor:
         self.faults: list[Fault] = []
         self.selected: int | None = None
         self.version = 0
-        self._follow(Blend(design.curve))
+        self._follow(Blend(self._raised(design)))
+
+    def raise_to(self, rise: float, design: PathDesign | None = None) -> None:
+        """Set the rise of the path, and another design with it.
+
+        Raises:
+            ValueError: the robot could not follow the path; nothing has changed.
+        """
+        before, self.rise = self.rise, rise
+        if faults := self._faults(design or self.design):
+            self.rise = before
+            reasons = tuple(fault.reason for fault in faults)
+            raise CodedError("error.cannot_follow", robot=self.robot.label, reasons=reasons)
+        if design is not None:
+            self.commit(design)
+        self._blend_to(self.proposed or self.design)
+        self.version += 1
 
     def select(self, index: int | None) -> None:
         """Select a control point; an invalid index selects none."""
@@ -73,33 +93,70 @@ class PathEditor:
         self.version += 1
 
     def propose(self, design: PathDesign) -> bool:
-        """Show an unfinished edit, and follow it if it is valid. Returns whether it is."""
-        self.proposed = design
-        self.faults = curve_faults(self.robot.margin, design.curve)
+        """Show and follow an unfinished edit if it is valid. Returns whether it is."""
+        self.faults = self._faults(design)
         self.version += 1
         if not self.faults:
-            self._blend_to(design.curve)
+            self.proposed = design
+            self._blend_to(design)
         return not self.faults
 
-    def finish(self) -> bool:
-        """End an edit: keep it if valid, else return to the last valid path."""
+    def drag(self, index: int, target: Array) -> bool:
+        """Move a control point from its place in `design` towards a target, as far as is valid.
+
+        Where the path would become invalid before the target, the place is found by bisection of
+        the straight line from the one to the other, and `faults` tells what is beyond it.
+
+        Args:
+            index: of the control point.
+            target: shape (2,), [m].
+
+        Returns:
+            Whether it has reached the target.
+
+        Raises:
+            ValueError: there is no such point, or no curve through the target.
+        """
+        if self.propose(self.design.moved(index, target)):
+            return True
+        start, faults = self.design.points[index], self.faults
+        reached, low, high = self.design, 0.0, 1.0
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2
+            try:
+                design = self.design.moved(index, start + middle * (target - start))
+            except CodedError:  # two points coincide
+                high = middle
+                continue
+            if found := self._faults(design):
+                faults, high = found, middle
+            else:
+                reached, low = design, middle
+        self.proposed, self.faults = reached, faults
+        self._blend_to(reached)
+        return False
+
+    def finish(self) -> None:
+        """End an edit, and keep what is proposed."""
         design, self.proposed = self.proposed, None
         self.version += 1
-        if design is None:
-            return True
-        if self.faults:
-            self._blend_to(self.design.curve)
-            return False
-        if design is not self.design:
+        if design is not None and design is not self.design:
             self._past = [*self._past[-DEPTH:], self.design]
             self._future.clear()
             self._keep(design)
-        return True
 
     def commit(self, design: PathDesign) -> bool:
-        """Apply a complete edit."""
-        self.propose(design)
-        return self.finish()
+        """Apply a complete edit; False if it is not valid, and the path is as before."""
+        valid = self.propose(design)
+        self.finish()
+        return valid
+
+    def _raised(self, design: PathDesign) -> Curve:
+        """The path of a design, with the rise."""
+        return saddle(design.curve, self.rise)
+
+    def _faults(self, design: PathDesign) -> list[Fault]:
+        return curve_faults(self.robot.margin, self._raised(design))
 
     def undo(self) -> bool:
         """Undo one edit; False if there is none."""
@@ -133,7 +190,7 @@ class PathEditor:
     def settle(self) -> None:
         """Follow the last valid path at once, without a blend."""
         self.proposed, self.faults = None, []
-        self._follow(Blend(self.design.curve))
+        self._follow(Blend(self._raised(self.design)))
 
     def show(self, shown: PathDesign, followed: Blend, faults: list[Fault]) -> None:
         """Copy another editor: its points and marks, and the path followed there."""
@@ -146,13 +203,15 @@ class PathEditor:
 
     def _swap(self, source: list[PathDesign], sink: list[PathDesign]) -> bool:
         dragged, self.proposed, self.faults = self.proposed, None, []
-        if not source:
+        if source and self.rise:  # the design may be of a time when the path was flat
+            self.faults = self._faults(source[-1])
+        if not source or self.faults:
             if dragged is not None:
-                self._blend_to(self.design.curve)
+                self._blend_to(self.design)
             return False
         sink.append(self.design)
         self._keep(source.pop())
-        self._blend_to(self.design.curve)
+        self._blend_to(self.design)
         return True
 
     def _keep(self, design: PathDesign) -> None:
@@ -161,8 +220,8 @@ class PathEditor:
             self.selected = None
         self.version += 1
 
-    def _blend_to(self, target: Curve) -> None:
-        self.blend = Blend(target, self.curve, 0.0)
+    def _blend_to(self, design: PathDesign) -> None:
+        self.blend = Blend(self._raised(design), self.curve, 0.0)
 
     def _follow(self, followed: Blend) -> None:
         self.blend, self.curve = followed, followed.curve

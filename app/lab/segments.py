@@ -20,11 +20,15 @@ class Input:
         kind: of the loop.
         settings: of the loop.
         frozen: whether the robot has diverged and stands still.
+        size: length of the part of the loop's state that it changes, which is recorded.
+        rest: length of the rest, which a loop of another kind changes; restored as 0.
     """
 
     kind: Kind
     settings: np.ndarray
     frozen: bool
+    size: int
+    rest: int = 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,7 +38,7 @@ class Inputs:
     Attributes:
         curve: the path.
         dt: length of a tick, [s].
-        of: inputs of the robots, by controller.
+        of: inputs of the robots, by bench.
     """
 
     curve: Curve
@@ -72,12 +76,14 @@ class Instant:
 
     Attributes:
         time: [s].
-        states: one per robot.
+        laws: control law of each robot.
+        states: one per robot; their lengths depend on the laws.
         max_distances: since reset, shape (robots,), [m].
         sample: plotted values, shape (robots, fields).
     """
 
     time: float
+    laws: tuple[str, ...]
     states: Sequence[np.ndarray]
     max_distances: Sequence[float]
     sample: np.ndarray
@@ -91,7 +97,7 @@ class HistoryFrame:
         time: at the beginning, [s].
         ticks: number of ticks.
         inputs: the same object until something changes.
-        states: of each robot, at the beginning; not modified later.
+        states: of each robot, at the beginning, as far as recorded; not modified later.
         max_distances: of each robot, at the beginning, [m].
         rows: log row of each robot, at the beginning.
         distances: of each robot, at the beginning, [m].
@@ -114,7 +120,7 @@ class Segment:
         time: at the beginning, [s].
         dt: length of a tick, [s].
         curve: the path during the segment.
-        drives: by controller.
+        drives: by bench.
         sample: plotted values, at the beginning, shape (robots, fields).
     """
 
@@ -128,8 +134,9 @@ class Segment:
     def instant(self) -> Instant:
         """The instant at its beginning."""
         drives = self.drives.values()
+        laws = tuple(d.kind.controller for d in drives)
         states, most = [d.state for d in drives], [d.max_distance for d in drives]
-        return Instant(self.time, states, most, self.sample.astype(float))
+        return Instant(self.time, laws, states, most, self.sample.astype(float))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -153,10 +160,10 @@ class HistoryCopy:
 def segment_at(columns: dict[str, np.ndarray], row: int) -> Segment:
     """Make a segment from one row of the columns."""
     inputs: Inputs = columns["inputs"][row]
-    states, most = columns["state"][row].copy(), columns["most"][row]
-    drives = {
-        name: Drive(one.kind, state, one.settings, one.frozen, float(distance))
-        for (name, one), state, distance in zip(inputs.of.items(), states, most, strict=True)
-    }
+    states, end, drives = columns["state"][row], 0, dict[str, Drive]()
+    for (bench, one), most in zip(inputs.of.items(), columns["most"][row].tolist(), strict=True):
+        begin, end = end, end + one.size
+        state = np.concatenate([states[begin:end], np.zeros(one.rest)])
+        drives[bench] = Drive(one.kind, state, one.settings, one.frozen, most)
     time, ticks = float(columns["time"][row]), int(columns["ticks"][row])
     return Segment(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())

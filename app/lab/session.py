@@ -21,12 +21,13 @@ from onpath.app.lab.plot_samples import sample_layout, samples_of
 from onpath.app.lab.segments import HistoryFrame, Inputs, Instant
 from onpath.app.lab.timeline import LabEvent, Timeline
 from onpath.models.arrays import Array
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
+from onpath.models.control.laws.registry import LAWS
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
-from onpath.models.systems.parameters import TICK, Parameters, time_step
+from onpath.models.systems.parameters import TICK, Parameters, rise_of, time_step
 from onpath.models.systems.robots import Robot
 
 MOST_TICKS = 200  # per frame
@@ -42,7 +43,7 @@ class Session:
 
     Attributes:
         entry, robot, parameters: catalogue entry, model and parameters of the current robot.
-        runs: the two closed loops, by controller.
+        runs: the two closed loops, by bench.
         editor: the path.
         grips: external forces that hold the robots back or pull at them.
         history: the last minute.
@@ -54,15 +55,18 @@ class Session:
         viewing: the past instant being viewed, [s], or None.
         undo_timeline: the timeline replaced by continuing from the past, or None.
         events: user actions and incidents, oldest first.
-        faults: controllers whose robots have stopped and have not been reported yet.
+        faults: benches whose robots have stopped and have not been reported yet.
         run_number: number of resets.
+        across_since: time since which ξ has had its present unit, [s].
     """
 
     def __init__(self, store: LoopCache, entry: RobotEntry = FIVE_BAR) -> None:
         self._store = store
-        self._benches: dict[str, tuple[Parameters, PathEditor]] = {}
+        self.earlier: dict[str, tuple[Parameters, PathEditor]] = {}
         self.history = History(self._samples)
         self._inputs: Inputs | None = None
+        self.runs: dict[str, ClosedLoopRun] = {}
+        self._coming: dict[str, str] = {}  # laws whose loops are being made, by bench
         self.presets: Mapping[str, PathDesign] = presets()
         self.running = True
         self.rate = 1.0
@@ -78,7 +82,7 @@ class Session:
     def choose_robot(self, entry: RobotEntry) -> None:
         """Choose another robot, with its previous parameters and path."""
         if entry is not self.entry:
-            self._benches[self.entry.name] = (self.parameters, self.editor)
+            self.earlier[self.entry.name] = (self.parameters, self.editor)
             self._set_up(entry)
             self.note("robot", entry.name)
 
@@ -86,6 +90,11 @@ class Session:
         """Set the parameters; a structural change makes a new robot, which starts anew."""
         if self.robot.extra_fields:
             self.history.settle()  # its samples depend on the parameters
+        rise = rise_of(parameters)
+        if rise != self.editor.rise:
+            self.editor.raise_to(rise)
+        if parameters.across != self.parameters.across:
+            self.across_since = self.time
         self.parameters = parameters
         robot = self.entry.make(parameters)
         if robot is not self.robot:
@@ -95,20 +104,64 @@ class Session:
 
     def _set_up(self, entry: RobotEntry) -> None:
         self.entry = entry
-        parameters, editor = self._benches.get(entry.name, (entry.lab, None))
+        parameters, editor = self.earlier.get(entry.name, (entry.lab, None))
         self.parameters: Parameters = parameters
         self.robot: Robot = entry.make(parameters)
-        self.editor = editor or PathEditor(self.robot, self.presets["circle"])
+        rise = rise_of(parameters)
+        self.editor = editor or PathEditor(self.robot, self.presets["circle"], rise)
         self._restart()
 
-    def note(self, name: str, detail: str = "", controllers: tuple[str, ...] = NAMES) -> None:
+    # The control laws
+
+    @property
+    def laws(self) -> dict[str, str]:
+        """Control law of each bench."""
+        return {bench: run.law for bench, run in self.runs.items()}
+
+    @property
+    def chosen_laws(self) -> dict[str, str]:
+        """Control law of each bench as soon as its loop can run."""
+        return self.laws | self._coming
+
+    def suits(self, law: str) -> bool:
+        """Whether a law can be used with the current robot."""
+        return LAWS[law].suits(self.robot.system)
+
+    def choose_law(self, bench: str, law: str) -> None:
+        """Change the law of a bench as soon as its loop can run; the old law goes on until then."""
+        self._coming[bench] = law
+        self._change_laws()
+
+    def change_law(self, bench: str, law: str) -> None:
+        """Change the law of a bench now; its robot moves on from where it is."""
+        self._coming.pop(bench, None)
+        if law != self.runs[bench].law:
+            self.runs[bench].change_law(law)
+            self.note("law", law, (bench,))
+
+    def _change_laws(self) -> None:
+        """Change to the laws whose loops can run now."""
+        for bench, law in list(self._coming.items()):
+            now, pushed = self.runs[bench].kinds_under(law)
+            if self._store.is_ready(self.robot, now):
+                self._store.prepare(self.robot, pushed)
+                self.change_law(bench, law)
+
+    def _suitable(self, laws: Mapping[str, str]) -> dict[str, str]:
+        """The laws that suit the robot, and the defaults in place of others."""
+        both = {**DEFAULT_LAWS, **laws}
+        return {b: law if self.suits(law) else DEFAULT_LAWS[b] for b, law in both.items()}
+
+    def note(self, name: str, detail: str = "", benches: tuple[str, ...] = BENCHES) -> None:
         """Record an event."""
-        self.events.append(LabEvent(self.run_number, self.time, name, detail, controllers))
+        self.events.append(LabEvent(self.run_number, self.time, name, detail, benches))
 
     # Time
 
     def frame(self, seconds: float) -> Frame:
         """Simulate `seconds` of simulated time, if running; see `advance_together`."""
+        if self._coming:
+            self._change_laws()
         if not self.running:
             self._owed = 0.0
             if self.viewing is None:
@@ -131,16 +184,16 @@ class Session:
         self._bend(ticks * dt)
         curve, table, runs = self.editor.curve, self.editor.table, list(self.runs.values())
         for run in runs:
-            run.configure(parameters, curve, self.grips.pushes[run.controller])
-        states, most = [run.state for run in runs], [run.max_distance for run in runs]
+            run.configure(parameters, curve, self.grips.pushes[run.bench])
+        states, most = [run.recorded for run in runs], [run.max_distance for run in runs]
         rows, distances = [run.row for run in runs], [run.distance for run in runs]
         moving = [(run, run.loop(self._store)) for run in runs if run.diverged is None]
         yield Ticks(moving, ticks, self.time, dt, parameters, curve, table)
         for run, _ in moving:
             if run.diverged is not None:
-                self.note("diverged", controllers=(run.controller,))
-                self.faults.append(run.controller)
-        inputs = {run.controller: run.input() for run in runs}
+                self.note("diverged", benches=(run.bench,))
+                self.faults.append(run.bench)
+        inputs = {run.bench: run.input() for run in runs}
         if self._inputs is None or not self._inputs.are(curve, dt, inputs.values()):
             self._inputs = Inputs(curve, dt, inputs)
         self.history.append(
@@ -160,14 +213,22 @@ class Session:
         dt = time_step(self.parameters)
         self.simulate(max(1, round(max(TICK, 1 / self.parameters.control_rate) / dt)))
 
-    def reset(self) -> None:
-        """Put both robots at the start, at rest. Clears the history; keeps path and parameters."""
-        self._restart()
+    def reset(self, laws: Mapping[str, str] | None = None) -> None:
+        """Put both robots at the start, at rest. Clears the history; keeps path and parameters.
+
+        Args:
+            laws: control laws from now on, the defaults where there is none; None: those of now.
+        """
+        if laws is not None:
+            self._coming.clear()
+        self._restart(laws)
         self.note("reset")
 
-    def _restart(self) -> None:
+    def _restart(self, laws: Mapping[str, str] | None = None) -> None:
+        laws = self._suitable(self.laws if laws is None else laws)
+        self._coming = {b: law for b, law in self._coming.items() if self.suits(law)}
         self.run_number += 1
-        self.time = 0.0
+        self.time = self.across_since = 0.0
         self._owed = 0.0
         self._now: Instant | None = None
         self.viewing: float | None = None
@@ -177,7 +238,8 @@ class Session:
         start = self.start_point(self.editor.curve)
         curve = self.editor.curve
         self.runs = {
-            name: ClosedLoopRun(self.robot, name, self.parameters, curve, start) for name in NAMES
+            bench: ClosedLoopRun(self.robot, bench, law, self.parameters, curve, start)
+            for bench, law in laws.items()
         }
         self.grips = ExternalForces(self.robot, self.runs, self.note)
 
@@ -185,9 +247,9 @@ class Session:
         """Start of a run, on the path, (p,), [m]."""
         return self.robot.frame.lift(curve.at(np.array(0.0)))
 
-    def targets(self, controller: str) -> list[str]:
-        """Controllers of the robots that a gesture at `controller` acts on."""
-        return list(NAMES) if self.copy else [controller]
+    def targets(self, bench: str) -> list[str]:
+        """The benches that a gesture at `bench` acts on."""
+        return list(BENCHES) if self.copy else [bench]
 
     # Samples of an instant
 
@@ -201,8 +263,9 @@ class Session:
         runs, now = self.runs.values(), self._now
         made_of = [self.editor.curve, self.parameters, *[run.row for run in runs]]
         if now is None or now.time != self.time or not all(map(is_, made_of, self._made_of)):
+            laws = tuple(run.law for run in runs)
             states, most = [run.state for run in runs], [run.max_distance for run in runs]
-            now = self._now = Instant(self.time, states, most, self.sample())
+            now = self._now = Instant(self.time, laws, states, most, self.sample())
             self._made_of = made_of
         return now
 

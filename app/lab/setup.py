@@ -1,7 +1,9 @@
 """A lab's set-up as plain data, to be stored, shared and restored.
 
-It holds the differences from a new lab, so a new lab is `Setup()`. Lengths of a path are whole
-micrometres and numbers have six digits, so that capturing a restored set-up gives the same one.
+It holds the differences from a new lab, so a new lab is `Setup()`. Its data name the version of the
+defaults that they differ from, so that data of an earlier version keep their meaning. Lengths of a
+path are whole micrometres and numbers have six digits, so that capturing a restored set-up gives
+the same one.
 """
 
 from __future__ import annotations
@@ -15,21 +17,16 @@ import numpy as np
 
 from onpath.app.lab.path_editor import BLEND
 from onpath.app.lab.session import Session
-from onpath.models.errors import CodedError
+from onpath.models.closed_loop.simulation import raised
+from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, check_laws
+from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through
 from onpath.models.paths.curves import TERMS, from_terms, terms_of
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, presets
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, RobotEntry
-from onpath.models.systems.parameters import (
-    NOTHING,
-    Parameters,
-    Spec,
-    changed,
-    out_of_range,
-    specs,
-    unknown_name,
-)
+from onpath.models.systems.parameter_specs import NOTHING, Spec, out_of_range, unknown_name
+from onpath.models.systems.parameters import Parameters, changed, rise_of, specs
 
 EXAGGERATIONS = (1.0, 20.0)  # minimum and maximum
 RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)  # simulated seconds per second
@@ -37,6 +34,10 @@ UNIT = 1e-6  # [m]
 DIGITS = 6
 EDITED, DRAWN = "edited", "drawn"  # names of paths that are not presets
 DRAWN_POINTS = {True: 10, False: 6}  # control points of closed and open strokes, as in `drawn`
+
+DEFAULTS = 2  # version of a new lab's parameters; data that name none are of version 1
+FORMER_DEFAULTS = {"five_bar": {"K3": 0.0}, "two_link_arm": {"K3": 0.0}, "flexible": {}}
+"""Robots of version 1, and their defaults that have changed. K3 acted in the tracker, too."""
 
 Word = Annotated[str, msgspec.Meta(max_length=40, pattern=r"^[A-Za-z0-9_ -]*$")]
 Length = Annotated[int, msgspec.Meta(ge=-1_000_000, le=1_000_000)]
@@ -66,13 +67,25 @@ class RobotSetup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A whole lab: the current robot, the set-up of each robot, and the lab's switches."""
+    """A whole lab: the current robot, the set-up of each robot, and the lab's switches.
+
+    Attributes:
+        benches: the set-up of each robot, by name.
+        laws: control laws that differ from a new lab's, by bench.
+    """
 
     robot: Word = FIVE_BAR.name
     benches: Annotated[dict[Word, RobotSetup], msgspec.Meta(max_length=100)] = {}
     rate: float = 1.0
     copy: bool = True
     exaggeration: float = 1.0
+    laws: Annotated[dict[Word, Word], msgspec.Meta(max_length=len(BENCHES))] = {}
+
+
+class StoredSetup(Setup, frozen=True, forbid_unknown_fields=True):
+    """A set-up as data: `defaults` is the version of the defaults that it differs from."""
+
+    defaults: Annotated[int, msgspec.Meta(ge=1, le=DEFAULTS)] = 1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,14 +97,18 @@ class Wanted:
     design: PathDesign
 
 
-def to_data(value: Any) -> Any:
+def to_data(setup: Setup) -> dict[str, Any]:
     """Convert a set-up to JSON data, without default values."""
+    return {"defaults": DEFAULTS, **_plain(setup)}
+
+
+def _plain(value: Any) -> Any:
     if isinstance(value, msgspec.Struct):
         new = type(value)()
         own = {name: getattr(value, name) for name in value.__struct_fields__}
-        return {n: to_data(v) for n, v in own.items() if v != getattr(new, n)}
+        return {n: _plain(v) for n, v in own.items() if v != getattr(new, n)}
     if isinstance(value, Mapping):
-        return {name: to_data(item) for name, item in value.items()}
+        return {name: _plain(item) for name, item in value.items()}
     return list(value) if isinstance(value, tuple) else value
 
 
@@ -101,14 +118,29 @@ def from_data(data: Any) -> Setup:
     Raises:
         ValueError: it is not a valid set-up.
     """
-    setup = msgspec.convert(data, Setup)
+    stored = msgspec.convert(data, StoredSetup)
+    benches = stored.benches if stored.defaults == DEFAULTS else _brought_up(stored.benches)
+    setup = Setup(stored.robot, benches, stored.rate, stored.copy, stored.exaggeration, stored.laws)
     planned(setup, presets())
     return setup
 
 
+def _brought_up(benches: Mapping[str, RobotSetup]) -> dict[str, RobotSetup]:
+    """The same set-ups of robots, as differences from the present defaults."""
+    found = dict(benches)
+    for robot, former in FORMER_DEFAULTS.items():
+        bench = benches.get(robot, RobotSetup())
+        own = {**former, **bench.parameters}
+        if own.get("K3", 0.0) != 0.0:
+            own["tracker_integral"] = "on"
+        if own:
+            found[robot] = RobotSetup(own, bench.path)
+    return found
+
+
 def capture(session: Session) -> Setup:
     """The current set-up of a session; a path being dragged counts only after the drag."""
-    benches = {name: (own, editor.design) for name, (own, editor) in session._benches.items()}
+    benches = {name: (own, editor.design) for name, (own, editor) in session.earlier.items()}
     benches[session.entry.name] = session.parameters, session.editor.design
     found = {
         name: RobotSetup(_differences(ROBOTS[name].lab, own), capture_path(design, session.presets))
@@ -120,7 +152,32 @@ def capture(session: Session) -> Setup:
         rate=_rounded(session.rate),
         copy=session.copy,
         exaggeration=_rounded(session.exaggeration),
+        laws={b: law for b, law in session.chosen_laws.items() if law != DEFAULT_LAWS[b]},
     )
+
+
+def with_paths_of_today(setup: Setup) -> tuple[Setup, tuple[Message, ...]]:
+    """A kept set-up with the circle in place of every path that is refused today, and why it is.
+
+    A path that was accepted when it was kept may be refused now.
+
+    Raises:
+        ValueError: the set-up is impossible for another reason.
+    """
+    benches, told = dict(setup.benches), tuple[Message, ...]()
+    for name, wanted in planned(setup, presets()).items():
+        if reasons := _path_faults(wanted):
+            kept = benches.get(name, RobotSetup())
+            benches[name] = msgspec.structs.replace(kept, path=Path())
+            told = (*told, *reasons)
+    return msgspec.structs.replace(setup, benches=benches), told
+
+
+def _path_faults(wanted: Wanted) -> tuple[Message, ...]:
+    """Why a robot cannot follow its path; empty if it can."""
+    robot = wanted.entry.make(wanted.parameters)
+    path = raised(wanted.design.curve, wanted.parameters)
+    return tuple(fault.reason for fault in curve_faults(robot.margin, path))
 
 
 def restore(session: Session, setup: Setup) -> None:
@@ -130,22 +187,22 @@ def restore(session: Session, setup: Setup) -> None:
         ValueError: the set-up is impossible; the session is unchanged.
     """
     wanted = planned(setup, session.presets)
-    for name in (session.entry.name, *session._benches):
+    for name in (session.entry.name, *session.earlier):
         wanted.setdefault(name, _wanted(name, RobotSetup(), session.presets))
-    for name, bench in wanted.items():
-        faults = curve_faults(bench.entry.make(bench.parameters).margin, bench.design.curve)
-        if faults:
-            reasons = tuple(fault.reason for fault in faults)
-            raise CodedError("error.cannot_follow", robot=ROBOTS[name].label, reasons=reasons)
+    for bench in wanted.values():
+        if reasons := _path_faults(bench):
+            raise CodedError("error.cannot_follow", robot=bench.entry.label, reasons=reasons)
     session.rate, session.copy = setup.rate, setup.copy
     session.exaggeration = setup.exaggeration
     for name in sorted(wanted, key=lambda name: name == setup.robot):
         bench = wanted[name]
         session.choose_robot(bench.entry)
+        if (rise := rise_of(bench.parameters)) != session.editor.rise:
+            session.editor.raise_to(rise, bench.design)
         session.set_parameters(bench.parameters)
         session.editor.commit(bench.design)
         session.editor.advance(BLEND)
-    session.reset()
+    session.reset(setup.laws)
 
 
 def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
@@ -155,13 +212,16 @@ def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
         paths: the presets.
 
     Raises:
-        ValueError: an unknown name, a number out of range, or points that do not form a path.
+        ValueError: an unknown name, a number out of range, points that do not form a path, or a
+            law that does not suit the robot.
     """
-    msgspec.convert(to_data(setup), Setup)  # one made in Python has not been validated
+    msgspec.convert(to_data(setup), StoredSetup)  # one made in Python has not been validated
     _within("speed", setup.rate, RATES)
     _within("exaggeration", setup.exaggeration, EXAGGERATIONS)
     names = dict.fromkeys((*setup.benches, setup.robot))
-    return {name: _wanted(name, setup.benches.get(name, RobotSetup()), paths) for name in names}
+    wanted = {name: _wanted(name, setup.benches.get(name, RobotSetup()), paths) for name in names}
+    check_laws(setup.laws, wanted[setup.robot].entry)
+    return wanted
 
 
 def _wanted(name: str, bench: RobotSetup, paths: Mapping[str, PathDesign]) -> Wanted:

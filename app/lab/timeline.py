@@ -18,17 +18,17 @@ class LabEvent:
     Attributes:
         run: number of resets before it.
         time: simulated time, [s].
-        name: "set", "path", "robot", "reset", "hold", "let_go", "pull", "release", "identify" or
-            "diverged".
-        detail: the parameter, the path or the robot; or empty.
-        controllers: the controllers concerned.
+        name: "set", "path", "robot", "law", "reset", "hold", "let_go", "pull", "release",
+            "identify" or "diverged".
+        detail: the parameter, the path, the robot or the law; or empty.
+        benches: the benches concerned.
     """
 
     run: int
     time: float
     name: str
     detail: str
-    controllers: tuple[str, ...]
+    benches: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +39,7 @@ class Timeline:
         time: at its end, [s].
         curve: the path at its end.
         history: the last minute.
-        runs: the two closed loops at its end, by controller.
+        runs: the two closed loops at its end, by bench.
         grips: external forces at its end.
         events: user actions and incidents, oldest first.
     """

@@ -13,6 +13,7 @@ from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 from onpath.app.exports.summary_text import summary_lines
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory, write_csv
+from onpath.models.control.laws.own import law_title
 from onpath.models.studies.experiments import Experiment, summary
 
 if TYPE_CHECKING:
@@ -124,7 +125,7 @@ class Run:
 
     def summary(self) -> dict[str, Any]:
         """Summary of the run, as in `onpath experiment --json`; units are in the names."""
-        return summary(self.experiment, [self.trajectory])["controllers"][self.law]
+        return summary(self.experiment, [self.trajectory])["laws"][self.law]
 
     def plot(self, *others: Run, file: str | Path | None = None) -> Figure:
         """Plot the end-point and path, and distance, xi, theta, its rate and torque over time.
@@ -171,6 +172,6 @@ class Run:
         return [self.trajectory, *(other.trajectory for other in others)]
 
     def __repr__(self) -> str:
-        lines = [f"{self.law.replace('_', ' ')}, {self.experiment.title}, {len(self.t)} ms"]
+        lines = [f"{law_title(self.law)}, {self.experiment.title}, {len(self.t)} ms"]
         lines += summary_lines(self.summary())
         return "\n  ".join([*lines, self.reason] if self.reason else lines)

@@ -3,27 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from inspect import signature
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from onpath.app.notebook.arguments import (
+    array_of,
+    lengths,
+    numbers,
+    plane_point,
+    schedule_of,
+    start_point,
+)
 from onpath.app.notebook.run import Run
-from onpath.lessons.words import ENGLISH
-from onpath.models.arrays import Array
-from onpath.models.control.laws import NAMES
+from onpath.models.control.laws.registry import LAWS, law_name
 from onpath.models.paths import curves
-from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, open_through
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets
 from onpath.models.studies import experiments
 from onpath.models.studies.experiments import Experiment, Schedule
+from onpath.models.studies.path_text import curve_from_text
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
-from onpath.models.systems.parameters import Spec, specs, unknown_name
-from onpath.models.systems.robots import Robot
-
-POSITIVE = "positive finite numbers, [m]"
+from onpath.models.systems.parameter_specs import Spec, unknown_name
+from onpath.models.systems.parameters import specs
 
 
 def simulate(
@@ -33,26 +38,46 @@ def simulate(
     *,
     duration: float = 8.0,
     start: ArrayLike | None = None,
+    velocity: tuple[float, float] = (0.0, 0.0),
+    clock_offset: float = 0.0,
     hold: tuple[float, float] | None = None,
+    hold_at: float | None = None,
+    hold_direction: str = "along",
     push: tuple[float, float, ArrayLike] | None = None,
+    wall: tuple[float, float, ArrayLike, float] | None = None,
     reverse_at: float = 0.0,
+    profile: str | Iterable[tuple[float, float]] | None = None,
     **parameters: float | str,
 ) -> Run:
     """Simulate one robot under one control law, as `onpath experiment` does.
 
     Args:
         robot: one of `onpath.robots()`.
-        path: a curve, such as `onpath.ellipse(...)`, or one of `onpath.paths()`. It lies in the
-            robot's path plane, [m].
-        law: one of `onpath.laws()`.
+        path: a curve, such as `onpath.ellipse(...)`, one of `onpath.paths()`, or a text, such as
+            "ellipse 0.07 0.04"; see models/studies/path_text.py. It lies in the robot's path plane,
+            [m].
+        law: one of `onpath.laws()`, or a law of one's own in two lines, such as
+            "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)".
         duration: simulated time, [s].
-        start: initial position of the end-point, at rest, shape (2,) in the path's plane or (p,)
+        start: initial position of the end-point, shape (2,) in the path's plane or (p,)
             in the output space, [m]; None: the point of the path at theta = 0.
-        hold: (from, to): interval in which a brake along the path's tangent acts, [s].
+        velocity: initial velocity of the end-point (along, across) the path at its closest point,
+            [m/s].
+        clock_offset: how far the reference point of a law with a clock is ahead of the closest
+            point at the start, [rad].
+        hold: (from, to): interval in which a brake acts, [s].
+        hold_at: theta at which the brake acts, for to - from, when the end-point passes there for
+            the first time after from, [rad]; None: at once, wherever it is.
+        hold_direction: "along" the path's tangent, "across" it, or "both".
         push: (from, to, place): interval, [s], in which a hand, modelled as a spring and a damper,
             pulls the end-point towards a place in the path's plane, shape (2,), [m]; see
             models/systems/forces.py.
+        wall: (from, to, place, angle): interval in which there is a wall, [s]; a point of its
+            surface in the path's plane, shape (2,), [m]; angle of its normal, which points to the
+            free side, with the first axis, [rad].
         reverse_at: time at which the desired speed changes sign, [s]; 0: never.
+        profile: desired speed over time, linear between (time, speed) pairs, [s] and [rad/s],
+            instead of `speed` and `ramp`; it is fed forward, as in (19).
         parameters: any of `onpath.parameters(robot)` by name, such as K1=900; others keep their
             defaults. What `--set law=` sets for the flexible robot is called `output` here.
 
@@ -71,17 +96,24 @@ def simulate(
 
     Both laws, in one picture:
 
-    >>> runs = [onpath.simulate(law=law, hold=(1, 2), duration=3) for law in onpath.laws()]
+    >>> laws = "trajectory_tracking", "path_following"
+    >>> runs = [onpath.simulate(law=law, hold=(1, 2), duration=3) for law in laws]
     >>> figure = runs[0].plot(*runs[1:])
 
-    >>> onpath.simulate(law="path_folowing")
+    A law of one's own, which pulls twice as hard as path following:
+
+    >>> run = onpath.simulate(law="across = -2*K1*xi - K2*dxi; along = 9*(5 - dtheta)", duration=1)
+    >>> bool(abs(run.theta_rate[-1] - 5) < 0.1)
+    True
+
+    >>> onpath.simulate(path="elipse")
     Traceback (most recent call last):
-    onpath.models.errors.CodedError: unknown law 'path_folowing': did you mean path_following?
+    onpath.models.errors.CodedError: unknown path 'elipse': did you mean ellipse, closed, open?
     """
     entry = _entry(robot)
-    _check_name(law, NAMES, "law")
+    law = _law(law)
     curve = _curve(path)
-    first = _start(entry.make(entry.parameters()), curve, start)
+    first = start_point(entry.make(entry.parameters()), curve, start)
     chosen = Experiment(
         name="simulate",
         title=entry.label,
@@ -91,13 +123,13 @@ def simulate(
         start=lambda _: first,
         path=curve,
     ).with_values(
-        {"duration": duration, "reverse_at": reverse_at}
-        | _acts(hold, push)
+        {"duration": duration, "reverse_at": reverse_at, "clock_offset": clock_offset}
+        | {"hold_direction": hold_direction, "profile": profile}
+        | ({} if hold_at is None else {"hold_at": hold_at})
+        | schedule_of(velocity, hold, push, wall)
         | _by_own_names(parameters, entry)
     )
-    faults = curve_faults(chosen.robot().margin, curve)
-    if faults:
-        raise ValueError("; ".join(str(fault.reason) for fault in faults))
+    experiments.check_path(chosen.robot(), curve)
     return Run(chosen, experiments.run(chosen, law))
 
 
@@ -115,10 +147,10 @@ def laws() -> dict[str, str]:
     """Names of the control laws with a description of each.
 
     >>> import onpath
-    >>> onpath.laws()["path_following"]
-    'stays on the curve'
+    >>> onpath.laws()["virtual_constraint"]
+    'Holds the end-point on the curve and leaves it alone along it, like a bead on a wire.'
     """
-    return {name: ENGLISH(f"controller.{name}.does") for name in NAMES}
+    return {name: law.text for name, law in LAWS.items()}
 
 
 def paths() -> dict[str, str]:
@@ -158,14 +190,15 @@ def circle(radius: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:
     Raises:
         ValueError: non-finite numbers, or a radius that is not positive.
     """
-    (length,) = _lengths("radius", radius)
-    return curves.circle(length, _point("centre", centre))
+    (length,) = lengths("radius", radius)
+    return curves.circle(length, plane_point("centre", centre))
 
 
-def ellipse(a: float, b: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:
+def ellipse(a: float, b: float, centre: Sequence[float] = (0.0, 0.0), angle: float = 0.0) -> Curve:
     """An ellipse with half axes a along the first and b along the second coordinate, [m].
 
-    theta is its eccentric anomaly. Source: eq. (15).
+    It is then turned by an angle about its centre, [rad]. theta is its eccentric anomaly. Like a
+    circle, it has a level set, across="level_set". Source: eqs. (15), (23).
 
     Raises:
         ValueError: non-finite numbers, or a half axis that is not positive.
@@ -174,8 +207,9 @@ def ellipse(a: float, b: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:
     >>> (onpath.ellipse(0.07, 0.04).at(np.pi / 2) + 0.0).round(3)
     array([0.  , 0.04])
     """
-    first, second = _lengths("half axes", a, b)
-    return curves.ellipse((first, second), _point("centre", centre))
+    first, second = lengths("half axes", a, b)
+    (turn,) = numbers("angle", (angle,), 1, "a finite number, [rad]")
+    return curves.ellipse((first, second), plane_point("centre", centre), float(turn))
 
 
 def segment(start: ArrayLike, end: ArrayLike) -> Curve:
@@ -185,7 +219,7 @@ def segment(start: ArrayLike, end: ArrayLike) -> Curve:
         ValueError: non-finite numbers, or start and end coincide.
     """
     form = "a point of the plane, shape (2,), [m]"
-    ends = _numbers("start", start, 2, form), _numbers("end", end, 2, form)
+    ends = numbers("start", start, 2, form), numbers("end", end, 2, form)
     return through(np.stack(ends), closed=False)
 
 
@@ -195,13 +229,19 @@ def through(points: ArrayLike, closed: bool = True) -> Curve:
     Raises:
         ValueError: too few points, non-finite numbers, or all points coincide.
     """
-    given = _array("points", points, "points, shape (n, 2), [m]")
+    given = array_of("points", points, "points, shape (n, 2), [m]")
     return closed_through(given) if closed else open_through(given)
 
 
 def _entry(robot: str) -> RobotEntry:
     _check_name(robot, ROBOTS, "robot")
     return ROBOTS[robot]
+
+
+def _law(law: str) -> str:
+    if not isinstance(law, str):
+        raise unknown_name(str(law), list(LAWS), "law")
+    return law_name(law)
 
 
 def _check_name(name: Any, known: Iterable[str], what: str) -> None:
@@ -216,7 +256,7 @@ def _names(entry: RobotEntry) -> dict[str, str]:
 
 def _by_own_names(parameters: Mapping[str, Any], entry: RobotEntry) -> dict[str, Any]:
     names = _names(entry)
-    arguments = ("path", "duration", "start", "hold", "push", "reverse_at")
+    arguments = [name for name in signature(simulate).parameters if name != "parameters"]
     for name in parameters:
         if name not in names:
             raise unknown_name(name, [*names, *arguments])
@@ -226,63 +266,8 @@ def _by_own_names(parameters: Mapping[str, Any], entry: RobotEntry) -> dict[str,
 def _curve(path: Curve | str) -> Curve:
     if isinstance(path, Curve):
         return path
-    _check_name(path, presets(), "path")
-    return presets()[path].curve
-
-
-def _acts(hold: Any, push: Any) -> dict[str, float]:
-    """Schedule entries for the forces on the end-point."""
-    values = dict[str, float]()
-    if hold is not None:
-        values["hold_from"], values["hold_to"] = _numbers("hold", hold, 2, "(from, to), [s]")
-    if push is not None:
-        form = "(from, to, (z1, z2)), [s] and [m]"
-        try:
-            begin, end, place = push
-            flat = (begin, end, *place)
-        except (TypeError, ValueError):
-            raise ValueError(f"push: expected {form}, got {push!r}") from None
-        names = ("push_from", "push_to", "push_z1", "push_z2")
-        values |= zip(names, _numbers("push", flat, 4, form), strict=True)
-    return values
-
-
-def _start(robot: Robot, curve: Curve, start: ArrayLike | None) -> Array:
-    """Initial position of the end-point, shape (p,)."""
-    if start is None:
-        return robot.frame.lift(curve.at(np.array(0.0)))
-    p = robot.system.p
-    form = f"a point, shape (2,) or ({p},), [m]" if p > 2 else "a point, shape (2,), [m]"
-    y = _array("start", start, form)
-    if y.shape not in ((2,), (p,)) or not np.isfinite(y).all():
-        raise ValueError(f"start: expected {form}, got {start!r}")
-    return y if y.shape == (p,) else robot.frame.lift(y)
-
-
-def _lengths(name: str, *values: Any) -> tuple[float, ...]:
-    lengths = _numbers(name, values, len(values), POSITIVE)
-    if lengths.min() <= 0:
-        raise ValueError(f"{name}: expected {POSITIVE}, got {values}")
-    return tuple(lengths.tolist())
-
-
-def _point(name: str, values: Any) -> tuple[float, float]:
-    first, second = _numbers(name, values, 2, "a point of the plane, shape (2,), [m]").tolist()
-    return first, second
-
-
-def _numbers(name: str, values: Any, count: int, form: str) -> Array:
-    numbers = _array(name, values, form)
-    if numbers.shape != (count,) or not np.isfinite(numbers).all():
-        raise ValueError(f"{name}: expected {form}, got {values!r}")
-    return numbers
-
-
-def _array(name: str, values: Any, form: str) -> Array:
-    try:
-        return np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: expected {form}, got {values!r}") from None
+    _check_name(path, [path] if isinstance(path, str) else presets(), "path")
+    return curve_from_text(path)
 
 
 def _described(spec: Spec, default: Any) -> str:

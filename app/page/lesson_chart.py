@@ -6,7 +6,8 @@ import numpy as np
 import viser
 from viser import uplot
 
-from onpath.app.common.palette import FOLLOWER, SELECTED, TRACKER
+from onpath.app.common.palette import OF_BENCH, SELECTED
+from onpath.lessons.benches import ROLES, robot_names
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch
@@ -14,17 +15,28 @@ from onpath.lessons.words import Words
 
 
 class PredictionChart:
-    """One uPlot chart."""
+    """One uPlot chart.
+
+    Args:
+        laws: control laws under which the prediction is put to the test.
+    """
 
     def __init__(
-        self, gui: viser.GuiApi, sketch: Sketch, answer: Answer | None, words: Words
+        self,
+        gui: viser.GuiApi,
+        sketch: Sketch,
+        answer: Answer | None,
+        laws: dict[str, str],
+        words: Words,
     ) -> None:
         self._sketch, self._answer = sketch, answer
         self._shown: Truth | None = None
-        unit = QUANTITIES[sketch.quantity]
+        unit, names = QUANTITIES[sketch.quantity], robot_names(laws, words)
         lines = (
-            uplot.Series(label=words("robot.tracker"), stroke=TRACKER.hex, width=2),
-            uplot.Series(label=words("robot.follower"), stroke=FOLLOWER.hex, width=2),
+            *(
+                uplot.Series(label=names[role], stroke=OF_BENCH[bench].hex, width=2)
+                for bench, role in ROLES.items()
+            ),
             uplot.Series(label=words("lesson.yours"), stroke=SELECTED.hex, width=4),
         )
         self._handle = gui.add_uplot(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from onpath.app.common.palette import BORDER, FOLLOWER, GREEN
+from onpath.app.common.palette import AZURE, BORDER, GREEN
 from onpath.app.common.templates import render
 from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.checks import Verdict
@@ -52,7 +52,7 @@ def question(block: Choice | Quiz, chosen: int | None, revealed: bool, words: Wo
     return render(
         "lesson/question.html",
         title=block.question,
-        colour=FOLLOWER.hex,
+        colour=AZURE.hex,
         options=list(zip(LETTERS, block.options, strict=False)),
         chosen=chosen,
         revealed=revealed,
@@ -77,7 +77,7 @@ def _task(title: str, verdicts: tuple[Verdict, ...], hints: tuple[str, ...], pas
     return render(
         "lesson/task.html",
         title=title,
-        colour=(GREEN if passed else FOLLOWER).hex,
+        colour=(GREEN if passed else AZURE).hex,
         verdicts=verdicts,
         hints=hints,
         passed=passed,

@@ -15,6 +15,7 @@ from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
 from onpath.app.scene.scene import Scene
+from onpath.lessons.benches import robot_names
 from onpath.lessons.course import Course
 from onpath.lessons.schema import Choice, Prediction, Quiz, Sketch, Step, Task, Text
 from onpath.lessons.words import Words
@@ -161,7 +162,7 @@ class LessonPanel:
         if isinstance(block, Sketch):
             self._html(page.asked(block))
             if answer is None:
-                self._add_sketching(block)
+                self._add_sketching(block, run)
             else:
                 self._add_chart(block, run)
             return
@@ -192,7 +193,7 @@ class LessonPanel:
         self._handles.append(group)
         return group
 
-    def _add_sketching(self, block: Sketch) -> None:
+    def _add_sketching(self, block: Sketch, run: LessonView) -> None:
         """The sketch board, its keyboard alternative, and the button that submits the sketch."""
         words = self._words
         said = self._html(page.remark(words("lesson.draw_first")))
@@ -205,7 +206,8 @@ class LessonPanel:
             commit.disabled = False
             said.content = page.remark(words("lesson.drawn"))
 
-        title = f"{words(f'robot.{block.robot}')}: {words(f'quantity.{block.quantity}')}"
+        robot = robot_names(run.laws_shown, words)[block.robot]
+        title = f"{robot}: {words(f'quantity.{block.quantity}')}"
         self._scene.show_titles(False)
         self._board = SketchBoard(self._client.scene, self._scene.stage, block, title, drawn)
         self._add_numbers(block, self._board, drawn)
@@ -258,7 +260,7 @@ class LessonPanel:
             self._html(page.question(block, chosen, True, run.words))
 
     def _add_chart(self, block: Sketch, run: LessonView) -> None:
-        self._chart = PredictionChart(self._gui, block, run.answer(), run.words)
+        self._chart = PredictionChart(self._gui, block, run.answer(), run.laws_shown, run.words)
         self._handles.append(self._chart)
         self._chart.show(run.truth)
 

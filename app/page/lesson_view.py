@@ -24,6 +24,12 @@ class LessonView(LessonState):
         self.verdicts, self.truth = shown.verdicts, shown.truth
 
     @property
+    def laws_shown(self) -> dict[str, str]:
+        """Control laws under which the open step's prediction is put to the test."""
+        lesson, found = self.lesson, self.prediction()
+        return {} if lesson is None or found is None else lesson.laws_shown(int(found[0]))
+
+    @property
     def setup(self) -> StepSetup:
         """Set-up of the open step."""
         lesson = self.lesson

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import viser
 
-from onpath.app.common.palette import FOLLOWER
+from onpath.app.common.palette import AZURE
 from onpath.app.common.templates import render
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
@@ -53,9 +53,7 @@ class Page:
         self.exporter, self._rebuilds = Exporter(client), RebuildThread(client)
         self._framed, self._settling = 0.0, SETTLING
         self._building, self.is_outdated = True, False
-        client.gui.configure_theme(
-            show_logo=False, show_share_button=False, brand_color=FOLLOWER.rgb
-        )
+        client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
         self._is_phone = self._is_narrow()
         if not self._is_phone:

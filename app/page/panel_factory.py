@@ -11,10 +11,12 @@ from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.page.page_context import PageContext
+from onpath.app.page.panels.compare_panel import ComparePanel
 from onpath.app.page.panels.flexible_panel import FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
 from onpath.app.page.panels.keep_panel import KeepPanel
 from onpath.app.page.panels.keys import help_text
+from onpath.app.page.panels.law_panel import LawPanel
 from onpath.app.page.panels.past_panel import PastPanel
 from onpath.app.page.panels.path_panel import PathChoice, PathPanel
 from onpath.app.page.panels.robot_panel import RobotPanel
@@ -34,7 +36,8 @@ from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 
 ALL = (
-    *("robot", "hold", "path", "flexible", "gains", "editor", "plots", "past", "keep"),
+    *("robot", "laws", "hold", "path", "flexible", "gains", "editor"),
+    *("plots", "compare", "past", "keep"),
     "copy",
 )
 
@@ -104,9 +107,11 @@ class PanelFactory:
             "editor": lambda: self._editor(first),
             "gains": lambda: GainsPanel(gui, words, post, first),
             "plots": lambda: MorePlots(gui, words, first.key.fields),
+            "compare": lambda: _silent(ComparePanel(gui, words, first, exporter.compare)),
             "past": lambda: PastPanel(gui, words, post, exporter),
             "keep": lambda: KeepPanel(gui, words, post, exporter, self._desk),
             "robot": lambda: _silent(RobotPanel(gui, words, post, first.key.robot)),
+            "laws": lambda: LawPanel(gui, words, post, first),
             "copy": lambda: self._copy(first),
             "flexible": lambda: self._flexible(first),
             "identify": lambda: _silent(add_identify(gui, words, post)),

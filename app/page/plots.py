@@ -9,13 +9,16 @@ import numpy as np
 import viser
 from viser import uplot
 
-from onpath.app.common.palette import CONTROLLERS
+from onpath.app.common.palette import OF_BENCH
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.viser_adapter.frame_channel import update_gui
+from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.layout import Layout
+from onpath.models.systems.parameters import LEVEL_SET
 
+XI = ("xi", "xi_rate")  # fields in another unit with a level set
 LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and third line
 
 
@@ -86,40 +89,62 @@ class LivePlot:
     """One uPlot chart."""
 
     def __init__(
-        self, gui: viser.GuiApi, words: Words, fields: Fields, plot: Plot, height: int
+        self,
+        gui: viser.GuiApi,
+        words: Words,
+        fields: Fields,
+        plot: Plot,
+        height: int,
+        level_set: bool = False,
     ) -> None:
-        self._plot = plot
+        self._words, self._has_xi = words, plot.field in XI
+        in_level_set = level_set and self._has_xi
         self._shown = -1.0
-        series = [uplot.Series(label=words("plots.time"))]
-        names = plot.lines(fields)
-        for robot in NAMES:
-            for name, dash in zip(names, LINES, strict=False):
-                label = f"{words(f'controller.{robot}.short')} {name}".rstrip()
-                line = uplot.Series(label=label, stroke=CONTROLLERS[robot].hex, width=2)
-                if dash is not None:
-                    line["dash"] = dash
-                series.append(line)
+        # what else ξ contains is in mm
+        self._names, self._laws = [""] if in_level_set else plot.lines(fields), DEFAULT_LAWS
+        least = plot.least
+        if in_level_set and least is not None:  # s is 100 mm² at 1 mm beside a circle of 50 mm
+            least = (100 * least[0], 100 * least[1])
+        self._scale = plot.scale**2 if in_level_set else plot.scale
+        series = self._series()
         begin = Layout(fields).slices[plot.field].start
-        self._lines = slice(begin, begin + min(len(names), len(LINES)))
+        self._lines = slice(begin, begin + min(len(self._names), len(LINES)))
         self._empty = tuple(np.zeros(2) for _ in series)
         self._handle = gui.add_uplot(
             self._empty,
-            tuple(series),
-            title=words(f"axis.{plot.name}"),
-            scales={"x": uplot.Scale(time=False), "y": _at_least(plot.least)},
+            series,
+            title=words(f"axis.{plot.name}{'-level_set' if in_level_set else ''}"),
+            scales={"x": uplot.Scale(time=False), "y": _at_least(least)},
             legend=uplot.Legend(live=False),
             height=height,
         )
 
+    def _series(self) -> tuple[uplot.Series, ...]:
+        """Time and the lines of each bench, named after its law."""
+        series = [uplot.Series(label=self._words("plots.time"))]
+        for bench, title in bench_titles(self._laws, self._words).items():
+            for name, dash in zip(self._names, LINES, strict=False):
+                label = f"{title} {name}".rstrip()
+                line = uplot.Series(label=label, stroke=OF_BENCH[bench].hex, width=2)
+                if dash is not None:
+                    line["dash"] = dash
+                series.append(line)
+        return tuple(series)
+
     def follow(self, snapshot: PageSnapshot) -> None:
         """Plot the last seconds up to the displayed time."""
+        if snapshot.laws != self._laws:
+            self._laws = snapshot.laws
+            self._handle.series = self._series()
         if snapshot.time == self._shown:
             return
         self._shown, times = snapshot.time, snapshot.plots.times
+        since = np.searchsorted(times, snapshot.plots.across_since) if self._has_xi else 0
+        times = times[since:]
         if len(times) < 2:  # what was plotted before a reset is not of this run
             update_gui(self._handle, "data", self._empty)
             return
-        values = snapshot.plots.values[:, :, self._lines].astype(float) * self._plot.scale
+        values = snapshot.plots.values[since:, :, self._lines].astype(float) * self._scale
         lines = np.vstack([times, values.reshape(len(times), -1).T])
         finite = lines if np.isfinite(lines).all() else np.nan_to_num(lines)
         update_gui(self._handle, "data", tuple(finite))
@@ -147,18 +172,20 @@ class MorePlots:
             self._choice = gui.add_dropdown(
                 words("plots.show"), list(self._plots), hint=words("plots.show_hint")
             )
-        self._drawn: Plot | None = None
+        self._drawn: tuple[Plot | None, bool] = None, False
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Update the selected plot."""
         chosen = self._plots[self._choice.value]
-        if chosen is not self._drawn:
-            self._drawn = chosen
+        level_set = snapshot.parameters["across"] == LEVEL_SET
+        if (chosen, level_set) != self._drawn:
+            self._drawn = chosen, level_set
             if self._plot is not None:
                 self._plot.remove()
                 self._plot = None
             if chosen is not None:
                 with self._folder:
-                    self._plot = LivePlot(self._gui, self._words, self._fields, chosen, 200)
+                    parts = self._gui, self._words, self._fields, chosen, 200, level_set
+                    self._plot = LivePlot(*parts)
         if self._plot is not None:
             self._plot.follow(snapshot)

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshots.snapshot import Counts, RobotView, TrackerName
+from onpath.app.lab.snapshots.snapshot import Counts, RobotView
 from onpath.app.scene import meshes
 from onpath.app.scene.poses import Poses, difference, trace_segments
 from onpath.app.scene.stage import IDENTITY, ChangingText, Stage, add_copies
 from onpath.app.viser_adapter.frame_channel import NodeGroup, update_node
 from onpath.lessons.words import ENGLISH, Words
+from onpath.models.control.laws.registry import LAWS
 
 if TYPE_CHECKING:
     import viser
@@ -48,30 +49,30 @@ def link_scales(lengths: np.ndarray) -> np.ndarray:
     return np.column_stack([lengths, np.ones_like(lengths), np.ones_like(lengths)])
 
 
-def bar_colours(name: str, counts: Counts) -> np.ndarray:
+def bar_colours(bench: str, counts: Counts) -> np.ndarray:
     """Linear colours of a robot's bars, shape (n, 3): every other link is behind and darker.
 
     Pieces of a flexible strip are in front.
     """
-    front = palette.CONTROLLERS[name]
+    front = palette.OF_BENCH[bench]
     back = front.toward(palette.INK, 0.25)
     return np.stack([(back if each else front).linear for each in counts.behind])
 
 
 def part_looks(
-    name: str, counts: Counts, motors: Sequence[int] = ()
+    bench: str, law: str, counts: Counts, motors: Sequence[int] = ()
 ) -> tuple[list[tuple[float, ...]], list[np.ndarray]]:
     """Scales and linear colours of a robot's bearings, pen, marker and extra points.
 
     Joints in `motors` are drawn as motors.
-    The tracker's moving reference is a ring and the follower's closest point a dot with a white
-    rim; each consists of two discs, one in front of the other.
+    A reference point that a law aims at is a ring, and the closest point a dot with a white rim;
+    each consists of two discs, one in front of the other.
     """
     extras = counts.marks
-    dark = palette.CONTROLLERS[name].toward(palette.INK, 0.45)
-    discs, inks = (RING, (dark, palette.WHITE)) if name == TrackerName else (
-        DOT, (palette.WHITE, dark)
-    )  # fmt: skip
+    dark = palette.OF_BENCH[bench].toward(palette.INK, 0.45)
+    discs, inks = DOT, (palette.WHITE, dark)
+    if LAWS[law].aim == "theta_ref":
+        discs, inks = RING, (dark, palette.WHITE)
     driven = [i in motors for i in range(counts.joints)]
     joints = [palette.MOTOR if motor else palette.STEEL for motor in driven]
     colours = [*joints, palette.INK, *inks, *[palette.STEEL] * extras]
@@ -79,11 +80,11 @@ def part_looks(
     return [*sizes, PEN, *discs, *[EXTRA] * extras], [c.linear for c in colours]
 
 
-def _add_traces(scene: viser.SceneApi, names: list[str]) -> viser.LineSegmentsHandle:
+def _add_traces(scene: viser.SceneApi, benches: list[str]) -> viser.LineSegmentsHandle:
     return scene.add_line_segments(
         "/traces",
-        np.zeros((TRACE_SEGMENTS * len(names), 2, 3)),
-        np.concatenate([fading(palette.CONTROLLERS[name]) for name in names]),
+        np.zeros((TRACE_SEGMENTS * len(benches), 2, 3)),
+        np.concatenate([fading(palette.OF_BENCH[bench]) for bench in benches]),
         thickness=0.006,
     )
 
@@ -139,6 +140,7 @@ class RobotNodes:
         scene: the client's scene.
         stage: where the robots stand.
         counts: numbers of parts of each robot.
+        laws: their control laws.
         poses: their initial poses.
         words: message catalogue for the labels.
     """
@@ -148,22 +150,24 @@ class RobotNodes:
         scene: viser.SceneApi,
         stage: Stage,
         counts: Counts,
+        laws: dict[str, str],
         poses: Poses,
         words: Words = ENGLISH,
     ) -> None:
-        self._words = words
+        self._words, self._laws = words, laws
+        self._counts, self._motors = counts, stage.motors
         self._bases = bases = stage.bases
         self._force_scale = stage.force_scale
         self._drawn = poses
         self._bars = self._add_bars(scene, counts, poses)
-        self._parts = self._add_parts(scene, stage, counts, poses)
+        self._parts = self._add_parts(scene, poses)
         self._turns = np.tile(IDENTITY, (len(poses["turns"]), 1))
         self.grips = add_copies(
             scene,
             "/grips",
             meshes.grip(),
             poses["tips"],
-            np.stack([palette.CONTROLLERS[name].linear for name in bases]),
+            np.stack([palette.OF_BENCH[bench].linear for bench in bases]),
             opacity=0.22,
         )
         self._traces = _add_traces(scene, list(bases))
@@ -184,7 +188,7 @@ class RobotNodes:
         links = slice(len(self._bases) * counts.links)
         strips = slice(links.stop, None)
         is_link = np.arange(counts.bars) < counts.links
-        own = [bar_colours(name, counts) for name in self._bases]
+        own = [bar_colours(bench, counts) for bench in self._bases]
         of_links = np.concatenate([colours[is_link] for colours in own])
         found = [Bars(scene, "/links", meshes.link(), links, of_links, poses)]
         if counts.strip:
@@ -192,18 +196,25 @@ class RobotNodes:
             found.append(Bars(scene, "/beams", meshes.blade(), strips, of_strips, poses))
         return found
 
-    def _add_parts(
-        self, scene: viser.SceneApi, stage: Stage, counts: Counts, poses: Poses
-    ) -> viser.BatchedMeshHandle:
-        looks = [part_looks(name, counts, stage.motors) for name in self._bases]
-        return add_copies(
-            scene,
-            "/parts",
-            meshes.bearing(),
-            poses["parts"],
-            np.stack([colour for _, colours in looks for colour in colours]),
-            scales=np.array([scale for scales, _ in looks for scale in scales]),
-        )
+    def _add_parts(self, scene: viser.SceneApi, poses: Poses) -> viser.BatchedMeshHandle:
+        scales, colours = self._part_looks()
+        mesh = meshes.bearing()
+        return add_copies(scene, "/parts", mesh, poses["parts"], colours, scales=scales)
+
+    def _part_looks(self) -> tuple[np.ndarray, np.ndarray]:
+        """`part_looks` of all robots, shape (parts, 3) each."""
+        laws = self._laws.items()
+        looks = [part_looks(bench, law, self._counts, self._motors) for bench, law in laws]
+        scales = [scale for scales, _ in looks for scale in scales]
+        return np.array(scales), np.stack([colour for _, own in looks for colour in own])
+
+    def update_laws(self, laws: dict[str, str]) -> None:
+        """Redraws the markers if laws have changed."""
+        if laws != self._laws:
+            self._laws = laws
+            scales, colours = self._part_looks()
+            update_node(self._parts, batched_scales=scales)
+            self._parts.batched_colors = colours
 
     def update(self, poses: Poses) -> None:
         """Sends what moves, and forces, rotations and lengths if they change; not what is still."""

@@ -25,6 +25,7 @@ from onpath.app.scene.stage import (
     ChangingText,
     Insets,
     Stage,
+    Titles,
     add_copies,
     build_stage,
     view_of,
@@ -57,9 +58,9 @@ class SceneCallbacks:
     """Callbacks of the scene. They run on viser's event loop, so they must only enqueue.
 
     Attributes:
-        on_grab: the end-point of the named robot is pulled to a target, shape (3,), in the robot's
+        on_grab: the end-point on the named bench is pulled to a target, shape (3,), in the robot's
             frame [m]; called again whenever the target moves.
-        on_release: the named robot is released.
+        on_release: the robot on the named bench is released.
         on_point_dragged: a control point has a new position, shape (3,), in the robot's frame [m].
         on_point_drag_end: the control point is released.
         on_point_selected: a control point was clicked or grabbed.
@@ -96,7 +97,7 @@ class Scene:
     ) -> None:
         self._client = client
         self._stage, self._words = stage, words
-        self._names = list(stage.bases)
+        self._benches = list(stage.bases)
         self._origins = stage.origins
         self._hooks = hooks or SceneCallbacks()
         self.pull = next(iter(stage.pulls))
@@ -118,10 +119,11 @@ class Scene:
     def build(self, snapshot: Snapshot) -> None:
         """Creates all nodes once, with the snapshot's numbers of bars, joints and points."""
         motion = snapshot.motion
-        self._titles = build_stage(self._client.scene, self._stage, self._words)
+        build_stage(self._client.scene, self._stage)
+        self._titles = Titles(self._client.scene, self._stage, self._words)
         poses = poses_of(self._stage, motion)
         self._machine = RobotNodes(
-            self._client.scene, self._stage, motion.counts, poses, self._words
+            self._client.scene, self._stage, motion.counts, snapshot.laws, poses, self._words
         )
         self._machine.grips.on_drag("left")(self._tip_dragged)
         self._notes = [
@@ -143,8 +145,10 @@ class Scene:
             self._path_nodes.draw(motion.path)
 
     def update_traces(self, snapshot: Snapshot) -> None:
-        """Redraws end-point traces, force labels and a stroke; called at 5 to 10 Hz."""
-        self._machine.update_traces([snapshot.robots[name] for name in self._names])
+        """Redraws traces, titles, markers, force labels and a stroke; called at 5 to 10 Hz."""
+        self._titles.show(snapshot.laws)
+        self._machine.update_laws(snapshot.laws)
+        self._machine.update_traces([snapshot.robots[bench] for bench in self._benches])
         freehand = self._freehand  # another thread may end the stroke
         if freehand is not None:
             freehand.draw()
@@ -171,9 +175,8 @@ class Scene:
         )
 
     def show_titles(self, visible: bool) -> None:
-        """Shows or hides the robots' names, which are drawn on top of everything else."""
-        for title in self._titles:
-            title.visible = visible
+        """Shows or hides the titles, which are drawn on top of everything else."""
+        self._titles.hide(not visible)
 
     def frame_camera(self, insets: Insets | None = None) -> None:
         """Points the client's camera so that both robots fill the canvas left free by panels."""
@@ -197,34 +200,34 @@ class Scene:
 
     async def _tip_dragged(self, event: DragEvent) -> None:
         index = event.instance_index
-        if index is None or index >= len(self._names):  # a browser may send any
+        if index is None or index >= len(self._benches):  # a browser may send any
             return
-        name = self._names[index]
+        bench = self._benches[index]
         if event.phase == "start":
-            self._covered = self._covered_point(event, name)
+            self._covered = self._covered_point(event, bench)
         if self._covered is not None:
-            self._drag_point(event, name, self._covered)
+            self._drag_point(event, bench, self._covered)
             return
         if event.phase == "end":
-            self._hooks.on_release(name)
+            self._hooks.on_release(bench)
             return
         if event.phase == "start" or self._grip is None:
-            self._grip = self._grip_of(name)
+            self._grip = self._grip_of(bench)
         plane, offset = self._grip
-        target = self._on_plane(event, event.end_position, name, plane)
+        target = self._on_plane(event, event.end_position, bench, plane)
         if target is not None:
-            self._hooks.on_grab(name, target + offset)
+            self._hooks.on_grab(bench, target + offset)
 
-    def _grip_of(self, name: str) -> tuple[DragPlane, np.ndarray]:
+    def _grip_of(self, bench: str) -> tuple[DragPlane, np.ndarray]:
         """Plane of a new pull, and offset from the drawn end-point to the actual one, [m]."""
         assert self._motion is not None
-        robot, normal = self._names.index(name), self._stage.pulls[self.pull].normal
+        robot, normal = self._benches.index(bench), self._stage.pulls[self.pull].normal
         tip, end = self._motion.point(robot, TIP), self._motion.point(robot, END)
         return DragPlane(tip, normal), end - tip
 
-    def _covered_point(self, event: DragEvent, name: str) -> int | None:
+    def _covered_point(self, event: DragEvent, bench: str) -> int | None:
         """The control point to select when an end-point that covers it is pressed, if any."""
-        path, pressed = self._path, self._on_plane(event, event.start_position, name)
+        path, pressed = self._path, self._on_plane(event, event.start_position, bench)
         if path is None or pressed is None or not len(path.control_points):
             return None
         distances = np.linalg.norm(path.control_points - pressed, axis=1)
@@ -240,14 +243,14 @@ class Scene:
         if (found := self._robot_and_point(event.instance_index)) is not None:
             self._drag_point(event, *found)
 
-    def _drag_point(self, event: DragEvent, name: str, index: int) -> None:
+    def _drag_point(self, event: DragEvent, bench: str, index: int) -> None:
         if event.phase == "start":  # keep the press's offset from the centre, so no jump
             assert self._path is not None
-            pressed = self._on_plane(event, event.start_position, name)
+            pressed = self._on_plane(event, event.start_position, bench)
             centre = self._path.control_points[index]
             self._point_offset = np.zeros(3) if pressed is None else centre - pressed
             self._hooks.on_point_selected(index)
-        target = self._on_plane(event, event.end_position, name)
+        target = self._on_plane(event, event.end_position, bench)
         if target is not None:
             self._hooks.on_point_dragged(index, target + self._point_offset)
         if event.phase == "end":
@@ -263,19 +266,19 @@ class Scene:
         The path may have changed since the browser drew it, and a browser may send any number.
         """
         count = 0 if self._path is None else len(self._path.control_points)
-        if instance is None or instance >= count * len(self._names):
+        if instance is None or instance >= count * len(self._benches):
             return None
         robot, index = divmod(instance, count)
-        return self._names[robot], index
+        return self._benches[robot], index
 
     def _on_plane(
         self,
         event: DragEvent,
         pointer: tuple[float, float, float],
-        name: str,
+        bench: str,
         plane: DragPlane | None = None,
     ) -> np.ndarray | None:
         """Pointer position in a robot's frame on a plane, by default the path's plane."""
         camera, stage = event.client.camera.position, self._stage
-        place, base = np.array(pointer), stage.bases[name]
+        place, base = np.array(pointer), stage.bases[bench]
         return pointer_on_plane(camera, place, base, plane or stage.path_plane, stage.reachable)

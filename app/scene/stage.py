@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import product
+from itertools import chain, product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +12,9 @@ import numpy as np
 from onpath.app.common import palette
 from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.pointer_projection import Box, DragPlane
+from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import ENGLISH, Words
+from onpath.models.control.laws.registry import LAWS
 
 if TYPE_CHECKING:
     import viser
@@ -20,8 +22,8 @@ if TYPE_CHECKING:
 FIELD_OF_VIEW = np.radians(15.0)
 NARROW = 0.6  # width to height; for phones, where the panel covers the lower part
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
-TITLE = (("title", 0.0, 0.036), ("does", 0.047, 0.026))
-"""Title lines of a controller: message, offset below the title's position, and height, [m]."""
+TITLE, AIM = (0.0, 0.036), (0.047, 0.026)
+"""Lines over a robot: offset below the title's position, and height, [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,7 +31,7 @@ class Stage:
     """Placement of a kind of robot, and its view. Points are in the robot's own frame, [m].
 
     Attributes:
-        bases: origins of the robots' frames in the world, [m], by controller name.
+        bases: origins of the robots' frames in the world, [m], by bench.
         low, high: opposite corners of the box that the camera shows of a robot, shape (3,).
         floor: height of the floor, negative.
         elevation, azimuth: angles of the camera above the horizontal and to the right, [rad].
@@ -140,10 +142,8 @@ def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
     server.initial_camera.look_at = pose.look_at
 
 
-def build_stage(
-    scene: viser.SceneApi, stage: Stage, words: Words = ENGLISH
-) -> list[viser.LabelHandle]:
-    """Adds floor, lights, machine bases and titles to a client's scene; returns the titles."""
+def build_stage(scene: viser.SceneApi, stage: Stage) -> None:
+    """Adds floor, lights and machine bases to a client's scene."""
     middle = (stage.low[0] + stage.high[0]) / 2
     scene.configure_environment_map(None)
     scene.add_light_ambient("/stage/ambient", intensity=1.9)
@@ -163,18 +163,6 @@ def build_stage(
     )
     for part, mesh, colour in stage.parts():
         add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
-    return [
-        add_text(
-            scene,
-            f"/stage/{name}/{part}",
-            words(f"controller.{name}.{part}"),
-            base + stage.title,
-            size,
-            below,
-        )
-        for name, base in stage.bases.items()
-        for part, below, size in TITLE
-    ]
 
 
 def add_text(
@@ -199,10 +187,17 @@ def add_text(
 class ChangingText:
     """A text in the scene that is replaced, or hidden while empty; see `add_text`."""
 
-    def __init__(self, scene: viser.SceneApi, name: str, position: np.ndarray) -> None:
-        self._label = add_text(scene, name, "", position)
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        name: str,
+        position: np.ndarray,
+        size: float = 0.026,
+        below: float = 0.0,
+    ) -> None:
+        self._label = add_text(scene, name, "", position, size, below)
         self._label.visible = False
-        self._shown = ""
+        self._shown, self._hidden = "", False
 
     def show(self, text: str) -> None:
         """Show a text; sends nothing if it is shown already."""
@@ -211,8 +206,46 @@ class ChangingText:
         self._shown = text
         if text:
             self._label.text = text
-        if self._label.visible != bool(text):
-            self._label.visible = bool(text)
+        self._update()
+
+    def hide(self, hidden: bool) -> None:
+        """Hide the text, whatever it is, or show it again."""
+        self._hidden = hidden
+        self._update()
+
+    def _update(self) -> None:
+        visible = bool(self._shown) and not self._hidden
+        if self._label.visible != visible:
+            self._label.visible = visible
+
+
+class Titles:
+    """What stands over the robots: their control laws, and what these aim at."""
+
+    def __init__(self, scene: viser.SceneApi, stage: Stage, words: Words = ENGLISH) -> None:
+        self._words, self._shown = words, dict[str, str]()
+        self._texts = {
+            bench: [
+                ChangingText(scene, f"/titles/{bench}/{part}", base + stage.title, size, below)
+                for part, (below, size) in (("law", TITLE), ("aim", AIM))
+            ]
+            for bench, base in stage.bases.items()
+        }
+
+    def show(self, laws: dict[str, str]) -> None:
+        """Show the control law of each bench; sends nothing if they are shown already."""
+        if laws == self._shown:
+            return
+        self._shown = laws
+        for bench, title in bench_titles(laws, self._words).items():
+            law, aim = self._texts[bench]
+            law.show(title)
+            aim.show(self._words(f"aim.{LAWS[laws[bench]].aim}"))
+
+    def hide(self, hidden: bool) -> None:
+        """Hide the titles, which are drawn on top of everything else, or show them again."""
+        for text in chain(*self._texts.values()):
+            text.hide(hidden)
 
 
 def add_copies(

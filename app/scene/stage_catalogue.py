@@ -8,11 +8,11 @@ import casadi as ca
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshots.snapshot import FollowerName, TrackerName
 from onpath.app.scene import meshes
 from onpath.app.scene.pointer_projection import DragPlane
 from onpath.app.scene.stage import Stage
 from onpath.models.arrays import Array
+from onpath.models.control.benches import LEFT, RIGHT
 from onpath.models.paths.curve_faults import LEAST_MARGIN
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import Robot
@@ -38,7 +38,7 @@ def stage_of(robot: Robot) -> Stage:
     apart = float(high[0] - low[0]) + 0.05 if drawing.apart is None else drawing.apart
     plane = _path_plane(robot)
     pulls = {IN_PATH_PLANE: plane}
-    if robot.system.p > 2:
+    if robot.system.p > 2 and plane.normal[:2].any():
         pulls[HORIZONTAL] = DragPlane(np.zeros(3), np.array([0.0, 0.0, 1.0]))
     return Stage(
         bases=_side_by_side(apart, drawing.azimuth),
@@ -64,7 +64,7 @@ def stage_of(robot: Robot) -> Stage:
 def _side_by_side(apart: float, azimuth: float) -> dict[str, np.ndarray]:
     """Frame origins side by side, as seen by a camera at this angle to the right, [rad]."""
     half = apart / 2 * np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-    return {TrackerName: -half, FollowerName: half}
+    return {LEFT: -half, RIGHT: half}
 
 
 def _path_plane(robot: Robot) -> DragPlane:

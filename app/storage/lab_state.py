@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import msgspec
 
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setup import Setup, capture, from_data, to_data
+from onpath.app.lab.setup import Setup, capture, from_data, to_data, with_paths_of_today
 from onpath.lessons.progress import Progress, read_progress
 
 SAVE_INTERVAL = 60  # frames between checks for changes
@@ -73,17 +73,20 @@ def keep(lab: Lab, submit: Callable[[Callable[[], LabState]], None]) -> None:
 
 
 def put_back(lab: Lab, state: LabState) -> None:
-    """Restore a stored state into a new lab.
+    """Restore a stored state into a new lab; the user is told if its path is refused today.
 
     Raises:
         ValueError: the state is invalid; the lab is then unchanged.
     """
-    setup = from_data(state.get("setup"))
+    setup, refused = with_paths_of_today(from_data(state.get("setup")))
     progress = read_progress(state.get("lessons"))
     before = state.get("before")
-    earlier = from_data(before) if before else None
+    earlier = with_paths_of_today(from_data(before))[0] if before else None
     lab.set_up(setup)
     lab.lessons.resume(progress, earlier, lab)
+    if refused:
+        reasons = "; ".join(map(lab.words.sentence, refused))
+        lab.show_message(lab.words("say.path_of_then", reasons=reasons), "warning")
 
 
 def _now(lab: Lab) -> tuple[Setup, Progress, Setup | None]:

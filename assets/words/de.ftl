@@ -1,7 +1,7 @@
 ### Was die Oberfläche auf Deutsch sagt, für Project Fluent (https://projectfluent.org/).
 ###
 ### Dieselben Nachrichten mit denselben Argumenten wie in en.ftl; dazu die Namen von Parametern,
-### Bahnen und Robotern, deren Englisch in models/ steht.
+### Bahnen, Robotern und Regelgesetzen, deren Englisch in models/ steht.
 
 ## Lektionen
 
@@ -57,6 +57,8 @@ event-identify = identifizieren
 event-diverged = ein Roboter bleibt stehen
 event-robot = den Roboter { $detail } wählen
 event-robot_any = einen anderen Roboter wählen
+event-law = das Regelgesetz { $detail } wählen
+event-law_any = ein anderes Regelgesetz wählen
 
 lesson-lessons = Lektionen
 lesson-choose = Lektionen: vorhersagen, probieren, sehen, erklären
@@ -225,15 +227,31 @@ class-forgotten =
 class-yes = Ja
 class-no = Nein
 
-## Die beiden Regler
+## Die beiden Prüfstände
 
-controller-trajectory_tracking-title = Folgeregelung
-controller-trajectory_tracking-does = jagt einem laufenden Punkt nach
-controller-trajectory_tracking-short = Nachläufer
+bench-left = links
+bench-right = rechts
+bench-title = { $law }, { $side }
 
-controller-path_following-title = Bahnfolgeregelung
-controller-path_following-does = bleibt auf der Kurve
-controller-path_following-short = Bahnfolger
+law-trajectory_tracking-label = Folgeregelung
+law-trajectory_tracking-text = Folgt einem Punkt, der nach der Uhr auf der Kurve läuft, was der Roboter auch tut.
+law-path_following-label = Bahnfolgeregelung
+law-path_following-text = Bleibt auf der Kurve und regelt das Tempo auf ihr; eine Uhr hat sie nicht.
+law-contouring-label = Konturregelung
+law-contouring-text = Folgt der Uhr, aber steif quer zur Kurve und weich längs von ihr.
+law-event_based-label = Ereignisbasiert
+law-event_based-text = Folgt mit der gewünschten Rate dem nächsten Punkt, als wäre er der Punkt einer Uhr.
+law-set_point-label = Festwertregelung
+law-set_point-text = Geht geradewegs zum Ziel und weiß nichts von der Kurve dazwischen.
+law-velocity_field-label = Geschwindigkeitsfeld
+law-velocity_field-text = Eine Strömung längs der Kurve trägt den Roboter und gibt einer Hand nie mehr Energie, als sie vorrätig hat.
+law-virtual_constraint-label = Virtuelle Zwangsbedingung
+law-virtual_constraint-text = Hält die Spitze auf der Kurve und lässt sie längs von ihr in Ruhe, wie eine Perle auf einem Draht.
+law-waiting_clock-label = Wartende Uhr
+law-waiting_clock-text = Folgt einem Punkt, dessen Uhr langsamer geht, wenn der Roboter zurückbleibt.
+
+aim-theta = zielt auf den nächsten Punkt der Bahn
+aim-theta_ref = zielt auf seinen Bezugspunkt
 
 ## Die Seite: was immer da ist
 
@@ -251,6 +269,10 @@ robots-button = Roboter…
 robots-hint = Jetzt: { $robot }. Wähle einen anderen; jeder behält seine Bahn und seine Einstellungen.
 robots-choose = Wähle einen Roboter
 robots-this = { $robot } (dieser)
+
+laws-left = Regelgesetz links
+laws-right = Regelgesetz rechts
+laws-hint = Der Roboter bewegt sich von dort, wo er ist, unter diesem Gesetz weiter
 
 run-hold_both = Beide festhalten
 run-hold = Festhalten
@@ -290,6 +312,7 @@ design-selected = Ausgewählt
 design-selected_hint = Nummer des Kontrollpunkts; 0: keiner
 design-coordinate = { $name } [mm]
 design-arrows = Pfeiltasten schieben den ausgewählten Punkt um 1 mm; N wählt den nächsten. Wo die Spitze ihn verdeckt, fasst die Maus den ausgewählten Punkt.
+design-slanted = Die Bahn liegt in der Ebene y₁ = { $b } y₂ + { $d } m von (23). Der *Kreis* ist einer von (y₂, y₃): Im Raum ist er die Ellipse des Artikels. Ihre Mitte hat y₃ = 0; die des Artikels, y₃ = ℓ₁, liegt außer Reichweite dieses Arms.
 design-rank = Rangtest (11) längs der Bahn: mindestens **{ $number }** von 1.
 design-zone = Singuläre Zone zeigen
 design-zone_hint = Wo der Arm gestreckt oder gefaltet ist, Gl. (14)
@@ -304,7 +327,7 @@ gains-across = Quer
 gains-along = Längs
 gains-poles = Pole { $poles } 1/s
 gains-identify = M und b identifizieren
-gains-identify_hint = Schätzt M und b aus den letzten 3 s des Bahnfolgers und lässt beide Regler daran glauben.
+gains-identify_hint = Schätzt M und b aus den letzten 3 s des rechten Roboters und lässt beide Regler daran glauben.
 
 ## Der biegsame Balken
 
@@ -320,9 +343,15 @@ flexible-alpha = α = { $alpha }; { $limit }
 flexible-computing = kritisches α: wird berechnet
 flexible-none = kritisches α: keines bis 1
 flexible-critical = kritisches α = { $critical }, hier und in Ruhe
+flexible-of_beam =
+    { $modes ->
+        [one] 1 Mode
+       *[other] { $modes } Moden
+    }, jede mit ζ = { $zeta }
 flexible-unused = die zusammengesetzte Regelung bringt die Spitze selbst auf die Bahn und braucht kein α
 flexible-unstable = innen instabil
-flexible-deflections = Durchbiegung: Nachläufer **{ $tracking } mm**, Bahnfolger **{ $following } mm**; { $scale }
+flexible-deflections = Durchbiegung: { $each }; { $scale }
+flexible-deflection = { $robot } **{ $value } mm**
 flexible-drawn = { $factor }× gezeichnet
 
 pull-path-s-plane = Bahnebene
@@ -352,6 +381,8 @@ axis-speed = Geschwindigkeit [m/s]
 axis-torques = Drehmoment [N m]
 axis-across = ξ₁ [mm]
 axis-across_rate = ξ₂ [mm/s]
+axis-across-level_set = ξ₁ = s(y) [mm²]
+axis-across_rate-level_set = ξ₂ = s'(y) [mm²/s]
 axis-place = θ [rad]
 axis-rate = θ' [rad/s]
 axis-modes = jede Mode, an der Spitze [mm]
@@ -378,6 +409,31 @@ export-busy = Eine Datei nach der anderen: die zuletzt verlangte entsteht noch.
 export-ready = { $name } ist fertig.
 export-failed = { $name } ist misslungen.
 export-nothing = Es gibt noch nichts mitzunehmen: Lass es erst laufen.
+
+## Der Vergleich der Regelungen
+
+compare-title = Regelungen vergleichen
+compare-text = Für alle derselbe Roboter, dieselbe Bahn, dasselbe Tempo und dieselben Verstärkungen, und ein Hindernis. Gerechnet wird im Hintergrund, mit den jetzigen Einstellungen dieses Labors; es läuft weiter.
+compare-obstruction = Hindernis
+compare-run = Vergleichen
+compare-count = Bitte ein bis { $most } Regelungen auswählen.
+compare-law = Regelung
+compare-distance = größter Abstand zur Bahn  [mm]
+compare-delay = Verspätung am Ende  [s]
+compare-force = größte Kraft  [N]
+compare-stopped = * Eine Simulation ist divergiert und wurde angehalten.
+compare-picture = Größter Abstand zur Bahn über der Verspätung am Ende, für jede Regelung
+compare-path = Ein Vergleich braucht eine geschlossene Bahn und ein Tempo ungleich 0: bitte eine solche Bahn und den Auftrag Tempo wählen.
+obstruction-none = keines
+obstruction-brake = 2 s festgehalten, an acht Stellen
+obstruction-push_across = quer zur Bahn gezogen
+obstruction-push_ahead = nach vorn gezogen
+obstruction-push_back = zurückgezogen
+obstruction-wall = eine Wand im Weg
+obstruction-weak_motors = schwache Motoren
+obstruction-too_fast = doppeltes Tempo, begrenzte Motoren
+obstruction-start_off_at_rest = Start neben der Bahn, in Ruhe
+obstruction-start_off_moving = Start neben der Bahn, in Bewegung
 
 ## Das mitgenommene Bild
 
@@ -425,14 +481,15 @@ help-title = Wie das Labor zu bedienen ist
 help-close = Schließen
 help-escape = Das Hilfefenster schließen
 help-text =
-    Drücke **Beide festhalten** und sieh zu: Den Nachläufer (orange) reißt es von der Bahn, denn sein
-    Punkt läuft nach der Uhr weiter. Der Bahnfolger (blau) wartet auf der Bahn und geht weiter, wenn
-    du loslässt.
+    Drücke **Beide festhalten** und sieh zu: Den linken Roboter (orange) reißt es mit der
+    Folgeregelung von der Bahn, denn sein Punkt läuft nach der Uhr weiter. Der rechte (blau) wartet
+    mit der Bahnfolgeregelung auf der Bahn und geht weiter, wenn du loslässt.
 
     - **Fasse eine Spitze** und ziehe daran. Mit *Für beide* geht die andere denselben Weg.
     - **Ziehe an einer kleinen grauen Kugel**, um die Bahn zu verbiegen, während es läuft.
-    - **Ring**: worauf der Regler zielt. Beim Nachläufer ist das ein Punkt, der nach der Uhr läuft,
-      beim Bahnfolger der nächste Punkt der Bahn.
+    - **Wähle für jeden Roboter ein Regelgesetz**, auch während er sich bewegt.
+    - **Ring oder Punkt**: worauf der Regler zielt. Ein Ring ist ein Bezugspunkt des Reglers, der etwa
+      nach der Uhr läuft, ein Punkt mit weißem Rand der nächste Punkt der Bahn.
     - **Pfeil**: die Kraft von Hand oder Bremse auf die Spitze.
     - **Drehe die Ansicht** mit der Maus oder einem Finger; *Ansicht* stellt sie wieder her.
 
@@ -446,16 +503,19 @@ help-text =
 
 say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen hilft.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
+say-no_further = Weiter geht die Bahn nicht: { $reasons }.
+say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
 say-nothing_to_undo = es gibt nichts rückgängig zu machen
 say-nothing_to_redo = es gibt nichts zu wiederholen
 say-select_first = wähle erst einen Kontrollpunkt: klicke einen an, oder drücke N für den nächsten
+say-laws_replaced = Nicht für diesen Roboter: { $laws }. An dieser Stelle steht ein übliches Gesetz.
 say-looking_back = Das ist die Vergangenheit. Laufen lassen kehrt in die Gegenwart zurück; Von hier aus weiter vergisst, was danach kam, und lässt sich rückgängig machen.
 say-let_go = Die Spitzen sind losgelassen.
 say-present = Zurück in der Gegenwart.
 say-went_on = Weiter ab { $time } s. Die { $seconds } s danach sind vergessen: Weitergehen zurücknehmen (Taste U) holt sie zurück.
 say-brought_back = Zurück bei { $time } s, wie vor dem Weitergehen. Was stattdessen geschah, liegt beiseite: Weitergehen zurücknehmen (Taste U) wechselt dorthin zurück.
 
-identified-found = Aus den letzten { $seconds } s des Bahnfolgers: { $values }.
+identified-found = Aus den letzten { $seconds } s des rechten Roboters: { $values }.
 identified-value = { $value }, geglaubt war { $before }
 identified-and = { " " }und{ " " }
 identified-limited = { " " }{ $names }: so weit, wie sich das Modell verstellen lässt.
@@ -478,6 +538,9 @@ machine-five_bar-text = Zwei Motoren, starre Glieder, ein Stift in einer senkrec
 machine-flexible-label = Fünfgelenk mit biegsamem Glied
 machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spitze ist nicht dort, wo die Motoren sie haben wollen.
 
+machine-spatial_arm-label = Raumarm
+machine-spatial_arm-text = Drei Motoren, einer dreht den Arm um die Senkrechte: Seine Bahn darf die Ebene verlassen.
+
 machine-two_link_arm-label = Zweigelenkarm
 machine-two_link_arm-text = Zwei Motoren, einer an der Schulter und einer am Ellbogen, gegen die Schwerkraft.
 
@@ -489,6 +552,11 @@ parameter-K2-help = dämpft die Bewegung quer zur Bahn
 
 parameter-K3-label = K3 quer
 parameter-K3-help = beseitigt eine bleibende Abweichung (Integral)
+
+parameter-tracker_integral-label = Integral im Nachläufer
+parameter-tracker_integral-help = ob K3 auch in einem Gesetz wirkt, das der Uhr folgt: Festgehalten lädt sich dessen Integral auf
+parameter-tracker_integral-option-off = aus
+parameter-tracker_integral-option-on = ein
 
 parameter-K4-label = K4 längs
 parameter-K4-help = Feder zum Ziel auf der Bahn
@@ -504,16 +572,40 @@ parameter-task-option-position = Ort
 parameter-speed-label = Tempo
 parameter-speed-help = gewünschte Geschwindigkeit längs der Bahn; negativ: rückwärts
 
+parameter-ramp-label = Tempo-Rampe
+parameter-ramp-help = wie schnell sich das gewünschte Tempo ändert; 0: sofort
+
 parameter-target-label = Ziel
 parameter-target-help = wo er stehen bleiben soll, beim Auftrag Ort
 
 parameter-across-label = Quer heißt
-parameter-across-help = was quer zur Bahn gemessen wird: der Abstand, oder s(y) wie im Artikel (Kreis, Ellipse)
+parameter-across-help = was quer zur Bahn gemessen wird: der Abstand, oder s(y) wie im Artikel in m² (nur Ellipsen)
 parameter-across-option-distance = Abstand
 parameter-across-option-level_set = Niveaumenge
 
 parameter-torque_limit-label = Motorgrenze
 parameter-torque_limit-help = mehr geben die Motoren nicht her; 0: keine Grenze
+
+parameter-at_limit-label = An der Grenze
+parameter-at_limit-help = was geschieht, wenn eine Motorgrenze erreicht ist: Bahnfolge gibt erst die Geschwindigkeit längs der Bahn auf, dann die Bahn; langsamer: und verlangt nur eine Geschwindigkeit, die die ganze Bahn zulässt; abschneiden: keins von beiden
+parameter-at_limit-option-across_first = quer zuerst
+parameter-at_limit-option-slow_down = langsamer
+parameter-at_limit-option-cut = abschneiden
+
+parameter-clock_gain-label = Uhr wartet
+parameter-clock_gain-help = wie stark die wartende Uhr den Fehler längs der Bahn spürt; 0: eine gewöhnliche Uhr
+
+parameter-contour_ratio-label = Längs / quer
+parameter-contour_ratio-help = Konturregelung: Steifigkeit längs der Bahn, als Anteil der Steifigkeit quer dazu
+
+parameter-field_gain-label = Feld zur Bahn
+parameter-field_gain-help = Geschwindigkeitsfeld: wie schnell es zur Bahn zurückführt
+
+parameter-field_circulation-label = Feld dreht
+parameter-field_circulation-help = Geschwindigkeitsfeld: wie schnell sich die Geschwindigkeit in das Feld dreht
+
+parameter-field_energy-label = Feldenergie
+parameter-field_energy-help = Geschwindigkeitsfeld: Energie von Roboter und Schwungrad zusammen
 
 parameter-encoder_counts-label = Drehgeber
 parameter-encoder_counts-unit = je Umdrehung
@@ -525,11 +617,39 @@ parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern
 parameter-coulomb-label = Trockene Reibung
 parameter-coulomb-help = trockene Reibung in den Gelenken; 0: keine
 
+parameter-stiction-label = Haftreibung
+parameter-stiction-help = bis zu diesem Drehmoment bleibt ein ruhendes Gelenk in Ruhe, danach gleitet es mit der trockenen Reibung; 0: keine
+
+parameter-torque_step-label = Drehmomentstufen
+parameter-torque_step-help = das Drehmoment der Motoren ist ein Vielfaches davon; 0: beliebig
+
+parameter-delay-label = Rechenzeit
+parameter-delay-unit = Regeltakte
+parameter-delay-help = Zeit von einer Messung bis zum Drehmoment, das aus ihr berechnet wird; 0: sofort
+
+parameter-sensor_noise-label = Messrauschen
+parameter-sensor_noise-help = Standardabweichung der gemessenen Gelenkwinkel; ihr Filter liefert die Geschwindigkeiten
+
+parameter-seed-label = Startwert des Rauschens
+parameter-seed-help = wählt die Zufallszahlen des Rauschens: gleicher Startwert, gleicher Lauf
+
+parameter-strain_noise-label = Rauschen der Dehnmessstreifen
+parameter-strain_noise-help = Standardabweichung der Durchbiegung an der Spitze, wie die Dehnmessstreifen sie messen
+
 parameter-control_rate-label = Reglertakt
 parameter-control_rate-help = wie oft der Regler eingreift, Hz
 
 parameter-error_inertia-label = Trägheit falsch
 parameter-error_inertia-help = um so viel liegen die Trägheiten a1, a2 und a3 im Modell des Reglers daneben
+
+parameter-rise-label = Höhe der Bahn
+parameter-rise-help = um so viel steigt und fällt die Bahn, zweimal je Umlauf: ein Sattel
+
+parameter-error_inertias-label = Trägheit falsch
+parameter-error_inertias-help = um so viel liegen die Trägheiten a1, a2, a3 und k im Modell des Reglers daneben
+
+parameter-error_weights-label = Gewicht falsch
+parameter-error_weights-help = um so viel liegen die Gewichte g2 und g3 im Modell des Reglers daneben
 
 parameter-error_gravity-label = Gewicht falsch
 parameter-error_gravity-help = um so viel liegen die Gewichte g1 und g2 im Modell des Reglers daneben
@@ -573,7 +693,7 @@ parameter-tip_yielding-label = Nachgeben
 parameter-tip_yielding-help = wie sehr der Fortgang einer festgehaltenen Spitze nachgibt
 
 parameter-plant-label = Regelstrecke
-parameter-plant-help = die Gleichungen von Lagrange, oder (20)-(21) mit ∫φ² = 1 gelesen, wo die Einheiten der Kopplung nicht passen
+parameter-plant-help = die Gleichungen von Lagrange, oder (20)-(21) mit ∫φ² = 1 gelesen: Einheiten der Kopplung passen nicht, keine Gelenkreibung
 parameter-plant-option-lagrangian = nach Lagrange
 parameter-plant-option-unit_modes = Moden mit ∫φ² = 1
 
@@ -634,9 +754,11 @@ report-peak = { $robot } { $value } { $unit } bei { $time } s
 
 behaviour-settles = klingt in { $seconds } s ab, { $kind }
 behaviour-no_overshoot = ohne Überschwingen
+behaviour-no_oscillation = ohne Schwingung
 behaviour-damping = Dämpfungsgrad { $damping }
 behaviour-unstable = instabil: Ein Fehler wächst alle { $seconds } s auf das e-fache
 behaviour-not_stable = nicht stabil: Ein Fehler klingt nie ab
+behaviour-swings = nicht stabil: Ein Fehler schwingt ewig
 
 ## Why a curve cannot be a path (models/paths/curve_faults.py)
 
@@ -646,10 +768,12 @@ fault-singular = die Bahn kommt einer singulären Stellung zu nahe: Dort ist der
 fault-bends = die Bahn ist zu scharf gebogen: Eine Biegung braucht mindestens { $radius } mm Radius, sonst ist der nächste Punkt nicht überall eindeutig
 fault-cusp = die Bahn hat einen Umkehrpunkt, an dem sie keine Richtung hat
 fault-crosses = die Bahn kreuzt sich selbst: An der Kreuzung hat sie zwei Richtungen
+fault-narrow = zwei Stränge der Bahn liegen weniger als { $least } mm auseinander: Dazwischen ist der nächste Punkt nicht eindeutig
 
 ## Why a robot has stopped (the models' `fault`)
 
 stop-range = die Zahlen sind größer, als ein Rechner rechnen kann
+stop-typed_law = das eingetippte Regelgesetz ergibt eine Zahl, die nicht endlich oder größer als { $most } ist
 stop-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist davongelaufen
 stop-collapsed = das Getriebe ist zusammengeklappt (alle Glieder auf einer Geraden): Aus einer singulären Stellung weiß der Regler keinen Weg
 stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren den Endpunkt nicht in jede Richtung bewegen
@@ -670,6 +794,7 @@ error-path_takes_no_numbers = die Bahn { $name } nimmt keine Zahlen
 error-half_a_point = ein halber Punkt: Eine Bahn braucht so viele x wie y
 error-points_out_of_bounds = 2 bis { $most } Punkte, höchstens { $reach } m von der Mitte
 error-coefficients = eine gezeichnete Bahn hat { $wanted } Koeffizienten, nicht { $count }
+error-no_level_set = diese Bahn hat keine Niveaumenge s(y): Eine solche haben hier nur Kreise und Ellipsen
 error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
 
 ## Refusals: numbers and names
@@ -688,12 +813,39 @@ error-unknown_name =
        [parameter] unbekannter Parameter
        *[other] unbekannter Name ({ $kind })
     } { $name }: { $hint }
+error-law_does_not_suit = { $law } ist mit diesem Roboter nicht möglich: es ist für eine andere Zahl von Motoren, Ausgängen oder Koordinaten gemacht
 error-did_you_mean = meintest du { $names }?
 error-there_are = es gibt { $names }
 error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: sie hat { $steps ->
         [one] 1 Schritt
        *[other] { $steps } Schritte
     }
+
+## Ablehnungen: ein eingetipptes Regelgesetz (models/control/laws)
+
+error-law = Zeile { $line }, Spalte { $column }: { $reason }
+error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $count }
+error-law_too_complex = das Regelgesetz ist zu verwickelt: höchstens { $most } Namen, Zahlen und Operationen, höchstens { $deepest }-fach verschachtelt
+error-law_character = { $character } bedeutet hier nichts
+error-law_not_a_number = { $text } ist keine Zahl; zwischen den Faktoren eines Produkts steht ein *
+error-law_large_number = eine Zahl ist höchstens { $most }
+error-law_unknown_name = { $name } gibt es nicht: { $hint }
+error-law_without_target = eine Zeile beginnt mit einem von { $names }, dann folgt =
+error-law_twice = für { $name } gibt es schon eine Zeile
+error-law_without_line = es fehlt die Zeile, die mit { $name } = beginnt
+error-law_mixed = ein Regelgesetz gibt entweder Beschleunigungen oder Drehmomente vor, nicht beides
+error-law_unreadable = hier fehlt etwas, oder es steht am falschen Platz
+error-law_not_finite = das ist keine endliche Zahl
+error-law_function_alone = { $name } ist eine Funktion: Schreibe { $name }(…)
+error-law_not_a_function = { $name } ist keine Funktion; zwischen den Faktoren eines Produkts steht ein *
+error-law_arguments =
+    { $count ->
+        [one] { $name } nimmt einen Wert in den Klammern
+       *[other] { $name } nimmt { $count } Werte oder mehr in den Klammern
+    }
+error-law_exponent = ein Exponent ist eine ganze Zahl von 0 bis { $most }
+error-law_condition_alone = ein Vergleich steht nur in einer Bedingung: a if xi > 0 else b
+error-law_not_a_condition = eine Bedingung vergleicht, etwa xi > 0
 
 ## Refusals: identification
 
@@ -736,6 +888,7 @@ error-database_newer = sie hat die Version { $version } und stammt von einem neu
 error-lab_newer = dieses Labor hat ein neueres OnPath aufbewahrt
 error-lab_unreadable = was von diesem Labor aufbewahrt ist, lässt sich nicht lesen
 error-class_not_begun = die Klasse lässt sich nicht beginnen
+say-path_of_then = Die Bahn, die mit diesem Labor aufbewahrt wurde, geht heute nicht mehr: { $reasons }. An ihrer Stelle steht der Kreis.
 say-lab_kept = Dein Labor ist aufbewahrt, lässt sich aber gerade nicht öffnen: { $reason }
 
 ## Refusals: the class

@@ -1,8 +1,8 @@
 ### What the interface says in English, for Project Fluent (https://projectfluent.org/).
 ###
 ### Every language has the same messages, with the same arguments. The code asks for "lesson.next"
-### where this file has lesson-next. Only the names of parameters, paths and robots stand in models/
-### in English; other languages have them here, under parameter-, path- and machine-.
+### where this file has lesson-next. Only the names of parameters, paths, robots and control laws stand in
+### models/ in English; other languages have them here, under parameter-, path-, machine- and law-.
 ### A count is a number, so that a language can choose the plural: { $count -> [one] … *[other] … }.
 
 ## Lessons
@@ -59,6 +59,8 @@ event-identify = identify
 event-diverged = a robot stops
 event-robot = choose the robot { $detail }
 event-robot_any = choose another robot
+event-law = choose the law { $detail }
+event-law_any = choose another law
 
 lesson-lessons = Lessons
 lesson-choose = Lessons: predict, try, see, explain
@@ -227,15 +229,14 @@ class-forgotten =
 class-yes = Yes
 class-no = No
 
-## The two controllers
+## The two benches; the names of the control laws stand in models/
 
-controller-trajectory_tracking-title = Trajectory tracking
-controller-trajectory_tracking-does = chases a moving point
-controller-trajectory_tracking-short = tracking
+bench-left = left
+bench-right = right
+bench-title = { $law }, { $side }
 
-controller-path_following-title = Path following
-controller-path_following-does = stays on the curve
-controller-path_following-short = following
+aim-theta = aims at the closest point
+aim-theta_ref = aims at its reference point
 
 ## The page: what is always there
 
@@ -253,6 +254,10 @@ robots-button = Robot…
 robots-hint = Now: { $robot }. Choose another; each keeps its path and settings.
 robots-choose = Choose a robot
 robots-this = { $robot } (this one)
+
+laws-left = Law, left
+laws-right = Law, right
+laws-hint = The robot moves on from where it is, under this law
 
 run-hold_both = Hold both back
 run-hold = Hold back
@@ -292,6 +297,7 @@ design-selected = Selected
 design-selected_hint = Number of the control point; 0: none
 design-coordinate = { $name } [mm]
 design-arrows = The arrow keys move the selected point by 1 mm; N selects the next one. To drag a point that the end-point covers, select it first.
+design-slanted = The path lies in the plane y₁ = { $b } y₂ + { $d } m of (23). The *circle* is one of (y₂, y₃): in space it is the paper's ellipse. Its centre has y₃ = 0; the paper's, y₃ = ℓ₁, is out of this arm's reach.
 design-rank = Rank test (11) along the path: at least **{ $number }** of 1.
 design-zone = Show singular zone
 design-zone_hint = Where the arm is stretched or folded, eq. (14)
@@ -306,7 +312,7 @@ gains-across = Across
 gains-along = Along
 gains-poles = poles { $poles } 1/s
 gains-identify = Identify M and b
-gains-identify_hint = Estimates M and b from the follower's last 3 s and uses them in the model of both controllers.
+gains-identify_hint = Estimates M and b from the right robot's last 3 s and uses them in the model of both controllers.
 
 ## The flexible link
 
@@ -322,9 +328,15 @@ flexible-alpha = α = { $alpha }; { $limit }
 flexible-computing = critical α: being computed
 flexible-none = critical α: none up to 1
 flexible-critical = critical α = { $critical }, here and at rest
+flexible-of_beam =
+    { $modes ->
+        [one] 1 mode
+       *[other] { $modes } modes
+    }, each with ζ = { $zeta }
 flexible-unused = composite control puts the tip itself on the path and needs no α
 flexible-unstable = unstable inside
-flexible-deflections = Deflection: tracking **{ $tracking } mm**, following **{ $following } mm**; { $scale }
+flexible-deflections = Deflection: { $each }; { $scale }
+flexible-deflection = { $robot } **{ $value } mm**
 flexible-drawn = drawn { $factor }×
 
 pull-path-s-plane = path's plane
@@ -354,6 +366,8 @@ axis-speed = speed [m/s]
 axis-torques = torque [N m]
 axis-across = ξ₁ [mm]
 axis-across_rate = ξ₂ [mm/s]
+axis-across-level_set = ξ₁ = s(y) [mm²]
+axis-across_rate-level_set = ξ₂ = s'(y) [mm²/s]
 axis-place = θ [rad]
 axis-rate = θ' [rad/s]
 axis-modes = each mode, at the tip [mm]
@@ -380,6 +394,31 @@ export-busy = One file at a time: the last one you asked for is still being made
 export-ready = { $name } is ready.
 export-failed = { $name } could not be made.
 export-nothing = There is nothing to export yet: let it run first.
+
+## The comparison of laws
+
+compare-title = Compare laws
+compare-text = The same robot, path, speed and gains for all, and one obstruction. The robots are simulated in the background, with the parameters that this lab has now; your lab goes on.
+compare-obstruction = Obstruction
+compare-run = Compare
+compare-count = Choose one to { $most } laws.
+compare-law = Law
+compare-distance = largest distance to the path  [mm]
+compare-delay = delay at the end  [s]
+compare-force = largest force  [N]
+compare-stopped = * A simulation diverged and was stopped.
+compare-picture = Largest distance to the path over delay at the end, for each law
+compare-path = A comparison needs a closed path and a speed along it other than 0: choose such a path, and the task speed.
+obstruction-none = nothing
+obstruction-brake = held for 2 s, at eight places
+obstruction-push_across = pulled across the path
+obstruction-push_ahead = pulled ahead
+obstruction-push_back = pulled back
+obstruction-wall = a wall in the way
+obstruction-weak_motors = weak motors
+obstruction-too_fast = twice the speed, limited motors
+obstruction-start_off_at_rest = start beside the path, at rest
+obstruction-start_off_moving = start beside the path, moving
 
 ## The exported picture
 
@@ -424,13 +463,15 @@ keyname-Ctrl = Ctrl
 help-title = How to use the lab
 help-close = Close
 help-escape = Close the help window
-help-text = **Hold both back** and watch: the tracker (orange) is torn off its path, because its point
-    runs on by the clock. The follower (blue) waits on its path and continues when you let go.
+help-text = **Hold both back** and watch: under trajectory tracking, the left robot (orange) is torn
+    off its path, because its point runs on by the clock. Under path following, the right one (blue)
+    waits on its path and continues when you let go.
 
     - **Drag an end-point** to pull it. *Copy to both* pulls the other one by the same amount.
     - **Drag a small grey ball** to bend the path while the robots run.
-    - **Ring**: what the controller aims at. The tracker's is a point that runs by the clock; the
-      follower's is the closest point of the path.
+    - **Choose a control law** for each robot, also while it moves.
+    - **Ring or dot**: what the controller aims at. A ring is a reference point of its own, which may
+      run by the clock; a dot with a white rim is the closest point of the path.
     - **Arrow**: the force that pulls or holds the end-point.
     - **Turn the view** with the mouse or a finger; *Reset view* restores it.
 
@@ -444,16 +485,19 @@ help-text = **Hold both back** and watch: the tracker (orange) is torn off its p
 
 say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset brings it back.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
+say-no_further = The path goes no further: { $reasons }.
+say-level_set_ends = This path has no level set: across it, the distance is measured again.
 say-nothing_to_undo = nothing to undo
 say-nothing_to_redo = nothing to redo
 say-select_first = select a control point first: click one, or press N for the next
+say-laws_replaced = Not for this robot: { $laws }. A usual law is in its place.
 say-looking_back = This is the past. Run returns to the present; Go on from here discards what came after, and can be undone.
 say-let_go = The end-points have been let go.
 say-present = Back in the present.
 say-went_on = Going on from { $time } s. The { $seconds } s that came after are discarded: Undo going on (key U) restores them.
 say-brought_back = Back at { $time } s, as it was before going on. What was done instead is set aside: Undo going on (key U) changes back to it.
 
-identified-found = From the follower's last { $seconds } s: { $values }.
+identified-found = From the right robot's last { $seconds } s: { $values }.
 identified-value = { $value }, previously { $before }
 identified-and = { " " }and{ " " }
 identified-limited = { " " }{ $names }: limited by the range of the model's settings.
@@ -497,9 +541,11 @@ report-peak = { $robot } { $value } { $unit } at { $time } s
 
 behaviour-settles = settles in { $seconds } s, { $kind }
 behaviour-no_overshoot = no overshoot
+behaviour-no_oscillation = no oscillation
 behaviour-damping = damping { $damping }
 behaviour-unstable = unstable: an error grows by a factor of e every { $seconds } s
 behaviour-not_stable = not stable: an error never dies out
+behaviour-swings = not stable: an error swings for ever
 
 ## Why a curve cannot be a path (models/paths/curve_faults.py)
 
@@ -509,10 +555,12 @@ fault-singular = the path comes too near a singular configuration: there the arm
 fault-bends = the path bends too sharply: a bend needs a radius of at least { $radius } mm, otherwise the closest point on it is not unique nearby
 fault-cusp = the path has a cusp, where it has no direction
 fault-crosses = the path crosses itself: at a crossing it has two directions
+fault-narrow = two strands of the path are closer to each other than { $least } mm: between them the closest point is not unique
 
 ## Why a robot has stopped (the models' `fault`)
 
 stop-range = the numbers have left the range of a computer
+stop-typed_law = the typed law gives a number that is not finite, or is larger than { $most }
 stop-fast = a joint turns faster than { $limit } rad/s: the motion has diverged
 stop-collapsed = the linkage has collapsed (all links in one line): the controller cannot see its way out of a singular configuration
 stop-singular = the robot is close to a singular configuration (two links in one line): there its motors cannot move the end-point in every direction
@@ -533,6 +581,7 @@ error-path_takes_no_numbers = the path { $name } takes no numbers
 error-half_a_point = half a point: a path needs as many x as y
 error-points_out_of_bounds = 2 to { $most } points, within { $reach } m of the middle
 error-coefficients = a drawn path has { $wanted } coefficients, not { $count }
+error-no_level_set = this path has no level set s(y): only circles and ellipses have one here
 error-cannot_follow = { $robot } cannot follow this path: { $reasons }
 
 ## Refusals: numbers and names
@@ -543,12 +592,39 @@ error-value_out_of_range = { $name }: { $value } is not between { $low } and { $
 error-value_not_a_number = { $name }: { $value } is not a number
 error-value_not_an_option = { $name }: { $value } is not one of { $options }
 error-unknown_name = unknown { $kind } { $name }: { $hint }
+error-law_does_not_suit = { $law } is not possible with this robot: it is made for other numbers of motors, outputs or coordinates
 error-did_you_mean = did you mean { $names }?
 error-there_are = there are { $names }
 error-no_step = there is no step { $step } in this lesson: it has { $steps ->
         [one] 1 step
        *[other] { $steps } steps
     }
+
+## Refusals: a law that is typed (models/control/laws)
+
+error-law = line { $line }, column { $column }: { $reason }
+error-law_too_long = a law has at most { $most } characters, not { $count }
+error-law_too_complex = the law is too complicated: at most { $most } names, numbers and operations, nested at most { $deepest } deep
+error-law_character = { $character } means nothing here
+error-law_not_a_number = { $text } is not a number; between the factors of a product there is a *
+error-law_large_number = a number is at most { $most }
+error-law_unknown_name = there is no { $name }: { $hint }
+error-law_without_target = a line begins with one of { $names }, and then =
+error-law_twice = there is a line for { $name } already
+error-law_without_line = there is no line that begins with { $name } =
+error-law_mixed = a law commands either accelerations or torques, not both
+error-law_unreadable = something is missing or out of place here
+error-law_not_finite = this is not a finite number
+error-law_function_alone = { $name } is a function: write { $name }(…)
+error-law_not_a_function = { $name } is not a function; between the factors of a product there is a *
+error-law_arguments =
+    { $count ->
+        [one] { $name } takes one value in its brackets
+       *[other] { $name } takes { $count } values or more in its brackets
+    }
+error-law_exponent = an exponent is a whole number from 0 to { $most }
+error-law_condition_alone = a comparison stands only in a condition: a if xi > 0 else b
+error-law_not_a_condition = a condition compares, such as xi > 0
 
 ## Refusals: identification
 
@@ -591,6 +667,7 @@ error-database_newer = it is of version { $version }, made by a newer OnPath, wh
 error-lab_newer = this lab was kept by a newer OnPath
 error-lab_unreadable = what was kept of this lab cannot be read
 error-class_not_begun = the class cannot be begun
+say-path_of_then = The path kept with this lab is refused today: { $reasons }. The circle is used instead.
 say-lab_kept = Your lab is kept, but cannot be opened now: { $reason }
 
 ## Refusals: the class

@@ -14,18 +14,34 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from onpath.models.closed_loop.delay import driven
+from onpath.models.closed_loop.law_view import (
+    clock_at,
+    controlled,
+    coordinates,
+    law_view,
+    predicted,
+)
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loop_vectors import GAINS, log_layout, settings_layout, state_layout
-from onpath.models.closed_loop.plant_tick import held_torque, integrate, push
+from onpath.models.closed_loop.loop_vectors import (
+    kept_layout,
+    log_layout,
+    settings_layout,
+    state_layout,
+)
+from onpath.models.closed_loop.plant_tick import held_torque, move
+from onpath.models.closed_loop.reference_speed import next_speed, wanted_speed
 from onpath.models.closed_loop.sensing import logged, look_ahead, measure, remembered
 from onpath.models.control import composite_control as composite
-from onpath.models.control import laws as controllers
-from onpath.models.control.laws import Gains, PathReference
-from onpath.models.control.virtual_output import LevelSet, VirtualOutput, virtual_output
+from onpath.models.control.laws.law import ControlAction, Law, View
+from onpath.models.control.laws.references import clock_rate
+from onpath.models.control.laws.registry import law_named
+from onpath.models.control.linearization import admissible_along, linearization
+from onpath.models.errors import CodedError
 from onpath.models.layout import Fields, Layout
 from onpath.models.paths.curves import TABLE_SHAPE
 from onpath.models.paths.frames import Frame
-from onpath.models.paths.projection import LocalCurve, basis
+from onpath.models.paths.projection import basis
 from onpath.models.systems import forces
 from onpath.models.systems.system import MechanicalSystem
 
@@ -40,7 +56,9 @@ class Kernel:
         basis: (state, settings) -> basis functions of the curve at the parameters that the tick
             needs, (TERMS, 1 or 2).
         advance: (state, settings, table @ basis) -> (next state, log row, basis for the next tick).
-        state, settings, log: layouts of the vectors.
+        state, settings, log: layouts of the vectors. The functions take the leading fields of the
+            state that this loop changes, and the others stay as they are.
+        table_shape: shape of the curve's table.
     """
 
     basis: ca.Function
@@ -48,6 +66,7 @@ class Kernel:
     state: Layout
     settings: Layout
     log: Layout
+    table_shape: tuple[int, int] = TABLE_SHAPE
 
     def block(self, ticks: int) -> ca.Function:
         """Many ticks, for an interpreter: (state, settings, curve table) -> (state, log columns).
@@ -57,23 +76,30 @@ class Kernel:
         """
         state = ca.MX.sym("state", self.state.size)
         settings = ca.MX.sym("settings", self.settings.size)
-        table = ca.MX.sym("curve", *TABLE_SHAPE)
-        after, basis, rows = state, self.basis(state, settings), list[ca.MX]()
+        table = ca.MX.sym("curve", *self.table_shape)
+        after, rest = state[: self.changed], state[self.changed :]
+        basis, rows = self.basis(after, settings), list[ca.MX]()
         for _ in range(ticks):
             after, row, basis = self.advance(after, settings, table @ basis)
             rows.append(row)
-        return ca.Function("block", [state, settings, table], [after, ca.horzcat(*rows)])
+        results = [ca.vertcat(after, rest), ca.horzcat(*rows)]
+        return ca.Function("block", [state, settings, table], results)
 
     def tick(self) -> ca.Function:
         """One tick, for a compiler, as one scalar graph.
 
-        (state, settings, curve table) -> (state, log row)
+        (state, settings, curve table) -> (state, log row), with the fields that this loop changes
         """
-        state = ca.SX.sym("state", self.state.size)
+        state = ca.SX.sym("state", self.changed)
         settings = ca.SX.sym("settings", self.settings.size)
-        table = ca.SX.sym("curve", *TABLE_SHAPE)
+        table = ca.SX.sym("curve", *self.table_shape)
         after, row, _ = self.advance(state, settings, table @ self.basis(state, settings))
         return ca.Function("onpath_tick", [state, settings, table], [after, row])
+
+    @property
+    def changed(self) -> int:
+        """Length of the leading part of the state that this loop changes."""
+        return self.advance.size_in(0)[0]
 
 
 def build_kernel(
@@ -94,31 +120,34 @@ def build_kernel(
         grip: springs of the hand and the brake.
 
     Raises:
-        ValueError: an unknown controller.
+        ValueError: an unknown law, or one that does not suit the robot, or a space curve for a
+            robot that takes none.
     """
-    if kind.controller not in controllers.NAMES:
-        raise ValueError(f"controller {kind.controller!r}: expected one of {controllers.NAMES}")
-    layouts = state_layout(system), settings_layout(system), log_layout(system)
-    bases = _bases(system, kind)
-    return Kernel(bases, _advance(system, frame, kind, (substeps, grip), bases), *layouts)
+    law = law_named(kind.controller)
+    if not law.suits(system) or (kind.law == "composite" and not law.commands_acceleration):
+        raise CodedError("error.law_does_not_suit", law=law.label)
+    if kind.space:
+        frame = _space(system, frame, kind)
+    layouts = state_layout(system, law.memory), settings_layout(system), log_layout(system)
+    bases = _bases(system, kind, law)
+    advance = _advance(system, frame, kind, law, (substeps, grip), bases)
+    return Kernel(bases, advance, *layouts, kind.table_shape)
 
 
-def _tracks(kind: Kind) -> bool:
-    return kind.controller == "trajectory_tracking"
+def _space(system: MechanicalSystem, frame: Frame, kind: Kind) -> Frame:
+    """The frame of space curves."""
+    if frame.space is None or kind.level_set or kind.law == "composite":
+        raise ValueError(f"{system.name}: a space curve cannot be followed here")
+    return frame.space
 
 
-def _predicted(state: Fields, settings: Fields) -> ca.SX:
-    """The θ at which the curve is evaluated, θ_0 = θ + dt θ', [rad]."""
-    return state["theta"] + settings["dt"] * state["theta_rate"]
-
-
-def _bases(system: MechanicalSystem, kind: Kind) -> ca.Function:
-    """(state, settings) -> basis at the predicted closest point and, if tracking, at θ_r."""
-    state_symbol, state = state_layout(system).symbols("state")
+def _bases(system: MechanicalSystem, kind: Kind, law: Law) -> ca.Function:
+    """(state, settings) -> basis at the predicted closest point and at the law's reference."""
+    state_symbol, state = kept_layout(system, kind, law.memory).symbols("state")
     settings_symbol, settings = settings_layout(system).symbols("settings")
-    columns = basis(_predicted(state, settings), kind.closed)
-    if _tracks(kind):
-        reference, _ = _reference(kind, state, settings)
+    columns = basis(predicted(state, settings), kind.closed)
+    if law.reference is not None:
+        reference = law.reference(clock_at(kind, law, state, settings))
         columns = ca.horzcat(columns, basis(reference, kind.closed))
     return ca.Function("bases", [state_symbol, settings_symbol], [ca.densify(columns)])
 
@@ -127,6 +156,7 @@ def _advance(
     system: MechanicalSystem,
     frame: Frame,
     kind: Kind,
+    law: Law,
     plant: tuple[int, forces.Grip],
     bases: ca.Function,
 ) -> ca.Function:
@@ -136,45 +166,37 @@ def _advance(
         plant: number of Runge-Kutta steps, and the springs of hand and brake.
         bases: from `_bases`.
     """
-    state_symbol, state = state_layout(system).symbols("state")
+    state_symbol, state = kept_layout(system, kind, law.memory).symbols("state")
     settings_symbol, settings = settings_layout(system).symbols("settings")
-    values = ca.SX.sym("values", TABLE_SHAPE[0], 2 if _tracks(kind) else 1)
+    values = ca.SX.sym("values", kind.table_shape[0], 1 if law.reference is None else 2)
     measured_q, measured_v, reading = measure(system, kind, state, settings)
     q, v = look_ahead(system, state, settings, measured_q, measured_v)
     beam = _beam(system, state, settings, q, v) if kind.law == "composite" else None
-    y, y_rate = _controlled(system, settings, q, v) if beam is None else (beam.y, beam.y_rate)
-    output = _coordinates(frame, kind, state, settings, values[:, 0], y, y_rate)
-    command, error = _command(frame, kind, state, settings, values, output, (y, y_rate), beam)
-    wanted, memory = _wanted(system, state, settings, q, v, command, beam)
-    u, acts, saturated = held_torque(kind, state, settings, wanted)
-    tip, force, tau = push(system, kind, state, settings, u, plant[1])
-
+    view = law_view(system, frame, kind, law, state, settings, values, (q, v), beam)
+    command = law.command(view)
+    wanted, memory = _wanted(kind, state, settings, view, command, beam)
+    fresh, acts, saturated = held_torque(kind, state, settings, wanted)
+    drive = driven(kind, state, settings, fresh, acts)
+    tip, force, moved = move(system, kind, state, settings, drive.parts, plant)
     after = {
-        **integrate(system, state, settings, tau, plant[0]),
-        "theta": output.theta,
-        "theta_rate": output.theta_rate,
-        "theta_ref": state["theta_ref"] + settings["dt"] * _reference(kind, state, settings)[1],
-        "integral": _integral(kind, state, settings, acts, saturated, error),
+        **moved,
+        **_next_places(state, settings, view, command),
+        "integral": _integral(kind, law, state, settings, acts, saturated, command),
         **remembered(kind, state, acts, reading, measured_v[: system.m]),
         **memory,
-        "u": u,
+        **{n: ca.if_else(acts, command.memory[n], state[n]) for n, _ in law.memory},
+        **drive.memory,
         "phase": ca.SX(0) if kind.free else _next_phase(state, settings),
     }
-    measured = output
+    rate = view.output.theta_rate
     if beam is None:  # the logged speed is that of the measured velocities
-        y_pair = _controlled(system, settings, q, measured_v)
-        measured = _coordinates(frame, kind, state, settings, values[:, 0], *y_pair)
-    row = state | {"y": tip, "u": u, "force": force} | logged(output, measured.theta_rate, settings)
-    later = state_layout(system).join(after)
+        y_pair = controlled(system, settings, q, measured_v)
+        rate = coordinates(frame, kind, state, settings, values[:, 0], *y_pair)[0].theta_rate
+    row = {**state, "speed_ref": wanted_speed(state, settings)[0], "y": tip}
+    row |= {"u": drive.mean, "force": force} | logged(view.output, rate, settings)
+    later = kept_layout(system, kind, law.memory).join(after)
     outputs = [later, log_layout(system).join(row), bases(later, settings_symbol)]
     return ca.Function("advance", [state_symbol, settings_symbol, values], ca.cse(outputs))
-
-
-def _controlled(
-    system: MechanicalSystem, settings: Fields, q: ca.SX, v: ca.SX
-) -> tuple[ca.SX, ca.SX]:
-    """The controlled output and its rate, by the controller's model, each (p, 1), [m], [m/s]."""
-    return system.with_rate(system.controlled_output)(q, v, settings["model"])
 
 
 def _beam(
@@ -188,21 +210,32 @@ def _beam(
 
 
 def _wanted(
-    system: MechanicalSystem,
+    kind: Kind,
     state: Fields,
     settings: Fields,
-    q: ca.SX,
-    v: ca.SX,
-    command: ca.SX,
+    view: View,
+    command: ControlAction,
     beam: composite.Compensation | None,
 ) -> tuple[ca.SX, Fields]:
-    """Torque for the commanded y'', (m, 1), and the memory of composite control after this tick."""
+    """Torque for the command, (m, 1), and the memory of composite control after this tick."""
     memory = {name: state[name] for name, _ in composite.MEMORY.fields if name in state}
-    if beam is None:
-        return controllers.linearization(system, q, v, settings["model"], command), memory
-    rate = composite.rates(beam, settings["speed"], command)
-    after = {name: x + settings["dt"] * rate[name] for name, x in memory.items()}
-    return composite.torques(beam, rate, command), after
+    if command.torque is not None:
+        return command.torque, memory
+    assert command.acceleration is not None
+    if beam is not None:
+        speed = wanted_speed(state, settings)[0]
+        rate = composite.rates(beam, speed, command.acceleration)
+        after = {name: x + settings["dt"] * rate[name] for name, x in memory.items()}
+        return composite.torques(beam, rate, command.acceleration), after
+    robot = view.system, view.q, view.v, view.model
+    acceleration = command.acceleration
+    if kind.across_first and command.along is not None:
+        along, direction = command.along.command, command.along.direction
+        base = linearization(*robot, acceleration - direction * along)
+        slope = linearization(*robot, acceleration - direction * (along - 1)) - base
+        reduced = admissible_along(base, slope, along, settings["torque_limit"])
+        acceleration = acceleration + direction * (reduced - along)
+    return linearization(*robot, acceleration), memory
 
 
 def _next_phase(state: Fields, settings: Fields) -> ca.SX:
@@ -212,70 +245,41 @@ def _next_phase(state: Fields, settings: Fields) -> ca.SX:
 
 
 def _integral(
-    kind: Kind, state: Fields, settings: Fields, acts: ca.SX, saturated: ca.SX, error: ca.SX
+    kind: Kind,
+    law: Law,
+    state: Fields,
+    settings: Fields,
+    acts: ca.SX,
+    saturated: ca.SX,
+    command: ControlAction,
 ) -> ca.SX:
-    """The next value of the integral that K3 multiplies; 0 if K3 = 0.
+    """The next value of the integral; 0 while it is switched off.
 
         I⁺ = I + hold_ticks dt e  in ticks in which the control law is evaluated.
 
-    It is frozen while a torque saturates (anti-windup) and while the brake is on.
+    It stops only while a torque saturates (anti-windup). K3 = 0 switches it off, unless the law
+    always integrates; one whose reference point runs by the clock needs `tracker_integral` besides.
+
+    Source: eq. (18).
     """
-    interval = settings["dt"]
+    if command.error is None:
+        return ca.SX.zeros(*state["integral"].shape)
+    interval, on = settings["dt"], settings["K3"] != 0
     if not kind.free:
-        counts = acts * (1 - saturated) * (1 - settings["hold_active"])
-        interval = counts * interval * settings["hold_ticks"]
-    return (settings["K3"] != 0) * (state["integral"] + interval * error)
+        interval = acts * (1 - saturated) * interval * settings["hold_ticks"]
+    if law.always_integrates:
+        on = ca.SX(1)
+    elif law.by_clock:
+        on = on * settings["tracker_integral"]
+    return on * (state["integral"] + interval * command.error)
 
 
-def _coordinates(
-    frame: Frame,
-    kind: Kind,
-    state: Fields,
-    settings: Fields,
-    values: ca.SX,
-    y: ca.SX,
-    y_rate: ca.SX,
-) -> VirtualOutput:
-    """The virtual output at y, from the curve's `values` at the predicted θ."""
-    names = ("level_centre", "level_weights", "level_constant")
-    level = LevelSet(*[settings[name] for name in names]) if kind.level_set else None
-    start = LocalCurve.from_values(_predicted(state, settings), kind.closed, values)
-    return virtual_output(start.project(frame.split(y)[0]), frame, level, y, y_rate)
-
-
-def _reference(kind: Kind, state: Fields, settings: Fields) -> tuple[ca.SX, ca.SX]:
-    """The reference θ_r of trajectory tracking half a tick ahead [rad], and its rate [rad/s]."""
-    speed = state["speed_chain"][0] if kind.law == "composite" else settings["speed"]
-    task = PathReference(settings["position"], settings["target"], speed)
-    theta_ref, dt = state["theta_ref"], settings["dt"]
-    rate = controllers.reference_rate(theta_ref, kind.closed, task, dt)
-    return theta_ref + dt / 2 * rate, rate
-
-
-def _command(
-    frame: Frame,
-    kind: Kind,
-    state: Fields,
-    settings: Fields,
-    values: ca.SX,
-    output: VirtualOutput,
-    measured: tuple[ca.SX, ca.SX],
-    beam: composite.Compensation | None,
-) -> tuple[ca.SX, ca.SX]:
-    """Commanded y'' and the error that is integrated (λ or e), both (p, 1)."""
-    gains = Gains(*[settings[name] for name in GAINS])
-    k5, speed = settings["K5"], settings["speed"]
-    speed = speed if beam is None else composite.wanted_speed(beam, output, k5)
-    task = PathReference(settings["position"], settings["target"], speed)
-    integral = state["integral"]
-    if kind.controller == "path_following":
-        across = integral[: frame.p - 1]
-        command = controllers.path_following(output, kind.closed, gains, task, across)
-        return command, ca.vertcat(output.xi, 0)
-    if kind.controller != "trajectory_tracking":
-        raise NotImplementedError(f"no command for the law {kind.controller!r}")
-    theta_ref, rate = _reference(kind, state, settings)
-    reference = LocalCurve.from_values(theta_ref, kind.closed, values[:, 1])
-    error, error_rate, feedforward = controllers.tracking_error(reference, frame, *measured, rate)
-    command = controllers.trajectory_tracking(error, error_rate, feedforward, gains, integral)
-    return command, error
+def _next_places(state: Fields, settings: Fields, view: View, command: ControlAction) -> Fields:
+    """The closest point, θ_r, as the law says or by the clock, and ω_ref after the tick."""
+    by_clock = view.clock.theta + settings["dt"] * clock_rate(view.clock)
+    return {
+        "theta": view.output.theta,
+        "theta_rate": view.output.theta_rate,
+        "theta_ref": by_clock if command.theta_ref is None else command.theta_ref,
+        "speed_ref": next_speed(state, settings),
+    }

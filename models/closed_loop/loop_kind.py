@@ -4,21 +4,29 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from onpath.models.paths.curves import SPACE_TABLE_SHAPE, TABLE_SHAPE
+
 
 @dataclass(frozen=True, slots=True)
 class Kind:
     """The choices that need a kernel of their own; everything else is a run-time setting.
 
     Attributes:
-        controller: one of `laws.NAMES`.
+        controller: name of a law of `models/control/laws`.
         closed: whether the path is a closed curve.
         level_set: whether λ is the paper's s(y) instead of the signed distance.
         encoder: whether the controller gets quantised angles and filtered velocities instead of the
             exact state.
         free: whether the loop may omit external forces, torque limits, dry friction and held
             torques, for speed. It is equivalent to the full loop while none of these act.
+        space: whether the path is a space curve.
         law: the controlled output of a flexible robot: "redefined" (with a share α of the
             deflection) or "composite" (the tip, see models/control/composite_control.py).
+        across_first: whether a torque limit takes from the motion along the path first; see
+            `admissible_along`.
+        delay: whether a torque takes effect some time after the measurement (delay.py).
+        stiction: whether joints stick, by Karnopp's model (stiction.py).
+        noise: whether sensors are noisy (noise.py).
     """
 
     controller: str
@@ -27,3 +35,13 @@ class Kind:
     encoder: bool = False
     free: bool = False
     law: str = "redefined"
+    across_first: bool = False
+    delay: bool = False
+    stiction: bool = False
+    noise: bool = False
+    space: bool = False
+
+    @property
+    def table_shape(self) -> tuple[int, int]:
+        """Shape of `Curve.table` of its paths."""
+        return SPACE_TABLE_SHAPE if self.space else TABLE_SHAPE

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from onpath.models.closed_loop.delay import LONGEST
+from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.control import composite_control as composite
+from onpath.models.control.laws.law import Memory
+from onpath.models.control.laws.registry import OWN_GAINS
 from onpath.models.layout import Layout
 from onpath.models.systems.system import MechanicalSystem
 
 GAINS = ("K1", "K2", "K3", "K4", "K5")
 
 
-def state_layout(system: MechanicalSystem) -> Layout:
-    """The state that a closed loop carries from tick to tick, the same for both control laws."""
+def state_layout(system: MechanicalSystem, memory: Memory = ()) -> Layout:
+    """The state that a closed loop carries from tick to tick.
+
+    Args:
+        memory: what the law keeps besides, `Law.memory`. It comes late, so that the fields before
+            it are at the same places for all laws.
+    """
     n, m, p = system.n, system.m, system.p
     return Layout(
         (
@@ -18,15 +27,29 @@ def state_layout(system: MechanicalSystem) -> Layout:
             ("v", n),
             ("theta", 1),  # closest point, [rad]
             ("theta_rate", 1),  # its rate, which predicts the next one, [rad/s]
-            ("theta_ref", 1),  # reference point of trajectory tracking, [rad]
-            ("integral", p),  # of λ, or of the tracking error
+            ("theta_ref", 1),  # reference point of laws that have one, [rad]
+            ("speed_ref", 1),  # speed reference, which ramps to the wanted speed, [rad/s]
+            ("integral", p),  # of λ, or of the error to the reference point
             ("encoder", m),  # last reading, [rad]
             ("encoder_rate", m),  # filtered velocity, [rad/s]
             *(composite.MEMORY.fields if n > m else ()),
             ("u", m),  # torque that is held, [N m]
             ("phase", 1),  # ticks since the control law was evaluated
+            *memory,
+            ("ticks", 1),  # of noise so far
+            ("queue", LONGEST * m),  # torques to take effect, newest first, [N m]
         )
     )
+
+
+def kept_layout(system: MechanicalSystem, kind: Kind, memory: Memory = ()) -> Layout:
+    """The leading fields of the state that a loop of this kind reads and changes.
+
+    Other kinds leave the last fields as they are, so that their loops cost nothing there.
+    """
+    unused = () if kind.delay else ("queue",) if kind.noise else ("ticks", "queue")
+    fields = state_layout(system, memory).fields
+    return Layout(tuple(each for each in fields if each[0] not in unused))
 
 
 def settings_layout(system: MechanicalSystem) -> Layout:
@@ -36,14 +59,15 @@ def settings_layout(system: MechanicalSystem) -> Layout:
     they are and as the controller assumes them.
     """
     p, k = system.p, len(system.parameter_names)
-    scalars = (*GAINS, "position", "target", "speed")
-    flexible = tuple(composite.GAINS) if system.n > system.m else ()
+    scalars = (*GAINS, "position", "target", "speed", "ramp", "speed_limit", "tracker_integral")
+    flexible = (*composite.GAINS, "strain_noise") if system.n > system.m else ()
     realism = ("torque_limit", "coulomb", "encoder_step", "encoder_filter", "hold_ticks", "dt")
+    realism += ("stiction", "torque_step", "delay_ticks", "sensor_noise", "seed")
     return Layout(
         (
-            *((name, 1) for name in (*scalars, *flexible)),
+            *((name, 1) for name in (*scalars, *OWN_GAINS, *flexible)),
             ("level_centre", 2),
-            ("level_weights", 2),
+            ("level_weights", 3),
             ("level_constant", 1),
             *((name, 1) for name in realism),
             ("hand_active", 1),
@@ -51,6 +75,10 @@ def settings_layout(system: MechanicalSystem) -> Layout:
             ("hold_active", 1),
             ("hold_anchor", p),
             ("hold_tangent", p),
+            ("hold_normal", p),  # second direction of the brake; 0: none
+            ("wall_active", 1),
+            ("wall_place", p),
+            ("wall_normal", p),
             ("plant", k),
             ("model", k),
         )
@@ -69,6 +97,7 @@ def log_layout(system: MechanicalSystem) -> Layout:
             ("theta_rate", 1),
             ("speed", 1),  # along the path, [m/s]
             ("theta_ref", 1),
+            ("speed_ref", 1),
             ("xi", p - 1),
             ("xi_rate", p - 1),
             ("u", m),

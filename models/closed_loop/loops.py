@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
+from math import prod
 from typing import Protocol
 
 import numpy as np
@@ -16,9 +17,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.closed_loop.kernel import Kernel
-from onpath.models.paths.curves import TABLE_SHAPE
 
-TABLE_SIZE = TABLE_SHAPE[0] * TABLE_SHAPE[1]
 BLOCK = 16  # ticks per call of the interpreted loop, about one frame of the display
 SHORT = 1000  # ticks, of all robots, up to which a compiled loop keeps the interpreter's lock
 
@@ -130,7 +129,7 @@ class CompiledLoop:
         kernel, robots = self.kernel, len(states)
         after = _stacked(states, robots, kernel.state.size)
         own = _stacked(settings, robots, kernel.settings.size)
-        curves = _stacked(tables, robots, TABLE_SIZE)
+        curves = _stacked(tables, robots, prod(kernel.table_shape))
         rows = np.empty((robots, ticks, kernel.log.size))
         run = self._short if ticks * robots <= SHORT else self._long
         run(_address(own), _address(curves), _address(after), _address(rows), ticks, robots)

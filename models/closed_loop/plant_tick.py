@@ -5,6 +5,7 @@ from __future__ import annotations
 import casadi as ca
 
 from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.stiction import friction
 from onpath.models.layout import Fields
 from onpath.models.systems import forces
 from onpath.models.systems.system import MechanicalSystem
@@ -13,7 +14,7 @@ from onpath.models.systems.system import MechanicalSystem
 def held_torque(
     kind: Kind, state: Fields, settings: Fields, wanted: ca.SX
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """The torque of this tick, with the limit |u_i| <= torque_limit.
+    """The torque of this tick, with the limit |u_i| <= torque_limit, in steps of torque_step.
 
     Args:
         wanted: torque that the control law would apply now, (m, 1), [N m].
@@ -26,8 +27,16 @@ def held_torque(
     fresh = ca.fmin(ca.fmax(wanted, -limit), limit)
     if kind.free:
         return fresh, ca.SX(1), ca.SX(0)
-    acts = state["phase"] < 0.5
+    acts, fresh = state["phase"] < 0.5, _stepped(fresh, limit, settings["torque_step"])
     return ca.if_else(acts, fresh, state["u"]), acts, ca.mmax(ca.fabs(wanted)) > limit
+
+
+def _stepped(u: ca.SX, limit: ca.SX, step: ca.SX) -> ca.SX:
+    """The multiple of `step` nearest to u that is within the limit; u itself if `step` is 0."""
+    size = ca.if_else(step > 0, step, 1)
+    most = ca.floor(limit / size)
+    whole = ca.fmin(ca.fmax(ca.floor(u / size + 0.5), -most), most)
+    return ca.if_else(step > 0, size * whole, u)
 
 
 def push(
@@ -38,40 +47,80 @@ def push(
     u: ca.SX,
     grip: forces.Grip,
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """The external forces on the plant, held constant over the tick.
+    """All forces on the plant, held constant over the tick.
 
-        τ = (u + dry friction, 0) + J_h^T (F_hand + F_brake)
+        τ = B(q) (u + dry friction) + J_h^T (F_hand + F_brake + F_wall)
+
+    Dry friction acts in the motors, at the rates B^T v. B is taken half a tick ahead, for which the
+    control law computed u.
 
     Args:
         u: torque of the motors, (m, 1), [N m].
-        grip: springs of the hand and the brake.
+        grip: springs of the hand, the brake and the wall.
 
     Returns:
         The actual end-point y (p, 1) [m], the force on it (p, 1) [N], and all generalized forces τ
         (n, 1).
     """
     y, y_rate = system.with_rate(system.output)(state["q"], state["v"], settings["plant"])
-    unactuated = ca.SX(system.n - system.m, 1)
+    middle = state["q"] + settings["dt"] / 2 * state["v"]
     if kind.free:
-        return y, ca.SX.zeros(system.p, 1), ca.vertcat(u, unactuated)
+        return y, ca.SX.zeros(system.p, 1), system.effort(middle, u, settings["plant"])
     pull = forces.hand(y, y_rate, settings["hand_target"], settings["hand_active"], grip.hand)
-    where = settings["hold_anchor"], settings["hold_tangent"]
-    brake = forces.hold(y, y_rate, *where, settings["hold_active"], grip.hold)
+    where, active = settings["hold_anchor"], settings["hold_active"]
+    brake = forces.hold(y, y_rate, where, settings["hold_tangent"], active, grip.hold)
+    brake += forces.hold(y, y_rate, where, settings["hold_normal"], active, grip.hold)
+    solid = settings["wall_place"], settings["wall_normal"], settings["wall_active"]
+    outside = pull + brake + forces.wall(y, y_rate, *solid, grip.wall)
     force = ca.SX.sym("force", system.p)
     transposed = ca.Function(
         "transposed",
         [system.q, system.parameters, force],
         [ca.jtimes(system.output, system.q, force, True)],
     )
-    pushed = transposed(state["q"], settings["plant"], pull + brake)
-    motors = u + forces.dry_friction(state["v"][: system.m], settings["coulomb"])
-    return y, pull + brake, pushed + ca.vertcat(motors, unactuated)
+    pushed = transposed(state["q"], settings["plant"], outside)
+    if not kind.stiction:  # which has dry friction of its own
+        rates = system.input_rates(state["q"], state["v"], settings["plant"])
+        u = u + forces.dry_friction(rates, settings["coulomb"])
+    return y, outside, pushed + system.effort(middle, u, settings["plant"])
+
+
+def move(
+    system: MechanicalSystem,
+    kind: Kind,
+    state: Fields,
+    settings: Fields,
+    torques: tuple[tuple[ca.SX, ca.SX], ...],
+    plant: tuple[int, forces.Grip],
+) -> tuple[ca.SX, ca.SX, Fields]:
+    """The plant in one tick.
+
+    Args:
+        torques: (torque of the motors (m, 1) [N m], share of the tick) of its consecutive parts.
+        plant: number of Runge-Kutta steps in each part, and the springs of hand and brake.
+
+    Returns:
+        The actual end-point y [m] and the force on it [N] at the beginning, each (p, 1), and (q, v)
+        after the tick.
+    """
+    now, pushes = {"q": state["q"], "v": state["v"]}, list[tuple[ca.SX, ca.SX]]()
+    for torque, share in torques:
+        y, force, tau = push(system, kind, now, settings, torque, plant[1])
+        pushes.append((y, force))
+        resting = None
+        if kind.stiction:
+            levels = settings["stiction"], settings["coulomb"]
+            resting = friction(system, now, tau, settings["plant"], levels)
+            tau = tau + ca.vertcat(resting.torque, ca.SX(system.n - system.m, 1))
+        moved = integrate(system, now, settings, tau, share * settings["dt"] / plant[0], plant[0])
+        now = moved if resting is None else resting.applied(now, moved)
+    return *pushes[0], now
 
 
 def integrate(
-    system: MechanicalSystem, state: Fields, settings: Fields, tau: ca.SX, substeps: int
+    system: MechanicalSystem, state: Fields, settings: Fields, tau: ca.SX, h: ca.SX, steps: int
 ) -> Fields:
-    """(q, v) after one tick, by the classical Runge-Kutta method with τ held constant.
+    """(q, v) some steps later, by the classical Runge-Kutta method with τ held constant.
 
     With q' = v and v' = a(q, v), the four slopes of q are eliminated:
 
@@ -79,16 +128,17 @@ def integrate(
 
     Args:
         tau: generalized forces, (n, 1).
-        substeps: steps per tick; h = dt / substeps.
+        h: length of a step, [s].
+        steps: their number.
     """
     slope = ca.Function(
         "slope",
         [system.q, system.v, system.tau, system.parameters],
         [system.acceleration],
     )
-    q, v, h = state["q"], state["v"], settings["dt"] / substeps
+    q, v = state["q"], state["v"]
     half, sixth, plant = h / 2, h / 6, settings["plant"]
-    for _ in range(substeps):
+    for _ in range(steps):
         drift = half * v
         middle = q + drift
         ahead = middle + drift

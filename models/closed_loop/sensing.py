@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from math import sqrt
+
 import casadi as ca
 
 from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.noise import standard_normal
 from onpath.models.control.virtual_output import VirtualOutput
 from onpath.models.layout import Fields
+from onpath.models.systems.beam import beam_modes
 from onpath.models.systems.system import MechanicalSystem
 
 
@@ -21,17 +25,38 @@ def measure(
 
         v_f⁺ = v_f + T / (encoder_filter + T) ((q - q_previous) / T - v_f),   T = hold_ticks dt.
 
-    Coordinates without a motor are always exact.
+    Encoders are on the first m coordinates; the others are exact, but for the noise of strain
+    gauges. Noise of the joint angles is added before they are rounded; it, too, calls for the
+    filter.
     """
-    q, v, m = state["q"], state["v"], system.m
-    if not kind.encoder:
+    m, v = system.m, state["v"]
+    q = state["q"] + _noise(system, state, settings) if kind.noise else state["q"]
+    if not (kind.encoder or kind.noise):
         return q, v, q[:m]
     step, dt = settings["encoder_step"], settings["dt"] * settings["hold_ticks"]
-    reading = step * ca.floor(q[:m] / step + 0.5)
+    reading = step * ca.floor(q[:m] / step + 0.5) if kind.encoder else q[:m]
     weight = dt / (settings["encoder_filter"] + dt)
     difference = (reading - state["encoder"]) / dt
     rate = state["encoder_rate"] + weight * (difference - state["encoder_rate"])
+    if not kind.encoder:  # exact velocities without noise of the angles
+        rate = ca.if_else(settings["sensor_noise"] > 0, rate, v[:m])
     return ca.vertcat(reading, q[m:]), ca.vertcat(rate, v[m:]), reading
+
+
+def _noise(system: MechanicalSystem, state: Fields, settings: Fields) -> ca.SX:
+    """The errors of the measured coordinates in this tick: white noise, (n, 1).
+
+    Joint angles have the standard deviation `sensor_noise`. Strain gauges measure the modal
+    coordinates f_j, each with a standard deviation such that that of the deflection of the tip,
+    Σ φ_j(l) f_j, is `strain_noise`. The rates of the modes are not affected.
+    """
+    n, m = system.n, system.m
+    deviation = settings["sensor_noise"] * ca.SX.ones(m)
+    if n > m:
+        own = system.parameter_names.index("l")
+        tip = ca.DM(beam_modes(n - m, 1.0).tip) / ca.sqrt(settings["model"][own])
+        deviation = ca.vertcat(deviation, settings["strain_noise"] / (tip * sqrt(n - m)))
+    return deviation * standard_normal(settings["seed"], state["ticks"], n)
 
 
 def look_ahead(
@@ -51,7 +76,7 @@ def look_ahead(
     """
     inputs = [system.q, system.v, system.tau, system.parameters]
     slope = ca.Function("slope", inputs, [system.acceleration])
-    tau = ca.vertcat(state["u"], ca.SX(system.n - system.m, 1))
+    tau = system.effort(q, state["u"], settings["model"])
     half = settings["dt"] / 2
     change = half * slope(q, v, tau, settings["model"])  # of v
     return q + half * (v + change / 2), v + change
@@ -79,16 +104,17 @@ def logged(output: VirtualOutput, theta_rate: ca.SX, settings: Fields) -> Fields
 
 
 def remembered(kind: Kind, state: Fields, acts: ca.SX, reading: ca.SX, rate: ca.SX) -> Fields:
-    """The encoder readings and filtered velocities that the next evaluation differentiates.
+    """Readings and filtered velocities that the next evaluation differentiates; ticks of noise.
 
     Args:
         acts: whether the control law is evaluated in this tick.
         reading: (m, 1), [rad].
         rate: filtered velocity, (m, 1), [rad/s].
     """
-    if not kind.encoder:
-        return {"encoder": reading, "encoder_rate": rate}
-    return {
+    counted = {"ticks": state["ticks"] + int(kind.noise)} if "ticks" in state else Fields()
+    if not (kind.encoder or kind.noise):
+        return {"encoder": reading, "encoder_rate": rate, **counted}
+    return counted | {
         "encoder": ca.if_else(acts, reading, state["encoder"]),
         "encoder_rate": ca.if_else(acts, rate, state["encoder_rate"]),
     }

@@ -8,12 +8,17 @@ from functools import lru_cache
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.delay import LONGEST
 from onpath.models.closed_loop.kernel import Kernel, build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS
 from onpath.models.control import composite_control
-from onpath.models.paths.curves import Curve
-from onpath.models.systems.parameters import TICK, Parameters, time_step
+from onpath.models.control.laws.registry import OWN_GAINS
+from onpath.models.control.speed_limit import NO_SPEED_LIMIT, speed_limit
+from onpath.models.errors import CodedError
+from onpath.models.paths.curves import Curve, saddle
+from onpath.models.paths.distance import closest_parameter
+from onpath.models.systems.parameters import LEVEL_SET, TICK, Parameters, rise_of, time_step
 from onpath.models.systems.robots import Robot
 
 NO_LIMIT = 1000.0  # [N m], the limit when there is none: far above any motor, but finite
@@ -26,14 +31,38 @@ class Push:
     Attributes:
         hand: position of the hand, shape (p,), [m], or None.
         hold: anchor [m] and unit tangent of the brake, each shape (p,), or None.
+        hold_normal: a second direction in which the brake acts, shape (p,), or None.
+        wall: a point of a wall's surface [m] and its unit normal, each shape (p,), or None.
     """
 
     hand: Array | None = None
     hold: tuple[Array, Array] | None = None
+    hold_normal: Array | None = None
+    wall: tuple[Array, Array] | None = None
+
+    @property
+    def acts(self) -> bool:
+        """Whether there is anything that may exert a force."""
+        return not (self.hand is None and self.hold is None and self.wall is None)
 
 
 FREE = Push()  # nothing acts
 _conic = lru_cache(maxsize=64)(Curve.conic)  # needed at every change of a setting
+
+
+def has_level_set(curve: Curve) -> bool:
+    """Whether a path is an ellipse, so that it has the level set of eq. (15)."""
+    return _conic(curve) is not None
+
+
+def check_level_set(parameters: Parameters, curve: Curve) -> None:
+    """Refuse across = level_set on a path that has no level set.
+
+    Raises:
+        CodedError: it has none.
+    """
+    if parameters.across == LEVEL_SET and not has_level_set(curve):
+        raise CodedError("error.no_level_set")
 
 
 def kind_of(
@@ -42,24 +71,31 @@ def kind_of(
     """The kind of loop that these parameters need.
 
     Args:
-        controller: one of `laws.NAMES`.
-        curve: the path.
+        controller: name of a law of `models/control/laws`.
+        curve: the path. While one path blends into another, which may have no level set, λ is the
+            signed distance; elsewhere `check_level_set` refuses such a path.
         push: what acts from outside. If given and nothing acts, the kind may be a `free` one.
     """
     plain = parameters.torque_limit == 0 == parameters.coulomb
+    exact = parameters.torque_step == parameters.delay == parameters.stiction == 0
     every_tick = parameters.control_rate * TICK >= 1
-    untouched = push is not None and push.hand is None and push.hold is None
+    untouched = push is not None and not push.acts
     return Kind(
         controller=controller,
         closed=curve.closed,
-        level_set=parameters.across == "level_set" and _conic(curve) is not None,
+        level_set=parameters.across == LEVEL_SET and has_level_set(curve),
         encoder=parameters.encoder_counts > 0,
         law=getattr(parameters, "law", "redefined"),
-        free=plain and every_tick and untouched,
+        space=curve.dimension == 3,
+        free=plain and exact and every_tick and untouched,
+        across_first=parameters.torque_limit > 0 and parameters.at_limit != "cut",
+        delay=parameters.delay > 0,
+        stiction=parameters.stiction > 0,
+        noise=parameters.sensor_noise > 0 or getattr(parameters, "strain_noise", 0.0) > 0,
     )
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)
 def kernel_of(robot: Robot, kind: Kind) -> Kernel:
     """The kernel for a robot and a kind, built once."""
     return build_kernel(robot.system, robot.frame, kind, robot.substeps, robot.grip)
@@ -78,14 +114,17 @@ def settings_vector(
         Shape (kernel.settings.size,).
     """
     p, dt = robot.system.p, time_step(parameters)
-    centre, weights, constant = _conic(curve) or (np.zeros(2), np.ones(2), 1.0)
+    centre, weights, constant = _conic(curve) or (np.zeros(2), np.array([1.0, 1.0, 0.0]), 1.0)
     counts = parameters.encoder_counts
     return kernel.settings.pack(
-        {name: getattr(parameters, name) for name in GAINS}
+        {name: getattr(parameters, name) for name in (*GAINS, *OWN_GAINS)}
         | {
+            "tracker_integral": float(parameters.tracker_integral == "on"),
             "position": float(parameters.task == "position"),
             "target": parameters.target,
             "speed": parameters.speed,
+            "ramp": parameters.ramp,
+            "speed_limit": _speed_limit(robot, parameters, curve),
             "level_centre": centre,
             "level_weights": weights,
             "level_constant": constant,
@@ -93,14 +132,26 @@ def settings_vector(
             "coulomb": parameters.coulomb,
             "encoder_step": 2 * np.pi / counts if counts else 1.0,
             "encoder_filter": parameters.encoder_filter,
-            "hold_ticks": round(1 / (parameters.control_rate * dt)),
+            "hold_ticks": (interval := round(1 / (parameters.control_rate * dt))),
             "dt": dt,
+            **{name: getattr(parameters, name) for name in ("stiction", "torque_step")},
+            "delay_ticks": parameters.delay * interval,
+            "sensor_noise": parameters.sensor_noise,
+            "seed": round(parameters.seed),
             **_push_fields(push, p),
             **_composite_gains(kernel, parameters),
             "plant": robot.plant(parameters),
             "model": robot.model(parameters),
         }
     )
+
+
+def _speed_limit(robot: Robot, parameters: Parameters, curve: Curve) -> float:
+    """The largest speed that path following asks for, [rad/s]."""
+    if parameters.torque_limit == 0 or parameters.at_limit != "slow_down":
+        return NO_SPEED_LIMIT
+    model = tuple(robot.model(parameters).tolist())
+    return speed_limit(robot, model, curve, parameters.torque_limit, parameters.speed < 0)
 
 
 def pushed(kernel: Kernel, settings: Array, push: Push) -> Array:
@@ -115,26 +166,26 @@ def pushed(kernel: Kernel, settings: Array, push: Push) -> Array:
 
 
 def _push_fields(push: Push, p: int) -> dict[str, float | Array]:
-    anchor, tangent = push.hold or (np.zeros(p), np.zeros(p))
+    none = np.zeros(p), np.zeros(p)
+    (anchor, tangent), (place, normal) = push.hold or none, push.wall or none
     return {
         "hand_active": float(push.hand is not None),
         "hand_target": np.zeros(p) if push.hand is None else push.hand,
         "hold_active": float(push.hold is not None),
         "hold_anchor": anchor,
         "hold_tangent": tangent,
+        "hold_normal": none[0] if push.hold_normal is None else push.hold_normal,
+        "wall_active": float(push.wall is not None),
+        "wall_place": place,
+        "wall_normal": normal,
     }
 
 
 def _composite_gains(kernel: Kernel, parameters: Parameters) -> dict[str, float]:
-    """The gains of composite control, if the robot has a flexible link."""
-    names = kernel.settings.slices.keys() & composite_control.GAINS.keys()
+    """Gains of composite control and the gauges' noise, if the robot has a flexible link."""
+    known = composite_control.GAINS.keys() | {"strain_noise"}
+    names = kernel.settings.slices.keys() & known
     return {name: getattr(parameters, name) for name in names}
-
-
-def _empty_memory(kernel: Kernel) -> dict[str, Array]:
-    """The memory of composite control at the start of a run."""
-    fields = composite_control.MEMORY.fields
-    return {name: np.zeros(size) for name, size in fields if name in kernel.state.slices}
 
 
 def first_state(
@@ -152,23 +203,37 @@ def first_state(
     """
     velocity = np.zeros_like(q) if v is None else v
     y = robot.endpoint(q)
-    theta = curve.nearest(robot.frame.planar(y)[None])[0][0]
+    theta = closest_parameter(robot.frame, curve, y)
     m = robot.system.m
+    memory = {name: np.zeros(size) for name, size in kernel.state.fields}
     return kernel.state.pack(
-        {
+        memory
+        | {
             "q": q,
             "v": velocity,
             "theta": theta,
             "theta_rate": 0.0,
             "theta_ref": theta,
+            "speed_ref": 0.0,
             "integral": np.zeros(robot.system.p),
             "encoder": q[:m],
             "encoder_rate": velocity[:m],
             "u": np.zeros(m),
             "phase": 0.0,
-            **_empty_memory(kernel),
         }
     )
+
+
+def primed(kernel: Kernel, state: Array) -> Array:
+    """The state of a loop without delay for one with delay: the torque has been the same so far."""
+    result, slices = state.copy(), kernel.state.slices
+    result[slices["queue"]] = np.tile(state[slices["u"]], LONGEST)
+    return result
+
+
+def raised(curve: Curve, parameters: Parameters) -> Curve:
+    """The path that a robot follows: a curve with the rise of its parameters, if it has one."""
+    return saddle(curve, rise_of(parameters))
 
 
 def brake_at(robot: Robot, curve: Curve, y: Array, theta: float) -> tuple[Array, Array]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TextIO
 
@@ -30,6 +30,7 @@ class Trajectory:
         held: whether the brake was on, shape (n,).
         diverged_at: time at which the run was stopped as diverged, [s], or None.
         reason: why it was stopped, or "".
+        level_set: whether the first component of ξ is s(y), [m²], instead of a distance, [m].
     """
 
     controller: str
@@ -40,6 +41,7 @@ class Trajectory:
     held: NDArray[np.bool_]
     diverged_at: float | None = None
     reason: str = ""
+    level_set: bool = False
 
     def thinned(self) -> Trajectory:
         """The record with one row per millisecond, whatever the tick was."""
@@ -75,6 +77,7 @@ def join(controller: str, parts: list[Trajectory]) -> Trajectory:
         distance=np.concatenate([part.distance for part in parts]),
         speed=np.concatenate([part.speed for part in parts]),
         held=np.concatenate([part.held for part in parts]),
+        level_set=parts[-1].level_set,
     )
 
 
@@ -110,61 +113,90 @@ def record(
     )
 
 
-def header(robot: Robot) -> list[str]:
-    """Column names of the CSV, with units."""
+def header(robot: Robot, level_set: bool = False, benches: bool = False) -> list[str]:
+    """Column names of the CSV, with units.
+
+    xi1 is in [m], or in [m²] with `level_set`, and its rate accordingly. The references
+    are the point of the laws that have a clock, and the wanted speed. The distance is that of the
+    actual end-point, apart from any law.
+
+    Args:
+        level_set: whether xi1 is a level set.
+        benches: whether the rows name the bench.
+    """
     p, m = robot.system.p, robot.system.m
+    units = (name.rpartition("_") for name in robot.coordinate_names)
+    xi = [(f"xi{i + 1}", "m2" if level_set and i == 0 else "m") for i in range(p - 1)]
     return [
         "t_s",
-        "controller",
+        *["bench"] * benches,
+        "law",
         *robot.coordinate_names,
+        *(f"{name}_rate_{unit}_s" for name, _, unit in units),
         *(f"y{i + 1}_m" for i in range(p)),
         "theta_rad",
-        "speed_m_s",
+        "theta_rate_rad_s",
+        *(f"{name}_{unit}" for name, unit in xi),
+        *(f"{name}_rate_{unit}_s" for name, unit in xi),
+        "theta_ref_rad",
+        "theta_rate_ref_rad_s",
         "distance_m",
         *(f"tau{i + 1}_Nm" for i in range(m)),
         *(f"force{i + 1}_N" for i in range(p)),
+        "held",
     ]
 
 
-def write_csv(file: TextIO, robot: Robot, trajectories: Iterable[Trajectory]) -> None:
+def write_csv(
+    file: TextIO,
+    robot: Robot,
+    trajectories: Iterable[Trajectory],
+    benches: Sequence[str] | None = None,
+) -> None:
     """Write one row per millisecond and control law, with nine significant digits.
 
     The same trajectories give the same bytes.
+
+    Args:
+        benches: of a lab, one for each trajectory; they get a column. None: there are none.
     """
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(header(robot))
-    for run in trajectories:
+    runs = list(trajectories)
+    writer.writerow(header(robot, any(run.level_set for run in runs), benches is not None))
+    for number, run in enumerate(runs):
         f = run.fields
-        columns = np.column_stack(
-            [f["q"], f["y"], f["theta"], run.speed, run.distance, f["u"], f["force"]]
-        )
-        line = f"%.6g,{run.controller}{',%.9g' * columns.shape[1]}\n"
+        names = ("q", "v", "y", "theta", "theta_rate", "xi", "xi_rate", "theta_ref", "speed_ref")
+        seen = [f[name] for name in names]
+        columns = np.column_stack([*seen, run.distance, f["u"], f["force"], run.held])
+        law = f'"{run.controller}"' if "," in run.controller else run.controller
+        name = law if benches is None else f"{benches[number]},{law}"
+        line = f"%.6g,{name}{',%.9g' * columns.shape[1]}\n"
         columns += 0.0  # turns -0 into 0
         rows = np.column_stack([run.t, columns]).tolist()
         file.writelines(line % tuple(row) for row in rows)
 
 
 def read_csv(file: TextIO) -> dict[str, dict[str, Array]]:
-    """Columns of a file written by `write_csv`: controller -> column name -> array.
+    """Columns of a file written by `write_csv`: bench or law -> column name -> array.
+
+    Files of earlier versions, which call the law controller and have fewer columns, can be read.
 
     Raises:
         ValueError: not a trajectory file; the message names the line.
     """
     reader = csv.reader(file)
     names = next(reader, list[str]())
-    if names[:2] != ["t_s", "controller"]:
-        raise ValueError("line 1: expected a header that begins with t_s, controller")
+    first = 3 if names[1:2] == ["bench"] else 2  # of the numbers after the time
+    if names[:1] != ["t_s"] or names[first - 1 : first] not in (["law"], ["controller"]):
+        raise ValueError("line 1: expected a header that begins with t_s, law")
     rows: dict[str, list[list[float]]] = {}
     for line, row in enumerate(reader, start=2):
         try:
-            values = [float(cell) for i, cell in enumerate(row) if i != 1]
+            values = [float(cell) for i, cell in enumerate(row) if not 1 <= i < first]
         except ValueError:
             raise ValueError(f"line {line}: expected numbers, got {row}") from None
         if len(row) != len(names):
             raise ValueError(f"line {line}: expected {len(names)} cells, got {len(row)}")
         rows.setdefault(row[1], []).append(values)
-    kept = [name for name in names if name != "controller"]
-    return {
-        controller: dict(zip(kept, np.array(values).T, strict=True))
-        for controller, values in rows.items()
-    }
+    kept = [names[0], *names[first:]]
+    return {name: dict(zip(kept, np.array(values).T, strict=True)) for name, values in rows.items()}

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
+from math import prod
 
 import casadi as ca
 
 from onpath.models.closed_loop.kernel import Kernel
-from onpath.models.closed_loop.loops import TABLE_SIZE, CompiledLoop
+from onpath.models.closed_loop.loops import CompiledLoop
 
-_LIBRARY = ("sin", "cos")  # LLVM calls these from the C library
+_LIBRARY = ("sin", "cos", "log", "tanh")  # LLVM calls these from the C library
 OPERATIONS = {
     ca.OP_ADD: "{v} = fadd double {0}, {1}",
     ca.OP_SUB: "{v} = fsub double {0}, {1}",
@@ -27,6 +28,8 @@ OPERATIONS = {
     ca.OP_SQRT: "{v} = call double @llvm.sqrt.f64(double {0})",
     ca.OP_SIN: "{v} = call double @llvm.sin.f64(double {0})",
     ca.OP_COS: "{v} = call double @llvm.cos.f64(double {0})",
+    ca.OP_LOG: "{v} = call double @llvm.log.f64(double {0})",
+    ca.OP_TANH: "{v} = call double @tanh(double {0})",
     ca.OP_FABS: "{v} = call double @llvm.fabs.f64(double {0})",
     ca.OP_FLOOR: "{v} = call double @llvm.floor.f64(double {0})",
     ca.OP_FMIN: "{v} = call double @llvm.minnum.f64(double {0}, double {1})",
@@ -40,6 +43,8 @@ OPERATIONS = {
     "  {v} = select i1 {v}.is, double {1}, double 0.0",
 }
 _LOOP = """
+declare double @tanh(double)
+
 define internal void @one_robot(ptr noalias %settings, ptr noalias %curve, ptr noalias %state,
                                 ptr noalias %log, i64 %ticks) {{
 before:
@@ -93,7 +98,7 @@ def translate(kernel: Kernel) -> str:
     tick = instructions(kernel.tick(), ("%state", "%settings", "%curve"), ("%state", "%row"))
     return _LOOP.format(
         settings=kernel.settings.size,
-        curve=TABLE_SIZE,
+        curve=prod(kernel.table_shape),
         state=kernel.state.size,
         log=kernel.log.size,
         tick="\n  ".join(tick),

@@ -1,8 +1,8 @@
-"""Poles of the linearized closed loop, including the sampling.
+"""Poles of the linearized closed loop, including the sampling and the computing delay.
 
 After exact linearization every channel of the normal form (17) is a double integrator under the
 laws (18) or (19), with the control held over the sampling interval. Its poles therefore follow from
-the gains and the control rate alone.
+the gains, the control rate and the delay alone.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from onpath.models.systems.parameters import Parameters, time_step
 
 Complex = NDArray[np.complex128]
 LEAST_DECAY = 1e-3  # [1/s]; slower decay (time constant above 1000 s) does not count as stable
-NO_OVERSHOOT = 0.995  # damping ratio above which a pair counts as two equal real poles
+NO_OSCILLATION = 0.995  # damping ratio from which a pair counts as two equal real poles
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,35 +29,47 @@ class Channel:
         name: "across" (ξ) or "along" (η2).
         poles: s = ln(z) / T for the eigenvalues z of the sampled system with interval T, [1/s].
         stable: whether all of them decay. The position of a speed loop is not part of the channel.
+        integral: whether the channel has integral action.
     """
 
     name: str
     poles: Complex
     stable: bool
+    integral: bool
 
     def behaviour(self) -> Message:
-        """Stability, settling time (4 / |Re s|) and damping ratio, for a user."""
+        """Stability, settling time (4 / |Re s| of the slowest pole) and damping, for a user.
+
+        The damping ratio is that of the least damped poles. With integral action there is no
+        promise of no overshoot: the integral, empty at the start, is empty at the end as well, so
+        that an initial error must change its sign.
+        """
         if not self.stable:
-            growth = float(self.poles.real.max())
-            if growth > 1e-6:
-                return Message("behaviour.unstable", {"seconds": f"{1 / growth:.2g}"})
-            return Message("behaviour.not_stable")
-        slowest = self.poles[self.poles.real.argmax()]
-        damping = _damping(slowest)
-        settles = 4 / float(-slowest.real)
-        if damping > NO_OVERSHOOT:
+            return self._unstable()
+        settles, damping = 4 / float(-self.poles.real.max()), min(map(_damping, self.poles))
+        if damping >= NO_OSCILLATION and self.integral:
+            kind = Message("behaviour.no_oscillation")
+        elif damping >= NO_OSCILLATION:
             kind = Message("behaviour.no_overshoot")
         else:
             kind = Message("behaviour.damping", {"damping": f"{damping:.2f}"})
         return Message("behaviour.settles", {"seconds": f"{settles:.2g}", "kind": kind})
 
+    def _unstable(self) -> Message:
+        growth = float(self.poles.real.max())
+        if growth > LEAST_DECAY:
+            return Message("behaviour.unstable", {"seconds": f"{1 / growth:.2g}"})
+        lasting = self.poles[self.poles.real > -LEAST_DECAY]
+        swings = np.abs(lasting.imag).max() > LEAST_DECAY
+        return Message("behaviour.swings" if swings else "behaviour.not_stable")
+
     def pole_words(self) -> str:
         """The poles with three digits; a conjugate pair is written once, as a ± bi."""
-        rounded = [p.real + 0j if _damping(p) > NO_OVERSHOOT else p for p in self.poles.tolist()]
+        rounded = [p.real + 0j if _damping(p) >= NO_OSCILLATION else p for p in self.poles.tolist()]
         return ", ".join(_pole_words(p) for p in rounded if p.imag >= -1e-9)
 
 
-def _damping(pole: complex) -> float:
+def _damping(pole: complex | np.complex128) -> float:
     """Damping ratio -Re s / |s|."""
     return float(-pole.real / abs(pole)) if pole else 0.0
 
@@ -82,39 +94,70 @@ def channels(parameters: Parameters) -> tuple[Channel, Channel]:
     along = (0.0, parameters.K5, 0.0), "va"
     if parameters.task == "position":
         along = (parameters.K4, parameters.K5, 0.0), "xva"
-    return _channel("across", interval, ahead, *across), _channel("along", interval, ahead, *along)
+    times = interval, ahead, parameters.delay
+    return _channel("across", times, *across), _channel("along", times, *along)
 
 
 @lru_cache(maxsize=256)
 def _channel(
-    name: str, interval: float, ahead: float, gains: tuple[float, float, float], kept: str
+    name: str, times: tuple[float, float, float], gains: tuple[float, float, float], kept: str
 ) -> Channel:
-    """One channel from sampling interval [s], look-ahead [s], gains and states; see `_sampled`."""
-    roots = _sampled(interval, ahead, gains, kept)
-    decay = np.log(np.abs(roots) + 1e-300) / interval
+    """One channel from its times, gains and states; see `_sampled`."""
+    roots = _sampled(*times, gains, kept)
+    decay = np.log(np.abs(roots) + 1e-300) / times[0]
     stable = bool(np.all(decay < -LEAST_DECAY))
-    slow = roots[np.argsort(np.abs(roots))][1:]  # without the one of the held acceleration
-    poles: Complex = np.asarray(np.log(slow + 1e-300) / interval, dtype=np.complex128)
-    return Channel(name, poles, stable)
+    slow = _slowest(roots, len(kept) - 1)  # without those of the accelerations on their way
+    poles: Complex = np.asarray(np.log(slow + 1e-300) / times[0], dtype=np.complex128)
+    return Channel(name, poles, stable, "i" in kept)
 
 
-def _sampled(t: float, h: float, gains: tuple[float, float, float], kept: str) -> Complex:
-    """Eigenvalues of a sampled double integrator under PID control with look-ahead.
+def _slowest(roots: Complex, count: int) -> Complex:
+    """The largest `count` eigenvalues, and one more if it is the conjugate of the last, rising."""
+    rising = roots[np.argsort(np.abs(roots), kind="stable")]
+    if count < len(rising):
+        pair = rising[-count - 1 : -count + 1 or None]
+        count += bool(abs(pair[0].imag) > 0 and np.isclose(pair[0], pair[1].conj(), rtol=1e-9))
+    return rising[-count:]
 
-    State: position x, velocity v, integral i and the acceleration a held until now. The controller
-    predicts h ahead (models/closed_loop/kernel.py), and its command u is held over the interval t:
 
-        x̂ = x + h v + h²/2 a,   v̂ = v + h a,   u = -k1 x̂ - k2 v̂ - k3 i,
-        x⁺ = x + t v + t²/2 u,   v⁺ = v + t u,   i⁺ = i + t x̂,   a⁺ = u.
+def _sampled(
+    t: float, h: float, delay: float, gains: tuple[float, float, float], kept: str
+) -> Complex:
+    """Eigenvalues of a sampled double integrator under PID control with look-ahead and delay.
+
+    State: position x, velocity v, integral i, and the accelerations a_1 to a_{l+1} commanded one to
+    l + 1 intervals ago, with delay = l + f, 0 <= f < 1. The last one still acts, up to the time f t
+    of the interval, and then a_l, which is the present command u if l = 0. The controller predicts
+    h ahead (models/closed_loop/kernel.py), without knowledge of the delay:
+
+        x̂ = x + h v + h²/2 a_{l+1},   v̂ = v + h a_{l+1},   u = -k1 x̂ - k2 v̂ - k3 i,
+        x⁺ = x + t v + f (1 - f/2) t² a_{l+1} + (1 - f)² t²/2 a_l,   i⁺ = i + t x̂,
+        v⁺ = v + f t a_{l+1} + (1 - f) t a_l,   a_1⁺ = u,   a_{j+1}⁺ = a_j.
 
     Args:
         t: sampling interval, [s].
         h: look-ahead, [s].
+        delay: in sampling intervals.
         gains: (k1, k2, k3).
-        kept: the states that the channel has, a subset of "xvia".
+        kept: the states that the channel has, a subset of "xvia"; "a" stands for all of a_j.
+
+    Source: Åström and Wittenmark, Computer-Controlled Systems, 3.2, for systems with time delay.
     """
-    predicted = np.array([[1, h, 0, h**2 / 2], [0, 1, 0, h], [0, 0, 1, 0]])
-    after = np.array([[1, t, 0, 0], [0, 1, 0, 0], t * predicted[0] + predicted[2], np.zeros(4)])
-    after -= np.outer([t**2 / 2, t, 0, 1], np.array(gains) @ predicted)
-    states = ["xvia".index(name) for name in kept]
+    whole = int(delay)
+    f, size = delay - whole, 4 + whole
+    unit = np.eye(size)  # x, v, i, a_1 ... a_{l+1}
+    oldest = unit[-1]
+    predicted = unit[0] + h * unit[1] + h**2 / 2 * oldest, unit[1] + h * oldest, unit[2]
+    command = -np.array(gains) @ np.stack(predicted)
+    moved = np.vstack([command, unit[3:]])  # a_0, the present command, to a_{l+1}
+    early, late = moved[whole + 1], moved[whole]
+    after = np.vstack(
+        [
+            unit[0] + t * unit[1] + t**2 * (f * (1 - f / 2) * early + (1 - f) ** 2 / 2 * late),
+            unit[1] + t * (f * early + (1 - f) * late),
+            unit[2] + t * predicted[0],
+            moved[:-1],
+        ]
+    )
+    states = [i for i in range(size) if "xvia"[min(i, 3)] in kept]
     return np.linalg.eigvals(after[np.ix_(states, states)]).astype(np.complex128)

@@ -19,14 +19,14 @@ from onpath.models.paths.projection import LEAST_SLOPE, LocalCurve
 
 @dataclass(frozen=True, slots=True)
 class LevelSet:
-    """s(z) = g1 (z1 - c1)² + g2 (z2 - c2)² - r².
+    """s(z) = (z - c)ᵀ G (z - c) - r², with a symmetric G.
 
     Attributes:
         centre: c, (2, 1), [m].
-        weights: g, (2, 1), [1].
+        weights: (G11, G22, G12), (3, 1), [1].
         constant: r², [m²].
 
-    Source: eq. (15).
+    Source: eqs. (15), (23).
     """
 
     centre: ca.SX
@@ -34,10 +34,19 @@ class LevelSet:
     constant: ca.SX
 
     def at(self, z: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """s and its gradient ∇s = 2 g (z - c), componentwise; (1, 1), [m²] and (2, 1), [m]."""
+        """s and its gradient ∇s = 2 G (z - c); (1, 1), [m²] and (2, 1), [m]."""
         centred = z - self.centre
-        s = ca.dot(self.weights, centred**2) - self.constant
-        return s, 2 * self.weights * centred
+        half = self._turned(centred)
+        return ca.dot(centred, half) - self.constant, 2 * half
+
+    def bent(self, z_rate: ca.SX) -> ca.SX:
+        """The part z'ᵀ 2 G z' of the second derivative of s that is there at z'' = 0, [m²/s²]."""
+        return 2 * ca.dot(z_rate, self._turned(z_rate))
+
+    def _turned(self, z: ca.SX) -> ca.SX:
+        """G z, (2, 1)."""
+        g11, g22, g12 = ca.vertsplit(self.weights)
+        return ca.vertcat(g11 * z[0] + g12 * z[1], g12 * z[0] + g22 * z[1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +57,14 @@ class VirtualOutput:
 
         z'' = inverse @ ((θ'', λ'') - offset).
 
+    That of a space curve has z = y and both components of ξ in the place of λ.
+
     Attributes:
         theta, theta_rate: η2 = (θ, θ'), [rad], [rad/s].
         xi: λ and, for p = 3, the distance from the plane, (p - 1, 1), [m] (a level set: [m²]).
         xi_rate: its rate, (p - 1, 1).
-        inverse: (2, 2).
-        offset: (θ'', λ'') at z'' = 0, (2, 1).
+        inverse: (d, d) with d = 2, or 3 for a space curve.
+        offset: (θ'', λ'') at z'' = 0, (d, 1).
         per_radian: |σ'|, [m/rad].
         stretch: d|σ'|/dθ = σ' · σ'' / |σ'|, [m/rad²].
         frame: how the plane of the path lies in the output space.
@@ -73,7 +84,7 @@ class VirtualOutput:
         """The output acceleration y'' that gives θ'' = v_par and λ'' = v_perp.
 
         This inverts the decoupling of (16) in the output space; `linearization` in
-        models/control/laws.py then turns y'' into torques.
+        models/control/linearization.py then turns y'' into torques.
 
         Args:
             tangential: v_par, (1, 1), [rad/s²].
@@ -84,8 +95,15 @@ class VirtualOutput:
 
         Source: eq. (16).
         """
-        wanted = ca.vertcat(tangential, transversal[0]) - self.offset
-        return self.frame.join(self.inverse @ wanted, transversal[1:], rate=True)
+        across = self.offset.numel() - 1  # components of ξ that the curve determines
+        wanted = ca.vertcat(tangential, transversal[:across]) - self.offset
+        return self.frame.join(self.inverse @ wanted, transversal[across:], rate=True)
+
+    @property
+    def acceleration_per_along(self) -> ca.SX:
+        """dy''/dv_par at constant v_perp, (p, 1), [m/rad]."""
+        none = ca.SX.zeros(self.frame.p - 2, 1)
+        return self.frame.join(self.inverse[:, 0], none, rate=True)
 
 
 def virtual_output(
@@ -105,7 +123,7 @@ def virtual_output(
         λ'  = N · z',
         λ'' = N · z'' - (N · σ'' / |σ'|) θ' (T · z'),
 
-    and the level set λ = s(z) has λ' = ∇s · z' and λ'' = ∇s · z'' + 2 Σ g_i z_i'².
+    and the level set λ = s(z) has λ' = ∇s · z' and λ'' = ∇s · z'' + 2 z'ᵀ G z'.
 
     D is bounded from below, because it vanishes at the centre of curvature, where θ is undefined.
 
@@ -139,7 +157,7 @@ def virtual_output(
     else:
         xi, gradient = level_set.at(z)
         xi_rate = ca.dot(gradient, z_rate)
-        offset = 2 * ca.dot(level_set.weights, z_rate**2)
+        offset = level_set.bent(z_rate)
         inverse = ca.inv_minor(ca.vertcat((tangent / per_theta).T, gradient.T))
     return VirtualOutput(
         theta=closest.theta,

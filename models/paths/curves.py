@@ -23,18 +23,19 @@ from onpath.models.arrays import Array
 HARMONICS = 12  # K
 TERMS = 2 * HARMONICS + 1  # size of the basis
 ORDERS = 4  # the curve and its first three derivatives
-TABLE_SHAPE = (2 * ORDERS, TERMS)  # of `Curve.table`, before it is flattened
+TABLE_SHAPE = (2 * ORDERS, TERMS)  # of `Curve.table` of a planar curve, before it is flattened
+SPACE_TABLE_SHAPE = (3 * ORDERS, TERMS)  # of that of a space curve
 PERIOD = 2 * np.pi  # [rad]
 _ORDER = np.arange(1.0, HARMONICS + 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
-    """A planar curve σ(θ), θ in [-π, π] (periodic when closed).
+    """A curve σ(θ), θ in [-π, π] (periodic when closed), in d = 2 or 3 dimensions.
 
     Attributes:
         closed: whether the curve is closed.
-        series: coefficients of σ, σ', σ'' and σ''', shape (ORDERS, TERMS, 2). For each order: the
+        series: coefficients of σ, σ', σ'' and σ''', shape (ORDERS, TERMS, d). For each order: the
             constant, K rows for C_k and K rows for S_k; [m] for σ, [m/rad^i] for its i-th
             derivative.
     """
@@ -42,8 +43,13 @@ class Curve:
     closed: bool
     series: Array
 
+    @property
+    def dimension(self) -> int:
+        """d: 2 for a curve in the plane of the path, 3 for a space curve (z1, z2, ζ)."""
+        return self.series.shape[-1]
+
     def at(self, theta: Array, order: int = 0) -> Array:
-        """σ or one of its derivatives at θ, shape (...,) -> (..., 2), [m/rad^order].
+        """σ or one of its derivatives at θ, shape (...,) -> (..., d), [m/rad^order].
 
         An open curve continues along its end tangents: σ(θ) = σ(±π) + (θ ∓ π) σ'(±π), and its
         second and third derivatives are 0 there.
@@ -63,7 +69,7 @@ class Curve:
         return value if order == 1 else np.where(beyond == 0, value, 0.0)
 
     def all_orders(self, theta: Array) -> list[Array]:
-        """[σ, σ', σ'', σ'''] at θ, shape (..., n) -> four arrays (..., n, 2).
+        """[σ, σ', σ'', σ'''] at θ, shape (..., n) -> four arrays (..., n, d).
 
         Equal to four calls of `at`, but evaluates the basis once.
         """
@@ -77,14 +83,19 @@ class Curve:
         return values
 
     def table(self) -> Array:
-        """The coefficients for the compiled loop: a TABLE_SHAPE matrix, flat, by columns.
+        """The coefficients for the compiled loop: a (d ORDERS, TERMS) matrix, flat, by columns.
 
-        Its product with the basis at θ is (σ, σ', σ'', σ'''), two rows each.
+        Its product with the basis at θ is (σ, σ', σ'', σ'''), d rows each.
         """
         return np.ascontiguousarray(self.series.transpose(1, 0, 2)).ravel()
 
+    @property
+    def plan(self) -> Curve:
+        """The plan view z(θ) of a space curve; a planar curve itself."""
+        return self if self.dimension == 2 else Curve(self.closed, self.series[..., :2])
+
     def terms(self) -> Array:
-        """The coefficients of σ alone, shape (TERMS or HARMONICS + 1, 2), [m]; see `from_terms`."""
+        """The coefficients of σ alone, shape (TERMS or HARMONICS + 1, d), [m]; see `from_terms`."""
         return self.series[0, : terms_of(self.closed)]
 
     def sample(self, count: int = 256) -> Array:
@@ -94,9 +105,12 @@ class Curve:
     def curvature(self, theta: Array) -> Array:
         """Signed curvature κ = (σ'_1 σ''_2 - σ'_2 σ''_1) / |σ'|³, shape (...,) -> (...), [1/m].
 
-        It is positive where the curve turns left.
+        It is positive where the curve turns left. That of a space curve is |σ' × σ''| / |σ'|³.
         """
         first, second = self.at(theta, 1), self.at(theta, 2)
+        if self.dimension == 3:
+            bend = np.linalg.norm(np.cross(first, second), axis=-1)
+            return bend / np.maximum(np.linalg.norm(first, axis=-1), 1e-12) ** 3
         speed = np.maximum(np.hypot(first[..., 0], first[..., 1]), 1e-12)
         return (first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]) / speed**3
 
@@ -117,7 +131,7 @@ class Curve:
         This search is the reference that all faster projections are tested against.
 
         Args:
-            z: points, shape (n, 2), [m].
+            z: points, shape (n, d), [m].
             samples: size of the grid that the search starts from.
 
         Returns:
@@ -128,24 +142,31 @@ class Curve:
         return nearest(self.at, self.sample(samples), z)
 
     def conic(self) -> tuple[Array, Array, float] | None:
-        """The level set s(z) of an axis-parallel ellipse, or None if the curve is none.
+        """The level set s(z) of an ellipse, or None if the curve is none.
 
-            s(z) = g1 (z1 - c1)² + g2 (z2 - c2)² - r²,   g = (b/a, a/b),   r² = a b
+        The ellipse σ(θ) = c + A (cos θ, sin θ), with any centre, half-axes and directions, is where
 
-        for half-axes a and b, which makes g = (1, 1) for a circle.
+            s(z) = (z - c)ᵀ G (z - c) - r² = 0,   G = r² A⁻ᵀ A⁻¹,   r² = |det A|,
+
+        which makes r² the product of the half-axes, and G = I for a circle.
 
         Returns:
-            (c, g, r²): shapes (2,), (2,) and a number, [m], [1], [m²].
+            (c, g, r²): shapes (2,), (3,) and a number, [m], [1], [m²], with g = (G11, G22, G12).
 
-        Source: eq. (15).
+        Source: eqs. (15), (23).
         """
+        if self.dimension != 2:
+            return None
         table = self.series[0]
         others = np.delete(table, [0, 1, 1 + HARMONICS], axis=0)
-        a, b = abs(table[1, 0]), abs(table[1 + HARMONICS, 1])
-        skew = abs(table[1, 1]) + abs(table[1 + HARMONICS, 0])
-        if not self.closed or a * b == 0 or skew + np.abs(others).max() > 1e-9:
+        a11, a21 = table[1]
+        a12, a22 = table[1 + HARMONICS]
+        determinant = a11 * a22 - a12 * a21
+        if not self.closed or determinant == 0 or np.abs(others).max() > 1e-9:
             return None
-        return table[0], np.array([b / a, a / b]), float(a * b)
+        weights = np.array([a21**2 + a22**2, a11**2 + a12**2, -(a11 * a21 + a12 * a22)])
+        area = abs(float(determinant))
+        return table[0], weights / area, area
 
 
 def nearest(curve: Callable[[Array], Array], grid: Array, points: Array) -> tuple[Array, Array]:
@@ -216,16 +237,16 @@ def fourier(constant: Array, cosine: Array, sine: Array) -> Curve:
     """The closed curve σ(θ) = a_0 + Σ_k a_k cos kθ + b_k sin kθ.
 
     Args:
-        constant: a_0, shape (2,), [m].
-        cosine, sine: a_k and b_k for k = 1.., shape (up to HARMONICS, 2), [m].
+        constant: a_0, shape (d,), [m].
+        cosine, sine: a_k and b_k for k = 1.., shape (up to HARMONICS, d), [m].
     """
-    k = np.arange(1, HARMONICS + 1)[:, None]
-    a, b = np.zeros((HARMONICS, 2)), np.zeros((HARMONICS, 2))
+    k, d = np.arange(1, HARMONICS + 1)[:, None], len(constant)
+    a, b = np.zeros((HARMONICS, d)), np.zeros((HARMONICS, d))
     a[: len(cosine)], b[: len(sine)] = cosine, sine
     orders = [np.vstack([constant, a, b])]
     for _ in range(ORDERS - 1):
         a, b = k * b, -k * a
-        orders.append(np.vstack([np.zeros(2), a, b]))
+        orders.append(np.vstack([np.zeros(d), a, b]))
     return Curve(True, np.stack(orders))
 
 
@@ -233,11 +254,11 @@ def chebyshev_curve(coefficients: Array) -> Curve:
     """The open curve σ(θ) = Σ_k c_k T_k(θ / π).
 
     Args:
-        coefficients: c_k for k = 0.., shape (up to HARMONICS + 1, 2), [m].
+        coefficients: c_k for k = 0.., shape (up to HARMONICS + 1, d), [m].
     """
     orders: list[Array] = []
     for order in range(ORDERS):
-        table = np.zeros((TERMS, 2))
+        table = np.zeros((TERMS, coefficients.shape[1]))
         derived = chebyshev.chebder(coefficients, order) if order else coefficients
         table[: len(derived)] = derived / np.pi**order
         orders.append(table)
@@ -256,16 +277,22 @@ def from_terms(closed: bool, terms: Array) -> Curve:
     return fourier(terms[0], terms[1 : HARMONICS + 1], terms[HARMONICS + 1 :])
 
 
-def ellipse(half_axes: tuple[float, float], centre: tuple[float, float] = (0.0, 0.0)) -> Curve:
-    """σ(θ) = c + (a cos θ, b sin θ), represented exactly.
+def ellipse(
+    half_axes: tuple[float, float],
+    centre: tuple[float, float] = (0.0, 0.0),
+    angle: float = 0.0,
+) -> Curve:
+    """σ(θ) = c + R (a cos θ, b sin θ) with the rotation R by an angle, represented exactly.
 
     Args:
         half_axes: (a, b), [m].
         centre: c, [m].
+        angle: of the first half-axis to the first coordinate, [rad].
     """
-    return fourier(
-        np.array(centre), np.array([[half_axes[0], 0.0]]), np.array([[0.0, half_axes[1]]])
-    )
+    a, b = half_axes
+    along = np.array([np.cos(angle), np.sin(angle)])
+    across = np.array([0.0 - along[1], along[0]])
+    return fourier(np.array(centre), a * along[None], b * across[None])
 
 
 def circle(radius: float, centre: tuple[float, float] = (0.0, 0.0)) -> Curve:
@@ -287,8 +314,41 @@ def segment(start: tuple[float, float], end: tuple[float, float]) -> Curve:
 
 
 def blend(old: Curve, new: Curve, fraction: float) -> Curve:
-    """The curve (1 - fraction) old + fraction new; both are closed, or both open."""
+    """The curve (1 - fraction) old + fraction new; both are closed, or both open.
+
+    If one of them is a space curve, the other is taken at height 0.
+    """
+    d = max(old.dimension, new.dimension)
+    old, new = (curve if curve.dimension == d else in_space(curve) for curve in (old, new))
     return Curve(new.closed, (1 - fraction) * old.series + fraction * new.series)
+
+
+def in_space(curve: Curve, height: Curve | None = None) -> Curve:
+    """The space curve (z(θ), ζ(θ)) with this planar curve as its plan view.
+
+    Args:
+        curve: z, in the plane of the path.
+        height: ζ as the first coordinate of a curve, closed or open as z is; None: 0.
+    """
+    zeta = np.zeros_like(curve.series[..., :1]) if height is None else height.series[..., :1]
+    return Curve(curve.closed, np.concatenate([curve.series, zeta], axis=-1))
+
+
+def saddle(curve: Curve, rise: float) -> Curve:
+    """The space curve over a planar one with the height ζ = rise cos 2θ; planar if rise is 0.
+
+    Over a circle it lies on the hyperbolic paraboloid ζ = rise (z1² - z2²) / r². On an open curve
+    the height is rise T_2(θ/π): up at both ends, down in the middle.
+
+    Args:
+        rise: [m].
+    """
+    if not rise:
+        return curve
+    if curve.closed:
+        none = np.zeros((2, 1))
+        return in_space(curve, fourier(np.zeros(1), np.array([[0.0], [rise]]), none))
+    return in_space(curve, chebyshev_curve(np.array([[0.0], [0.0], [rise]])))
 
 
 def aligned(curve: Curve, to: Curve) -> Curve:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
-from onpath.models.paths.curves import Curve, local_minima
+from onpath.models.paths.curves import Curve, local_minima, nearest
 from onpath.models.paths.frames import Frame
 
 CHUNK = 4096  # points per array operation, which bounds the memory
@@ -77,6 +77,18 @@ def _beyond_the_ends(frame: Frame, curve: Curve, y: Array) -> Array:
     return np.linalg.norm(gaps - along[..., None] * away, axis=-1).min(axis=1)
 
 
+def closest_parameter(frame: Frame, curve: Curve, y: Array) -> float:
+    """θ of the closest point, by global search, [rad]: ϖ(z) of (7), or in space ϖ(y).
+
+    Args:
+        y: shape (p,), [m].
+    """
+    if curve.dimension == 2:
+        return float(curve.nearest(frame.planar(y)[None])[0][0])
+    found, _ = nearest(lambda theta: frame.lift(curve.at(theta)), curve.sample(256), y[None])
+    return float(found[0])
+
+
 def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:
     """The same distance from guesses of the closest points; faster, for live display.
 
@@ -97,7 +109,7 @@ def near_distances(frame: Frame, curves: Sequence[Curve], y: Array, theta: Array
     """`near_distance` to several curves at once, bit by bit the same as one by one.
 
     Args:
-        curves: all closed, or all open.
+        curves: all closed, or all open; all planar, or all in space.
         y: points, shape (curves, n, p), [m].
         theta: guesses, shape (curves, n), [rad].
 
@@ -115,12 +127,12 @@ def near_distances(frame: Frame, curves: Sequence[Curve], y: Array, theta: Array
 
 
 def _stacked(curves: Sequence[Curve]) -> Curve:
-    """Several curves as one, which maps θ of shape (curves, n) to points (curves, n, 2).
+    """Several curves as one, which maps θ of shape (curves, n) to points (curves, n, d).
 
     Bit by bit the same as curve by curve.
 
     Args:
-        curves: all closed, or all open.
+        curves: all closed, or all open; all planar, or all in space.
     """
     return Curve(curves[0].closed, np.stack([curve.series for curve in curves], axis=1))
 

@@ -2,7 +2,7 @@
 
 A point y of the output space has planar coordinates z (2) and residuals ζ (p - 2) that are zero on
 the plane of the path. For p = 2 there are no residuals; for the plane of eq. (23), ζ = y1 - b y2 -
-d.
+d. A space curve (z(θ), ζ(θ)) rises above the plane by ζ; z(θ) is its plan view.
 """
 
 from __future__ import annotations
@@ -44,7 +44,23 @@ class Frame(Protocol):
         ...
 
     def lift(self, z: Array) -> Array:
-        """Points y of the plane (ζ = 0), shape (..., 2) -> (..., p), [m]."""
+        """Points y of the plane (ζ = 0), shape (..., 2) -> (..., p), [m].
+
+        Points (z, ζ) of a space curve, shape (..., 3), are lifted to their heights ζ.
+        """
+        ...
+
+    @property
+    def axes(self) -> tuple[int, int]:
+        """Numbers of the output coordinates that z shows, counted from 1."""
+        ...
+
+    @property
+    def space(self) -> Frame | None:
+        """The frame of space curves, whose z is (z, ζ); None if the robot takes none.
+
+        Distances in (z, ζ) must be those in the output space.
+        """
         ...
 
 
@@ -69,6 +85,85 @@ class Plane:
     def lift(self, z: Array) -> Array:
         """See `Frame.lift`."""
         return z
+
+    @property
+    def axes(self) -> tuple[int, int]:
+        """See `Frame.axes`."""
+        return 1, 2
+
+    @property
+    def space(self) -> None:
+        """See `Frame.space`: the output space has no third dimension."""
+        return
+
+
+@dataclass(frozen=True, slots=True)
+class LevelPlane:
+    """The horizontal plane y3 = 0 in R³, with z = (y1, y2) and the height ζ = y3."""
+
+    p: int = 3
+
+    def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
+        """See `Frame.split`."""
+        return y[:2], y[2]
+
+    def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
+        """See `Frame.join`."""
+        return ca.vertcat(z, zeta)
+
+    def planar(self, y: Array) -> Array:
+        """See `Frame.planar`."""
+        return y[..., :2]
+
+    def lift(self, z: Array) -> Array:
+        """See `Frame.lift`."""
+        return z if z.shape[-1] == 3 else np.concatenate([z, np.zeros_like(z[..., :1])], axis=-1)
+
+    @property
+    def axes(self) -> tuple[int, int]:
+        """See `Frame.axes`."""
+        return 1, 2
+
+    @property
+    def space(self) -> Space:
+        """See `Frame.space`."""
+        return _SPACE
+
+
+@dataclass(frozen=True, slots=True)
+class Space:
+    """All of R³, for space curves: z = y, and no residuals."""
+
+    p: int = 3
+
+    def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
+        """See `Frame.split`."""
+        return y, ca.SX(0, 1)
+
+    def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
+        """See `Frame.join`."""
+        return z
+
+    def planar(self, y: Array) -> Array:
+        """The plan view of points y, shape (..., 3) -> (..., 2), [m]."""
+        return y[..., :2]
+
+    def lift(self, z: Array) -> Array:
+        """See `Frame.lift`."""
+        return LevelPlane().lift(z)
+
+    @property
+    def axes(self) -> tuple[int, int]:
+        """See `Frame.axes`: those of the plan view."""
+        return 1, 2
+
+    @property
+    def space(self) -> Space:
+        """See `Frame.space`."""
+        return self
+
+
+_SPACE = Space()  # shared, because kernels are kept by it
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,3 +197,13 @@ class SlantedPlane:
     def lift(self, z: Array) -> Array:
         """See `Frame.lift`."""
         return np.concatenate([self.b * z[..., :1] + self.d, z], axis=-1)
+
+    @property
+    def axes(self) -> tuple[int, int]:
+        """See `Frame.axes`."""
+        return 2, 3
+
+    @property
+    def space(self) -> None:
+        """See `Frame.space`: none, because ζ is not measured at right angles to the plane."""
+        return

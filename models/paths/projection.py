@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from onpath.models.paths.curves import HARMONICS
+from onpath.models.paths.curves import HARMONICS, ORDERS
 
 NEWTON_STEPS = 2
 LARGEST_STEP = 0.5  # [rad], of one Newton step
@@ -52,7 +52,7 @@ def _clamped(theta: ca.SX) -> ca.SX:
 
 @dataclass(frozen=True, slots=True)
 class LocalCurve:
-    """A curve near θ_0, as its cubic Taylor polynomial; columns (2, 1).
+    """A curve near θ_0, as its cubic Taylor polynomial; columns (d, 1).
 
         P(δ) = σ + δ σ' + δ²/2 σ'' + δ³/6 σ'''
 
@@ -76,9 +76,9 @@ class LocalCurve:
         Args:
             theta: θ_0, [rad].
             closed: whether the curve is closed.
-            values: `Curve.table` times `basis(theta, closed)`, (8, 1).
+            values: `Curve.table` times `basis(theta, closed)`, (4 d, 1).
         """
-        sigma, first, second, third = ca.vertsplit(values, 2)
+        sigma, first, second, third = ca.vertsplit(values, values.size1() // ORDERS)
         if closed:
             return LocalCurve(theta, sigma, first, second, third)
         beyond = theta - _clamped(theta)
@@ -101,7 +101,7 @@ class LocalCurve:
             δ = (z - σ) · σ' / max(|σ'|² - (z - σ) · σ'', LEAST_SLOPE |σ'|²),   |δ| <= LARGEST_STEP.
 
         Args:
-            z: planar coordinates, (2, 1), [m].
+            z: coordinates as those of the curve, (d, 1), [m].
         """
         local = self
         for _ in range(NEWTON_STEPS):

@@ -6,85 +6,39 @@ They run in the interpreted loop. The same input gives the same bytes on machine
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.faults import fault_in
 from onpath.models.closed_loop.kernel import Kernel
-from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.simulation import (
-    Push,
-    brake_at,
-    first_state,
+    check_level_set,
     kernel_of,
     kind_of,
-    settings_vector,
+    raised,
     time_step,
 )
 from onpath.models.closed_loop.trajectory import Trajectory, record
-from onpath.models.control.laws import NAMES
+from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
+from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve, circle
+from onpath.models.studies import schedule as schedules
+from onpath.models.studies.schedule import Schedule
+from onpath.models.studies.scheduled_run import ScheduledRun
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.flexible_robot import flexible_five_bar_robot
-from onpath.models.systems.parameters import Parameters, changed, specs, unknown_name
+from onpath.models.systems.parameter_specs import unknown_name
+from onpath.models.systems.parameters import LEVEL_SET, Parameters, changed, specs
 from onpath.models.systems.robots import Robot, RobotEntry
 
-CHUNK = 200  # ticks between checks for divergence
-FARTHEST_HAND = 0.4  # [m], from the middle of the path's plane, along each axis
-
-
-@dataclass(frozen=True, slots=True)
-class Schedule:
-    """The settings of an experiment besides the robot's parameters.
-
-    Attributes:
-        r: radius of the path, [m].
-        duration: [s].
-        hold_from, hold_to: interval in which a brake holds the end-point, [s]; equal: never.
-        push_from, push_to: interval in which a hand pulls at the end-point, [s]; equal: never.
-        push_z1, push_z2: where the hand is, in the path's plane, [m].
-        reverse_at: time at which the wanted speed changes its sign, [s]; 0: never.
-
-    Raises:
-        ValueError: a value is out of range, or an interval ends before it begins.
-    """
-
-    r: float = 0.05
-    duration: float = 4.0
-    hold_from: float = 0.0
-    hold_to: float = 0.0
-    reverse_at: float = 0.0
-    push_from: float = 0.0
-    push_to: float = 0.0
-    push_z1: float = 0.0
-    push_z2: float = 0.0
-
-    def __post_init__(self) -> None:
-        _within("r", self.r, 0.005, 0.12, "m")
-        _within("duration", self.duration, 0.01, 600.0, "s")
-        _within("reverse_at", self.reverse_at, 0.0, 600.0, "s")
-        _window("hold", self.hold_from, self.hold_to)
-        _window("push", self.push_from, self.push_to)
-        _within("push_z1", self.push_z1, -FARTHEST_HAND, FARTHEST_HAND, "m")
-        _within("push_z2", self.push_z2, -FARTHEST_HAND, FARTHEST_HAND, "m")
-
-
-def _window(what: str, begin: float, end: float) -> None:
-    _within(f"{what}_from", begin, 0.0, 600.0, "s")
-    _within(f"{what}_to", end, 0.0, 600.0, "s")
-    if end < begin:
-        raise ValueError(f"{what}_to ({end:g} s) lies before {what}_from ({begin:g} s)")
-
-
-def _within(name: str, value: float, low: float, high: float, unit: str) -> None:
-    if not low <= value <= high:  # NaN fails too
-        raise ValueError(f"{name}: {value} is not between {low:g} and {high:g} {unit}")
+NEAR = 1e-9  # [m], as good as on the path
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,7 +52,7 @@ class Experiment:
         parameters: of the robot, the control laws and the task.
         schedule: what happens when.
         start: r -> the end-point at rest at the start, shape (p,), [m].
-        path: the path to follow; None: the circle of the schedule.
+        path: the path to follow; None: the circle of the schedule, with the rise of the parameters.
     """
 
     name: str
@@ -115,7 +69,32 @@ class Experiment:
 
     def curve(self) -> Curve:
         """The path to follow."""
-        return circle(self.schedule.r) if self.path is None else self.path
+        return raised(circle(self.schedule.r), self.parameters) if self.path is None else self.path
+
+    def begin(self) -> Array:
+        """The end-point at the start, at the height of the path there, shape (p,), [m]."""
+        y, curve = self.start(self.schedule.r), self.curve()
+        if self.path is not None or curve.dimension == 2:
+            return y
+        frame = self.robot().frame
+        theta, _ = curve.plan.nearest(frame.planar(y)[None])
+        return frame.lift(np.append(frame.planar(y), curve.at(theta)[0, 2]))
+
+    def along(self, path: Curve) -> Experiment:
+        """The experiment on another path.
+
+        The end-point starts where it did, or at θ = 0 if it started on the former path.
+
+        Raises:
+            ValueError: the robot cannot follow the path; the message says why.
+        """
+        check_path(self.robot(), path)
+        robot = self.robot()
+        first = robot.frame.planar(self.start(self.schedule.r))
+        if self.curve().plan.nearest(first[None])[1][0] >= NEAR:
+            return dataclasses.replace(self, path=path)
+        on_path = robot.frame.lift(path.at(np.array(0.0)))
+        return dataclasses.replace(self, path=path, start=partial(_always, on_path))
 
     def with_values(self, assignments: Mapping[str, Any]) -> Experiment:
         """The experiment with values set by name.
@@ -126,24 +105,35 @@ class Experiment:
         Raises:
             ValueError: an unknown name or a bad value; the message names it.
         """
-        parameters, times = self.parameters, dict[str, float]()
-        own = {f.name for f in dataclasses.fields(Schedule)}
+        parameters, own = self.parameters, dict[str, Any]()
         for name, text in assignments.items():
-            if name in own:
-                times[name] = _float(name, text)
+            if name in schedules.NAMES:
+                own[name] = text
             elif name in specs(parameters):
                 parameters = changed(parameters, name, text)
             else:
-                raise unknown_name(name, [*specs(parameters), *sorted(own)])
-        schedule = dataclasses.replace(self.schedule, **times)  # at once: hold_from <= hold_to
+                raise unknown_name(name, [*specs(parameters), *sorted(schedules.NAMES)])
+        if "r" in own and self.path is not None:
+            raise ValueError("r: the path is given, so that it has no radius to set")
+        schedule = schedules.with_values(self.schedule, own)
+        for speed in schedule.profile.speeds if schedule.profile else ():
+            changed(parameters, "speed", speed)  # in range
         return dataclasses.replace(self, parameters=parameters, schedule=schedule)
 
 
-def _float(name: str, text: Any) -> float:
-    try:
-        return float(text)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: {text!r} is not a number") from None
+def check_path(robot: Robot, path: Curve) -> None:
+    """Check that a robot can follow a path.
+
+    Raises:
+        ValueError: it cannot; the message says why.
+    """
+    faults = curve_faults(robot.margin, path)
+    if faults:
+        raise ValueError("; ".join(str(fault.reason) for fault in faults))
+
+
+def _always(point: Array, _: float) -> Array:
+    return point
 
 
 def experiments(robot: str = "") -> dict[str, Experiment]:
@@ -151,7 +141,7 @@ def experiments(robot: str = "") -> dict[str, Experiment]:
 
     Args:
         robot: name of the robot in the catalogue; empty: the robots of the paper. The experiment
-            "flexible" exists for the flexible five-bar only.
+            "flexible" exists for the flexible five-bar only, "saddle" for robots with a `rise`.
 
     Raises:
         ValueError: an unknown robot.
@@ -162,6 +152,8 @@ def experiments(robot: str = "") -> dict[str, Experiment]:
     known = [_position(entry), _obstruction(entry)]
     if robot in ("", FLEXIBLE.name):
         known.append(_there_and_back())
+    if "rise" in specs(entry.parameters):
+        known.append(_saddle(entry))
     return {e.name: e for e in known}
 
 
@@ -185,6 +177,16 @@ def _obstruction(entry: RobotEntry) -> Experiment:
         parameters=entry.parameters(),
         schedule=Schedule(duration=8.0, hold_from=3.0, hold_to=5.0),
         start=lambda r: _lifted(entry, np.array([r, 0.0])),
+    )
+
+
+def _saddle(entry: RobotEntry) -> Experiment:
+    known = _obstruction(entry)
+    return dataclasses.replace(
+        known,
+        name="saddle",
+        title="Held back on a space curve: a circle whose height is 30 mm cos 2θ",
+        parameters=changed(known.parameters, "rise", 0.03),
     )
 
 
@@ -218,18 +220,17 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
     Raises:
         ValueError: the controller is unknown, or the path is out of the robot's reach.
     """
-    if controller not in NAMES:
-        raise ValueError(f"controller {controller!r}: expected one of {', '.join(NAMES)}")
+    law_named(controller)
     robot, curve = experiment.robot(), experiment.curve()
+    check_level_set(experiment.parameters, curve)
     kernel = kernel_of(robot, kind_of(controller, experiment.parameters, curve))
-    start = robot.rest(experiment.start(experiment.schedule.r))
-    state = first_state(robot, kernel, curve, start)
+    schedule, start = experiment.schedule, experiment.begin()
+    scheduled = ScheduledRun(robot, kernel, curve, experiment.parameters, schedule, start)
     segments: list[tuple[Array, Curve, bool]] = []
     fault: tuple[int, Message] | None = None
     done = 0
-    for rows, held in _segments(experiment, kernel, curve, state):
-        fields = kernel.log.unpack(rows)
-        fault = robot.fault(fields["q"], fields["v"], experiment.parameters)
+    for rows, held in scheduled.parts():
+        fault = fault_in(robot, kernel.log, controller, rows, experiment.parameters)
         if fault is not None:
             rows = rows[: fault[0]]
         segments.append((rows, curve, held))
@@ -237,33 +238,6 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
         if fault is not None:
             break
     return _finished(robot, kernel, controller, segments, experiment, fault)
-
-
-def _segments(
-    experiment: Experiment, kernel: Kernel, curve: Curve, state: Array
-) -> Iterator[tuple[Array, bool]]:
-    """(log rows, held) of consecutive parts of the run."""
-    robot, parameters, schedule = experiment.robot(), experiment.parameters, experiment.schedule
-    loop, table, dt = InterpretedLoop(kernel), curve.table(), time_step(parameters)
-    hold = range(round(schedule.hold_from / dt), round(schedule.hold_to / dt))
-    push = range(round(schedule.push_from / dt), round(schedule.push_to / dt))
-    last, turn = round(schedule.duration / dt), round(schedule.reverse_at / dt)
-    hand = robot.frame.lift(np.array([schedule.push_z1, schedule.push_z2]))
-    brake, back = None, dataclasses.replace(parameters, speed=-parameters.speed)
-    events = (hold.start, hold.stop, push.start, push.stop, turn)
-    times = sorted({0, last, *(t for t in events if 0 < t < last)})
-    for begin, end in pairwise(times):
-        held = begin in hold
-        if held and brake is None:
-            fields = kernel.state.unpack(state)
-            end_point = robot.endpoint(fields["q"])
-            brake = brake_at(robot, curve, end_point, float(fields["theta"][0]))
-        acting = Push(hand if begin in push else None, brake if held else None)
-        wanted = back if 0 < turn <= begin else parameters
-        settings = settings_vector(robot, kernel, wanted, curve, acting)
-        for first in range(begin, end, CHUNK):
-            state, rows = loop.run(state, settings, table, min(CHUNK, end - first))
-            yield rows, held
 
 
 def _finished(
@@ -276,7 +250,9 @@ def _finished(
 ) -> Trajectory:
     """The trajectory of a run, cut off at the fault if there was one."""
     dt = time_step(experiment.parameters)
+    level_set = experiment.parameters.across == LEVEL_SET
     whole = record(robot, kernel.log, controller, segments, dt)
+    whole = dataclasses.replace(whole, level_set=level_set)
     if fault is None:
         return whole.thinned()
     end = len(whole.t) * dt
@@ -284,11 +260,12 @@ def _finished(
 
 
 def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
-    """The content of `--json`; numbers have nine significant digits."""
-    return {
-        "experiment": experiment.name,
-        "controllers": {run.controller: _summary(run) for run in runs},
-    }
+    """The content of `--json`; numbers have nine significant digits.
+
+    "controllers" is the former name of "laws".
+    """
+    laws = {run.controller: _summary(run) for run in runs}
+    return {"experiment": experiment.name, "laws": laws, "controllers": laws}
 
 
 def _summary(run: Trajectory) -> dict[str, Any]:

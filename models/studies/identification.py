@@ -167,11 +167,11 @@ def _estimated(names: tuple[str, ...], columns: Array, torque: Array) -> Identif
     regressor = columns[..., [ALL.index(name) for name in names]]
     scale = np.sqrt(np.mean(regressor**2, axis=(0, 1)))
     scaled = regressor / np.where(scale > 0, scale, 1.0)
-    values, condition = _solved(scaled, torque)
+    values, condition = least_squares(scaled, torque)
     if condition > WORST_CONDITION:
         raise CodedError("error.motion_too_regular")
     residual = torque - scaled @ values
-    errors = _standard_errors(scaled, residual)
+    errors = standard_errors(scaled, residual)
     result = Identified(
         dict(zip(names, (values / scale).tolist(), strict=True)),
         dict(zip(names, (errors / scale).tolist(), strict=True)),
@@ -197,7 +197,7 @@ def _trusted(result: Identified) -> Identified:
     return result
 
 
-def _solved(regressor: Array, torque: Array) -> tuple[Array, float]:
+def least_squares(regressor: Array, torque: Array) -> tuple[Array, float]:
     """Least-squares solution (unknowns,) and condition number of the regressor."""
     flat = regressor.reshape(-1, regressor.shape[-1])
     solution, _, _, singular = np.linalg.lstsq(flat, torque.ravel())
@@ -205,7 +205,7 @@ def _solved(regressor: Array, torque: Array) -> tuple[Array, float]:
     return np.asarray(solution, dtype=float), condition
 
 
-def _standard_errors(regressor: Array, residual: Array) -> Array:
+def standard_errors(regressor: Array, residual: Array) -> Array:
     """Standard errors of the least-squares estimates, shape (unknowns,).
 
     Neighbouring windows overlap, so their residuals are correlated. The covariance of the estimates
@@ -237,7 +237,7 @@ def _equations(record: JointRecord) -> tuple[Array, Array]:
         ValueError: the record is too short or too coarse, or a joint hardly moved.
     """
     _check(record)
-    weight, rate, second, held = _bump(record.dt)
+    weight, rate, second, held = bump(record.dt)
 
     def filtered(signal: Array, kernel: Array) -> Array:
         windows = sliding_window_view(signal, len(weight), axis=0)[:: len(held) // OVERLAP]
@@ -273,8 +273,8 @@ def _check(record: JointRecord) -> None:
         raise CodedError("error.hardly_moved")
 
 
-def _bump(dt: float) -> tuple[Array, Array, Array, Array]:
-    """Samples of w, w' and w'', times dt, and the integrals of w over each time step.
+def bump(dt: float) -> tuple[Array, Array, Array, Array]:
+    """Samples of the window w, of w' and w'', times dt, and integrals of w over each time step.
 
     The window is w(t) ∝ (1 - x²)⁶ with x = 2 t / BUMP in [-1, 1] and unit area. It vanishes at its
     ends to such an order that sums over samples equal the integrals to rounding. The integrals over

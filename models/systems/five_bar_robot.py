@@ -13,7 +13,8 @@ from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.systems import five_bar
 from onpath.models.systems.drawing import Drawing
-from onpath.models.systems.parameters import FiveBarParameters, Parameters
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
+from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import BalancedLinkage, PlanarRobot, RobotEntry, first_fault
 from onpath.models.systems.system import MechanicalSystem
 
@@ -64,12 +65,12 @@ class RigidFiveBar(PlanarRobot):
 
     def plant(self, parameters: Parameters) -> Array:
         """See `Robot.plant`."""
-        own = _own(parameters)
+        own = own_parameters(FiveBarParameters, parameters)
         return _plant(self, own.counterweights_removed / 100, own.payload)
 
     def model(self, parameters: Parameters) -> Array:
         """See `Robot.model`: the balanced robot of (12), with the chosen model errors."""
-        own = _own(parameters)
+        own = own_parameters(FiveBarParameters, parameters)
         return _model(self, own.error_M11, own.error_M22, own.error_b1, own.error_b2)
 
     def rest(self, y: Array) -> Array:
@@ -140,12 +141,6 @@ def collapse(q: Array) -> tuple[NDArray[np.bool_], Message]:
     with np.errstate(invalid="ignore"):  # `first_fault` finds numbers that are not finite
         collapsed = five_bar.singularity_margin(q) < COLLAPSED
     return collapsed, Message("stop.collapsed")
-
-
-def _own(parameters: Parameters) -> FiveBarParameters:
-    if not isinstance(parameters, FiveBarParameters):
-        raise TypeError(f"the five-bar takes FiveBarParameters, got {type(parameters).__name__}")
-    return parameters
 
 
 ROBOT = RobotEntry(

@@ -183,7 +183,8 @@ def flexible_five_bar(modes: int = 3, plant: str = "lagrangian") -> MechanicalSy
     Args:
         modes: number of assumed modes, 1 to 6.
         plant: "lagrangian", or "unit_modes": (20)-(21), which cancel the Coriolis terms beforehand,
-            with shapes normalised to ∫ φ² ds = 1. See `_unit_modes`.
+            with shapes normalised to ∫ φ² ds = 1 and no friction in the joints. See
+            `_unit_modes`.
 
     Raises:
         ValueError: an unknown plant or number of modes.
@@ -263,7 +264,7 @@ def _unit_modes(s: _Symbols) -> _Dynamics:
     project, the units of ρ Ψ q3'' are not those of f'', the waist acts on the modes ρ times (in SI)
     as strongly as in Lagrange's equations, the mass matrix is not symmetric, and energy is not
     conserved. This reading is kept only because, with ρ = 0.2, it reproduces the paper's figures 6
-    and 7 with the actual tip. The friction of the joints, b1 to b3, is an addition of this project.
+    and 7 with the actual tip. Like (20), it has no friction in the joints: b1 to b3 do not act.
 
     Source: eqs. (20)-(21), with Ω_j = ρ (ω_j² f_j + 2 ζ ω_j f_j').
     """
@@ -272,7 +273,7 @@ def _unit_modes(s: _Symbols) -> _Dynamics:
         joints=ca.diag(ca.vertcat(s.p["M11"], s.p["M22"], s.waist)),
         row=rho * s.coupling,
         column=rho * s.coupling,
-        bias=ca.vertcat(*[s.p[f"b{i + 1}"] * s.v[i] for i in range(RIGID)]),
+        bias=ca.SX(RIGID, 1),
         modal_bias=s.elastic,
     )
 

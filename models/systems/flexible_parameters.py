@@ -6,13 +6,22 @@ from dataclasses import dataclass
 
 from onpath.models.systems.beam import MOST_MODES
 from onpath.models.systems.flexible_five_bar import FORMER_PLANTS, PLANTS
-from onpath.models.systems.parameters import Parameters, choice, number
+from onpath.models.systems.parameter_specs import choice, number
+from onpath.models.systems.parameters import Parameters
 
 
 @dataclass(frozen=True, slots=True)
 class FlexibleParameters(Parameters):
     """Parameters of the flexible five-bar. `modes` and `plant` select the instance of the robot."""
 
+    K3: float = number(
+        0.0,
+        "1/s³",
+        (0, 8000, 50),
+        "removes a lasting offset (integral)",
+        group="gains",
+        label="K3 across",
+    )
     K5: float = number(
         5.0,
         "1/s",
@@ -79,7 +88,7 @@ class FlexibleParameters(Parameters):
     plant: str = choice(
         "lagrangian",
         PLANTS,
-        "Lagrange's equations, or (20)-(21) read with ∫φ² = 1, whose coupling has odd units",
+        "Lagrange's equations, or (20)-(21) read with ∫φ² = 1: odd units, no joint friction",
         group="robot",
         label="Plant",
         former=FORMER_PLANTS,
@@ -114,6 +123,15 @@ class FlexibleParameters(Parameters):
         "damping ratio of every mode",
         group="robot",
         label="Damping ζ",
+    )
+    strain_noise: float = number(
+        0.0,
+        "m",
+        (0, 0.005, 0.0001),
+        "standard deviation of the deflection of the tip as the strain gauges measure it",
+        group="realism",
+        label="Strain gauge noise",
+        on=0.0005,
     )
     error_M11: float = number(
         0.0,

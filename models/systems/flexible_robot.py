@@ -19,7 +19,7 @@ from onpath.models.systems.five_bar_robot import collapse
 from onpath.models.systems.flexible_five_bar import RIGID, FlexibleLinks
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.forces import Grip, SpringLimits
-from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import BalancedLinkage, FlexibleLink, RobotEntry, first_fault
 from onpath.models.systems.system import MechanicalSystem, conditioning, decoupling_matrix
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
@@ -29,7 +29,8 @@ FASTEST_TIP = 20.0  # [m/s], largest rate of the deflection
 BENT = Message("stop.bent")
 UNSTABLE = Message("stop.unstable")
 # The tip is light and soft (15 N/m): stiff springs, with forces held over a tick, would chatter.
-SOFT_GRIP = Grip(SpringLimits(100.0, 2.0, 1.0), SpringLimits(500.0, 4.0, 5.0))
+_SOFT = SpringLimits(500.0, 4.0, 5.0)
+SOFT_GRIP = Grip(SpringLimits(100.0, 2.0, 1.0), _SOFT, _SOFT)
 PIECES = 10  # straight bars by which the bent link is drawn
 _SHARES = np.linspace(0.0, 1.0, PIECES + 1)
 DRAWING = Drawing(
@@ -98,13 +99,13 @@ class FlexibleFiveBar:
 
     def plant(self, parameters: Parameters) -> Array:
         """See `Robot.plant`."""
-        own = _own(parameters)
+        own = own_parameters(FlexibleParameters, parameters)
         links = self.links.changed(own.rho, own.frequency, own.zeta)
         return self.system.parameter_vector(links.lumped(own.alpha))
 
     def model(self, parameters: Parameters) -> Array:
         """See `Robot.model`: the plant, with the chosen model errors."""
-        own = _own(parameters)
+        own = own_parameters(FlexibleParameters, parameters)
         values = dict(zip(self.system.parameter_names, self.plant(own).tolist(), strict=True))
         for name in ("M11", "M22", "J0", "rho", "omega1"):
             values[name] *= 1 + getattr(own, f"error_{name}") / 100
@@ -131,7 +132,7 @@ class FlexibleFiveBar:
 
     def internal_energy(self, q: Array, v: Array, parameters: Parameters) -> Array:
         """Energy of the modes ½ ρ Σ (f_j'² + ω_j² f_j²), shapes (..., n) -> (...), [J]."""
-        own = _own(parameters)
+        own = own_parameters(FlexibleParameters, parameters)
         frequencies = 2 * np.pi * own.frequency * self.beam.overtones
         f, f_rate = q[..., RIGID:], v[..., RIGID:]
         return own.rho / 2 * (f_rate**2 + (frequencies * f) ** 2).sum(-1)
@@ -237,15 +238,8 @@ def _decoupling(robot: FlexibleFiveBar) -> ca.Function:
 
 def robot_for(parameters: Parameters) -> FlexibleFiveBar:
     """The instance for these parameters."""
-    own = _own(parameters)
+    own = own_parameters(FlexibleParameters, parameters)
     return flexible_five_bar_robot(own.modes, own.plant)
-
-
-def _own(parameters: Parameters) -> FlexibleParameters:
-    if not isinstance(parameters, FlexibleParameters):
-        kind = type(parameters).__name__
-        raise TypeError(f"the flexible five-bar takes FlexibleParameters, got {kind}")
-    return parameters
 
 
 def critical_alpha(parameters: Parameters, joints: Array) -> float:

@@ -1,4 +1,4 @@
-"""Forces that the control laws do not know: a hand, a brake, and dry friction."""
+"""Forces that the control laws do not know: a hand, a brake, a wall, and dry friction."""
 
 from __future__ import annotations
 
@@ -27,10 +27,11 @@ class SpringLimits:
 
 @dataclass(frozen=True, slots=True)
 class Grip:
-    """The springs by which a hand and a brake act on a robot's end-point."""
+    """The springs by which a hand, a brake and a wall act on a robot's end-point."""
 
     hand: SpringLimits = SpringLimits(stiffness=300.0, damping=10.0, largest=15.0)
     hold: SpringLimits = SpringLimits(stiffness=2000.0, damping=40.0, largest=30.0)
+    wall: SpringLimits = SpringLimits(stiffness=2000.0, damping=40.0, largest=30.0)
 
 
 def hand(y: ca.SX, y_rate: ca.SX, target: ca.SX, active: ca.SX, limits: SpringLimits) -> ca.SX:
@@ -71,6 +72,33 @@ def hold(
     ahead, rate = ca.dot(tangent, y - anchor), ca.dot(tangent, y_rate)
     along = limits.stiffness * ahead + limits.damping * rate
     return (active * ca.fmin(ca.fmax(-along, -limits.largest), limits.largest)) * tangent
+
+
+def wall(
+    y: ca.SX,
+    y_rate: ca.SX,
+    place: ca.SX,
+    normal: ca.SX,
+    active: ca.SX,
+    limits: SpringLimits,
+) -> ca.SX:
+    """A half-space that pushes and never pulls, (p, 1), [N].
+
+        F = clip(k δ + d δ', 0, largest) n  while δ > 0, else 0;   δ = n · (place - y)
+
+    Along the wall the end-point is free.
+
+    Args:
+        y, y_rate: end-point and its rate, (p, 1), [m], [m/s].
+        place: a point of the wall's surface, (p, 1), [m].
+        normal: n, of unit length, from the wall to the free side, (p, 1).
+        active: 1, or 0 for no wall.
+        limits: k, d and the largest force.
+    """
+    depth, rate = ca.dot(normal, place - y), -ca.dot(normal, y_rate)
+    pressed = limits.stiffness * depth + limits.damping * rate
+    inside = active * (depth > 0) * (pressed > 0)  # fmax(pressed, 0) leaves the sign of 0 open
+    return (inside * ca.fmin(pressed, limits.largest)) * normal
 
 
 def dry_friction(v: ca.SX, coulomb: ca.SX) -> ca.SX:

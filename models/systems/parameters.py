@@ -8,76 +8,17 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from difflib import get_close_matches
+from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeVar
 
-from onpath.models.errors import CodedError, Message
+from onpath.models.systems.parameter_specs import Spec, checked, choice, number, unknown_name
 
 TICK = 1e-3  # [s], length of a tick at control rates up to 1 kHz
-NOTHING = 1e-9  # smaller values of any parameter are set to 0, so that inverses are finite
+DISTANCE, LEVEL_SET = "distance", "level_set"  # what ξ measures across the path, [m] or [m²]
 
-
-@dataclass(frozen=True, slots=True)
-class Spec:
-    """Declaration of a parameter.
-
-    Attributes:
-        group: "basic", "gains", "task", "realism" or "robot".
-        label: name on a widget.
-        unit: "" for none.
-        low, high, step: range of a number.
-        options: of a choice; empty for a number.
-        help: one line.
-        on: for a parameter of which 0 means "off": the value that switches it on.
-        former: former names of options, which are still accepted.
-    """
-
-    group: str
-    label: str
-    unit: str
-    low: float
-    high: float
-    step: float
-    options: tuple[Any, ...]
-    help: str
-    on: float | None = None
-    former: Mapping[str, str] | None = None
-
-    def present(self, value: Any) -> Any:
-        """The present name of an option; any other value unchanged."""
-        return self.former.get(str(value), value) if self.former else value
-
-
-def number(
-    default: float,
-    unit: str,
-    bounds: tuple[float, float, float],
-    text: str,
-    *,
-    group: str,
-    label: str,
-    on: float | None = None,
-) -> Any:
-    """A dataclass field for a number; `bounds` are (low, high, step)."""
-    spec = Spec(group, label, unit, *bounds, (), text, on)
-    return field(default=default, metadata={"spec": spec})
-
-
-def choice(
-    default: Any,
-    options: tuple[Any, ...],
-    text: str,
-    *,
-    group: str,
-    label: str,
-    former: Mapping[str, str] | None = None,
-) -> Any:
-    """A dataclass field for one of `options`; former names are accepted."""
-    spec = Spec(group, label, "", 0.0, 0.0, 0.0, options, text, former=former)
-    return field(default=default, metadata={"spec": spec})
+P = TypeVar("P", bound="Parameters")
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,12 +42,19 @@ class Parameters:
         label="K2 across",
     )
     K3: float = number(
-        0.0,
+        1000.0,
         "1/s³",
         (0, 8000, 50),
         "removes a lasting offset (integral)",
         group="gains",
         label="K3 across",
+    )
+    tracker_integral: str = choice(
+        "off",
+        ("off", "on"),
+        "whether K3 acts in a law that follows the clock: held back, its integral winds up",
+        group="gains",
+        label="Tracker's integral",
     )
     K4: float = number(
         25.0,
@@ -139,6 +87,14 @@ class Parameters:
         group="task",
         label="Speed",
     )
+    ramp: float = number(
+        0.0,
+        "rad/s²",
+        (0, 100, 0.5),
+        "how quickly the wanted speed changes; 0: at once",
+        group="task",
+        label="Speed ramp",
+    )
     target: float = number(
         math.pi / 2,
         "rad",
@@ -148,11 +104,51 @@ class Parameters:
         label="Target",
     )
     across: str = choice(
-        "distance",
-        ("distance", "level_set"),
-        "what to measure across the path: the distance, or the paper's s(y) (circle, ellipse)",
+        DISTANCE,
+        (DISTANCE, LEVEL_SET),
+        "what to measure across the path: the distance, or the paper's s(y) in m² (ellipses only)",
         group="gains",
         label="Across is",
+    )
+    clock_gain: float = number(
+        50.0,
+        "1/s",
+        (0, 200, 1),
+        "how strongly the waiting clock feels the error along the path; 0: an ordinary clock",
+        group="gains",
+        label="Clock waits",
+    )
+    contour_ratio: float = number(
+        0.1,
+        "",
+        (0.01, 1, 0.01),
+        "contouring: how stiff it is along the path, as a share of across",
+        group="gains",
+        label="Along / across",
+    )
+    field_gain: float = number(
+        10.0,
+        "1/s",
+        (0, 40, 0.5),
+        "velocity field: how quickly it leads back to the path",
+        group="gains",
+        label="Field to path",
+    )
+    field_circulation: float = number(
+        30.0,
+        "1/(J s)",
+        (0, 100, 1),
+        "velocity field: how quickly the velocity turns into the field",
+        group="gains",
+        label="Field turns",
+    )
+    field_energy: float = number(
+        0.2,
+        "J",
+        (0.02, 2, 0.01),
+        "velocity field: energy of the robot and the flywheel together",
+        group="gains",
+        label="Field energy",
     )
     torque_limit: float = number(
         0.0,
@@ -162,6 +158,23 @@ class Parameters:
         group="realism",
         label="Torque limit",
         on=0.5,
+    )
+    at_limit: str = choice(
+        "across_first",
+        ("across_first", "slow_down", "cut"),
+        "when a torque limit is reached, path following gives up speed along the path before the"
+        " path; slow_down: and asks only for a speed that the whole path allows; cut: neither",
+        group="realism",
+        label="At the limit",
+    )
+    torque_step: float = number(
+        0.0,
+        "N m",
+        (0, 0.2, 0.001),
+        "the motors' torque is a multiple of this; 0: any torque",
+        group="realism",
+        label="Torque steps",
+        on=0.02,
     )
     encoder_counts: float = number(
         0.0,
@@ -180,6 +193,23 @@ class Parameters:
         group="realism",
         label="Velocity filter",
     )
+    sensor_noise: float = number(
+        0.0,
+        "rad",
+        (0, 0.002, 0.00001),
+        "standard deviation of the measured joint angles; their filter gives the velocities",
+        group="realism",
+        label="Sensor noise",
+        on=0.0001,
+    )
+    seed: float = number(
+        0.0,
+        "",
+        (0, 9999, 1),
+        "chooses the random numbers of the noise: the same seed, the same run",
+        group="realism",
+        label="Noise seed",
+    )
     coulomb: float = number(
         0.0,
         "N m",
@@ -189,6 +219,15 @@ class Parameters:
         label="Dry friction",
         on=0.05,
     )
+    stiction: float = number(
+        0.0,
+        "N m",
+        (0, 0.3, 0.005),
+        "a joint at rest stays there up to this torque, and slides with the dry friction; 0: none",
+        group="realism",
+        label="Static friction",
+        on=0.08,
+    )
     control_rate: int = choice(
         1000,
         (50, 100, 200, 250, 500, 1000, 2000),
@@ -196,65 +235,14 @@ class Parameters:
         group="realism",
         label="Control rate",
     )
-
-
-@dataclass(frozen=True, slots=True)
-class FiveBarParameters(Parameters):
-    """Parameters of the rigid five-bar: model errors, removed counterweights, payload."""
-
-    error_M11: float = number(
+    delay: float = number(
         0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's M11 is off by this",
+        "control intervals",
+        (0, 8, 0.05),
+        "time from a measurement to the torque computed from it; 0: at once",
         group="realism",
-        label="M11 wrong",
-        on=30.0,
-    )
-    error_M22: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's M22 is off by this",
-        group="realism",
-        label="M22 wrong",
-        on=30.0,
-    )
-    error_b1: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's b1 is off by this",
-        group="realism",
-        label="b1 wrong",
-        on=50.0,
-    )
-    error_b2: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's b2 is off by this",
-        group="realism",
-        label="b2 wrong",
-        on=50.0,
-    )
-    counterweights_removed: float = number(
-        0.0,
-        "%",
-        (0, 100, 5),
-        "counterweights taken off; the controller does not know",
-        group="realism",
-        label="Counterweights off",
-        on=50.0,
-    )
-    payload: float = number(
-        0.0,
-        "kg",
-        (0, 0.3, 0.01),
-        "mass at the end-point; the controller does not know",
-        group="realism",
-        label="Payload",
-        on=0.1,
+        label="Computing delay",
+        on=1.0,
     )
 
 
@@ -266,44 +254,6 @@ def specs(kind: type[Parameters] | Parameters) -> Mapping[str, Spec]:
 @cache
 def _specs(kind: type[Parameters]) -> Mapping[str, Spec]:
     return MappingProxyType({f.name: f.metadata["spec"] for f in dataclasses.fields(kind)})
-
-
-def unknown_name(name: str, known: list[str], what: str = "parameter") -> CodedError:
-    """The error for an unknown name, which suggests the nearest known ones."""
-    near = get_close_matches(name, known, n=3, cutoff=0.4) or get_close_matches(
-        name.lower(), known, n=3, cutoff=0.3
-    )
-    names = ", ".join(near or known)
-    hint = Message("error.did_you_mean" if near else "error.there_are", {"names": names})
-    return CodedError("error.unknown_name", kind=what, name=repr(name), hint=hint)
-
-
-def out_of_range(name: str, value: str, low: str, high: str) -> CodedError:
-    """The error for a number that is too small or too large; arguments are formatted."""
-    return CodedError("error.value_out_of_range", name=name, value=value, low=low, high=high)
-
-
-def checked(spec: Spec, name: str, value: Any) -> Any:
-    """`value` as the field takes it.
-
-    Raises:
-        ValueError: not a finite number in range, or not one of the options.
-    """
-    if spec.options:
-        present = str(spec.present(value))
-        for option in spec.options:
-            if str(option) == present:
-                return option
-        options = ", ".join(str(option) for option in spec.options)
-        raise CodedError("error.value_not_an_option", name=name, value=repr(value), options=options)
-    try:
-        result = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise CodedError("error.value_not_a_number", name=name, value=repr(value)) from None
-    if not math.isfinite(result) or not spec.low <= result <= spec.high:
-        unit = f" {spec.unit}" if spec.unit else ""
-        raise out_of_range(name, str(value), f"{spec.low:g}", f"{spec.high:g}{unit}")
-    return result if abs(result) > NOTHING else 0.0
 
 
 def changed(parameters: Parameters, name: str, value: Any) -> Parameters:
@@ -321,6 +271,22 @@ def changed(parameters: Parameters, name: str, value: Any) -> Parameters:
     return dataclasses.replace(parameters, **{name: value})
 
 
+def own_parameters(kind: type[P], parameters: Parameters) -> P:
+    """The parameters as those of a robot.
+
+    Raises:
+        TypeError: they are another robot's.
+    """
+    if not isinstance(parameters, kind):
+        raise TypeError(f"expected {kind.__name__}, got {type(parameters).__name__}")
+    return parameters
+
+
 def time_step(parameters: Parameters) -> float:
     """Length of a tick, [s]: 1 ms, or one control interval if that is shorter."""
     return min(TICK, 1 / parameters.control_rate)
+
+
+def rise_of(parameters: Parameters) -> float:
+    """The rise of the path among a robot's parameters, [m]; 0 if it has none."""
+    return getattr(parameters, "rise", 0.0)

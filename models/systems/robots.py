@@ -125,6 +125,8 @@ class Robot(Protocol):
     def margin(self, z: Array) -> Array:
         """Distance of points of the path's plane from singular configurations, (n, 2) -> (n,).
 
+        If `frame.space` is a frame, also of points (z, ζ) above the plane, (n, 3) -> (n,).
+
         Dimensionless: 1 at home, and 0 where the robot is singular or the point out of reach.
         """
         ...
@@ -197,23 +199,10 @@ class Robot(Protocol):
         ...
 
 
-class PlanarRobot:
-    """Common parts of robots with rigid links that move in the vertical plane y = 0.
-
-    The output space is that plane, and the end-point y = 0 lies at `home`.
-    """
+class RigidRobot:
+    """Common parts of robots with rigid links."""
 
     __slots__ = ()
-
-    @property
-    def home(self) -> tuple[float, float]:
-        """The end-point y = 0 in the robot's frame, (x, z), [m]."""
-        raise NotImplementedError
-
-    @property
-    def frame(self) -> Frame:
-        """See `Robot.frame`."""
-        return _PLANE
 
     @property
     def substeps(self) -> int:
@@ -228,11 +217,6 @@ class PlanarRobot:
     def grip(self) -> Grip:
         """See `Robot.grip`."""
         return _GRIP
-
-    @property
-    def drawing(self) -> Drawing:
-        """See `Robot.drawing`: everything follows from the bars."""
-        return _DRAWING
 
     @property
     def linkage(self) -> BalancedLinkage | None:
@@ -251,6 +235,30 @@ class PlanarRobot:
     def marks(self, q: ca.SX) -> ca.SX:
         """See `Robot.marks`: none."""
         return ca.SX(3, 0)
+
+
+class PlanarRobot(RigidRobot):
+    """Common parts of robots with rigid links that move in the vertical plane y = 0.
+
+    The output space is that plane, and the end-point y = 0 lies at `home`.
+    """
+
+    __slots__ = ()
+
+    @property
+    def home(self) -> tuple[float, float]:
+        """The end-point y = 0 in the robot's frame, (x, z), [m]."""
+        raise NotImplementedError
+
+    @property
+    def frame(self) -> Frame:
+        """See `Robot.frame`."""
+        return _PLANE
+
+    @property
+    def drawing(self) -> Drawing:
+        """See `Robot.drawing`: everything follows from the bars."""
+        return _DRAWING
 
     def place(self, y: Array) -> Array:
         """See `Robot.place`."""

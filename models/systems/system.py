@@ -1,8 +1,9 @@
 """A controlled mechanical system, defined by symbols; everything else is derived from them.
 
-    M(q) v' + c(q, v) = B u + J_h(q)^T F,   q' = v,   y = h(q),
+    M(q) v' + c(q, v) = B(q) u + J_h(q)^T F,   q' = v,   y = h(q),
 
-with F the external force at the end-point. CasADi differentiates; nothing is derived by hand.
+with m inputs u and F the external force at the end-point. CasADi differentiates; nothing is derived
+by hand.
 
 Source: eqs. (1)-(3).
 """
@@ -24,9 +25,10 @@ class MechanicalSystem:
 
     Attributes:
         name: as in files and on the command line.
-        q: generalized coordinates, (n, 1); the first m of them are actuated.
+        q: generalized coordinates, (n, 1).
         v: their velocities, (n, 1).
         tau: generalized forces B u + J_h^T F, (n, 1).
+        actuation: B(q), (n, m); by default it selects the first m coordinates.
         parameters: numbers that may change without rebuilding, (k, 1).
         parameter_names: k names.
         mass: M(q), (n, n).
@@ -44,6 +46,7 @@ class MechanicalSystem:
     q: ca.SX
     v: ca.SX
     tau: ca.SX
+    actuation: ca.SX
     parameters: ca.SX
     parameter_names: tuple[str, ...]
     mass: ca.SX
@@ -73,6 +76,16 @@ class MechanicalSystem:
         rate = ca.jtimes(output, self.q, self.v)
         return ca.Function("with_rate", [self.q, self.v, self.parameters], [output, rate])
 
+    def effort(self, q: ca.SX, u: ca.SX, parameters: ca.SX) -> ca.SX:
+        """The generalized forces B(q) u of the inputs, (m, 1) -> (n, 1)."""
+        inputs = [self.q, self.parameters]
+        return ca.Function("actuation", inputs, [self.actuation])(q, parameters) @ u
+
+    def input_rates(self, q: ca.SX, v: ca.SX, parameters: ca.SX) -> ca.SX:
+        """The velocities B(q)^T v at which the inputs do work, (n, 1) -> (m, 1)."""
+        inputs = [self.q, self.parameters]
+        return ca.Function("actuation", inputs, [self.actuation])(q, parameters).T @ v
+
     def parameter_vector(self, values: dict[str, float]) -> Array:
         """The values in the order of `parameter_names`, shape (k,)."""
         return np.array([values[name] for name in self.parameter_names])
@@ -90,30 +103,39 @@ def mechanical_system(
     inputs: int,
     output: ca.SX,
     potential_energy: ca.SX,
+    actuation: ca.SX | None = None,
     controlled_output: ca.SX | None = None,
     solve: Callable[[ca.SX, ca.SX], ca.SX] = ca.solve,
 ) -> MechanicalSystem:
-    """A system from M, c and h; B selects the first `inputs` coordinates.
+    """A system from M, c, B and h.
 
     Args:
         mass: M(q), (n, n).
         bias: c(q, v): Coriolis, gravity, elastic and viscous terms, (n, 1).
-        inputs: m.
+        inputs: m, with p <= m <= n.
         output: h(q), (p, 1), [m].
         potential_energy: V(q), [J]; used for the energy only.
+        actuation: B(q), (n, m), of rank m; None: it selects the first m coordinates.
         controlled_output: (p, 1), [m]; None: h.
         solve: (M, R) -> M⁻¹ R; replace it where M has structure.
 
+    Raises:
+        ValueError: m is less than p or greater than n, or B does not have the shape (n, m).
+
     Source: eqs. (1)-(3).
     """
-    n = q.numel()
+    n, p = q.numel(), output.numel()
+    actuation = ca.SX.eye(n)[:, : min(inputs, n)] if actuation is None else actuation
+    if not p <= inputs <= n or actuation.shape != (n, inputs):
+        raise ValueError(f"{name}: B must have {n} rows and {p} to {n} columns, one an input")
     tau = ca.SX.sym("tau", n)
-    gains = solve(mass, ca.horzcat(-bias, ca.SX.eye(n)[:, :inputs]))
+    gains = solve(mass, ca.horzcat(-bias, actuation))
     return MechanicalSystem(
         name=name,
         q=q,
         v=v,
         tau=tau,
+        actuation=actuation,
         parameters=parameters,
         parameter_names=parameter_names,
         mass=mass,
@@ -136,10 +158,27 @@ def lagrange_bias(
     return turning + ca.gradient(potential_energy, q) + friction
 
 
+def coriolis(system: MechanicalSystem) -> ca.SX:
+    """The Coriolis matrix C(q, v) by Christoffel's symbols, (n, n), for which M' - 2 C is skew.
+
+        C_ij = ½ Σ_k (∂M_ij/∂q_k + ∂M_ik/∂q_j - ∂M_jk/∂q_i) v_k
+
+    C v is the part of c(q, v) that is quadratic in the velocities.
+
+    Source: any textbook of robotics, such as Siciliano et al., Robotics, 7.2.1.
+    """
+    n, q, v = system.n, system.q, system.v
+    mass = ca.densify(system.mass)
+    slopes = [ca.reshape(ca.jacobian(ca.vec(mass), q[k]), n, n) for k in range(n)]
+    rate = ca.reshape(ca.jtimes(ca.vec(mass), q, v), n, n)
+    forms = ca.horzcat(*[slope @ v for slope in slopes])  # column k: (∂M/∂q_k) v
+    return (rate + forms - forms.T) / 2
+
+
 def decoupling_matrix(system: MechanicalSystem) -> ca.Function:
     """The function (q, parameters) -> J g_v with J = dh/dq of the controlled output, shape (p, m).
 
-    The virtual output has a relative degree where this matrix has rank p.
+    The virtual output has a relative degree where this matrix has rank p. It is square for m = p.
 
     Source: Theorem 2.1, eq. (11).
     """

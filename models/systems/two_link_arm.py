@@ -32,7 +32,8 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.systems.drawing import Drawing
-from onpath.models.systems.parameters import Parameters, number
+from onpath.models.systems.parameter_specs import number
+from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import PlanarRobot, RobotEntry, first_fault
 from onpath.models.systems.system import MechanicalSystem, mechanical_system
 
@@ -171,11 +172,13 @@ class TwoLinkArm(PlanarRobot):
 
     def plant(self, parameters: Parameters) -> Array:
         """See `Robot.plant`."""
-        return self.system.parameter_vector(self.links.lumped(_own(parameters).payload))
+        return self.system.parameter_vector(
+            self.links.lumped(own_parameters(TwoLinkParameters, parameters).payload)
+        )
 
     def model(self, parameters: Parameters) -> Array:
         """See `Robot.model`: without payload, with the chosen model errors."""
-        own, values = _own(parameters), self.links.lumped()
+        own, values = own_parameters(TwoLinkParameters, parameters), self.links.lumped()
         for name in ("a1", "a2", "a3"):
             values[name] *= 1 + own.error_inertia / 100
         for name in ("g1", "g2"):
@@ -231,13 +234,6 @@ class TwoLinkArm(PlanarRobot):
 def two_link_arm_robot() -> TwoLinkArm:
     """The only instance, so that its kernels are built once."""
     return TwoLinkArm()
-
-
-def _own(parameters: Parameters) -> TwoLinkParameters:
-    if not isinstance(parameters, TwoLinkParameters):
-        kind = type(parameters).__name__
-        raise TypeError(f"the two-link arm takes TwoLinkParameters, got {kind}")
-    return parameters
 
 
 ROBOT = RobotEntry(

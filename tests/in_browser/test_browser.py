@@ -23,9 +23,10 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.trajectory import read_csv
+from onpath.models.control.benches import LEFT, RIGHT
 from tests.support.browser import SELDOM, THREE_FRAMES, Tab, wait_for
 
-TRACKER, FOLLOWER = "trajectory_tracking", "path_following"
+TRACKER, FOLLOWER = LEFT, RIGHT
 WINDOW = {"width": 1000, "height": 700}
 PLAYED = """seconds => [...document.querySelectorAll("[role=slider]")].some(
     each => each.getAttribute("aria-valuenow") > seconds)"""

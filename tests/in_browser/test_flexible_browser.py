@@ -14,11 +14,12 @@ from playwright.sync_api import Browser
 from onpath.app.lab import commands as c
 from onpath.app.scene.stage_catalogue import HORIZONTAL, IN_PATH_PLANE
 from onpath.app.server.lab_server import LabServer
+from onpath.models.control.benches import RIGHT
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
 from onpath.models.systems.flexible_robot import UNSTABLE, FlexibleFiveBar
 from tests.support.browser import Tab, wait_for
 
-FOLLOWER = "path_following"
+FOLLOWER = RIGHT
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from onpath.lessons.course import BUILT_IN
 from onpath.lessons.schema import Action
 from onpath.models.control.poles import channels
 from onpath.models.paths.path_design import presets
-from onpath.models.systems.parameters import FiveBarParameters
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from tests.support.stated_numbers import (
     WORST,
     Motion,
@@ -25,6 +25,7 @@ from tests.support.stated_numbers import (
 )
 
 RADIUS, TURN = 0.05, 2 * np.pi
+PD: dict[str, Any] = {"K3": 0.0}  # of lesson 6, but for the task on the integral
 
 # Lesson 6
 
@@ -44,14 +45,14 @@ SPOILERS: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("spoiler", SPOILERS)
 def test_spoiler_shows_across_and_along(spoiler: str) -> None:
-    follower = play(6.0, [], **SPOILERS[spoiler])["follower"]
+    follower = play(6.0, [], **PD, **SPOILERS[spoiler])["follower"]
     stated = said("06", f"| {spoiler} | # mm | # rad/s |")
     assert_stated(stated, [follower.largest(1, 6), float(follower.rate[1000:].mean())])
 
 
 def test_late_control_is_fast_control() -> None:
     rates = [
-        play(6.0, [], **SPOILERS[name])["follower"].rate[1000:].mean()
+        play(6.0, [], **PD, **SPOILERS[name])["follower"].rate[1000:].mean()
         for name in ("control at 100 Hz, not 1000", "encoders with 2000 steps a turn")
     ]
     stated = said("06", "At 100 Hz blue is # % too fast, with the encoders # %")
@@ -62,7 +63,7 @@ def test_wrong_model_costs_some_millimetres() -> None:
     tracker = shown("06", "Forty per cent too light")["tracker"]
     stated = said("06", "and is # mm off on average from 3 s on")
     assert_stated(stated, [float(tracker.distance[3000:].mean())])
-    wrong: dict[str, Any] = {"error_M11": -40, "error_M22": -40}
+    wrong: dict[str, Any] = {"error_M11": -40, "error_M22": -40, **PD}
     stiff = play(9.0, [], K1=800, **wrong)["follower"].distance[7000:].mean()
     assert_stated(said("06", "| too light, twice K1 | # mm | # mm |")[1:], [float(stiff)])
 
@@ -80,14 +81,14 @@ def test_more_gain_until_it_is_fatal() -> None:
     assert_stated([low, high], [float(off.min()), float(off.max())])
     do = [Action(at=2.0, set={"K1": 2500, "K2": 150})]
     settings: dict[str, Any] = {"error_M11": -40, "error_M22": -40, "control_rate": 50}
-    survives = play(8.0, do, **settings)["follower"].distance[4000:].mean()
+    survives = play(8.0, do, **settings, **PD)["follower"].distance[4000:].mean()
     stated = said("06", "and the arm survives, # mm off on average")
     assert_stated(stated, [float(survives)])
 
 
 def test_arm_that_nobody_has_identified() -> None:
     wrong: dict[str, Any] = {"error_M11": -40, "error_M22": -50, "error_b1": 30, "error_b2": -30}
-    off = play(8.0, [], **wrong)["follower"].largest(3, 8)
+    off = play(8.0, [], **wrong, **PD)["follower"].largest(3, 8)
     assert_stated(said("06", "at full speed it would be up to # mm off"), [off])
 
 
@@ -95,13 +96,30 @@ def test_largest_damping_is_where_the_poles_say() -> None:
     at_100, at_50 = said("06", "they are unstable from # on, and at 50 Hz from # on, not 100")
     for rate, stated in ((100, value(at_100)), (50, value(at_50))):
         stable = [
-            channels(FiveBarParameters(control_rate=rate, K2=damping))[0].stable
+            channels(FiveBarParameters(control_rate=rate, K2=damping, **PD))[0].stable
             for damping in (stated - 1, stated)
         ]
         assert stable == [True, False]
         assert stated == pytest.approx(2 / (1 / rate + 1e-3), abs=1)  # "as if T were 1 ms longer"
-    with_it = play(3.0, [], K1=2500, K2=200, control_rate=100)["follower"]
+    with_it = play(3.0, [], K1=2500, K2=200, control_rate=100, **PD)["follower"]
     assert 1.0 <= with_it.t[-1] < 1.1  # "stops the blue robot after one second"
+
+
+def test_the_integral_learns_and_what_it_learns() -> None:
+    spoilers: dict[str, dict[str, Any]] = {
+        "M11, M22 too light by 40 %": {"error_M11": -40, "error_M22": -40},
+        "encoders, 2000 steps": {"encoder_counts": 2000},
+        "dry friction 0.05 N m": {"coulomb": 0.05},
+    }
+    for row, spoiler in spoilers.items():
+        stated = said("06", f"| {row} | # mm | {'**# mm**' if 'friction' in row else '# mm'} |")
+        off = [play(8.0, [], K3=gain, **spoiler)["follower"].largest(2, 8) for gain in (0, 4000)]
+        assert_stated(stated, off)
+    hand = [Action(at=1.0, pull=(30.0, 0.0)), Action(at=3.0, release=True)]
+    without, learnt = (play(4.0, hand, speed=0.0, K3=gain)["follower"] for gain in (0, 4000))
+    assert_stated(said("06", "without K3 blue comes # mm off and stays"), [without.at(2.9)])
+    assert learnt.largest(2, 3) < 0.1  # "back on the circle after a second"
+    assert_stated(said("06", "it shoots # mm to the other side"), [float(learnt.across.max())])
 
 
 # Lesson 8
@@ -132,6 +150,25 @@ def test_bulge_costs_what_its_bend_needs() -> None:
     assert f"v²/R = {stated[2]} m/s²" in drawn and f"{costs[0]:.2f} N m" in drawn
     estimate = said("08", r"\frac{#\cdot #}{#} = #\ \text{N m}")
     assert_stated(estimate, [0.0226, across, 0.2, 0.0226 * value(stated[2]) / 0.2])
+
+
+def test_six_times_the_gain_and_less_speed() -> None:
+    both = shown("08", "Louder, or slower")
+    follower, tracker = both["follower"], both["tracker"]
+    stated = said("08", "| six times the gain | # mm | # mm | # N m |")
+    parts = [follower.largest(4.5, 8), tracker.largest(4.5, 8), 0.3]
+    assert_stated(stated, parts)
+    begin, *stated = said("08", "| 4 rad/s, from # s | # mm | # mm | # N m |")
+    parts = [run.largest(value(begin), 12) for run in (follower, tracker)]
+    assert_stated(stated, [*parts, float(follower.torque[int(1e3 * value(begin)) :].max())])
+    assert_stated(
+        said("08", "Yes: # mm, # mm, and from # s on # mm."),
+        [follower.largest(1, 4), follower.largest(4.5, 8), value(begin), parts[0]],
+    )
+    assert_stated(
+        said("08", "# mm becomes # mm, and stays there."),
+        [follower.largest(1, 4), follower.largest(4.5, 8)],
+    )
 
 
 def test_tracker_is_closer_from_the_second_lap_on() -> None:
@@ -180,8 +217,8 @@ def test_path_with_two_gentle_bulges() -> None:
         for k2 in (100, 200)
     ]
     assert_stated(said("08", "the follower, untouched, stays within # mm of the circle"), off[:1])
-    assert_stated(said("08", "With K2 = 200 it is about # mm"), off[1:])
-    assert_stated(said("08", "K2 = 200 turned # mm into about # mm."), off)
+    assert_stated(said("08", "With K2 = 200 it is # mm"), off[1:])
+    assert_stated(said("08", "K2 = 200 turned # mm into # mm."), off)
 
 
 def test_course_on_one_page() -> None:
@@ -200,9 +237,32 @@ def test_course_on_one_page() -> None:
     worst = said("08", "At other places it is up to # mm")
     assert_stated(worst, [held(WORST).largest(3, 9)])
     stated = said(
-        "08", "a hand 30 mm to the right moves it # mm, and only # mm with K1 = 1600 and K2 = 80"
+        "08",
+        "a hand 30 mm to the right moves it # mm, and only # mm with K1 = 1600 and K2 = 80."
+        " Then the integral takes over: after three seconds of pulling # mm are left.",
     )
-    assert_stated(stated, [pulled(30.0).distance[-1], pulled(30.0, K1=1600, K2=80).distance[-1]])
+    usual, stiff = pulled(30.0), pulled(30.0, K1=1600, K2=80)
+    assert_stated(stated, [usual.largest(1, 4), stiff.largest(1, 4), usual.distance[-1]])
+
+
+def test_the_law_across_is_linear_from_one_millimetre_to_ten() -> None:
+    near, far, ratio = said(
+        "08",
+        "At speed 0 and K3 = 0, pull the follower # mm or # mm off and let go: at every instant"
+        " of the return the second curve is # times the first.",
+    )
+    small, large = (
+        play(
+            2.5,
+            [Action(at=1.0, pull=(hand, 0.0)), Action(at=2.0, release=True)],
+            speed=0.0,
+            **PD,
+        )["follower"].across[2000:]
+        for hand in (2.0, 20.0)
+    )
+    assert_stated([near, far], [-small[0], -large[0]])
+    for instant in range(0, 300, 10):
+        assert_stated([ratio], [large[instant] / small[instant]])
 
 
 def test_stiff_tracker_presses_harder_and_leaves_the_circle_all_the_same() -> None:

@@ -5,6 +5,8 @@ Each is taken from its sentence and replayed; the largest values are those of ev
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,7 @@ from onpath.lessons.schema import Action
 from onpath.models.arrays import Array
 from onpath.models.control.poles import channels
 from onpath.models.systems.five_bar import inverse_kinematics, load_links
-from onpath.models.systems.parameters import FiveBarParameters
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from tests.support.rig import jacobian
 from tests.support.stated_numbers import (
     WORST,
@@ -27,6 +29,7 @@ from tests.support.stated_numbers import (
 )
 
 RADIUS, TURN = 0.05, 2 * np.pi
+PD: dict[str, Any] = {"K3": 0.0}  # what lessons 1 and 4 are about
 STAGES = (0, 4, 8, 12)  # [s], when the gains go up in lesson 4
 
 
@@ -76,15 +79,15 @@ def test_soft_tracker_is_torn_off_further() -> None:
 
 
 def test_slower_clock_runs_on_and_no_clock_takes_any_speed() -> None:
-    slow = held(3.0, robot="tracker", speed=TURN / 2).distance[3000:]
-    usual = held(3.0, robot="tracker").distance[3000:]
+    slow = held(3.0, robot="tracker", speed=TURN / 2, **PD).distance[3000:]
+    usual = held(3.0, robot="tracker", **PD).distance[3000:]
     for arches, distance in ((2, slow), (4, usual)):  # "the same arches come, only wider"
         assert np.count_nonzero(np.diff(distance > 25)) == 2 * arches
         assert 45 < distance.max() < 50
     jumps = [
         Action(at=at, set={"speed": speed}) for at, speed in ((1.0, -TURN), (2.0, 0), (3.0, 9))
     ]
-    free = play(4.0, jumps)  # "no error, whatever speed you ask of it"
+    free = play(4.0, jumps, **PD)  # "no error, whatever speed you ask of it"
     assert free["follower"].distance.max() < 0.01
     assert free["tracker"].distance.max() > 1
 
@@ -119,11 +122,12 @@ def test_nudge_depends_on_the_place() -> None:
     circle = RADIUS * np.stack([np.cos(places), np.sin(places)], axis=1)
     signs = np.sign([along_to_across(place) for place in circle])
     assert np.count_nonzero(np.diff(signs, append=signs[0])) == 4  # "At four places"
-    assert held(3.15).across[-1] * held(3.16).across[-1] < 0  # one of the four lies between
+    earlier, later = held(3.15, **PD), held(3.16, **PD)  # one of the four lies between
+    assert earlier.across[-1] * later.across[-1] < 0
 
 
 def test_leaning_less_on_the_brake_helps_at_rest() -> None:
-    rest = [held(WORST, 3.0, K5=gain).largest(WORST + 0.8, 9) for gain in (2.0, 10.0)]
+    rest = [held(WORST, 3.0, K5=gain, **PD).largest(WORST + 0.8, 9) for gain in (2.0, 10.0)]
     assert rest[0] < 0.25 * rest[1]
 
 
@@ -154,6 +158,26 @@ def test_hold_for_half_a_round_leaves_room_for_the_hand() -> None:
             assert abs(complex(*follower.y[-1]) - point) > 90
 
 
+def test_near_the_path_and_far_from_the_timetable() -> None:
+    follower = shown("02", "Near the path, far from the timetable")["follower"]
+    point = RADIUS * 1e3 * np.exp(1j * TURN * follower.t)
+    lag = np.abs(follower.y @ [1, 1j] - point)
+    assert_stated(said("02", "Within a second the gap is # mm"), [float(lag[1000])])
+    (most,) = said("02", "The gap swings between nearly nothing and # mm, two times.")
+    assert_stated([most], [float(lag[3000:5000].max())])
+    assert lag[3300:5000].min() < 0.5
+    assert np.count_nonzero(np.diff(lag[3000:5000] > 50)) == 4
+    assert_stated(said("02", "- **After.** # mm, and it stays so."), [float(lag[7000])])
+    most, after, within = said(
+        "02",
+        "never further than # mm from its circle. Before the hold it was at 0.00 mm, and from"
+        " # s on within # mm again.",
+    )
+    assert_stated([most], [follower.largest(0, 8)])
+    assert follower.largest(0, 3) < 0.005
+    assert follower.largest(value(after), 8) <= value(within) < 2 * follower.at(value(after))
+
+
 def test_tip_lets_go() -> None:
     follower = shown("02", "The tip lets go")["follower"]
     gone = np.linalg.norm(follower.y - [70, 0], axis=1)
@@ -175,6 +199,8 @@ def test_torque_at_the_edge() -> None:
     reach = [333, 363, 383, 393, 397]
     for rho, peak in zip(reach, peaks, strict=True):
         assert_stated(said("03", f"| {rho} mm | # | # | # |")[2:], [peak])
+    for after in range(3, 16, 3):  # "Three seconds after each move"
+        assert follower.at(after - 0.01) < 0.001
 
 
 def test_cosine_of_half_the_elbow() -> None:
@@ -204,6 +230,35 @@ def test_cost_of_a_bulge() -> None:
     assert_stated(stated, [float(bulge.torque[3000:].max()) for bulge in (dear, cheap)])
 
 
+def test_weight_that_nobody_told_of() -> None:
+    both = shown("03", "A weight that nobody told them of")
+    follower, tracker = both["follower"], both["tracker"]
+    told = said("03", "the tracker # mm off at most, the follower #.")
+    assert_stated(told, [tracker.largest(2, 5), follower.largest(2, 5)])
+    told = said("03", "from 3 s to 5 s, between # and # mm/s; the tracker's only between # and #.")
+    speeds = [run.speed[run.during(3, 5)] for run in (follower, tracker)]
+    assert_stated(told, [float(x) for own in speeds for x in (own.min(), own.max())])
+    assert_stated(said("03", "it is up to # mm off, below"), [tracker.largest(6, 12)])
+    (below,) = said("03", "It came to rest #° below the right-hand end, on the circle.")
+    assert follower.distance[-1] < 0.001 and abs(follower.rate[-1]) < 0.001
+    assert_stated([below], [360 - float(np.degrees(follower.place[-1])) % 360])
+    assert_stated(said("03", "push all the time, with # N m"), [float(follower.torque[-1])])
+    leans, share = said("03", r"$0.98\,\mathrm{N}\cdot\cos #° = #$ N: there it stands")
+    assert_stated([share], [0.98 * float(np.cos(np.radians(value(leans))))])
+    assert value(leans) == pytest.approx(360 - np.degrees(follower.place[-1]) % 360, abs=0.1)
+    creeps, stands = said("03", "With # kg it creeps over; with # it stands.")
+    for weight, turns in ((creeps, True), (stands, False)):
+        run = play(30.0, [], payload=value(weight))["follower"]
+        assert (run.place[-1] > TURN) == turns
+
+
+def test_weight_carried_round() -> None:
+    drive, off = said("03", "K5 = # gets it round, but still # mm off.")
+    run = play(8.0, [], payload=0.1, K5=value(drive))["follower"]
+    assert run.speed[5000:].mean() > 250
+    assert_stated([off], [run.largest(5, 8)])
+
+
 # Lesson 4
 
 
@@ -226,18 +281,18 @@ def test_swing_is_the_same_with_and_without_the_trip() -> None:
         Action(at=2.0, set={"K2": 8}),
         Action(at=2.0, release=True),
     ]
-    alone = play(4.0, do, task="position", target=0.0)["follower"]
+    alone = play(4.0, do, task="position", target=0.0, **PD)["follower"]
     assert np.abs(alone.across[2000:] - follower.across[2000:]).max() < 0.01
 
 
 def test_lab_shows_the_poles_of_the_table() -> None:
     for gains, names in ((("400", "40"), ("K1", "K2")), (("25", "10"), ("K4", "K5"))):
         table = said("04", f"| {names[0]} = {gains[0]}, {names[1]} = {gains[1]} | #, # |")
-        shown_as = channels(FiveBarParameters(task="position"))[names[0] == "K4"].pole_words()
+        shown_as = channels(FiveBarParameters(task="position", **PD))[names[0] == "K4"].pole_words()
         assert [value(pole) for pole in shown_as.split(", ")] == [value(pole) for pole in table]
     fast, slow = said("04", "| K1 = 400, K2 = 200 | #, # |")[::-1]
     sampled, exact = said("04", "a thousand times a second: # instead of #; the others are as here")
-    stated = channels(FiveBarParameters(K2=200))[0].pole_words().split(", ")
+    stated = channels(FiveBarParameters(K2=200, **PD))[0].pole_words().split(", ")
     assert exact == fast
     assert_stated([sampled, slow], [float(pole) for pole in stated])
     assert_stated([fast, slow], sorted(np.roots([1, 200, 400]).real))
@@ -273,8 +328,9 @@ def test_what_a_step_of_the_encoder_looks_like() -> None:
 
 @pytest.mark.parametrize("place", ["0", "3.14"])
 def test_gain_at_rest(place: str) -> None:
+    cheap: dict[str, Any] = {"encoder_counts": 1000, "task": "position", **PD}
     rest = [
-        play(8.0, [], encoder_counts=1000, task="position", target=float(place), K1=k1, K2=k2)
+        play(8.0, [], target=float(place), K1=k1, K2=k2, **cheap)
         for k1, k2 in ((400, 40), (1600, 80), (2500, 200))
     ]
     off = [both["follower"].largest(4, 8) for both in rest]

@@ -17,10 +17,11 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import label_of
 from onpath.lessons.words import ENGLISH
+from onpath.models.control.benches import RIGHT
 from onpath.models.systems.parameters import specs
 from tests.support.browser import Tab, wait_for
 
-ROBOT = "path_following"
+ROBOT = RIGHT
 PACE = 0.1  # [s], simulated, from key to key
 NEAR = 3e-3  # [m]
 Place = tuple[float, float]
@@ -69,7 +70,7 @@ class Hands:
         """Whether the lab's parameter with a label is near a value."""
         own = self.session.parameters
         known = {label_of(ENGLISH, name, spec): name for name, spec in specs(own).items()}
-        name = next(known[full] for full in known if full.startswith(label))
+        name = known[min((full for full in known if full.startswith(label)), key=len)]
         return abs(getattr(own, name) - value) <= near + 1e-9
 
     def is_near(self, output: np.ndarray, z: np.ndarray) -> bool:

@@ -6,18 +6,21 @@ from functools import lru_cache
 
 import numpy as np
 
+from onpath.app.exports.replay import replay
 from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
-from onpath.models.control.laws import NAMES
+from onpath.models.closed_loop.trajectory import Trajectory, join
+from onpath.models.control.benches import BENCHES, LEFT, RIGHT
 from onpath.models.paths.curve_faults import curve_faults
-from onpath.models.systems.parameters import checked, specs
+from onpath.models.systems.parameter_specs import checked
+from onpath.models.systems.parameters import specs
 
 FRAME = 1 / 60
-FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
+FOLLOWER, TRACKER = RIGHT, LEFT
 
 
 @lru_cache(maxsize=1)
@@ -47,6 +50,12 @@ def do(lab: Lab, *commands: Command) -> None:
     lab.drain()
 
 
+def replayed(session: Session) -> dict[str, Trajectory]:
+    """What both robots did in the last minute, millisecond by millisecond, by bench."""
+    runs = replay(session.robot, session.history.all())
+    return {bench: join("", parts) for bench, parts in runs.items()}
+
+
 def states(session: Session) -> dict[str, np.ndarray]:
     """Copies of both robots' states."""
     return {name: run.state.copy() for name, run in session.runs.items()}
@@ -71,7 +80,7 @@ def assert_sound(lab: Lab) -> None:
     assert np.isfinite(editor.table).all() and np.isfinite(editor.points()).all()
     assert editor.selected is None or 0 <= editor.selected < len(editor.design.points)
     assert 0.125 <= lab.session.rate <= 4
-    assert lab.session.grips.held <= set(NAMES) and set(lab.session.grips.hands) <= set(NAMES)
+    assert lab.session.grips.held <= set(BENCHES) and set(lab.session.grips.hands) <= set(BENCHES)
     assert lab.session.viewing is None or not lab.session.running
     assert_drawable(take_snapshot(lab, 1.0))
 

@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.delay import LONGEST
 from onpath.models.closed_loop.kernel import Kernel, build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import Loop
 from onpath.models.closed_loop.translated_loop import translate_loop
+from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import Plane
 from onpath.models.systems.five_bar import FiveBarLinks, inverse_kinematics
@@ -22,18 +24,31 @@ DEFAULTS: dict[str, Any] = {
     "K1": 400,
     "K2": 40,
     "K3": 0,
+    "tracker_integral": 1,
     "K4": 25,
     "K5": 10,
     "position": 0,
     "target": 0,
     "speed": 2 * np.pi,
+    "ramp": 0,
+    "speed_limit": 1e3,
     "level_centre": (0, 0),
-    "level_weights": (1, 1),
+    "level_weights": (1, 1, 0),
     "level_constant": 0.05**2,
+    "clock_gain": 50,
+    "contour_ratio": 0.1,
+    "field_gain": 10,
+    "field_circulation": 30,
+    "field_energy": 0.2,
     "torque_limit": 1e3,
     "coulomb": 0,
     "hold_ticks": 1,
     "dt": 1e-3,
+    "stiction": 0,
+    "torque_step": 0,
+    "delay_ticks": 0,
+    "sensor_noise": 0,
+    "seed": 0,
     "encoder_step": 1e-3,
     "encoder_filter": 5e-3,
     "hand_active": 0,
@@ -41,6 +56,10 @@ DEFAULTS: dict[str, Any] = {
     "hold_active": 0,
     "hold_anchor": (0, 0),
     "hold_tangent": (0, 1),
+    "hold_normal": (0, 0),
+    "wall_active": 0,
+    "wall_place": (0, 0),
+    "wall_normal": (0, 1),
 }
 
 
@@ -81,8 +100,9 @@ class Rig:
         q = inverse_kinematics(np.asarray(y, dtype=float), 0.2, 0.2)
         v = np.zeros(2) if y_rate is None else np.linalg.solve(jacobian(q), y_rate)
         values: dict[str, Any] = {"q": q, "v": v, "theta": 0, "theta_rate": 0, "theta_ref": 0}
-        values |= {"integral": (0, 0), "u": (0, 0), "phase": 0}
-        values |= {"encoder": q, "encoder_rate": v}
+        values |= {"speed_ref": 0, "integral": (0, 0), "u": (0, 0), "phase": 0}
+        values |= {"encoder": q, "encoder_rate": v, "ticks": 0, "queue": np.zeros(2 * LONGEST)}
+        values |= {name: 0 for name, _ in LAWS[kind.controller].memory}
         return self.kernel(kind).state.pack({**values, **changes})
 
     def on_path(self, kind: Kind, curve: Curve, theta: float, rate: float, **changes: Any) -> Array:

@@ -13,18 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from onpath.app.exports.replay import replay
 from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_run import setup_of
 from onpath.app.lab.setup import Path, RobotSetup, Setup
+from onpath.lessons.benches import ROLES
 from onpath.lessons.course import BUILT_IN
 from onpath.lessons.parse import read_lesson
-from onpath.lessons.record import ROLES
 from onpath.lessons.schema import Action, Lesson, RobotName, Script, Value
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
-from tests.support.lab import run, store
+from tests.support.lab import replayed, run, store
 
 NUMBER = r"([−-]?\d+(?:[.,]\d+)?)"
 
@@ -136,8 +135,7 @@ def _played(lab: Lab, script: Script) -> Run:
     lab.script, lab.session.running = player_of(script), True
     while lab.script is not None:
         run(lab, 0.1)
-    runs = replay(lab.session.robot, lab.session.history.all())
-    return {ROLES[name]: _motion(trajectory) for name, trajectory in runs.items()}
+    return {ROLES[bench]: _motion(each) for bench, each in replayed(lab.session).items()}
 
 
 def _motion(run: Trajectory) -> Motion:

@@ -111,9 +111,10 @@ class Student:
             return
 
     def find(self, label: str) -> dict[str, Any]:
-        """Wait for a widget whose label or option begins with `label`, and return it."""
+        """Wait for a widget whose label or option begins with `label`; the shortest is meant."""
         self.read(lambda: self.has_widget(label))
-        return next(w for text, w in self._labels().items() if text.startswith(label))
+        labels = self._labels()
+        return labels[min((text for text in labels if text.startswith(label)), key=len)]
 
     def set(self, label: str, value: Any) -> None:
         """Set the value of a widget, as by moving a slider or pressing a button."""

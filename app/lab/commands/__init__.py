@@ -2,6 +2,7 @@
 
 from onpath.app.lab.commands.classroom import Freeze, ReportState, TakeSetup, TakeStep
 from onpath.app.lab.commands.forces import Grab, Hold, MoveHand, Release, SetCopy
+from onpath.app.lab.commands.laws import ChooseLaw
 from onpath.app.lab.commands.lessons import (
     Act,
     AnswerQuiz,
@@ -52,6 +53,7 @@ __all__ = [
     "AddPoint",
     "AnswerQuiz",
     "BeginStepAnew",
+    "ChooseLaw",
     "ChoosePath",
     "ChooseRobot",
     "CloseLesson",

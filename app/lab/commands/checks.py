@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES
 from onpath.models.errors import CodedError
-from onpath.models.systems.parameters import out_of_range, unknown_name
+from onpath.models.systems.parameter_specs import out_of_range, unknown_name
 
 
 def finite(value: float) -> float:
@@ -52,12 +52,12 @@ def point(value: Array, size: int) -> Array:
     return checked
 
 
-def controller(name: str) -> str:
-    """Check the name of a controller.
+def bench(name: str) -> str:
+    """Check the name of a bench.
 
     Raises:
-        ValueError: there is no such controller.
+        ValueError: there is no such bench.
     """
-    if name not in NAMES:
-        raise unknown_name(name, list(NAMES), "robot")
+    if name not in BENCHES:
+        raise unknown_name(name, list(BENCHES), "bench")
     return name

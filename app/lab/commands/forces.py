@@ -10,7 +10,7 @@ from onpath.app.lab.commands import checks
 from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
 from onpath.models.arrays import Array
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES, RIGHT
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,18 +18,18 @@ class Hold(Command):
     """Hold end-points back, or release them; None toggles.
 
     Attributes:
-        controller: whose end-point; None means both. See `SetCopy`.
+        bench: whose end-point; None means both. See `SetCopy`.
     """
 
     on: bool | None = None
-    controller: str | None = None
+    bench: str | None = None
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         lab.return_to_present()
-        session, names = lab.session, list[str](NAMES)
-        if self.controller is not None:
-            names = session.targets(checks.controller(self.controller))
+        session, names = lab.session, list[str](BENCHES)
+        if self.bench is not None:
+            names = session.targets(checks.bench(self.bench))
         on = not session.grips.held.intersection(names) if self.on is None else self.on
         session.grips.hold(names, on, session.editor.curve)
 
@@ -43,12 +43,12 @@ class Grab(Command):
             because the flexible arm can also be pulled within a horizontal plane.
     """
 
-    controller: str
+    bench: str
     target: Array
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        name = checks.controller(self.controller)
+        name = checks.bench(self.bench)
         target = checks.point(self.target, lab.session.robot.system.p)
         lab.return_to_present()
         lab.session.grips.grab(name, target, lab.session.targets(name))
@@ -56,13 +56,13 @@ class Grab(Command):
 
 @dataclass(frozen=True, slots=True)
 class Release(Command):
-    """Release the end-points; with a name, only if that robot's is being pulled."""
+    """Release the end-points; with a bench, only if that robot's is being pulled."""
 
-    controller: str | None = None
+    bench: str | None = None
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        if self.controller in (None, lab.session.grips.grabbed):
+        if self.bench in (None, lab.session.grips.grabbed):
             lab.session.grips.release()
 
 
@@ -78,7 +78,7 @@ class MoveHand(Command):
         by = np.array([checks.finite(self.right), checks.finite(self.up)])
         lab.return_to_present()
         session, grips = lab.session, lab.session.grips
-        name = grips.grabbed or NAMES[-1]
+        name = grips.grabbed or RIGHT
         target = grips.hands.get(name, session.runs[name].shown()["y"])
         grips.grab(name, displaced(session.robot.frame, target, by), session.targets(name))
 

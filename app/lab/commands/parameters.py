@@ -7,8 +7,13 @@ from typing import Any
 
 from onpath.app.lab.identify import identify_model
 from onpath.app.lab.lab import Command, Lab
+from onpath.lessons.benches import law_label
+from onpath.models.closed_loop.simulation import check_level_set, raised
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import changed, unknown_name
+from onpath.models.systems.parameter_specs import unknown_name
+from onpath.models.systems.parameters import changed
+
+PATH_MATTERS = ("across", "rise")  # parameters that not every path can have together
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +31,10 @@ class SetParameter(Command):
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         session, before = lab.session, lab.session.parameters
-        session.set_parameters(changed(before, self.name, self.value))
+        wanted = changed(before, self.name, self.value)
+        if self.name in PATH_MATTERS:
+            check_level_set(wanted, raised(session.editor.blend.target.plan, wanted))
+        session.set_parameters(wanted)
         if session.parameters != before:
             session.note("set", self.name)
 
@@ -63,6 +71,12 @@ class ChooseRobot(Command):
         """See `Command.apply`."""
         if self.name not in ROBOTS:
             raise unknown_name(self.name, list(ROBOTS), "robot")
-        if ROBOTS[self.name] is not lab.session.entry:
-            lab.session.choose_robot(ROBOTS[self.name])
-            lab.show_message("")
+        if ROBOTS[self.name] is lab.session.entry:
+            return
+        before = lab.session.laws
+        lab.session.choose_robot(ROBOTS[self.name])
+        unsuitable = [law for bench, law in before.items() if law != lab.session.laws[bench]]
+        lab.show_message("")
+        if unsuitable:
+            names = ", ".join(law_label(law, lab.words) for law in dict.fromkeys(unsuitable))
+            lab.show_message(lab.words("say.laws_replaced", laws=names))

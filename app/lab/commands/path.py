@@ -12,7 +12,7 @@ from onpath.app.lab.lab import Command, Lab
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.paths.path_design import PathDesign, drawn
-from onpath.models.systems.parameters import unknown_name
+from onpath.models.systems.parameter_specs import unknown_name
 
 MOST_STROKE_POINTS = 5000
 
@@ -55,7 +55,7 @@ class SelectNext(Command):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MovePoint(Command):
-    """Drag a control point.
+    """Drag a control point, as far towards a place as the path remains valid.
 
     Attributes:
         index: of the control point.
@@ -71,8 +71,9 @@ class MovePoint(Command):
         """See `Command.apply`."""
         editor, target = lab.session.editor, point(self.target, 2)
         if editor.proposed is None or editor.selected != self.index:
+            editor.finish()  # of another point
             editor.select(self.index)
-        editor.propose((editor.proposed or editor.design).moved(self.index, target))
+        editor.drag(self.index, target)
         if self.finished:
             finish(lab)
 
@@ -102,7 +103,7 @@ class NudgePoint(Command):
             return
         design = lab.session.editor.design
         step = np.array([finite(self.right), finite(self.up)])
-        commit(lab, design.moved(index, design.points[index] + step))
+        MovePoint(index, design.points[index] + step).apply(lab)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +120,7 @@ class PlacePoint(Command):
         wanted = zip(old, (self.first, self.second), strict=True)
         new = [o if n is None else finite(n) for o, n in wanted]
         if not np.allclose(old, new, atol=1e-6):
-            commit(lab, design.moved(index, np.array(new)))
+            MovePoint(index, np.array(new)).apply(lab)
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,25 +183,28 @@ class Redo(Command):
 
 
 def commit(lab: Lab, design: PathDesign) -> None:
-    """Apply a complete edit."""
+    """Apply a complete edit; if it is refused, show why."""
     lab.session.editor.propose(design)
-    finish(lab)
+    _end(lab, "say.refused")
 
 
 def finish(lab: Lab) -> None:
-    """End an edit of the path; if it is refused, show why."""
-    editor = lab.session.editor
+    """End the drag of a control point; if it went less far than wanted, show why."""
+    _end(lab, "say.no_further")
+
+
+def _end(lab: Lab, told: str) -> None:
+    """Keep an edit, and show the message `told` if it has faults."""
+    editor, words = lab.session.editor, lab.words
     before = editor.design
-    if editor.finish():
-        if editor.design is not before:
-            lab.session.note("path", editor.design.name)
-        lab.clear_message()
-        lab.return_to_present()
-    elif editor.faults:
-        words = lab.words
+    editor.finish()
+    if editor.design is not before:
+        lab.session.note("path", editor.design.name)
+    lab.clear_message()
+    lab.return_to_present()
+    if editor.faults:
         reasons = "; ".join(words.sentence(fault.reason) for fault in editor.faults)
-        lab.return_to_present()
-        lab.show_message(words("say.refused", reasons=reasons), "warning")
+        lab.show_message(words(told, reasons=reasons), "warning")
 
 
 def _selected(lab: Lab) -> int:

@@ -10,18 +10,17 @@ import numpy as np
 
 from onpath.app.lab.commands.checks import point
 from onpath.app.lab.commands.forces import Release
+from onpath.app.lab.commands.laws import ChooseLaw
 from onpath.app.lab.commands.parameters import ChooseRobot, Identify, SetParameter
 from onpath.app.lab.commands.path import ChoosePath, MovePoint
 from onpath.app.lab.commands.time import Reset, SetRunning
 from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.script_player import ScriptPlayer
-from onpath.lessons.record import ROLES
-from onpath.lessons.schema import Action, RobotName, Script
-from onpath.models.control.laws import NAMES
+from onpath.lessons.benches import BENCH_OF
+from onpath.lessons.schema import Action, Laws, RobotName, Script
+from onpath.models.control.benches import BENCHES, check_laws
 from onpath.models.errors import CodedError
-
-CONTROLLERS = {role: controller for controller, role in ROLES.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +28,7 @@ class ScriptHold(Command):
     """Hold end-points back or release them, regardless of `SetCopy`.
 
     Attributes:
-        only: one controller; empty for both.
+        only: one robot; empty for both.
     """
 
     on: bool
@@ -37,7 +36,7 @@ class ScriptHold(Command):
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        lab.session.grips.hold(_controllers(self.only), self.on, lab.session.editor.curve)
+        lab.session.grips.hold(_benches(self.only), self.on, lab.session.editor.curve)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +45,7 @@ class ScriptPull(Command):
 
     Attributes:
         by: displacement in the path's plane, [mm].
-        only: one controller; empty for both, with the follower's displacement.
+        only: one robot; empty for both, with the follower's displacement.
     """
 
     by: tuple[float, float]
@@ -54,10 +53,23 @@ class ScriptPull(Command):
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session, name = lab.session, CONTROLLERS[self.only or "follower"]
+        session, name = lab.session, BENCH_OF[self.only or "follower"]
         by = point(np.array(self.by), 2) / 1e3
         there = displaced(session.robot.frame, session.runs[name].shown()["y"], by)
-        session.grips.grab(name, there, _controllers(self.only))
+        session.grips.grab(name, there, _benches(self.only))
+
+
+@dataclass(frozen=True, slots=True)
+class ScriptLaws(Command):
+    """Change control laws at this instant, even if their loops must be made first."""
+
+    laws: Laws
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        check_laws(self.laws.named, lab.session.entry)
+        for bench, law in self.laws.named.items():
+            lab.session.change_law(bench, law)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,18 +90,25 @@ class ScriptMove(Command):
 
 
 def commands_of(action: Action) -> list[Command]:
-    """The commands of an action."""
+    """The commands of an action in a text, which a user begins."""
+    if action.laws is not None:
+        return [ChooseLaw(*chosen) for chosen in action.laws.named.items()]
     return _COMMANDS[action.what](action)
 
 
 def player_of(script: Script) -> ScriptPlayer[Command]:
     """A player for a script."""
-    timed = [(action.at, command) for action in script.do for command in commands_of(action)]
+    timed = [(a.at, command) for a in script.do for command in _COMMANDS[a.what](a)]
     return ScriptPlayer(timed, script.until)
 
 
-def _controllers(only: RobotName | Literal[""]) -> list[str]:
-    return [CONTROLLERS[only]] if only else list(NAMES)
+def _benches(only: RobotName | Literal[""]) -> list[str]:
+    return [BENCH_OF[only]] if only else list(BENCHES)
+
+
+def _laws(action: Action) -> list[Command]:
+    assert action.laws is not None
+    return [ScriptLaws(action.laws)]
 
 
 def _move(action: Action) -> list[Command]:
@@ -110,6 +129,7 @@ _COMMANDS: dict[str, Callable[[Action], list[Command]]] = {
     "path": lambda action: [ChoosePath(action.path or "")],
     "move": _move,
     "robot": lambda action: [ChooseRobot(action.robot or "")],
+    "laws": _laws,
     "reset": lambda _: [Reset()],
     "run": lambda action: [SetRunning(action.run)],
     "identify": lambda _: [Identify()],

@@ -28,6 +28,7 @@ class RunState:
         rate: requested simulated seconds per second.
         copy: whether pulling and holding act on both robots.
         exaggeration: magnification of the drawn deflection.
+        laws: control law of each bench, also while the past is viewed or its loop is being made.
     """
 
     now: float
@@ -36,6 +37,7 @@ class RunState:
     rate: float
     copy: bool
     exaggeration: float
+    laws: dict[str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,10 +85,12 @@ class PlotSamples:
     Attributes:
         times: shape (n,), [s].
         values: shape (n, robots, fields), fields as in `PageKey.fields`, in SI units.
+        across_since: time since which ξ has had its present unit, [s].
     """
 
     times: np.ndarray
     values: np.ndarray
+    across_since: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,7 +99,7 @@ class PageSnapshot(Snapshot):
 
     Attributes:
         parameters: of the robot and its controllers.
-        joints: the follower's joint coordinates, shape (n,), [rad].
+        joints: the right robot's joint coordinates, shape (n,), [rad].
         run, edit, lesson, plots: state of these parts of the page.
         shared: the last share code made.
         nickname: the student's nickname in the class, or empty.

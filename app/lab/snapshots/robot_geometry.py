@@ -17,18 +17,17 @@ from onpath.app.common.per_thread import per_thread
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Instant
 from onpath.app.lab.snapshots.part_poses import MARKER_DEPTHS, bar_quaternions, waist_angle
-from onpath.app.lab.snapshots.snapshot import END, Counts, FollowerName, RobotView, TrackerName
+from onpath.app.lab.snapshots.snapshot import END, Counts, RobotView
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
-from onpath.models.control.laws import NAMES
-from onpath.models.paths.curves import TABLE_SHAPE, Curve
+from onpath.models.control.benches import BENCHES
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.paths.curves import ORDERS, TERMS, Curve
 from onpath.models.paths.projection import LocalCurve, basis
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import Robot
 
-AIMS = {TrackerName: "theta_ref", FollowerName: "theta"}
-"""Log field of the point that each controller aims at."""
-UNTRACED = np.zeros((0, len(NAMES), 3))
+UNTRACED = np.zeros((0, len(BENCHES), 3))
 
 
 def robot_views(
@@ -46,7 +45,7 @@ def robot_views(
     """
     drawn, counts = drawn_robots(robot, curve, instant, exaggeration)
     middle = 3 * counts.points
-    points = drawn[:, :middle].reshape(len(NAMES), -1, 3)
+    points = drawn[:, :middle].reshape(len(BENCHES), -1, 3)
     trails = UNTRACED
     if traces is not None:
         trails = np.concatenate([robot.place(traces), points[None, :, END]])
@@ -54,7 +53,8 @@ def robot_views(
     speeds, distances = (sample[:, slices[name].start].tolist() for name in ("speed", "distance"))
     bent = slices.get("deflection")
     return {
-        name: RobotView(
+        bench: RobotView(
+            law=instant.laws[i],
             points=points[i],
             poses=drawn[i, middle:],
             counts=counts,
@@ -65,7 +65,7 @@ def robot_views(
             torque=sample[i, slices["u"]],
             deflection=np.nan if bent is None else float(sample[i, bent.start]),
         )
-        for i, name in enumerate(NAMES)
+        for i, bench in enumerate(BENCHES)
     }
 
 
@@ -73,60 +73,64 @@ def drawn_robots(
     robot: Robot, curve: Curve, instant: Instant, exaggeration: float = 1.0
 ) -> tuple[Array, Counts]:
     """`Motion.drawn` of both robots at one instant, and their numbers of parts."""
-    geometry = _geometry_of(robot, curve.closed)
+    geometry = _geometry_of(robot, curve.closed, curve.dimension)
     return geometry(instant, curve, exaggeration), geometry.counts
 
 
 class RobotGeometry:
-    """The geometry of one kind of robot on open or on closed paths. Not thread-safe.
+    """The geometry of one kind of robot on one kind of path. Not thread-safe.
 
     Attributes:
         counts: numbers of parts.
     """
 
-    def __init__(self, robot: Robot, closed: bool) -> None:
-        function, self.counts = geometry_function(robot, closed)
+    def __init__(self, robot: Robot, closed: bool, dimension: int) -> None:
+        function, self.counts = geometry_function(robot, closed, dimension)
         self._draw = Buffered(function)
-        self._joints = robot.system.n
-        self._seen = np.array(_seen(robot))
+        self._joints, self._robot = robot.system.n, robot
 
     def __call__(self, instant: Instant, curve: Curve, exaggeration: float) -> Array:
         """See `Motion.drawn`."""
         q = [state[: self._joints] for state in instant.states]
-        seen = instant.sample.take(self._seen)
+        seen = instant.sample.take(_seen(self._robot, instant.laws))
         flat = self._draw(np.concatenate(q), seen, curve.table(), exaggeration)[0]
-        return flat.reshape(len(NAMES), -1).copy()
+        return flat.reshape(len(BENCHES), -1).copy()
 
 
 @per_thread
-def _geometry_of(robot: Robot, closed: bool) -> RobotGeometry:
-    return RobotGeometry(robot, closed)
+def _geometry_of(robot: Robot, closed: bool, dimension: int) -> RobotGeometry:
+    return RobotGeometry(robot, closed, dimension)
 
 
-def _seen(robot: Robot) -> list[int]:
+@lru_cache(maxsize=256)
+def _seen(robot: Robot, laws: tuple[str, ...]) -> np.ndarray:
     """Indices of both robots' end-points, forces and aims in a flat sample."""
     layout = sample_layout(robot)
     found = list[int]()
-    for i, name in enumerate(NAMES):
-        for field in ("y", "force", AIMS[name]):
+    for i, law in enumerate(laws):
+        for field in ("y", "force", LAWS[law].aim):
             place = layout.slices[field]
             found.extend(range(i * layout.size + place.start, i * layout.size + place.stop))
-    return found
+    return np.array(found)
 
 
 @lru_cache(maxsize=16)
-def geometry_function(robot: Robot, closed: bool) -> tuple[ca.Function, Counts]:
+def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[ca.Function, Counts]:
     """Make the function from the state to points and poses of both robots.
+
+    Args:
+        closed, dimension: of the path.
 
     Returns:
         (q, (n, 2); y, force and aim, (2 p + 1, 2); table of the curve; exaggeration) -> one
         column per robot: `RobotView.points`, then `RobotView.poses`.
     """
-    p, both = robot.system.p, len(NAMES)
+    p, both = robot.system.p, len(BENCHES)
     q, seen = ca.SX.sym("q", robot.system.n, both), ca.SX.sym("seen", 2 * p + 1, both)
-    table, exaggeration = ca.SX.sym("table", *TABLE_SHAPE), ca.SX.sym("exaggeration")
+    table = ca.SX.sym("table", dimension * ORDERS, TERMS)
+    exaggeration = ca.SX.sym("exaggeration")
     placed = _affine(robot.place, p)
-    on_path = _affine(lambda z: robot.place(robot.frame.lift(z)), 2)
+    on_path = _affine(lambda z: robot.place(robot.frame.lift(z)), dimension)
 
     def drawn(q: ca.SX, seen: ca.SX) -> list[ca.SX]:
         y, force, aim = seen[:p], seen[p : 2 * p], seen[2 * p]

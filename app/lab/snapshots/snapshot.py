@@ -8,8 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-FollowerName = "path_following"
-TrackerName = "trajectory_tracking"
 MARKER, TIP, END, FORCE = -4, -3, -2, -1  # indices of these in a robot's points
 
 
@@ -76,6 +74,7 @@ class RobotView:
     """One robot as it is drawn; positions in the robot's own frame (x right, y away, z up), [m].
 
     Attributes:
+        law: name of its control law.
         points: the values of the properties below, in their order, shape (counts.points, 3).
         poses: of the meshes, flat; see `Counts.pose_shapes`.
         counts: numbers of parts.
@@ -88,6 +87,7 @@ class RobotView:
         deflection: of the end-point from its position with rigid links, [m]; NaN if they are rigid.
     """
 
+    law: str
     points: np.ndarray
     poses: np.ndarray
     counts: Counts
@@ -117,8 +117,7 @@ class RobotView:
 
     @property
     def marker(self) -> np.ndarray:
-        """The controller's target: the tracker's moving reference point or the follower's closest
-        point, shape (3,)."""
+        """What the law aims at: its reference point or the closest point, shape (3,)."""
         return self.points[MARKER]
 
     @property
@@ -186,7 +185,7 @@ class Motion:
         key: see `PageKey`.
         path: followed by both robots.
         counts: numbers of parts of each robot.
-        drawn: `RobotView.points` and `RobotView.poses` of each robot, tracker first, shape
+        drawn: `RobotView.points` and `RobotView.poses` of each robot, left first, shape
             (robots, counts.size).
     """
 
@@ -208,10 +207,10 @@ class Snapshot:
         time: simulated, [s].
         running: whether simulated time advances.
         achieved_speed: simulated seconds per wall second over the last second.
-        robots: by controller name, tracker first.
+        robots: by bench, left first.
         path: followed by both robots.
         held: whether Hold is on.
-        grabbed: controller name of the robot whose end-point is being pulled, or None.
+        grabbed: bench of the robot whose end-point is being pulled, or None.
         message: message to the user (a divergence, a refusal), plain text, or "".
         message_level: "info", "warning" or "error".
         note: remark on the scale of the drawing, or "".
@@ -229,6 +228,11 @@ class Snapshot:
     message_level: str
     note: str = ""
     key: PageKey = PageKey()
+
+    @property
+    def laws(self) -> dict[str, str]:
+        """Control law of each bench."""
+        return {bench: view.law for bench, view in self.robots.items()}
 
     @property
     def motion(self) -> Motion:

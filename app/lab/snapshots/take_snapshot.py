@@ -20,11 +20,12 @@ from onpath.app.lab.snapshots.page_snapshot import (
     RunState,
 )
 from onpath.app.lab.snapshots.robot_geometry import drawn_robots, robot_views
-from onpath.app.lab.snapshots.snapshot import FollowerName, Motion, PageKey, PathView
+from onpath.app.lab.snapshots.snapshot import Motion, PageKey, PathView
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Sketch
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
+from onpath.models.control.benches import RIGHT
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.parameters import Parameters, specs
@@ -64,11 +65,11 @@ def take_page_snapshot(
         nickname: the student's nickname in the class, or empty.
     """
     scene, session = _scene(lab, achieved_speed, before, student), lab.session
-    follower = session.runs[FollowerName]
+    right = session.runs[RIGHT]
     return PageSnapshot(
         **scene,
         parameters=_values(session.parameters),
-        joints=follower.row[follower.log.slices["q"]].copy(),
+        joints=right.row[right.log.slices["q"]].copy(),
         run=RunState(
             now=session.time,
             viewing=session.viewing,
@@ -76,6 +77,7 @@ def take_page_snapshot(
             rate=session.rate,
             copy=session.copy,
             exaggeration=session.exaggeration,
+            laws=session.chosen_laws,
         ),
         edit=_path_edit(session),
         lesson=_lesson(lab),
@@ -161,10 +163,14 @@ def _path_view(
         return robot.place(robot.frame.lift(z))
 
     wrong = [fault.points for fault in editor.faults] if is_present else []
+    points = editor.points() if is_present else np.zeros((0, 2))
+    if len(points) and editor.rise:
+        theta, _ = editor.blend.target.plan.nearest(points)
+        points = np.column_stack([points, editor.blend.target.at(theta)[:, 2]])
     return PathView(
         version=version,
         points=placed(curve.at(np.linspace(-np.pi, np.pi, CURVE_POINTS))),
-        control_points=placed(editor.points() if is_present else np.zeros((0, 2))),
+        control_points=placed(points),
         selected=editor.selected if is_present else None,
         refused=placed(np.concatenate(wrong) if wrong else np.zeros((0, 2))),
     )
@@ -217,4 +223,5 @@ def _plots(
     if isinstance(before, PageSnapshot) and before.time == time and before.key == key:
         return before.plots
     history = session.history
-    return PlotSamples(*history.samples(time - PLOT_WINDOW, time, PLOT_POINTS))
+    samples = history.samples(time - PLOT_WINDOW, time, PLOT_POINTS)
+    return PlotSamples(*samples, session.across_since)

@@ -12,8 +12,8 @@ import viser
 from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
-from onpath.app.lab.snapshots.snapshot import FollowerName, TrackerName
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_user_update
+from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import FlexibleLink
@@ -23,7 +23,7 @@ TURNED = 0.03  # [rad], joint change below which the critical alpha is not recom
 
 
 class CriticalAlpha:
-    """The follower's critical alpha, computed in another thread when it may have changed.
+    """The right robot's critical alpha, computed in another thread when it may have changed.
 
     Args:
         link: the robot's flexible link.
@@ -57,11 +57,18 @@ class CriticalAlpha:
             self._busy = False
 
 
-def alpha_bar(alpha: float, critical: float, used: bool, words: Words) -> str:
+def alpha_bar(
+    alpha: float,
+    critical: float,
+    used: bool,
+    words: Words,
+    beam: tuple[int, float] | None = None,
+) -> str:
     """A line from -1 to 1, red where the internal dynamics are unstable, with alpha marked.
 
     Args:
         used: whether the controller uses alpha.
+        beam: number of modes, and the damping ratio of each, on which the limit depends.
     """
 
     def percent(value: float) -> float:
@@ -74,6 +81,8 @@ def alpha_bar(alpha: float, critical: float, used: bool, words: Words) -> str:
         said = words("flexible.none")
     else:
         said = words("flexible.critical", critical=f"{critical:.2f}")
+    if beam is not None and not math.isnan(critical):
+        said += f" ({words('flexible.of_beam', modes=beam[0], zeta=f'{beam[1]:g}')})"
     if not used:
         said += f"; {words('flexible.unused')}"
     return render(
@@ -111,7 +120,7 @@ class FlexiblePanel:
     ) -> None:
         self._post, self._words = post, words
         self._critical = CriticalAlpha(link, submit)
-        self._shown: tuple[float, float, bool] | None = None
+        self._shown: tuple[float, float, bool, tuple[int, float]] | None = None
         with gui.add_folder(words("flexible.title")):
             self._widgets = [ParameterWidgets(gui, words, self._set, ["law", "alpha"], first)]
             self._bar = gui.add_html("")
@@ -145,9 +154,11 @@ class FlexiblePanel:
         if self._larger.value != snapshot.run.exaggeration:
             self._larger.value = snapshot.run.exaggeration
         self._critical.follow(parameters_of(snapshot), snapshot.joints)
-        shown = float(own["alpha"]), self._critical.value, own["law"] == "redefined"
+        beam = int(own["modes"]), float(own["zeta"])
+        shown = float(own["alpha"]), self._critical.value, own["law"] == "redefined", beam
         if shown != self._shown:
-            self._shown, self._bar.content = shown, alpha_bar(*shown, self._words)
+            self._shown, bar = shown, alpha_bar(*shown[:3], self._words, beam)
+            self._bar.content = bar
         numbers = deflections(snapshot, self._words)
         if self._numbers.content != numbers:
             self._numbers.content = numbers
@@ -161,14 +172,15 @@ class FlexiblePanel:
 
 def deflections(snapshot: PageSnapshot, words: Words) -> str:
     """Tip deflection of each robot as text."""
-    tracking, following = (
-        f"{snapshot.robots[name].deflection * 1e3:.1f}" for name in (TrackerName, FollowerName)
-    )
+    titles = bench_titles(snapshot.laws, words)
+    each = [
+        words("flexible.deflection", robot=titles[bench], value=f"{view.deflection * 1e3:.1f}")
+        for bench, view in snapshot.robots.items()
+    ]
     factor = snapshot.run.exaggeration
     scale = words("flexible.drawn", factor=f"{factor:g}") if factor != 1 else None
     return words(
         "flexible.deflections",
-        tracking=tracking,
-        following=following,
+        each=", ".join(each),
         scale=scale or words("scene.true_scale"),
     )

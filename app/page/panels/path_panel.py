@@ -9,14 +9,15 @@ import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
-from onpath.app.page.panels.widgets import Post, on_press, on_user_update
+from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press, on_user_update
 from onpath.lessons.words import Words
 from onpath.models.control.rank_test import rank_map
+from onpath.models.paths.frames import SlantedPlane
 from onpath.models.paths.path_design import presets
 
 
 class PathChoice:
-    """Selects the preset path."""
+    """Selects the preset path and, for robots that follow space curves, how far it rises."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         self._shown = {name: words.get(f"path.{name}", name) for name in presets()}
@@ -31,9 +32,12 @@ class PathChoice:
         on_user_update(
             self._choice, lambda shown: post(c.ChoosePath(names[shown])) if shown in names else None
         )
+        risen = [name for name in ("rise",) if name in first.parameters]
+        self._rise = ParameterWidgets(gui, words, post, risen, first)
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show the current preset."""
+        """Show the current preset and rise."""
+        self._rise.follow(snapshot)
         shown = self._shown.get(snapshot.edit.name, self._own)
         if self._choice.value != shown:
             self._choice.value = shown
@@ -52,7 +56,11 @@ class PathPanel:
         show_zone: Callable[[bool], None],
     ) -> None:
         self._version, self._words = -1, words
-        planar = robot_of(first).frame.p == 2
+        frame = robot_of(first).frame
+        planar = frame.p == 2
+        if isinstance(frame, SlantedPlane):
+            plane = words("design.slanted", b=f"{frame.b:g}", d=f"{frame.d:g}")
+            gui.add_markdown(plane)
         drawing = gui.add_button(
             words("design.draw"), icon=viser.Icon.PENCIL, hint=words("design.draw_hint")
         )
@@ -63,7 +71,8 @@ class PathPanel:
         adding = {words("design.add"): c.AddPoint(), words("design.remove"): c.RemovePoint()}
         points = gui.add_button_group(words("design.point"), list(adding))
         on_press(points, lambda: post(adding[points.value]))
-        self._add_coordinates(gui, post, ("y1", "y2") if planar else ("y2", "y3"))
+        first_axis, second_axis = robot_of(first).frame.axes
+        self._add_coordinates(gui, post, (f"y{first_axis}", f"y{second_axis}"))
         gui.add_markdown(words("design.arrows"))
         self._sampled: np.ndarray | None = None
         self._rank = gui.add_markdown("")

@@ -7,10 +7,11 @@ from functools import lru_cache, partial
 import viser
 from markupsafe import escape
 
-from onpath.app.common.palette import AMBER, BLUE, CONTROLLERS, WARNING
+from onpath.app.common.palette import AMBER, BLUE, OF_BENCH, WARNING
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.viser_adapter.frame_channel import update_gui
+from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
 
 LEVELS = {"info": BLUE.hex, "warning": AMBER.hex, "error": WARNING.hex}
@@ -32,9 +33,9 @@ class Readout:
             for view in snapshot.robots.values()
             for distance in (view.distance, view.max_distance)
         ]
-        names = tuple(snapshot.robots)
+        laws = tuple(snapshot.laws.items())
         level = snapshot.message_level if snapshot.message else ""
-        frame = self._frame(names, level, snapshot.running)
+        frame = self._frame(laws, level, snapshot.running)
         time = f"{snapshot.time:.{1 if snapshot.running else 2}f}"
         speed, message = f"{snapshot.achieved_speed:.2g}", escape(snapshot.message)
         content = frame.format(*numbers, time=time, speed=speed, message=message)
@@ -43,17 +44,18 @@ class Readout:
             update_gui(self._table, "content", content)
 
 
-def _frame(words: Words, names: tuple[str, ...], level: str, running: bool) -> str:
+def _frame(words: Words, laws: tuple[tuple[str, str], ...], level: str, running: bool) -> str:
     """Template of the readout, with {} and {name} for the values updated at 10 Hz.
 
     Args:
-        names: of the controllers.
+        laws: benches and their control laws.
         level: severity of the message; empty without one.
         running: whether the clock runs.
     """
+    titles = bench_titles(dict(laws), words)
     table = render(
         "panel/readout.html",
-        rows=[(CONTROLLERS[name].hex, words(f"controller.{name}.title")) for name in names],
+        rows=[(OF_BENCH[bench].hex, title) for bench, title in titles.items()],
         level=LEVELS.get(level, BLUE.hex) if level else "",
         words=words,
     )

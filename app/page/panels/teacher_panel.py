@@ -204,7 +204,9 @@ class TeacherPanel:
         ways = [member.progress for member in self._class.members().values()]
         truth = truth_of(chosen.lesson, at, [*ways, self._teaching.progress()])
         counted = distribution(block, chosen.lesson, at, ways)
-        view = page.prediction_view(block, counted, truth, chosen.revealed, words, self._large)
+        view = page.prediction_view(
+            block, counted, truth, chosen.revealed, words, self._large, lesson.laws_shown(at)
+        )
         missing = chosen.revealed and not counted.counts and truth is None
         return view + note(words("class.no_truth")) if missing else view
 

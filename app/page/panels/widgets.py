@@ -19,7 +19,8 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues
 from onpath.app.page.build_queue import in_turn
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import Spec, specs
+from onpath.models.systems.parameter_specs import Spec
+from onpath.models.systems.parameters import specs
 
 Post = Callable[[Command], None]
 PRESS_ENDS = 0.35  # [s] without a "held" message after which the button counts as released

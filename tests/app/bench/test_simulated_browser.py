@@ -27,14 +27,13 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
-from tests.support.lab import FOLLOWER
 
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_filling_in_a_push_is_the_same_as_packing_anew(name: str) -> None:
     parameters, curve = ROBOTS[name].parameters(), circle(0.05)
     robot = ROBOTS[name].make(parameters)
-    kernel = kernel_of(robot, kind_of(FOLLOWER, parameters, curve))
+    kernel = kernel_of(robot, kind_of("path_following", parameters, curve))
     y = robot.frame.lift(np.array([0.01, 0.02]))
     pushes = [FREE, Push(hand=y), Push(hold=brake_at(robot, curve, y, 0.3))]
     pushes.append(Push(pushes[1].hand, pushes[2].hold))

@@ -18,6 +18,7 @@ HONEST = 6
 MOST_KEPT = 250.0  # [MB]; measured: some 140
 
 
+@pytest.mark.soak
 def test_honest_labs_outlast_every_attack(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A minute of attacks, with little before and after it.
 

@@ -21,7 +21,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.simulation.simulation_thread import ScheduledLab
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES
 from tests.support.lab import FRAME, assert_drawable, do, new_lab, store, y
 
 OFTEN = 8  # frames from one telling to the next
@@ -70,7 +70,7 @@ class Followed:
             command = act(number * FRAME)
             do(self.lab, *([command] if command else []))
             self.lab.advance(self.session.rate * FRAME)
-            for name in NAMES:
+            for name in BENCHES:
                 way = self.ways.setdefault(name, [])
                 way.append((self.session.time, y(self.lab.session, name)))
             if self.frames % OFTEN == 0:
@@ -85,7 +85,7 @@ class Followed:
     def distance(self) -> float:
         """Of the mirror's end-points from where the student's were at that time, [m]."""
         time = self.mirror.session.time
-        return max(self._distance(name, time) for name in NAMES)
+        return max(self._distance(name, time) for name in BENCHES)
 
     def _distance(self, name: str, time: float) -> float:
         times, points = (np.array(part) for part in zip(*self.ways[name], strict=True))
@@ -165,7 +165,7 @@ def test_a_lab_that_stands_still_is_shown_where_it_stands(still: Any) -> None:
     both.run(1.5)
     shown, real = (take_snapshot(s, 1.0) for s in (both.mirror.lab, both.lab))
     assert abs(shown.time - real.time) < 2e-3 and shown.running == real.running
-    for name in NAMES:
+    for name in BENCHES:
         assert np.abs(shown.robots[name].tip - real.robots[name].tip).max() < SAME
     assert shown.message == real.message
 

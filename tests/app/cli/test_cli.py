@@ -14,8 +14,9 @@ from onpath.app.cli.main import run_command
 from onpath.app.storage.database_url import DATABASE
 from onpath.app.storage.records import Records, file_url
 from onpath.models.closed_loop.trajectory import read_csv
-from onpath.models.control.laws import NAMES
-from onpath.models.systems.parameters import FiveBarParameters, specs
+from onpath.models.control.laws.registry import LAWS, NAMES
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
+from onpath.models.systems.parameters import specs
 from tests.support.checkout import ROOT
 
 SHORT = ["experiment", "obstruction", "--set", "duration=0.2"]
@@ -35,7 +36,7 @@ def test_summary_is_json_with_both_controllers(capsys: pytest.CaptureFixture[str
     assert run_command([*SHORT, "--json"]) == 0
     out = capsys.readouterr()
     result = json.loads(out.out)
-    assert result["experiment"] == "obstruction" and set(result["controllers"]) == set(NAMES)
+    assert result["experiment"] == "obstruction" and set(result["laws"]) == set(NAMES)
     assert out.err == ""
 
 
@@ -46,8 +47,27 @@ def test_one_controller_alone_is_as_in_company(
     summaries = []
     for choice in (name, "both"):
         assert run_command([*SHORT, "--json", "--controller", choice]) == 0
-        summaries.append(json.loads(capsys.readouterr().out)["controllers"])
+        summaries.append(json.loads(capsys.readouterr().out)["laws"])
     assert list(summaries[0]) == [name] and summaries[0][name] == summaries[1][name]
+
+
+def test_laws_are_chosen_by_name_in_the_order_given(capsys: pytest.CaptureFixture[str]) -> None:
+    chosen = {"all": list(LAWS), ",".join(reversed(NAMES)): list(reversed(NAMES))}
+    for text, names in chosen.items():
+        assert run_command([*SHORT, "--json", "--law", text]) == 0
+        result = json.loads(capsys.readouterr().out)
+        assert list(result["laws"]) == names and result["controllers"] == result["laws"]
+
+
+def test_a_path_may_stand_in_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "path.json"
+    file.write_text('{"points": [[0.06, 0], [0, 0.05], [-0.05, 0], [0, -0.04]]}')
+    outputs = []
+    for text in (f"@{file}", file.read_text(), "closed 0.06 0, 0 0.05, -0.05 0, 0 -0.04"):
+        assert run_command([*SHORT, "--json", "--path", text]) == 0
+        outputs.append(capsys.readouterr().out)
+    assert outputs[0] == outputs[1] == outputs[2]
+    assert json.loads(outputs[0])["laws"]["path_following"]["max_distance_m"] < 1e-4
 
 
 def test_table_for_a_reader_names_both_and_says_why_one_stopped(
@@ -60,7 +80,7 @@ def test_table_for_a_reader_names_both_and_says_why_one_stopped(
         assert words in text
     assert "diverged: " not in text and "None" not in text
     assert run_command(["experiment", "obstruction", *unstable, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)["controllers"]
+    found = json.loads(capsys.readouterr().out)["laws"]
     assert all(values["diverged"] and values["diverged_at_s"] > 0 for values in found.values())
 
 
@@ -78,7 +98,7 @@ def test_all_files_are_the_same_to_the_byte(
         written[-1].append(capsys.readouterr().out.encode())
         assert sorted((tmp_path / folder).iterdir()) == sorted(files)  # no scratch files
     assert written[0] == written[1]
-    magic = (b"t_s,controller,", b"\x89PNG", b"<?xml", b"%PDF")
+    magic = (b"t_s,law,", b"\x89PNG", b"<?xml", b"%PDF")
     assert all(data.startswith(start) for data, start in zip(written[0], magic, strict=False))
     assert min(len(data) for data in written[0]) > 200
 
@@ -126,6 +146,24 @@ BAD = [
     ["experiment", "obstruction", "position"],
     ["experiment", "obstruction", "--bogus"],
     ["experiment", "obstruction", "--controller", "pid"],
+    ["experiment", "obstruction", "--law", "path_following,pid"],
+    ["experiment", "obstruction", "--law", ""],
+    ["experiment", "obstruction", "--path", ""],
+    ["experiment", "obstruction", "--path", "elipse"],
+    ["experiment", "obstruction", "--path", "circle 0.05 nan 0"],
+    ["experiment", "obstruction", "--path", "circle 0.3"],
+    ["experiment", "obstruction", "--path", "[" * 40_000],
+    ["experiment", "obstruction", "--path", "@missing.json"],
+    ["experiment", "obstruction", "--path", "@file"],
+    ["experiment", "obstruction", "--path", "circle", "--set", "r=0.04"],
+    ["experiment", "obstruction", "--profile", "fast"],
+    ["experiment", "obstruction", "--profile", "1:2, 0:1"],
+    ["experiment", "obstruction", "--profile", "0:0, 1:99"],
+    ["experiment", "obstruction", "--profile", "0:0, 1:6", "--set", "reverse_at=2"],
+    ["experiment", "obstruction", "--set", "hold_direction=sideways"],
+    ["experiment", "obstruction", "--set", "hold_at=7"],
+    ["experiment", "obstruction", "--set", "start_z1=0.39", "--set", "start_z2=0.39"],
+    ["experiment", "obstruction", "--set", "start_along=nan"],
     ["experiment", "obstruction", "--json", "yes"],
     ["experiment", "obstruction", "--csv"],
     ["experiment", "obstruction", "--set"],
@@ -190,7 +228,14 @@ def test_bad_input_gives_one_line_and_code_two(
         (["experiment", "obstruction", "--set", "k1=1"], "did you mean K1"),
         (["experiment", "obstruction", "--set", "holdfrom=1"], "hold_from"),
         (["experiment", "obstruction", "--contrller", "both"], "--controller"),
-        (["experiment", "obstruction", "--controller", "pid"], "path_following"),
+        (["experiment", "obstruction", "--controller", "pid"], "unknown law 'pid'"),
+        (["experiment", "obstruction", "--law", "path_folowing"], "did you mean path_following"),
+        (["experiment", "obstruction", "--path", "elipse"], "did you mean ellipse"),
+        (["experiment", "obstruction", "--path", "circle 1 2"], "circle RADIUS [Z1 Z2]"),
+        (["experiment", "obstruction", "--path", "@no.json"], "no.json: No such file"),
+        (["experiment", "obstruction", "--path", "figure of eight"], "crosses itself"),
+        (["experiment", "obstruction", "--profile", "0:0, 1:99"], "between -20 and 20 rad/s"),
+        (["experiment", "obstruction", "--set", "hold_direction=up"], "along, across, both"),
         (["experimnt"], "experiment"),
         (["experiment", "obstruction", "--set", "task=dance"], "speed, position"),
         (["experiment", "obstruction", "--set", "K1=9999"], "0 and 2500 1/s²"),

@@ -78,9 +78,9 @@ def test_a_lab_runs_under_jupyters_sub_path(port: int, folder: Path) -> None:
     headers = {"Origin": f"http://127.0.0.1:{port}", "Authorization": f"token {TOKEN}"}
     with Student(f"ws://127.0.0.1:{port}/onpath/index.html", None, **headers) as student:
         student.open()
-        student.read(lambda: student.sees("poles -20, -20"))
+        student.read(lambda: student.sees("poles -26"))
         student.set("K2", 44.0)
-        student.read(lambda: not student.sees("poles -20, -20") and student.code)
+        student.read(lambda: not student.sees("poles -26") and student.code)
         student.read(lambda: student.moving > 10)
     assert not stranger.marks(folder)
 

@@ -33,6 +33,7 @@ from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.schema import Choice, Lesson, Option, Quiz, Sketch, Task, Text
 from onpath.lessons.words import ENGLISH, Words, languages
+from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
 from tests.support.checkout import ROOT
 
 TAG = re.compile(r"</?(?!br\b)[a-zA-Z][a-zA-Z0-9]*(\s[a-z-]+=|\s*/?>)")  # markdown may have <br/>
@@ -135,9 +136,10 @@ def message(text: str) -> str:
 def shown(words: Words, text: str) -> str:
     """The readout with a message, as a browser is given it."""
     view = SimpleNamespace(distance=0.001, max_distance=float("nan"))
-    robots = {"trajectory_tracking": view, "path_following": view}
+    robots = {LEFT: view, RIGHT: view}
     snapshot = SimpleNamespace(
         robots=robots,
+        laws=DEFAULT_LAWS,
         running=True,
         time=1.0,
         achieved_speed=1.0,

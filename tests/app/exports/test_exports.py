@@ -14,8 +14,8 @@ from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.models.closed_loop.trajectory import read_csv
-from onpath.models.control.laws import NAMES
-from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, new_lab, run, y
+from onpath.models.control.benches import BENCHES
+from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, new_lab, replayed, run, y
 
 
 def watched(lab: Lab, frames: int) -> list[tuple[float, dict[str, dict[str, np.ndarray]]]]:
@@ -50,8 +50,8 @@ def eventful() -> tuple[Lab, list]:
 
 def test_replay_is_what_was_simulated_to_the_last_bit() -> None:
     lab, seen = eventful()
-    runs = replay(lab.session.robot, lab.session.history.all())
-    assert set(runs) == set(NAMES)
+    runs = replayed(lab.session)
+    assert set(runs) == set(BENCHES)
     for name, trajectory in runs.items():
         assert trajectory.t == pytest.approx(np.arange(len(trajectory.t)) * 1e-3)
         assert trajectory.t[-1] == pytest.approx(lab.session.time - 1e-3)
@@ -68,7 +68,7 @@ def test_replay_after_going_on_from_the_past() -> None:
     lab = new_lab(1.0)
     do(lab, c.LookAt(0.5), c.GoOn(), c.SetParameter("K1", 100))
     seen = watched(lab, 20)
-    for name, trajectory in replay(lab.session.robot, lab.session.history.all()).items():
+    for name, trajectory in replayed(lab.session).items():
         assert np.allclose(np.diff(trajectory.t), 1e-3, atol=1e-9)
         for time, rows in seen:
             row = trajectory.fields["q"][round(time * 1e3) - 1]
@@ -81,7 +81,7 @@ def test_two_kilohertz_gives_whole_milliseconds() -> None:
     for k in range(12):  # every frame another path, so that no segment joins the next
         do(lab, c.SelectPoint(0), c.NudgePoint(0.0005 * (-1) ** k, 0.0))
         lab.advance(FRAME)
-    for trajectory in replay(lab.session.robot, lab.session.history.all()).values():
+    for trajectory in replayed(lab.session).values():
         assert trajectory.t == pytest.approx(np.arange(len(trajectory.t)) * 1e-3, abs=1e-9)
         assert len(trajectory.t) == 200
 
@@ -91,7 +91,7 @@ def test_csv_tells_the_distance_to_the_path_as_it_was() -> None:
     columns = read_csv(
         io.StringIO(csv_bytes(lab.session.robot, lab.session.history.all()).decode())
     )
-    assert set(columns) == set(NAMES)
+    assert set(columns) == set(BENCHES)
     first = slice(0, 330)  # on the circle
     radius = np.hypot(columns[TRACKER]["y1_m"], columns[TRACKER]["y2_m"])[first]
     assert columns[TRACKER]["distance_m"][first] == pytest.approx(np.abs(radius - 0.05), abs=1e-9)
@@ -103,11 +103,11 @@ def test_one_robot_that_stands_still_does_not_spoil_the_export() -> None:
     lab.session.runs[FOLLOWER].fields()["v"][:] = 500.0
     run(lab, 0.4)
     assert lab.session.runs[FOLLOWER].diverged
-    both = replay(lab.session.robot, lab.session.history.all())
+    both = replayed(lab.session)
     assert both[FOLLOWER].t[-1] < 0.32 < 0.69 < both[TRACKER].t[-1]
     later = [s for s in lab.session.history.all() if s.time > 0.4]
     assert set(replay(lab.session.robot, later)) == {TRACKER}
-    assert b"path_following" not in csv_bytes(lab.session.robot, later)
+    assert b",right," not in csv_bytes(lab.session.robot, later)
     assert draw_history(replay(lab.session.robot, later)).startswith(b"\x89PNG")
     lab.session.runs[TRACKER].fields()["v"][:] = 500.0
     run(lab, 0.2)

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from onpath.app.common.palette import FOLLOWER, SELECTED, TRACKER
+from onpath.app.common.palette import AZURE, SELECTED, VERMILLION
 from onpath.app.exports.exporter import Exporter
 from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
@@ -114,10 +114,10 @@ def test_a_sketch_stands_beside_what_both_robots_did(course: Course) -> None:
     assert "41 mm at 1 s" in page.text
     assert "Tracker 47 mm at 0.5 s" in page.text and "Follower 2 mm at 0.5 s" in page.text
     (picture,) = page.pictures()
-    for colour in (SELECTED, TRACKER, FOLLOWER):
+    for colour in (SELECTED, VERMILLION, AZURE):
         assert strokes(picture, colour.hex) == 1
     (alone,) = page_of(course, {NAME: Notes(seen=2, answers={"1": SKETCH})}).pictures()
-    assert strokes(alone, SELECTED.hex) == 1 and strokes(alone, TRACKER.hex) == 0
+    assert strokes(alone, SELECTED.hex) == 1 and strokes(alone, VERMILLION.hex) == 0
 
 
 def test_all_that_was_done_is_counted(course: Course) -> None:
@@ -147,7 +147,7 @@ def test_what_was_skipped_is_said(course: Course) -> None:
     page = page_of(course, {NAME: Notes(seen=3, answers={"1": Answer()}, truths={"1": TRUTH})})
     assert Words("en")("lesson.skipped") in page.text
     (picture,) = page.pictures()
-    assert strokes(picture, SELECTED.hex) == 0 and strokes(picture, TRACKER.hex) == 1
+    assert strokes(picture, SELECTED.hex) == 0 and strokes(picture, VERMILLION.hex) == 1
 
 
 def test_it_loads_nothing_and_runs_nothing(course: Course) -> None:
@@ -281,4 +281,4 @@ def test_it_is_sent_as_it_was_when_it_was_asked_for(course: Course) -> None:
     page = Page(client.sent["onpath-report.html"])
     assert "k7mf-2xqa-9tzr" in page.text and "30 mm at 2 s" in page.text
     (picture,) = page.pictures()
-    assert strokes(picture, SELECTED.hex) == strokes(picture, TRACKER.hex) == 1
+    assert strokes(picture, SELECTED.hex) == strokes(picture, VERMILLION.hex) == 1

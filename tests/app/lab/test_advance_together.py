@@ -11,7 +11,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import advance_together
 from onpath.app.lab.lab import Lab
 from onpath.models.closed_loop.loops import CompiledLoop
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import FOLLOWER, FRAME, do, new_lab, store
@@ -30,7 +30,7 @@ def random_command(rng: np.random.Generator, lab: Lab) -> list[c.Command]:
         [c.SetParameter(*other[rng.integers(len(other))])],
         [c.ChoosePath(str(rng.choice(list(presets()))))],
         [c.Hold(bool(rng.integers(2)))],
-        [c.Grab(NAMES[rng.integers(2)], target)],
+        [c.Grab(BENCHES[rng.integers(2)], target)],
         [c.Release()],
         [c.SetRate(float(rng.choice([0.5, 1.0, 2.0])))],
         [c.SetRunning(bool(rng.integers(3)))],
@@ -88,7 +88,7 @@ def test_together_is_one_by_one(seed: int) -> None:
 
 
 def vars_of(event: object) -> list[object]:
-    return [getattr(event, name) for name in ("run", "time", "name", "detail", "controllers")]
+    return [getattr(event, name) for name in ("run", "time", "name", "detail", "benches")]
 
 
 def compiled_labs(count: int) -> list[Lab]:
@@ -111,7 +111,7 @@ def test_a_frame_is_one_call_per_kind_of_loop(monkeypatch: pytest.MonkeyPatch) -
         do(lab, c.SetParameter("K1", gain))
     monkeypatch.setattr(CompiledLoop, "run_many", counted)
     advance_together([lab.frame(FRAME) for lab in labs])
-    assert calls == [len(labs)] * len(NAMES)
+    assert calls == [len(labs)] * len(BENCHES)
 
 
 def test_one_lab_s_error_leaves_the_others_alone() -> None:

@@ -191,4 +191,5 @@ def test_the_bar_marks_alpha_and_says_when_it_is_too_high() -> None:
     assert "unstable" not in alpha_bar(0.5, 0.7, True, ENGLISH)
     assert "unstable" not in alpha_bar(0.9, 0.7, False, ENGLISH)
     assert "none" in alpha_bar(1.0, float("inf"), True, ENGLISH)
+    assert "3 modes, each with ζ = 0.01" in alpha_bar(0.5, 0.72, True, ENGLISH, (3, 0.01))
     assert "nan" not in alpha_bar(0.5, float("nan"), True, ENGLISH)

@@ -19,10 +19,11 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.segments import HistoryFrame, Input, Inputs, Segment
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, RIGHT
 from onpath.models.paths.curves import Curve, circle
 from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, new_lab, run, states, y
 
+KIND = Kind(DEFAULT_LAWS[RIGHT])
 CURVE, SETTINGS = circle(0.05), np.zeros(3)
 
 
@@ -43,7 +44,7 @@ def add(
 @lru_cache
 def inputs_of(curve: Curve, dt: float, settings: int, frozen: bool) -> Inputs:
     """The same object for the same inputs."""
-    return Inputs(curve, dt, {FOLLOWER: Input(Kind(FOLLOWER), np.full(3, float(settings)), frozen)})
+    return Inputs(curve, dt, {FOLLOWER: Input(KIND, np.full(3, float(settings)), frozen, 1)})
 
 
 def new_history() -> History:
@@ -125,7 +126,7 @@ def memory_of_a_minute(lab: Lab, one: Segment) -> tuple[int, int]:
     """What a history has in the end, and what all threads had meanwhile at most, [B]."""
     names, rows = list(lab.session.runs), list(one.sample)
     inputs = Inputs(one.curve, one.dt, {name: lab.session.runs[name].input() for name in names})
-    states = [one.drives[name].state for name in names]
+    states = [lab.session.runs[name].recorded for name in names]
     tracemalloc.start()
     history = new_history()
     for k in range(8000):
@@ -240,7 +241,7 @@ def test_past_is_shown_as_it_was() -> None:
         assert at is not None
         begin = at.time
         then = min(seen, key=lambda pair: abs(pair[0] - begin))[1]
-        for name in NAMES:
+        for name in BENCHES:
             was, shown = then.robots[name], now.robots[name]
             assert shown.joints == pytest.approx(was.joints, abs=1e-3)
             assert shown.tip == pytest.approx(was.tip, abs=1e-6)

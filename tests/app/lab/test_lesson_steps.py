@@ -18,7 +18,7 @@ from onpath.app.lab.setup import Setup, capture
 from onpath.app.storage.lab_state import LabState, keep, put_back
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.models.closed_loop.simulation import FREE
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import changed
 from tests.support.lab import do, run, store
@@ -70,7 +70,7 @@ def assert_at_the_beginning(lab: Lab) -> None:
     for name, one in lab.session.runs.items():
         assert np.array_equal(one.state, states[name])
     assert lab.session.time == 0.0 and lab.session.viewing is None
-    assert lab.session.grips.pushes == dict.fromkeys(NAMES, FREE) and not lab.session.grips.held
+    assert lab.session.grips.pushes == dict.fromkeys(BENCHES, FREE) and not lab.session.grips.held
     assert lab.session.editor.selected is None and lab.session.editor.proposed is None
     assert np.array_equal(lab.session.editor.table, lab.session.editor.design.curve.table())
 

@@ -21,7 +21,7 @@ from onpath.app.server.lazy_imports import LATER, warm_up
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support.lab import FRAME, do, states
 
@@ -86,7 +86,7 @@ def test_loops_are_interpreted_at_once_and_compiled_later(store: LoopCache, gate
     for name, state in states(lab.session).items():
         assert np.array_equal(state, reference.session.runs[name].state)
         assert lab.session.runs[name].diverged is None
-    assert len(gate.passed) == len(NAMES)
+    assert len(gate.passed) == len(BENCHES)
 
 
 def test_what_cannot_be_compiled_is_told_once_and_the_lab_goes_on(
@@ -109,7 +109,11 @@ def test_what_cannot_be_compiled_is_told_once_and_the_lab_goes_on(
 
 
 def test_closing_gives_up_what_is_waiting(store: LoopCache, gate: Gate) -> None:
-    kinds = [Kind(NAMES[0], closed, encoder=e) for closed in (True, False) for e in (True, False)]
+    kinds = [
+        Kind(DEFAULT_LAWS[LEFT], closed, encoder=e)
+        for closed in (True, False)
+        for e in (True, False)
+    ]
     for kind in kinds:
         store.get(rigid_five_bar(), kind)
     assert gate.reached.wait(PATIENCE)
@@ -133,4 +137,4 @@ def test_a_first_lab_finds_its_loops_compiled(store: LoopCache) -> None:
         do(lab, *commands)
         lab.advance(FRAME)
         assert all(isinstance(loop, CompiledLoop) for loop in loops(lab, store))
-    assert len(store._wanted) == 2 * len(NAMES)
+    assert len(store._wanted) == 2 * len(BENCHES)

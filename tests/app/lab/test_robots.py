@@ -29,7 +29,7 @@ from onpath.app.page.robot_picture import picture_of
 from onpath.app.scene.poses import poses_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models import systems
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.experiments import experiments, run
@@ -128,7 +128,7 @@ def test_two_robots_of_one_name_are_refused(gantry: None, tmp_path: Path) -> Non
 def test_it_follows_the_circle_in_the_lab_and_waits_when_held(entry: RobotEntry) -> None:
     lab = lab_with(entry, 2.0)
     session = lab.session
-    for name in NAMES:
+    for name in BENCHES:
         assert session.runs[name].diverged is None
         assert session.runs[name].distance < 2e-4
     do(lab, c.Hold(True))
@@ -189,7 +189,7 @@ def test_one_function_gives_points_and_poses(entry: RobotEntry) -> None:
     function, counts = geometry_function(robot, closed=True)
     assert function.n_out() == 1
     sizes = [int(np.prod(shape)) for shape in counts.pose_shapes]
-    assert function.nnz_out(0) == len(NAMES) * (3 * counts.points + sum(sizes))
+    assert function.nnz_out(0) == len(BENCHES) * (3 * counts.points + sum(sizes))
 
 
 def test_bars_and_path_lie_in_what_the_camera_shows(entry: RobotEntry) -> None:
@@ -281,7 +281,7 @@ def bending(
 
 def test_a_figure_shows_what_a_new_robot_has_to_plot(bending: RobotEntry) -> None:
     chosen = experiments(bending.name)["position"].with_values({"duration": "0.1", "r": "0.04"})
-    log = run(chosen, NAMES[0])
+    log = run(chosen, DEFAULT_LAWS[LEFT])
     figure = experiment_figure(chosen, [log])
     (axes,) = (axes for axes in figure.axes if axes.get_ylabel().startswith("deflection"))
     (line,) = axes.lines
@@ -321,7 +321,7 @@ def test_what_draws_and_simulates_knows_no_single_robot() -> None:
 @pytest.mark.parametrize("name", ["position", "obstruction"])
 def test_the_experiments_can_be_done_with_it(entry: RobotEntry, name: str) -> None:
     chosen = experiments(entry.name)[name].with_values({"duration": "0.4", "r": "0.04"})
-    for controller in NAMES:
+    for controller in DEFAULT_LAWS.values():
         log = run(chosen, controller)
         assert log.t[-1] > 0.3 and np.isfinite(log.distance).all()
 

@@ -17,7 +17,9 @@ from onpath.app.storage.lab_state import _now, _state, put_back
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.schema import Action
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of, settings_vector
-from onpath.models.control.laws import NAMES
+from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from onpath.models.systems.parameters import changed, specs
@@ -36,7 +38,7 @@ from tests.support.lab import (
 )
 from tests.support.lesson_texts import write_lesson
 
-CONTROLLERS = st.sampled_from([*NAMES, "", "nobody"])
+SOME_BENCHES = st.sampled_from([*BENCHES, "", "nobody"])
 WILD = st.one_of(
     st.floats(-0.5, 0.5),
     st.sampled_from([float("nan"), float("inf"), -1e300, 1e300, 10**400, 0, -0.0]),
@@ -113,11 +115,14 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.GoOn: st.builds(c.GoOn),
     c.UndoGoOn: st.builds(c.UndoGoOn),
     c.Hold: st.builds(
-        c.Hold, st.sampled_from([None, True, False]), st.one_of(st.none(), CONTROLLERS)
+        c.Hold, st.sampled_from([None, True, False]), st.one_of(st.none(), SOME_BENCHES)
     ),
-    c.Grab: st.builds(c.Grab, CONTROLLERS, points(1)),
-    c.Release: st.builds(c.Release, st.one_of(st.none(), CONTROLLERS)),
+    c.Grab: st.builds(c.Grab, SOME_BENCHES, points(1)),
+    c.Release: st.builds(c.Release, st.one_of(st.none(), SOME_BENCHES)),
     c.MoveHand: st.builds(c.MoveHand, WILD, WILD),
+    c.ChooseLaw: st.builds(
+        c.ChooseLaw, SOME_BENCHES, st.sampled_from([*LAWS, "", "no_law", "path following"])
+    ),
     c.SetCopy: st.builds(c.SetCopy, st.booleans()),
     c.SetExaggeration: st.builds(c.SetExaggeration, WILD),
     c.ChoosePath: st.builds(
@@ -280,7 +285,7 @@ def test_parameters_within_their_ranges_are_packed_to_finite_numbers(data: st.Da
             values = st.sampled_from(spec.options) if spec.options else bounds
             parameters = changed(parameters, name, data.draw(values))
     robot, curve = entry.make(parameters), presets()["ellipse"].curve
-    for controller in NAMES:
+    for controller in DEFAULT_LAWS.values():
         kernel = kernel_of(robot, kind_of(controller, parameters, curve))
         assert np.isfinite(settings_vector(robot, kernel, parameters, curve, FREE)).all()
 
@@ -342,17 +347,17 @@ def test_both_robots_share_path_parameters_and_clock() -> None:
         assert np.array_equal(*values), name
 
 
-@pytest.mark.parametrize("controller", NAMES)
+@pytest.mark.parametrize("bench", BENCHES)
 @pytest.mark.parametrize("copy", [True, False])
-def test_hold_acts_on_both_with_copy_and_on_one_without(controller: str, copy: bool) -> None:
+def test_hold_acts_on_both_with_copy_and_on_one_without(bench: str, copy: bool) -> None:
     lab = new_lab(0.5)
-    do(lab, c.SetCopy(copy), c.Hold(True, controller))
-    assert lab.session.grips.held == (set(NAMES) if copy else {controller})
+    do(lab, c.SetCopy(copy), c.Hold(True, bench))
+    assert lab.session.grips.held == (set(BENCHES) if copy else {bench})
     run(lab, 0.2)
     for name, run_ in lab.session.runs.items():
         force = np.linalg.norm(run_.shown()["force"])
         assert (force > 0.1) == (name in lab.session.grips.held)
-    do(lab, c.Hold(False, controller))
+    do(lab, c.Hold(False, bench))
     run(lab, 0.1)
     assert all(np.all(r.shown()["force"] == 0) for r in lab.session.runs.values())
 
@@ -368,25 +373,25 @@ def test_hold_tears_the_tracker_off_and_not_the_follower() -> None:
     assert not lab.session.grips.held
 
 
-@pytest.mark.parametrize("controller", NAMES)
+@pytest.mark.parametrize("bench", BENCHES)
 @pytest.mark.parametrize("copy", [True, False])
-def test_grab_pulls_both_by_the_same_or_one_alone(controller: str, copy: bool) -> None:
+def test_grab_pulls_both_by_the_same_or_one_alone(bench: str, copy: bool) -> None:
     lab = new_lab(0.5)
     do(lab, c.SetCopy(copy))
-    before = {name: lab.session.runs[name].shown()["y"].copy() for name in NAMES}
+    before = {name: lab.session.runs[name].shown()["y"].copy() for name in BENCHES}
     assert np.linalg.norm(before[FOLLOWER] - before[TRACKER]) > 0.01  # they are not in one place
     for shift in ([0.02, 0.01], [0.03, -0.02]):
-        do(lab, c.Grab(controller, before[controller] + np.array(shift)))
-        assert set(lab.session.grips.hands) == (set(NAMES) if copy else {controller})
+        do(lab, c.Grab(bench, before[bench] + np.array(shift)))
+        assert set(lab.session.grips.hands) == (set(BENCHES) if copy else {bench})
         for name, hand in lab.session.grips.hands.items():
             assert hand - before[name] == pytest.approx(shift)
     lab.session.simulate(1)
     pulled = {n for n, r in lab.session.runs.items() if np.linalg.norm(r.shown()["force"]) > 0.1}
     assert pulled == set(lab.session.grips.hands)
-    other = next(name for name in NAMES if name != controller)
+    other = next(name for name in BENCHES if name != bench)
     do(lab, c.Release(other))
     assert lab.session.grips.hands  # that robot was not the one being pulled
-    do(lab, c.Release(controller))
+    do(lab, c.Release(bench))
     lab.session.simulate(1)
     assert not lab.session.grips.hands and take_snapshot(lab, 1.0).grabbed is None
     assert all(np.all(r.shown()["force"] == 0) for r in lab.session.runs.values())
@@ -445,7 +450,7 @@ def test_new_path_is_followed_after_it_has_blended_in(name: str) -> None:
 def test_a_jump_of_the_path_empties_the_integrals() -> None:
     """An error summed along one path says nothing of another one."""
     lab = new_lab()
-    do(lab, c.SetParameter("K3", 1000.0), c.SetParameter("coulomb", 0.05))
+    do(lab, c.SetParameter("tracker_integral", "on"), c.SetParameter("coulomb", 0.05))
     run(lab, 1.0)
     summed = {
         name: np.abs(run_.fields()["integral"]).max() for name, run_ in lab.session.runs.items()
@@ -506,17 +511,46 @@ def test_drag_of_a_point_is_one_edit_and_follows_meanwhile() -> None:
     assert lab.session.editor.design is first and "nothing" in lab.message
 
 
-def test_drag_that_ends_in_a_refused_place_goes_all_the_way_back() -> None:
+@pytest.mark.parametrize("beyond", [(0.15, 0.15), (0.0, -0.18), (-0.1, 0.0)])
+def test_a_drag_beyond_what_is_valid_goes_as_far_as_it_may(beyond: tuple[float, float]) -> None:
     lab = new_lab(0.3)
-    first = lab.session.editor.design
-    place = first.points[2]
-    do(lab, c.MovePoint(2, place + np.array([0.0, 0.01]), finished=False))
+    editor, first = lab.session.editor, lab.session.editor.design
+    start, way = first.points[2], np.array(beyond)
+    do(lab, c.MovePoint(2, start + np.array([0.0, 0.01]), finished=False))
     run(lab, 0.4)
-    assert not np.allclose(lab.session.editor.table, first.curve.table(), atol=1e-4)
-    do(lab, c.MovePoint(2, place + np.array([0.15, 0.15])))
-    assert "refused" in lab.message
+    do(lab, c.MovePoint(2, start + way))
+    assert "no further" in lab.message and lab.message_level == "warning"
+    assert len(take_snapshot(lab, 1.0).path.refused)
+    share = (editor.design.points[2] - start) @ way / (way @ way)
+    assert editor.design.points[2] == pytest.approx(start + share * way)
+    assert 0 < share < 1 and not curve_faults(lab.session.robot.margin, editor.design.curve)
+    next_one = first.moved(2, start + (share + 1 / 64) * way)
+    assert curve_faults(lab.session.robot.margin, next_one.curve)
     run(lab, 0.4)
-    assert lab.session.editor.design is first and lab.session.editor.curve is first.curve
+    assert editor.curve is editor.design.curve
+    do(lab, c.MovePoint(2, start))  # back to where it began
+    assert lab.message == "" and not editor.faults
+    do(lab, c.Undo(), c.Undo())
+    assert editor.design is first
+
+
+def test_a_drag_that_comes_back_from_beyond_goes_where_the_hand_is() -> None:
+    lab = new_lab(0.3)
+    editor, start = lab.session.editor, lab.session.editor.design.points[2]
+    for down in (0.01, 0.2, 0.005):
+        do(lab, c.MovePoint(2, start - np.array([0.0, down]), finished=False))
+    do(lab, c.EndMove())
+    assert editor.design.points[2] == pytest.approx(start + np.array([0.0, -0.005]))
+    assert lab.message == "" and not editor.faults
+
+
+@pytest.mark.parametrize("command", [c.NudgePoint(0.15, 0.15), c.PlacePoint(0.19, 0.19)])
+def test_by_key_and_by_number_too_a_point_goes_as_far_as_it_may(command: c.Command) -> None:
+    lab = new_lab()
+    editor, first = lab.session.editor, lab.session.editor.design
+    do(lab, c.SelectPoint(2), command)
+    assert "no further" in lab.message and editor.design is not first
+    assert not curve_faults(lab.session.robot.margin, editor.design.curve)
 
 
 @pytest.mark.parametrize("robot", ROBOTS)

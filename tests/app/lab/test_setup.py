@@ -20,6 +20,7 @@ from onpath.app.lab.commands import (
 )
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setup import (
+    DEFAULTS,
     DRAWN_POINTS,
     Path,
     RobotSetup,
@@ -31,9 +32,11 @@ from onpath.app.lab.setup import (
     restore,
     to_data,
 )
+from onpath.models.closed_loop.simulation import has_level_set
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import PathDesign
-from onpath.models.systems.parameters import NOTHING, specs
+from onpath.models.systems.parameter_specs import NOTHING
+from onpath.models.systems.parameters import LEVEL_SET, specs
 from tests.support.lab import FOLLOWER, do, new_lab, run
 from tests.support.some_setups import CALM, FOLLOWABLE, PRESETS, designs, setups, wave
 
@@ -77,12 +80,12 @@ def everything(lab: Lab) -> list[Any]:
         len(lab.session.history),
         lab.session.running,
     ]
-    return [*kept, dict(lab.session._benches), lab.session.grips.held.copy(), lab.message]
+    return [*kept, dict(lab.session.earlier), lab.session.grips.held.copy(), lab.message]
 
 
 def test_a_new_lab_has_nothing_to_tell() -> None:
     assert capture(new_lab().session) == Setup()
-    assert to_data(Setup()) == {}
+    assert to_data(Setup()) == {"defaults": DEFAULTS}
 
 
 @SLOW
@@ -92,8 +95,12 @@ def test_what_is_restored_is_captured_again(setup: Setup) -> None:
     if followable(setup):
         restore(lab.session, setup)
         run(lab, 0.1)
-        assert capture(lab.session) == setup
         assert lab.session.time > 0
+        asked = setup.benches.get(setup.robot, RobotSetup()).parameters
+        if asked.get("across") == LEVEL_SET and not has_level_set(lab.session.editor.curve):
+            assert lab.session.parameters.across == "distance"
+        else:
+            assert capture(lab.session) == setup
 
 
 def test_what_a_parameter_takes_for_nothing_is_kept_as_nothing() -> None:

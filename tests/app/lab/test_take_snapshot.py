@@ -8,12 +8,13 @@ import pytest
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
+from onpath.models.control.benches import RIGHT
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.drawing import drawn as drawn_skeleton
 from tests.support.lab import FOLLOWER, do, new_lab, run
 
 
-def away(snapshot: Snapshot, name: str = "path_following") -> float:
+def away(snapshot: Snapshot, name: str = RIGHT) -> float:
     """From a robot's end-point to the path that is drawn, [m]."""
     tip, points = snapshot.robots[name].tip, snapshot.path.points
     return float(np.linalg.norm(points - tip, axis=1).min())

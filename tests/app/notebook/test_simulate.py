@@ -21,17 +21,33 @@ from onpath.models.systems.parameters import specs
 from tests.support import stranger
 from tests.support.checkout import ROOT
 
-LAWS = tuple(onpath.laws())
+LAWS = ("trajectory_tracking", "path_following")  # of onpath.laws()
 
 
 ARGUMENTS: dict[str, dict[str, Any]] = {
-    "obstruction": {"duration": 1.0, "hold": (0.3, 0.6)},
-    "position": {"duration": 0.5, "task": "position"},
+    "obstruction": {
+        "duration": 1.0,
+        "hold": (0.3, 0.6),
+        "hold_at": 1.0,
+        "hold_direction": "both",
+        "wall": (0.2, 0.9, (0.0, 0.03), -1.5),
+    },
+    "position": {"duration": 0.5, "task": "position", "velocity": (0.1, 0.05), "clock_offset": 0.4},
     "flexible": {"robot": "flexible", "duration": 0.5, "reverse_at": 0.3},
 }
 SET = {
-    "obstruction": {"duration": 1.0, "hold_from": 0.3, "hold_to": 0.6},
-    "position": {"duration": 0.5},
+    "obstruction": {
+        "duration": 1.0,
+        "hold_from": 0.3,
+        "hold_to": 0.6,
+        "hold_at": 1.0,
+        "hold_direction": "both",
+        "wall_from": 0.2,
+        "wall_to": 0.9,
+        "wall_z2": 0.03,
+        "wall_angle": -1.5,
+    },
+    "position": {"duration": 0.5, "start_along": 0.1, "start_across": 0.05, "clock_offset": 0.4},
     "flexible": {"duration": 0.5, "reverse_at": 0.3},
 }
 PUSH = {"push_from": 0.1, "push_to": 0.2, "push_z1": 0.06, "push_z2": 0.01}
@@ -135,6 +151,11 @@ def test_every_parameter_is_listed_with_its_range_and_can_be_set(robot: str) -> 
         ({"push": (1, 2)}, "push: expected (from, to, (z1, z2)), [s] and [m]"),
         ({"push": (1, 2, 3)}, "push: expected (from, to, (z1, z2)), [s] and [m]"),
         ({"push": (1, 2, (3, 3))}, "push_z1: 3.0 is not between -0.4 and 0.4 m"),
+        ({"velocity": 1}, "velocity: expected (along, across), [m/s]"),
+        ({"wall": (1, 2, (0, 0))}, "wall: expected (from, to, (z1, z2), angle)"),
+        ({"hold_at": 9}, "hold_at: 9.0 is not between"),
+        ({"hold_direction": "up"}, "along, across, both"),
+        ({"profile": 3}, "profile: expected times and speeds"),
         ({"start": "here"}, "start: expected a point, shape (2,), [m]"),
         ({"start": (1, 1)}, "out of reach"),
         ({"robot": "flexible", "start": 0.1}, "shape (2,) or (3,), [m]"),
@@ -143,6 +164,14 @@ def test_every_parameter_is_listed_with_its_range_and_can_be_set(robot: str) -> 
 def test_complaint_names_what_was_expected(values: dict[str, Any], words: str) -> None:
     with pytest.raises(ValueError, match=re.escape(words)):
         onpath.simulate(**values)
+
+
+def test_a_path_and_a_profile_may_be_text() -> None:
+    told = onpath.simulate(path="ellipse 0.06 0.04", profile="0:0, 0.1:2", duration=0.2)
+    made = onpath.simulate(
+        path=onpath.ellipse(0.06, 0.04), profile=[(0, 0), (0.1, 2)], duration=0.2
+    )
+    assert np.array_equal(told.y, made.y) and told.distance.max() < 1e-5
 
 
 def test_a_path_that_is_none_is_refused() -> None:

@@ -29,15 +29,18 @@ from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.record import PLOTS
 from onpath.lessons.words import ELSEWHERE, ENGLISH, Words
 from onpath.models import systems
+from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.poles import channels
 from onpath.models.errors import CodedError, Message, said_by
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS, found_robots
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.flexible_robot import BENT, UNSTABLE
-from onpath.models.systems.parameters import FiveBarParameters, specs
+from onpath.models.systems.parameters import specs
 from onpath.models.systems.robots import RobotEntry, first_fault
 from tests.support.catalogues import arguments, counts, messages
 from tests.support.checkout import ROOT
@@ -54,7 +57,7 @@ PAGE = sorted(
 )
 KEYS_MADE = (
     *("quantity.", "stat.", "during.", "event.", "robot.", "kind.", "language.", "report."),
-    *("controller.", "key.", "keyname.", "pull.", "plot.", "axis."),
+    *("bench.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
     *("lesson.back", "lesson.again", "lesson.close"),
     *("readout.distance", "readout.now", "readout.most"),
@@ -243,6 +246,9 @@ def test_what_stands_in_models_is_translated(words: Words) -> None:
     """The paths, and all of every robot that the language knows; a new robot is told in English."""
     known = catalogue(words.language)
     assert [name for name in presets() if f"path.{name}" not in known] == []
+    laws = [f"law.{name}" for name in LAWS if f"law.{name}.label" in known]
+    assert {f"law.{name}" for name in DEFAULT_LAWS.values()} <= {*laws}
+    assert [law for law in laws if f"{law}.text" not in known] == []
     told = [entry for entry in ROBOTS.values() if f"machine.{entry.name}.label" in known]
     assert {FIVE_BAR.name, FLEXIBLE.name} <= {entry.name for entry in told}
     for entry in told:
@@ -262,7 +268,8 @@ def test_every_robot_has_labels_in_every_language(words: Words) -> None:
 NEW_ROBOT = """
 from dataclasses import dataclass
 from onpath.models.systems.five_bar_robot import rigid_five_bar
-from onpath.models.systems.parameters import Parameters, choice, number
+from onpath.models.systems.parameter_specs import choice, number
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import RobotEntry
 
 @dataclass(frozen=True, slots=True)
@@ -307,6 +314,7 @@ def test_nothing_is_translated_that_there_is_not(language: str) -> None:
         for name, spec in specs(entry.parameters).items():
             parts = ("label", "help", "unit", *(f"option.{option}" for option in spec.options))
             there_are |= {f"parameter.{name}.{part}" for part in parts}
+    there_are |= {f"law.{name}.{part}" for name in LAWS for part in ("label", "text")}
     only_here = messages(language).keys() - messages("en").keys()
     assert only_here <= {identifier(key) for key in there_are}
 
@@ -410,7 +418,14 @@ def reasons() -> Iterator[Message]:
 
 
 def behaviours() -> Iterator[Message]:
-    for changes in ({"K1": 0.0, "K2": 0.0}, {"K2": 5.0}, {"K3": 8000.0, "K2": 10.0}, {}):
+    for changes in (
+        {"K1": 0.0, "K2": 0.0},
+        {"K2": 0.0, "K3": 0.0},
+        {"K2": 5.0, "K3": 0.0},
+        {"K3": 8000.0, "K2": 10.0},
+        {"K3": 0.0},
+        {},
+    ):
         for channel in channels(dataclasses.replace(FiveBarParameters(), **changes)):
             yield channel.behaviour()
 

@@ -17,17 +17,16 @@ from onpath.app.lab.snapshots.part_poses import bar_quaternions, waist_angle
 from onpath.app.lab.snapshots.robot_geometry import geometry_function
 from onpath.app.lab.snapshots.snapshot import (
     TIP,
-    FollowerName,
     PathView,
     RobotView,
     Snapshot,
-    TrackerName,
 )
 from onpath.app.scene.poses import trace_segments
 from onpath.app.scene.robot_nodes import TRACE_SEGMENTS
 from onpath.app.scene.scene import Scene, SceneCallbacks, meshes
 from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Stage, view_of
 from onpath.app.scene.stage_catalogue import stage_of
+from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.paths.curves import TABLE_SHAPE, circle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.drawing import BACK_LAYER, FRONT_LAYER
@@ -35,13 +34,17 @@ from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support.drags import play
 from tests.support.drawing import evaluated
 
-NAMES = (TrackerName, FollowerName)
 FIVE_BAR = rigid_five_bar()
 RIGID = stage_of(FIVE_BAR)
 STAGES = {name: stage_of(entry.make(entry.lab)) for name, entry in ROBOTS.items()}
 
 
-def robot(q1: float, q2: float, force: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> RobotView:
+def robot(
+    q1: float,
+    q2: float,
+    force: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    law: str = DEFAULT_LAWS[RIGHT],
+) -> RobotView:
     """A rigid five-bar."""
     q, pull = np.array([q1, q2]), (force[0], force[2])
     seen = np.concatenate([FIVE_BAR.endpoint(q), pull, [0.0]])
@@ -52,7 +55,7 @@ def robot(q1: float, q2: float, force: tuple[float, float, float] = (0.0, 0.0, 0
     points, poses = np.split(flat, [3 * counts.points])
     points = points.reshape(-1, 3)
     trace = np.linspace(np.zeros(3), points[TIP], 50)
-    return RobotView(points, poses, counts, trace, 0.0, 0.0, 0.0, np.zeros(2))
+    return RobotView(law, points, poses, counts, trace, 0.0, 0.0, 0.0, np.zeros(2))
 
 
 def path(version: int = 0, n_points: int = 6) -> PathView:
@@ -64,7 +67,7 @@ def path(version: int = 0, n_points: int = 6) -> PathView:
 
 def snapshot(q1: float = 1.5, q2: float = 3.0, **changes: Any) -> Snapshot:
     """Both robots in the same pose."""
-    both = {name: robot(q1, q2) for name in NAMES}
+    both = {bench: robot(q1, q2, law=DEFAULT_LAWS[bench]) for bench in BENCHES}
     whole = Snapshot(0.0, True, 1.0, both, path(), False, None, "", "info")
     return replace(whole, **changes)
 
@@ -112,11 +115,11 @@ def test_a_still_frame_costs_nothing(lab):
 
 def test_a_force_shows_and_then_hides_its_arrow(lab):
     arrows = lab.api.get_handle_by_name("/force")
-    pulled = {name: robot(1.5, 3.0, force=(10.0, 0.0, 0.0)) for name in NAMES}
+    pulled = {name: robot(1.5, 3.0, force=(10.0, 0.0, 0.0)) for name in BENCHES}
     lab.scene.update(snapshot(robots=pulled).motion)
     assert arrows.visible
     lengths = np.linalg.norm(arrows.points[:, 1] - arrows.points[:, 0], axis=1)
-    twice_pulled = {n: robot(1.5, 3.0, force=(20.0, 0, 0)) for n in NAMES}
+    twice_pulled = {n: robot(1.5, 3.0, force=(20.0, 0, 0)) for n in BENCHES}
     lab.scene.update(snapshot(robots=twice_pulled).motion)
     twice = np.linalg.norm(arrows.points[:, 1] - arrows.points[:, 0], axis=1)
     np.testing.assert_allclose(twice, 2.0 * lengths, rtol=1e-5)
@@ -125,7 +128,7 @@ def test_a_force_shows_and_then_hides_its_arrow(lab):
 
 
 def test_poses_that_are_not_finite_are_not_sent(lab):
-    broken = {name: robot(np.nan, 3.0) for name in NAMES}
+    broken = {bench: robot(np.nan, 3.0, law=DEFAULT_LAWS[bench]) for bench in BENCHES}
     lab.scene.update(snapshot(robots=broken).motion)
     lab.scene.update_traces(snapshot(robots=broken))
     assert lab.sent == []
@@ -165,7 +168,7 @@ def test_refused_places_come_and_go(lab):
 
 @pytest.mark.parametrize("instance", [0, 1])
 def test_pulling_an_end_point_tells_the_robot_and_the_place(lab, instance):
-    name, target = NAMES[instance], np.array([0.21, 0.0, 0.13])
+    name, target = BENCHES[instance], np.array([0.21, 0.0, 0.13])
     for phase in ("start", "update", "end"):
         play(lab, "/grips", phase, instance, RIGID.bases[name], RIGID.bases[name] + target)
     assert [event[:2] for event in lab.heard] == [("grab", name)] * 2 + [("release", name)]
@@ -174,7 +177,7 @@ def test_pulling_an_end_point_tells_the_robot_and_the_place(lab, instance):
 
 @pytest.mark.parametrize("robot_index", [0, 1])
 def test_a_dragged_point_moves_by_what_the_mouse_moved(lab, robot_index):
-    base, index = RIGID.bases[NAMES[robot_index]], 4
+    base, index = RIGID.bases[BENCHES[robot_index]], 4
     point = path().control_points[index]
     pressed = base + point + [0.003, 0.0, -0.002]
     shift = np.array([0.02, 0.0, 0.01])
@@ -205,7 +208,7 @@ def test_where_an_end_point_covers_a_control_point_the_one_that_is_meant_is_take
 ):
     lab.scene.path_first = path_first
     lab.scene.update(snapshot(path=replace(path(1), selected=selected)).motion)
-    name = NAMES[1]
+    name = BENCHES[1]
     point = path().control_points[4] + [beside, 0.0, 0.0]
     pressed, shift = RIGID.bases[name] + point, np.array([0.02, 0.0, 0.01])
     for phase, way in (("start", 0.0), ("update", 1.0), ("end", 1.0)):
@@ -222,7 +225,7 @@ def test_where_an_end_point_covers_a_control_point_the_one_that_is_meant_is_take
 def test_a_freehand_stroke_is_told_once_in_the_robots_frame(lab):
     strokes: list[np.ndarray] = []
     lab.scene.begin_freehand(strokes.append)
-    base = RIGID.bases[FollowerName]
+    base = RIGID.bases[RIGHT]
     corners = np.array([(0.1, 0.0, 0.1), (0.2, 0.0, 0.1), (0.2, 0.0, 0.2), (0.1, 0.0, 0.2)])
     phases = ("start", "update", "update", "end")
     for phase, corner in zip(phases, corners, strict=True):
@@ -289,7 +292,7 @@ def test_layers_keep_links_apart():
     assert BACK_LAYER - FRONT_LAYER > meshes.LINK_THICKNESS
 
 
-def test_controllers_differ_in_lightness_or_blue_for_every_eye():
-    tracker, follower = (np.array(palette.CONTROLLERS[name].rgb) for name in NAMES)
+def test_benches_differ_in_lightness_or_blue_for_every_eye():
+    tracker, follower = (np.array(palette.OF_BENCH[bench].rgb) for bench in BENCHES)
     assert abs(int(tracker[2]) - int(follower[2])) > 120
-    assert palette.TRACKER.hex == "#d55e00"
+    assert palette.OF_BENCH[LEFT].hex == "#d55e00"

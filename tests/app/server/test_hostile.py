@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.interpolate  # noqa: F401  a server loads it soon after its start: see lazy_imports
 import websockets.sync.client
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
@@ -99,9 +100,10 @@ class Guest:
         return dict(self.client.gui._gui_input_handle_from_uuid)
 
     def labelled(self, label: str) -> str:
-        """The widget of this label."""
-        found = [u for u, h in self.handles.items() if getattr(h, "label", "").startswith(label)]
-        return found[0]
+        """The widget whose label begins so; the shortest label is meant."""
+        labels = {uuid: getattr(handle, "label", "") for uuid, handle in self.handles.items()}
+        found = [uuid for uuid, own in labels.items() if own.startswith(label)]
+        return min(found, key=lambda uuid: len(labels[uuid]))
 
     def _read(self) -> None:
         with suppress(ConnectionClosed):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from onpath.app.common.access_codes import normalised, shown
@@ -12,11 +13,12 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.simulation.simulation_thread import SimulationThread
+from onpath.app.storage.lab_state import put_back
 from onpath.app.storage.records import Records, file_url
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.lessons.course import Course, read_course
 from onpath.models.systems.catalogue import FIVE_BAR
-from tests.support.lab import do, run, store
+from tests.support.lab import do, new_lab, run, store
 from tests.support.lesson_texts import write_lesson
 
 
@@ -111,3 +113,16 @@ def test_what_cannot_be_read_is_said_and_not_overwritten(servers: list[Server]) 
     servers[0].keeper.close()
     assert records.load("222222222222") == {"setup": {"robot": "hexapod"}, "lessons": {}}
     assert records.load(entry.code) is not None
+
+
+def test_a_path_accepted_then_and_refused_today_does_not_lock_the_lab() -> None:
+    """Two strands 4 mm apart were once accepted."""
+    angle = np.arange(16) * np.pi / 8
+    height = np.sin(angle) * (2_000 + 28_000 * np.cos(angle) ** 2)
+    points = np.column_stack([60_000 * np.cos(angle), height])
+    path = {"name": "edited", "numbers": np.rint(points).astype(int).ravel().tolist()}
+    setup = {"benches": {"five_bar": {"parameters": {"K1": 300.0}, "path": path}}}
+    lab = new_lab()
+    put_back(lab, {"setup": setup, "lessons": {}, "before": setup})
+    assert lab.session.parameters.K1 == 300.0 and lab.session.editor.design.name == "circle"
+    assert "two strands" in lab.message and "The circle is used" in lab.message

@@ -48,6 +48,7 @@ def test_nothing_of_an_old_database_is_lost(old: Path) -> None:
     assert state is not None
     restore(session, from_data(state["setup"]))
     assert (session.parameters.K1, session.editor.design.name) == (900.0, "clover")
+    assert session.parameters.K3 == 0.0  # as by default then
     records.close()
     after = rows(old)
     assert after.pop("alembic_version") == [(HEAD,)]

@@ -16,7 +16,6 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import InterpretedLoop
-from onpath.models.control import laws as controllers
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle, ellipse, segment
 from onpath.models.paths.frames import Plane
 from onpath.models.systems.five_bar import end_point, inverse_kinematics
@@ -117,7 +116,10 @@ def test_integral_action_removes_the_error_of_a_wrong_model(rig: Rig, kind: Kind
 
 
 @pytest.mark.parametrize("kind", [FOLLOWING, replace(FOLLOWING, level_set=True), TRACKING])
-@pytest.mark.parametrize("curve", [CIRCLE, ellipse((0.06, 0.04), (0.005, 0.0))])
+@pytest.mark.parametrize(
+    "curve",
+    [CIRCLE, ellipse((0.06, 0.04), (0.005, 0.0)), ellipse((0.06, 0.035), (0.0, 0.005), 0.6)],
+)
 def test_path_is_invariant(rig: Rig, kind: Kind, curve: Curve) -> None:
     conic = curve.conic()
     assert conic is not None
@@ -220,19 +222,43 @@ def integral(rig: Rig, kind: Kind, state: Array, ticks: int, **changes: object) 
 
 
 @BOTH
-def test_integral_grows_unless_torque_saturates_or_a_hold_acts(rig: Rig, kind: Kind) -> None:
+def test_integral_grows_unless_a_torque_saturates(rig: Rig, kind: Kind) -> None:
     memory = (1e-3, 2e-3)
     start = rig.state(kind, np.array([0.07, 0.01]), integral=memory)
     moved = integral(rig, kind, start, 1, K3=50) - memory
     assert abs(moved[0]) == pytest.approx(1e-3 * 0.02, rel=0.1)
     assert integral(rig, kind, start, 30, K3=50, torque_limit=1e-3) == pytest.approx(memory, abs=0)
-    assert integral(rig, kind, start, 30, K3=50, hold_active=1) == pytest.approx(memory, abs=0)
+
+
+@BOTH
+@pytest.mark.parametrize(
+    "push",
+    [
+        {"hold_active": 1, "hold_anchor": (0.06, 0.01), "hold_tangent": (0.6, 0.8)},
+        {"hand_active": 1, "hand_target": (0.09, -0.02)},
+    ],
+    ids=["brake", "hand"],
+)
+def test_integral_knows_nothing_of_brake_and_hand(
+    rig: Rig, kind: Kind, push: dict[str, object]
+) -> None:
+    start = rig.state(kind, np.array([0.07, 0.01]), integral=(1e-3, 2e-3))
+    free, pushed = (integral(rig, kind, start, 1, K3=50, **own) for own in ({}, push))
+    assert free.tobytes() == pushed.tobytes() and free[0] != 1e-3
 
 
 @BOTH
 def test_without_integral_gain_nothing_collects(rig: Rig, kind: Kind) -> None:
     start = rig.state(kind, np.array([0.07, 0.01]), integral=(1e-3, -5e-4))
     assert np.all(integral(rig, kind, start, 1, K3=0) == 0.0)
+
+
+def test_switch_of_the_tracker_s_integral_is_the_tracker_s_alone(rig: Rig) -> None:
+    place = np.array([0.07, 0.01])
+    for kind, collects in ((TRACKING, False), (FOLLOWING, True)):
+        start = rig.state(kind, place, integral=(1e-3, 2e-3))
+        after = integral(rig, kind, start, 1, K3=50, tracker_integral=0)
+        assert np.any(after != 0.0) == collects
 
 
 @pytest.mark.parametrize("kind", [FOLLOWING, TRACKING, replace(FOLLOWING, encoder=True)])
@@ -358,8 +384,11 @@ def test_row_tells_the_instant_a_tick_begins(rig: Rig) -> None:
         {"hold_active": 1, "hold_anchor": (0.05, 0.01), "hold_tangent": (0.0, 1.0)},
         {"position": 1, "target": 1.5, "coulomb": 0.02, "hold_ticks": 4},
         {"torque_limit": 0.8, "K3": 40, "hand_active": 1},
+        {"ramp": 10.0},
+        {"hold_active": 1, "hold_anchor": (0.05, 0.01), "hold_normal": (1.0, 0.0)},
+        {"wall_active": 1, "wall_place": (0.0, 0.03), "wall_normal": (0.0, -1.0)},
     ],
-    ids=["plain", "hand", "hold", "position", "saturated"],
+    ids=["plain", "hand", "hold", "position", "saturated", "ramp", "both directions", "wall"],
 )
 @pytest.mark.parametrize("lanes", LANES)
 def test_hand_written_c_loop_agrees(
@@ -390,16 +419,7 @@ def test_hand_written_c_loop_agrees(
 
 
 def test_unknown_controller_is_refused(rig: Rig) -> None:
-    with pytest.raises(ValueError, match=r"'pid'.*trajectory_tracking.*path_following"):
-        build_kernel(rig.system, Plane(), Kind("pid"))
-
-
-def test_a_law_that_is_named_but_not_called_is_refused(
-    rig: Rig, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """It is not taken for path following."""
-    monkeypatch.setattr(controllers, "NAMES", (*controllers.NAMES, "pid"))
-    with pytest.raises(NotImplementedError, match="pid"):
+    with pytest.raises(ValueError, match="unknown law 'pid'"):
         build_kernel(rig.system, Plane(), Kind("pid"))
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import BLOCK, SHORT, InterpretedLoop, Loop
-from onpath.models.control.laws import NAMES
+from onpath.models.control.laws.registry import NAMES
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle
 from tests.support.rig import FOLLOWING, Rig
 

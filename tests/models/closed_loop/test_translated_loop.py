@@ -17,7 +17,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.closed_loop.translated_loop import OPERATIONS, translate, translate_loop
-from onpath.models.control.laws import NAMES
+from onpath.models.control.laws.registry import NAMES
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import TABLE_SHAPE, TERMS, circle
 from onpath.models.systems.five_bar_robot import rigid_five_bar

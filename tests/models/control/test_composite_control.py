@@ -11,7 +11,9 @@ import pytest
 
 from onpath.models.arrays import Array
 from onpath.models.control import composite_control as composite
-from onpath.models.control.laws import Gains, PathReference, linearization, path_following
+from onpath.models.control.laws.law import Clock, Gains, PathReference, View
+from onpath.models.control.laws.path_following import path_following
+from onpath.models.control.linearization import linearization
 from onpath.models.control.virtual_output import VirtualOutput, virtual_output
 from onpath.models.paths.curves import circle, nearest
 from onpath.models.paths.frames import SlantedPlane
@@ -74,6 +76,34 @@ def moved(q: ca.SX, v: ca.SX, u: ca.SX, force: ca.SX) -> ca.SX:
     return x
 
 
+def following(q: ca.SX, v: ca.SX, output: VirtualOutput, speed: ca.SX) -> ca.SX:
+    """Commanded y'' of path following at a speed."""
+    zero, none = ca.SX(0), ca.SX.zeros(3)
+    task = PathReference(zero, zero, speed, ca.SX(1e3), zero)
+    clock = Clock(zero, task, True, ca.SX(DT), ca.SX(DT), ca.SX(DT / 2), {})
+    ellipse = LocalCurve(zero, none, none, none, none)
+    view = View(
+        system=SYSTEM,
+        q=q,
+        v=v,
+        model=none,
+        frame=output.frame,
+        y=none,
+        y_rate=none,
+        output=output,
+        closest=ellipse,
+        reference=None,
+        task=task,
+        clock=clock,
+        gains=GAINS,
+        own_gains={},
+        integral=none,
+    )
+    command = path_following(view).acceleration
+    assert command is not None
+    return command
+
+
 @lru_cache
 def tick(law: str, alpha: float, changes: tuple[tuple[str, float], ...]) -> ca.Function:
     """((q, v, memory), speed, force on the tip) -> (after, theta): a plain loop at 1 kHz."""
@@ -84,15 +114,13 @@ def tick(law: str, alpha: float, changes: tuple[tuple[str, float], ...]) -> ca.F
     if law == "composite":
         now = composite.compensation(SYSTEM, q, v, model, memory, turned(**dict(changes)))
         output = coordinates(now.y, now.y_rate)
-        task = PathReference(ca.SX(0), ca.SX(0), composite.wanted_speed(now, output, GAINS.k5))
-        command = path_following(output, True, GAINS, task, ca.SX.zeros(2))
+        command = following(q, v, output, composite.wanted_speed(now, output, GAINS.k5))
         rate = composite.rates(now, speed, command)
         u = composite.torques(now, rate, command)
         chain = chain + DT * composite.MEMORY.join(rate)
     else:
         output = coordinates(*SYSTEM.with_rate(SYSTEM.controlled_output)(q, v, model))
-        task = PathReference(ca.SX(0), ca.SX(0), speed)
-        command = path_following(output, True, GAINS, task, ca.SX.zeros(2))
+        command = following(q, v, output, speed)
         u = linearization(SYSTEM, q, v, model, command)
     after = ca.vertcat(moved(q, v, u, force), chain)
     return ca.Function("tick", [x, speed, force], [ca.cse(after), output.theta])

@@ -16,19 +16,21 @@ from onpath.models.closed_loop.simulation import (
     kind_of,
     settings_vector,
 )
-from onpath.models.control.laws import NAMES
+from onpath.models.control.laws.registry import NAMES
 from onpath.models.control.poles import Complex, channels
 from onpath.models.paths.curves import circle
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.five_bar_robot import rigid_five_bar
-from onpath.models.systems.parameters import FiveBarParameters, time_step
+from onpath.models.systems.parameters import time_step
 
 RADIUS = 0.05
+PD = FiveBarParameters(K3=0.0)
 
 
 def simulated(seconds: float, offset: float, name: str = "path_following", **values: Any):
     """(time of a tick, log of a run that begins `offset` [m] outside the circle, at rest)."""
     robot, curve = rigid_five_bar(), circle(RADIUS)
-    parameters = dataclasses.replace(FiveBarParameters(), **values)
+    parameters = dataclasses.replace(PD, tracker_integral="on", **values)
     kernel = kernel_of(robot, kind_of(name, parameters, curve))
     state = first_state(robot, kernel, curve, robot.rest(np.array([RADIUS + offset, 0.0])))
     settings = settings_vector(robot, kernel, parameters, curve, FREE)
@@ -48,7 +50,7 @@ def test_error_across_moves_as_the_poles_say(gains: tuple[float, ...], rate: int
         "control_rate": rate,
         "speed": 0.0,
     }
-    poles = channels(dataclasses.replace(FiveBarParameters(), **values))[0].poles
+    poles = channels(dataclasses.replace(PD, **values))[0].poles
     offset = 1e-5
     dt, log = simulated(0.4, offset, "path_following", **values)
     xi, times = log["xi"][:, 0] * np.sign(log["xi"][0, 0]), dt * np.arange(len(log["xi"]))
@@ -64,7 +66,7 @@ def test_error_across_moves_as_the_poles_say(gains: tuple[float, ...], rate: int
 @pytest.mark.parametrize("rate", [200, 500, 1000])
 def test_undamped_swing_grows_or_stays_as_the_poles_say(rate: int) -> None:
     values = {"K1": 2500.0, "K2": 0.0, "control_rate": rate}
-    pole = slowest(channels(dataclasses.replace(FiveBarParameters(), **values))[0].poles)
+    pole = slowest(channels(dataclasses.replace(PD, **values))[0].poles)
     dt, log = simulated(1.5, 1e-6, "path_following", speed=0.0, **values)
     xi, period = np.abs(log["xi"][:, 0]), round(2 * np.pi / abs(pole.imag) / dt)
     grown = np.log(xi[-period:].max() / xi[:period].max())
@@ -74,7 +76,7 @@ def test_undamped_swing_grows_or_stays_as_the_poles_say(rate: int) -> None:
 
 @pytest.mark.parametrize("gain", [2.0, 10.0, 40.0])
 def test_speed_settles_as_the_pole_says(gain: float) -> None:
-    along = channels(dataclasses.replace(FiveBarParameters(), K5=gain))[1]
+    along = channels(dataclasses.replace(PD, K5=gain))[1]
     dt, log = simulated(min(0.3, 5 / gain), 0.0, K5=gain, speed=1.0)
     error = 1.0 - log["theta_rate"][:, 0]
     rate = -np.log(error[-1] / error[20]) / (dt * (len(error) - 21))
@@ -84,7 +86,7 @@ def test_speed_settles_as_the_pole_says(gain: float) -> None:
 
 def test_position_settles_as_the_poles_say() -> None:
     values = {"task": "position", "target": 0.02, "K4": 25.0, "K5": 3.0}
-    pole = slowest(channels(dataclasses.replace(FiveBarParameters(), **values))[1].poles)
+    pole = slowest(channels(dataclasses.replace(PD, **values))[1].poles)
     dt, log = simulated(2.5, 0.0, **values)
     theta = log["theta"][:, 0]
     turns = np.flatnonzero(np.diff(np.sign(np.diff(theta)))) + 1
@@ -114,7 +116,7 @@ STABLE = [
 def test_predicted_instability_is_what_happens(
     name: str, values: dict[str, float], stable: bool
 ) -> None:
-    across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]
+    across = channels(dataclasses.replace(PD, **values))[0]
     assert across.stable is stable
     offset = 1e-6
     _, log = simulated(3.0, offset, name, speed=0.0, **values)
@@ -126,10 +128,41 @@ def test_predicted_instability_is_what_happens(
     assert ("unstable" in str(across.behaviour())) is not stable
 
 
+def test_the_integral_adds_a_third_pole() -> None:
+    across = channels(FiveBarParameters())[0]
+    assert across.pole_words() == "-26.2, -9.95, -3.83"
+    assert np.roots([1, 40, 400, 1000]) == pytest.approx(across.poles.real, rel=0.02)
+    assert "settles in 1 s" in str(across.behaviour())
+
+
+def test_with_an_integral_real_poles_are_no_promise_of_no_overshoot() -> None:
+    """An initial error changes its sign once, and does not swing."""
+    across = channels(FiveBarParameters())[0]
+    assert "no oscillation" in str(across.behaviour())
+    _, log = simulated(3.0, 1e-4, speed=0.0, K3=1000.0)
+    xi = log["xi"][:, 0] / log["xi"][0, 0]
+    assert -0.2 < xi.min() < -0.1
+    assert np.count_nonzero(np.diff(np.sign(xi[np.abs(xi) > 1e-3]))) == 1
+
+
+def test_the_least_damped_poles_are_told_even_if_another_one_is_slower() -> None:
+    across = channels(FiveBarParameters(K2=8.0))[0]
+    assert across.poles[across.poles.real.argmax()].imag == 0
+    assert "±" in across.pole_words() and "damping 0." in str(across.behaviour())
+
+
+@pytest.mark.parametrize("rate", [1000, 2000])
+def test_without_damping_it_swings_for_ever(rate: int) -> None:
+    values = {"K1": 400.0, "K2": 0.0, "control_rate": rate}
+    across = channels(dataclasses.replace(PD, **values))[0]
+    assert "swings for ever" in str(across.behaviour()) and not across.stable
+    _, log = simulated(10.0, 1e-3, speed=0.0, **values)
+    xi = np.abs(log["xi"][:, 0])
+    assert xi[-len(xi) // 5 :].max() == pytest.approx(1e-3, rel=0.02)
+
+
 def test_words_name_damping_and_time() -> None:
-    damped, swinging = (
-        channels(dataclasses.replace(FiveBarParameters(), K1=400.0, K2=k2))[0] for k2 in (40.0, 8.0)
-    )
+    damped, swinging = (channels(dataclasses.replace(PD, K1=400.0, K2=k2))[0] for k2 in (40.0, 8.0))
     assert "no overshoot" in str(damped.behaviour())
     assert "damping 0.2" in str(swinging.behaviour()) and "settles in 1 s" in str(
         swinging.behaviour()
@@ -146,19 +179,19 @@ def test_words_name_damping_and_time() -> None:
     ],
 )
 def test_poles_are_told_as_the_words_have_it(values: dict[str, float], told: str) -> None:
-    across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]
+    across = channels(dataclasses.replace(PD, **values))[0]
     assert across.pole_words() == told
     assert ("±" in told) is ("no overshoot" not in str(across.behaviour()))
 
 
 @pytest.mark.parametrize("values", [{"K1": 0.0}, {"K2": 0.0}, {"K1": 0.0, "K2": 0.0}])
 def test_an_error_that_stays_is_not_called_stable(values: dict[str, float]) -> None:
-    across = channels(dataclasses.replace(FiveBarParameters(), **values))[0]
+    across = channels(dataclasses.replace(PD, **values))[0]
     assert not across.stable and "stable" in str(across.behaviour())
 
 
 def test_free_position_is_not_stable_but_free_speed_loop_is() -> None:
-    free = dataclasses.replace(FiveBarParameters(), K4=0.0, task="position")
+    free = dataclasses.replace(PD, K4=0.0, task="position")
     assert not channels(free)[1].stable
     assert channels(dataclasses.replace(free, task="speed"))[1].stable
     assert not channels(dataclasses.replace(free, task="speed", K5=0.0))[1].stable

@@ -19,13 +19,13 @@ H = 1e-3  # [s], step of the finite differences
 
 def coordinates(frame: Frame, level_set: bool) -> ca.Function:
     """(theta_0, y, y', y'', table, conic) -> (eta, xi), two derivatives, y'' from them."""
-    theta, table, conic = ca.SX.sym("t"), ca.SX.sym("table", *TABLE_SHAPE), ca.SX.sym("conic", 5)
+    theta, table, conic = ca.SX.sym("t"), ca.SX.sym("table", *TABLE_SHAPE), ca.SX.sym("conic", 6)
     y, rate, acceleration = (ca.SX.sym(name, frame.p) for name in ("y", "dy", "ddy"))
     local = LocalCurve.from_values(theta, True, table @ basis(theta, True))
     for _ in range(4):  # converge from far
         local = local.project(frame.split(y)[0])
         local = LocalCurve.from_values(local.theta, True, table @ basis(local.theta, True))
-    level = LevelSet(conic[:2], conic[2:4], conic[4]) if level_set else None
+    level = LevelSet(conic[:2], conic[2:5], conic[5]) if level_set else None
     output = virtual_output(local, frame, level, y, rate)
     z_acceleration, zeta_acceleration = frame.split(acceleration, rate=True)
     second = ca.inv(output.inverse) @ z_acceleration + output.offset
@@ -63,6 +63,7 @@ CASES = [
     (Plane(), False, "circle"),
     (Plane(), True, "circle"),
     (Plane(), True, "ellipse"),
+    (Plane(), True, "turned"),
     (SlantedPlane(), False, "random"),
     (SlantedPlane(), True, "circle"),
 ]
@@ -95,12 +96,14 @@ def test_rates_and_accelerations_are_derivatives(
     random_curve: Callable[[int], Curve], frame: Frame, level_set: bool, name: str
 ) -> None:
     function = coordinates(frame, level_set)
+    turned = ellipse((0.06, 0.045), (0.003, 0.0), 0.6)
     fixed = {"circle": circle(0.05), "ellipse": ellipse((0.06, 0.045), (0.003, 0.0))}
+    fixed["turned"] = turned
     largest = []
     for seed in range(60):
         curve = fixed.get(name) or random_curve(seed)
         conic = curve.conic() if level_set else None
-        numbers = np.zeros(5) if conic is None else np.concatenate([*conic[:2], [conic[2]]])
+        numbers = np.zeros(6) if conic is None else np.concatenate([*conic[:2], [conic[2]]])
         largest.append(check_rates(function, frame, curve, numbers, seed))
     assert max(largest) > 10.0
 
@@ -117,15 +120,16 @@ def test_signed_distance_is_the_distance_and_positive_on_the_left(
         offset = rng.uniform(-0.008, 0.008)
         y = curve.at(np.array(theta)) + offset * left
         table = curve.table().reshape(TABLE_SHAPE, order="F")
-        places = function(theta, y, still, still, table, np.zeros(5))[0].full().ravel()
+        places = function(theta, y, still, still, table, np.zeros(6))[0].full().ravel()
         assert places == pytest.approx([theta, offset], abs=1e-9)
 
 
 def test_level_set_is_the_paper_s_polynomial() -> None:
     function, still = coordinates(Plane(), True), np.zeros(2)
     table = circle(0.05).table().reshape(TABLE_SHAPE, order="F")
+    conic = [0, 0, 1, 1, 0, 0.0025]
     for y in ((0.05, 0.0), (0.03, 0.04), (0.06, 0.01), (-0.02, 0.03)):
-        xi = function(np.arctan2(y[1], y[0]), y, still, still, table, [0, 0, 1, 1, 0.0025])[0][1]
+        xi = function(np.arctan2(y[1], y[0]), y, still, still, table, conic)[0][1]
         assert float(xi) == pytest.approx(y[0] ** 2 + y[1] ** 2 - 0.05**2, abs=1e-16)
 
 

@@ -178,15 +178,26 @@ def test_points_that_are_no_path_are_refused(
 
 
 def test_conic_is_recognised_and_vanishes_on_its_curve() -> None:
-    for half_axes in ((0.05, 0.05), (0.06, 0.02)):
-        curve = ellipse(half_axes, (0.01, 0.02))
-        conic = curve.conic()
-        assert conic is not None
-        centre, weights, constant = conic
-        assert ((curve.at(THETA) - centre) ** 2) @ weights == pytest.approx(constant)
+    for half_axes in ((0.05, 0.05), (0.06, 0.02), (0.03, 0.08)):
+        for angle in (0.0, 0.5, -2.0):
+            curve = ellipse(half_axes, (0.01, 0.02), angle)
+            conic = curve.conic()
+            assert conic is not None
+            centre, (g11, g22, g12), constant = conic
+            x, y = (curve.at(THETA) - centre).T
+            assert g11 * x**2 + 2 * g12 * x * y + g22 * y**2 == pytest.approx(constant)
+            assert g11 * g22 - g12**2 == pytest.approx(1.0)
     conic = circle(0.05).conic()
     assert conic is not None
-    assert conic[1] == pytest.approx([1.0, 1.0]) and conic[2] == pytest.approx(0.05**2)
+    assert conic[1] == pytest.approx([1.0, 1.0, 0.0]) and conic[2] == pytest.approx(0.05**2)
+
+
+def test_an_ellipse_is_turned_about_its_centre() -> None:
+    turned, upright = ellipse((0.06, 0.02), (0.01, 0.02), 0.7), ellipse((0.06, 0.02))
+    c, s = np.cos(0.7), np.sin(0.7)
+    expected = upright.at(THETA) @ np.array([[c, s], [-s, c]]) + [0.01, 0.02]
+    assert turned.at(THETA) == pytest.approx(expected, abs=1e-15)
+    assert np.array_equal(ellipse((0.06, 0.02), angle=0.0).series, upright.series)
 
 
 def test_other_curves_are_no_conics(random_curve: Callable[[int], Curve]) -> None:

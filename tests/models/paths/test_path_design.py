@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from onpath.app.lab.path_editor import BLEND, PathEditor
+from onpath.models.arrays import Array
 from onpath.models.paths.curve_faults import LEAST_MARGIN, TUBE, curve_faults, self_crossings
+from onpath.models.paths.curve_fit import closed_through, open_through
 from onpath.models.paths.curves import (
     Curve,
     aligned,
@@ -361,3 +364,75 @@ def test_version_changes_with_everything_that_is_drawn() -> None:
         act()
         assert editor.version > seen[-1]
         seen.append(editor.version)
+
+
+# The tube: its width
+
+
+def wavy(seed: int, size: float) -> Curve:
+    """A closed curve of up to five harmonics about the middle of the workspace."""
+    rng = np.random.default_rng(seed)
+    shrink = size / np.arange(1, 6)[:, None] ** 2
+    cosine, sine = rng.normal(size=(2, 5, 2)) * shrink
+    cosine[0, 0] += 0.04
+    sine[0, 1] += 0.04
+    return fourier(np.zeros(2), cosine, sine)
+
+
+def overtaken(curve: Curve, depth: float) -> NDArray[np.bool_]:
+    """Where a point at that distance from the curve, on either side, is nearer to another strand.
+
+    Returns:
+        For 150 points of the curve.
+    """
+    theta = curve.sample(150)
+    first = curve.at(theta, 1)
+    normal = np.stack([-first[:, 1], first[:, 0]], axis=1)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    sides = [curve.nearest(curve.at(theta) + side * depth * normal)[1] for side in (1, -1)]
+    return np.min(sides, axis=0) < depth - 1e-6
+
+
+def peanut(waist: float, bulge: float) -> Curve:
+    """A closed curve with a waist in the middle, [m]."""
+    theta = np.linspace(-np.pi, np.pi, 64, endpoint=False)
+    height = waist / 2 + bulge * np.cos(theta) ** 2
+    return closed_through(np.column_stack([0.08 * np.cos(theta), np.sin(theta) * height]))
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.one_of(
+        st.builds(wavy, st.integers(0, 10**6), st.floats(0.0, 0.02)),
+        st.builds(peanut, st.floats(0.001, 0.04), st.floats(0.015, 0.03)),
+    )
+)
+def test_in_the_tube_of_an_accepted_path_the_closest_point_is_unique(curve: Curve) -> None:
+    found = {str(fault.reason) for fault in curve_faults(everywhere, curve)}
+    narrow = any("two strands" in reason for reason in found)
+    event(f"accepted: {not found}, only narrow: {narrow and len(found) == 1}")
+    if not found:
+        assert not overtaken(curve, 0.98 * TUBE).any()
+    elif narrow and len(found) == 1:
+        assert overtaken(curve, TUBE).any()
+
+
+def everywhere(z: Array) -> Array:
+    """A robot that reaches all points equally well."""
+    return np.ones(len(z))
+
+
+@pytest.mark.parametrize(("waist", "refused"), [(0.015, True), (0.017, False)])
+def test_a_waist_must_be_as_wide_as_the_tube(waist: float, refused: bool) -> None:
+    found = curve_faults(everywhere, peanut(waist, 0.02))
+    assert bool(found) == refused
+    if refused:
+        assert "two strands" in str(found[0].reason)
+        assert np.all(np.abs(found[0].points[:, 0]) < 0.03)
+
+
+def test_the_strands_of_an_open_path_are_kept_apart_too() -> None:
+    hairpin = open_through(
+        np.array([[-0.06, 0.0], [0.05, 0.0], [0.06, 0.006], [0.05, 0.012], [-0.06, 0.012]])
+    )
+    assert any("two strands" in str(fault.reason) for fault in curve_faults(everywhere, hairpin))

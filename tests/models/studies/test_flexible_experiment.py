@@ -64,7 +64,7 @@ def test_a_hold_that_outlasts_the_turn_keeps_its_place_and_the_robot_then_runs_b
 
 def test_summary_says_that_it_diverged() -> None:
     chosen = experiments()["flexible"].with_values({"alpha": "1"})
-    result = summary(chosen, [run(chosen, "path_following")])["controllers"]["path_following"]
+    result = summary(chosen, [run(chosen, "path_following")])["laws"]["path_following"]
     assert result["diverged"] is True and result["diverged_at_s"] < 0.1
 
 
@@ -74,8 +74,9 @@ def test_csv_has_the_modal_coordinates(tmp_path: Path, capsys: pytest.CaptureFix
     assert run_command(["experiment", "flexible", *options]) == 0
     assert "path following" in capsys.readouterr().out
     names = file.read_text().splitlines()[0].split(",")
-    assert names[2:10] == [
+    assert names[2:15] == [
         *("q1_rad", "q2_rad", "q3_rad", "f1_m1.5", "f2_m1.5"),
+        *("q1_rate_rad_s", "q2_rate_rad_s", "q3_rate_rad_s", "f1_rate_m1.5_s", "f2_rate_m1.5_s"),
         *("y1_m", "y2_m", "y3_m"),
     ]
 

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.identify import MOST_TICKS, last_record
 from onpath.app.lab.lab import Lab
@@ -27,7 +26,7 @@ from onpath.models.studies.identification import (
     smooth_velocities,
 )
 from onpath.models.systems.five_bar_robot import RigidFiveBar
-from tests.support.lab import FOLLOWER, do, new_lab, run
+from tests.support.lab import FOLLOWER, do, new_lab, replayed, run
 from tests.support.rig import FOLLOWING, Rig, jacobian
 
 COULOMB = 0.04
@@ -256,13 +255,13 @@ def test_lab_learns_from_the_robot_as_it_is_now() -> None:
     assert lab.message_level == "warning" and "let it run" in lab.message
 
 
-def test_lab_looks_at_a_bounded_past_and_that_of_the_follower() -> None:
+def test_lab_looks_at_a_bounded_past_and_that_of_the_right_robot() -> None:
     lab = made_lab(8.0)
     history = lab.session.history.all()
     record = last_record(five_bar(lab), history)
     n = len(record.q)
     assert MOST_TICKS - 20 < n <= MOST_TICKS
-    fields = replay(lab.session.robot, history)[FOLLOWER].fields
+    fields = replayed(lab.session)[FOLLOWER].fields
     for name, values in (("q", record.q), ("v", record.v), ("u", record.torque)):
         np.testing.assert_allclose(values, fields[name][-n:], atol=1e-12)
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.five_bar_robot import SHORT, rigid_five_bar
-from onpath.models.systems.parameters import FiveBarParameters
 
 ROBOT, TICKS = rigid_five_bar(), 16
 HOME = ROBOT.rest(np.zeros(2))

@@ -169,7 +169,7 @@ def test_read_with_unit_modes_the_printed_equations_are_that_plant(rho: float) -
     parts = robot(3, "unit_modes").function("drift", "input_gain")
     for seed in SEEDS:
         q, v = poses(seed)
-        drift, gain = (part.full() for part in parts(q, v, numbers(rho=rho, **FRICTIONLESS)))
+        drift, gain = (part.full() for part in parts(q, v, numbers(rho=rho)))
         expected, expected_gain = printed(q, v, rho, norm=1.0)
         assert drift.ravel() == pytest.approx(expected, rel=1e-9, abs=1e-9)
         assert gain == pytest.approx(expected_gain, rel=1e-9, abs=1e-12)

@@ -20,6 +20,7 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import FLEXIBLE, ROBOTS
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.flexible_robot import (
     BENT,
     MOST_BENT,
@@ -28,7 +29,6 @@ from onpath.models.systems.flexible_robot import (
     flexible_five_bar_robot,
     robot_for,
 )
-from onpath.models.systems.parameters import FiveBarParameters
 from tests.support.drawing import drawn
 
 ROBOT, DEFAULTS = flexible_five_bar_robot(), FlexibleParameters()

@@ -9,14 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from onpath.models.systems.parameters import (
-    NOTHING,
-    FiveBarParameters,
-    Spec,
-    changed,
-    checked,
-    specs,
-)
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
+from onpath.models.systems.parameter_specs import NOTHING, Spec, checked
+from onpath.models.systems.parameters import changed, specs
 
 SPECS = specs(FiveBarParameters)
 NUMBERS = {name: spec for name, spec in SPECS.items() if not spec.options}

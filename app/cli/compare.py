@@ -1,0 +1,151 @@
+"""`onpath compare`: all control laws under the same obstructions."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
+
+if TYPE_CHECKING:
+    from onpath.models.studies.comparison import Contest, Outcome
+
+    Results = dict[tuple[str, str], list[Outcome]]
+
+
+@dataclass(frozen=True)
+class CompareCommand:
+    """Compare control laws: the same robot, path, gains and obstructions for all of them."""
+
+    robot: str = "five_bar"
+    """Name of the robot."""
+    law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """A law to compare; repeat for more. By default all that suit the robot."""
+    obstruction: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """An obstruction; repeat for more. By default all."""
+    radius: float = 0.05
+    """Radius of the circle to follow, in metres."""
+    set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """Set any parameter, as name=value; repeat for more."""
+    csv: Path | None = None
+    """Write all outcomes, a row for each run, to this CSV file."""
+    plot: Path | None = None
+    """Draw contour error against delay to this .png, .svg or .pdf file."""
+    json: bool = False
+    """Print all outcomes as JSON."""
+
+    def run(self) -> None:
+        """Simulate, then write and print the requested output."""
+        from onpath.models.studies.comparison import as_data
+
+        check_plot(self.plot)
+        if self.csv:
+            check_writable(self.csv)
+        contest = self._contest()
+        results = self._results(contest)
+        if self.csv:
+            with whole_file(self.csv) as path, path.open("w", newline="") as file:
+                rows = [dataclasses.asdict(o) for each in results.values() for o in each]
+                writer = csv.DictWriter(file, list(rows[0]))
+                writer.writeheader()
+                writer.writerows(rows)
+        if self.plot:
+            from onpath.app.exports.figures_comparison import draw_comparison
+
+            with whole_file(self.plot) as path:
+                draw_comparison(results, path)
+        print(json.dumps(as_data(contest, results), indent=2) if self.json else table(results))
+
+    def _contest(self) -> Contest:
+        from onpath.app.cli.experiment import assignments
+        from onpath.models.paths.curves import circle
+        from onpath.models.studies.comparison import Contest
+        from onpath.models.systems.catalogue import ROBOTS
+        from onpath.models.systems.parameter_specs import unknown_name
+        from onpath.models.systems.parameters import changed
+
+        if self.robot not in ROBOTS:
+            raise unknown_name(self.robot, list(ROBOTS), "robot")
+        if not 0.005 <= self.radius <= 0.12:
+            raise ValueError(f"--radius {self.radius:g}: expected 0.005 to 0.12 m")
+        entry = ROBOTS[self.robot]
+        parameters = entry.parameters()
+        for name, value in assignments(self.set).items():
+            parameters = changed(parameters, name, value)
+        if parameters.speed == 0 or parameters.task != "speed":
+            raise ValueError("a comparison needs a speed along the path other than 0")
+        return Contest(entry, parameters, circle(self.radius))
+
+    def _results(self, contest: Contest) -> Results:
+        from rich.console import Console
+        from rich.progress import track
+
+        from onpath.models.studies.comparison import OBSTRUCTIONS, compare
+
+        laws = _known(self.law, contest.laws(), "law")
+        obstructions = _known(self.obstruction, list(OBSTRUCTIONS), "obstruction")
+        pairs = compare(contest, laws, obstructions)
+        console = Console(stderr=True)
+        shown = track(
+            pairs,
+            "comparing",
+            total=len(laws) * len(obstructions),
+            console=console,
+            transient=True,
+            disable=not sys.stderr.isatty(),
+        )
+        return {(each[0].law, each[0].obstruction): each for each in shown}
+
+
+def _known(names: tuple[str, ...], known: list[str], what: str) -> list[str]:
+    """The names asked for, or all.
+
+    Raises:
+        ValueError: one of them does not exist, or cannot be compared.
+    """
+    from onpath.models.systems.parameter_specs import unknown_name
+
+    for name in names:
+        if name not in known:
+            raise unknown_name(name, known, what)
+    return list(dict.fromkeys(names)) or known
+
+
+def table(results: Results) -> str:
+    """The worst distance [mm] and delay [s] of every law under every obstruction."""
+    laws = list(dict.fromkeys(law for law, _ in results))
+    obstructions = list(dict.fromkeys(name for _, name in results))
+    lines = list[str]()
+    for title, cell in (
+        ("largest distance to the path, worst place  [mm]", _distance),
+        ("delay at the end, worst place  [s]", _delay),
+    ):
+        lines += [title, " " * 20 + "".join(f"{name:>19s}" for name in obstructions)]
+        lines += [
+            f"  {law:18s}" + "".join(f"{cell(results[law, name]):>19s}" for name in obstructions)
+            for law in laws
+        ]
+        lines.append("")
+    lines.append("Runs that were stopped as diverged are marked by !; see --json for all measures.")
+    return "\n".join(lines)
+
+
+def _distance(outcomes: list[Outcome]) -> str:
+    return _worst(outcomes, lambda o: 1000 * o.max_distance_m, ".2f")
+
+
+def _delay(outcomes: list[Outcome]) -> str:
+    return _worst(outcomes, lambda o: o.delay_s, ".2f")
+
+
+def _worst(outcomes: list[Outcome], value: Callable[[Outcome], float], form: str) -> str:
+    mark = "!" if any(o.diverged_at_s is not None for o in outcomes) else ""
+    return f"{max(map(value, outcomes), key=abs) + 0.0:{form}}{mark}"

@@ -1,0 +1,85 @@
+"""`onpath identify`: a robot's parameters from a recorded motion."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import tyro
+
+if TYPE_CHECKING:
+    from onpath.models.studies.linear_model import BaseParameter, Estimate
+
+
+@dataclass(frozen=True)
+class IdentifyCommand:
+    """Estimate a robot's parameters from a CSV file that an experiment or the lab wrote."""
+
+    file: Annotated[Path, tyro.conf.Positional]
+    """CSV file of `onpath experiment --csv` or of the lab's export."""
+    robot: str = "five_bar"
+    """Name of the robot."""
+    law: str = ""
+    """Use only the rows of this control law; all by default."""
+    json: bool = False
+    """Print the result as JSON."""
+
+    def run(self) -> None:
+        """Read, estimate and print."""
+        from onpath.models.studies.linear_model import estimate, linear_model
+        from onpath.models.studies.record_file import read_records
+        from onpath.models.systems.catalogue import ROBOTS
+        from onpath.models.systems.parameter_specs import unknown_name
+
+        if self.robot not in ROBOTS:
+            raise unknown_name(self.robot, list(ROBOTS), "robot")
+        entry = ROBOTS[self.robot]
+        robot = entry.make(entry.parameters())
+        linear_model(robot.system)  # refuse an unsuitable robot before reading
+        records = read_records(self.file, robot)
+        if self.law and self.law not in records:
+            raise unknown_name(self.law, list(records), "law")
+        used = {law: each for law, each in records.items() if self.law in ("", law)}
+        geometry = robot.plant(entry.parameters())
+        result = estimate(robot.system, list(used.values()), geometry)
+        seconds = sum(len(each.q) * each.dt for each in used.values())
+        if self.json:
+            print(json.dumps(_data(self.robot, list(used), seconds, result), indent=2))
+        else:
+            print(_table(self.robot, list(used), seconds, result))
+
+
+def _data(robot: str, laws: list[str], seconds: float, result: Estimate) -> dict[str, Any]:
+    return {
+        "robot": robot,
+        "laws": laws,
+        "seconds": round(seconds, 6),
+        "parameters": [_entry(each) for each in result.found],
+        "not_excited": list(result.unexcited),
+        "unexplained": float(f"{result.unexplained:.3g}"),
+    }
+
+
+def _entry(each: BaseParameter) -> dict[str, Any]:
+    return {
+        "name": each.name,
+        "plus": {name: float(f"{share:.6g}") for name, share in each.others},
+        "value": float(f"{each.value:.9g}"),
+        "standard_error": float(f"{each.error:.3g}"),
+    }
+
+
+def _table(robot: str, laws: list[str], seconds: float, result: Estimate) -> str:
+    """The result as text."""
+    lines = [f"{robot}: {seconds:.1f} s under {', '.join(laws)}"]
+    lines += [
+        f"  {each.label():24s} {each.value:12.6g}  ± {each.error:.2g}" for each in result.found
+    ]
+    if any(each.others for each in result.found):
+        lines.append("  the motion does not tell the parameters of a sum apart")
+    if result.unexcited:
+        lines.append(f"  not excited: {', '.join(result.unexcited)}")
+    lines.append(f"  {100 * result.unexplained:.2g} % of the torque are not explained")
+    return "\n".join(lines)

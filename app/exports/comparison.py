@@ -1,0 +1,40 @@
+"""A comparison of laws for the page: one law at a time, and the picture of all so far."""
+
+from __future__ import annotations
+
+import io
+
+from onpath.lessons.words import Words
+from onpath.models.paths.curves import Curve
+from onpath.models.studies.comparison import Contest, Outcome, compare
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import Parameters
+
+Results = dict[tuple[str, str], list[Outcome]]
+
+
+def compared(
+    robot: str,
+    parameters: Parameters,
+    curve: Curve,
+    earlier: Results,
+    law: str,
+    obstruction: str,
+    language: str,
+) -> tuple[Results, bytes]:
+    """The results with one more law, and their picture as PNG.
+
+    Args:
+        robot: name in the catalogue.
+        curve: the path, closed.
+        earlier: results of the laws before.
+        law: a law that suits the robot.
+    """
+    from onpath.app.exports.figures_comparison import comparison_figure
+
+    contest = Contest(ROBOTS[robot], parameters, curve)
+    (found,) = compare(contest, [law], [obstruction])
+    results = {**earlier, (law, obstruction): found}
+    file = io.BytesIO()
+    comparison_figure(results, Words(language)).savefig(file, format="png", dpi=60)
+    return results, file.getvalue()

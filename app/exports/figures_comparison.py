@@ -1,0 +1,70 @@
+"""The picture of a comparison: contour error against delay, for each law and obstruction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import cycle
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from onpath.app.exports.figures import ShownFigure, save
+from onpath.lessons.benches import law_label
+from onpath.lessons.words import ENGLISH, Words
+from onpath.models.studies.comparison import Outcome
+
+COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#888888")
+"""Okabe and Ito's colours, which remain distinguishable for every form of colour blindness."""
+MARKERS = "osD^v<>PX*dhp"  # one for each obstruction
+LEAST = 1e-4  # [mm], drawn for smaller distances
+
+
+def draw_comparison(results: Mapping[tuple[str, str], Sequence[Outcome]], path: Path) -> None:
+    """Write `comparison_figure` to a file."""
+    save(comparison_figure(results), path)
+
+
+def comparison_figure(
+    results: Mapping[tuple[str, str], Sequence[Outcome]], words: Words = ENGLISH
+) -> Figure:
+    """Plot the largest distance over the delay at the end, at the worst place of each obstruction.
+
+    A law that keeps to the path lies low; one that keeps to the timetable lies at a delay of 0.
+    Where a run was stopped as diverged, the point is hollow.
+    """
+    laws = list(dict.fromkeys(law for law, _ in results))
+    obstructions = list(dict.fromkeys(name for _, name in results))
+    figure = ShownFigure(figsize=(10, 6.2), layout="constrained")
+    axes = figure.subplots()
+    for (law, name), outcomes in results.items():
+        colour = COLOURS[laws.index(law) % len(COLOURS)]
+        worst = max(outcomes, key=lambda outcome: outcome.max_distance_m)
+        stopped = any(outcome.diverged_at_s is not None for outcome in outcomes)
+        axes.plot(
+            worst.delay_s,
+            max(1e3 * worst.max_distance_m, LEAST),
+            MARKERS[obstructions.index(name) % len(MARKERS)],
+            color=colour,
+            markerfacecolor="none" if stopped else colour,
+            markersize=9,
+            alpha=0.85,
+        )
+    axes.set_yscale("log")
+    axes.grid(alpha=0.25, which="major")
+    axes.set_xlabel(words("compare.delay"))
+    axes.set_ylabel(words("compare.distance"))
+    by_law = [
+        axes.plot([], [], "o", color=colour, label=law_label(law, words))[0]
+        for law, colour in zip(laws, cycle(COLOURS), strict=False)
+    ]
+    by_obstruction = [
+        axes.plot(
+            [], [], MARKERS[i % len(MARKERS)], color="0.4", label=words(f"obstruction.{name}")
+        )[0]
+        for i, name in enumerate(obstructions)
+    ]
+    figure.legend(handles=by_law, loc="outside right upper", title="law", frameon=False)
+    figure.legend(
+        handles=by_obstruction, loc="outside right lower", title="obstruction", frameon=False
+    )
+    return figure

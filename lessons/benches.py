@@ -1,0 +1,62 @@
+"""What the benches of a lab and their control laws are called, and their roles in the lessons."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from onpath.lessons.schema import RobotName
+from onpath.lessons.words import Words
+from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
+from onpath.models.control.laws.registry import LAWS
+
+ROLES: dict[str, RobotName] = {LEFT: "tracker", RIGHT: "follower"}
+"""Bench -> name of its robot in the lessons."""
+BENCH_OF: dict[RobotName, str] = {role: bench for bench, role in ROLES.items()}
+
+
+def law_label(law: str, words: Words) -> str:
+    """Displayed name of a control law."""
+    return words.get(f"law.{law}.label", LAWS[law].label)
+
+
+def law_text(law: str, words: Words) -> str:
+    """What a control law does, in a sentence."""
+    return words.get(f"law.{law}.text", LAWS[law].text)
+
+
+def bench_titles(laws: Mapping[str, str | tuple[str, ...]], words: Words) -> dict[str, str]:
+    """Displayed name of each bench: that of its law, and its side if both would be named alike.
+
+    Args:
+        laws: control law of each bench, or several, one after the other.
+    """
+    labels = {
+        bench: ", ".join(law_label(law, words) for law in dict.fromkeys(_all(own)))
+        for bench, own in laws.items()
+    }
+    if len(set(labels.values())) == len(labels):
+        return labels
+    return {
+        bench: words("bench.title", law=label, side=words(f"bench.{bench}"))
+        for bench, label in labels.items()
+    }
+
+
+def robot_names(laws: Mapping[str, str], words: Words) -> dict[RobotName, str]:
+    """Displayed names of the robots of the lessons.
+
+    A robot under the law of a new lab has the name of its role, another that of its bench.
+
+    Args:
+        laws: control law of each bench; a bench without one has that of a new lab.
+    """
+    every = {**DEFAULT_LAWS, **laws}
+    titles = bench_titles(every, words)
+    return {
+        role: words(f"robot.{role}") if every[bench] == DEFAULT_LAWS[bench] else titles[bench]
+        for bench, role in ROLES.items()
+    }
+
+
+def _all(laws: str | tuple[str, ...]) -> tuple[str, ...]:
+    return (laws,) if isinstance(laws, str) else laws

@@ -1,0 +1,107 @@
+"""What a control law is given in a tick: the output, its coordinates on the path, the reference."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import casadi as ca
+
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loop_vectors import GAINS
+from onpath.models.closed_loop.reference_speed import task_at
+from onpath.models.control import composite_control as composite
+from onpath.models.control.laws.law import Clock, Gains, Law, View
+from onpath.models.control.space_output import space_output
+from onpath.models.control.virtual_output import LevelSet, VirtualOutput, virtual_output
+from onpath.models.layout import Fields
+from onpath.models.paths.frames import Frame
+from onpath.models.paths.projection import LocalCurve
+from onpath.models.systems.system import MechanicalSystem
+
+
+def predicted(state: Fields, settings: Fields) -> ca.SX:
+    """The θ at which the curve is evaluated, θ_0 = θ + dt θ', [rad]."""
+    return state["theta"] + settings["dt"] * state["theta_rate"]
+
+
+def controlled(
+    system: MechanicalSystem, settings: Fields, q: ca.SX, v: ca.SX
+) -> tuple[ca.SX, ca.SX]:
+    """The controlled output and its rate, by the controller's model, each (p, 1), [m], [m/s]."""
+    return system.with_rate(system.controlled_output)(q, v, settings["model"])
+
+
+def coordinates(
+    frame: Frame,
+    kind: Kind,
+    state: Fields,
+    settings: Fields,
+    values: ca.SX,
+    y: ca.SX,
+    y_rate: ca.SX,
+) -> tuple[VirtualOutput, LocalCurve]:
+    """The virtual output at y and the closest point, from `values` at the predicted θ."""
+    names = ("level_centre", "level_weights", "level_constant")
+    level = LevelSet(*[settings[name] for name in names]) if kind.level_set else None
+    start = LocalCurve.from_values(predicted(state, settings), kind.closed, values)
+    closest = start.project(frame.split(y)[0])
+    if kind.space:
+        return space_output(closest, frame, y, y_rate), closest
+    return virtual_output(closest, frame, level, y, y_rate), closest
+
+
+def clock_at(kind: Kind, law: Law, state: Fields, settings: Fields) -> Clock:
+    """The reference point at the beginning of the tick."""
+    task = task_at(state, settings)
+    if kind.law == "composite":
+        task = replace(task, speed=state["speed_chain"][0], acceleration=ca.SX(0))
+    return Clock(
+        theta=state["theta_ref"],
+        task=task,
+        closed=kind.closed,
+        dt=settings["dt"],
+        interval=settings["dt"] if kind.free else settings["dt"] * settings["hold_ticks"],
+        ahead=settings["dt"] / 2,
+        memory={name: state[name] for name, _ in law.memory},
+    )
+
+
+def law_view(
+    system: MechanicalSystem,
+    frame: Frame,
+    kind: Kind,
+    law: Law,
+    state: Fields,
+    settings: Fields,
+    values: ca.SX,
+    ahead: tuple[ca.SX, ca.SX],
+    beam: composite.Compensation | None,
+) -> View:
+    """What the law is given; `ahead` is (q, v) at the instant to which the controller looks."""
+    q, v = ahead
+    y, y_rate = controlled(system, settings, q, v) if beam is None else (beam.y, beam.y_rate)
+    output, closest = coordinates(frame, kind, state, settings, values[:, 0], y, y_rate)
+    task = task_at(state, settings)
+    if beam is not None:
+        speed = composite.wanted_speed(beam, output, settings["K5"])
+        task = replace(task, speed=speed, acceleration=ca.SX(0))
+    clock, reference = clock_at(kind, law, state, settings), None
+    if law.reference is not None:
+        reference = LocalCurve.from_values(law.reference(clock), kind.closed, values[:, 1])
+    return View(
+        system=system,
+        q=q,
+        v=v,
+        model=settings["model"],
+        frame=frame,
+        y=y,
+        y_rate=y_rate,
+        output=output,
+        closest=closest,
+        reference=reference,
+        task=task,
+        clock=clock,
+        gains=Gains(*[settings[name] for name in GAINS]),
+        own_gains={name: settings[name] for name in law.gains if name not in GAINS},
+        integral=state["integral"],
+    )

@@ -1,0 +1,32 @@
+"""The speed reference of a tick, which ramps to the wanted speed."""
+
+from __future__ import annotations
+
+import casadi as ca
+
+from onpath.models.control.laws.law import PathReference
+from onpath.models.layout import Fields
+
+
+def wanted_speed(state: Fields, settings: Fields) -> tuple[ca.SX, ca.SX]:
+    """The speed reference ω at the beginning of a tick [rad/s], and its rate [rad/s²].
+
+    It approaches the wanted speed at the rate `ramp`, or is equal to it if that is 0.
+    """
+    speed, ramp, now = settings["speed"], settings["ramp"], state["speed_ref"]
+    rate = ca.fmin(ca.fmax((speed - now) / settings["dt"], -ramp), ramp)
+    return ca.if_else(ramp > 0, now, speed), rate
+
+
+def next_speed(state: Fields, settings: Fields) -> ca.SX:
+    """The speed reference after the tick, [rad/s]."""
+    speed, rate = wanted_speed(state, settings)
+    return speed + settings["dt"] * rate
+
+
+def task_at(state: Fields, settings: Fields) -> PathReference:
+    """The wanted motion along the path, half a tick ahead."""
+    speed, rate = wanted_speed(state, settings)
+    ahead = speed + settings["dt"] / 2 * rate
+    goal = settings["position"], settings["target"]
+    return PathReference(*goal, ahead, settings["speed_limit"], rate)

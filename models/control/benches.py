@@ -1,0 +1,34 @@
+"""The two benches of a lab. A bench is a robot under a control law.
+
+Both have the same robot, parameters and path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from onpath.models.control.laws.registry import LAWS, NAMES
+from onpath.models.errors import CodedError
+from onpath.models.systems.parameter_specs import unknown_name
+from onpath.models.systems.robots import RobotEntry
+
+LEFT, RIGHT = "left", "right"
+BENCHES = (LEFT, RIGHT)
+"""Names of the benches, as they stand in the scene."""
+DEFAULT_LAWS: dict[str, str] = dict(zip(BENCHES, NAMES, strict=True))
+"""Bench -> control law of a new lab."""
+
+
+def check_laws(laws: Mapping[str, str], robot: RobotEntry) -> None:
+    """Check the names of benches and of their control laws.
+
+    Raises:
+        ValueError: there is no such bench or law, or the law does not suit the robot.
+    """
+    for bench, law in laws.items():
+        if bench not in BENCHES:
+            raise unknown_name(bench, list(BENCHES), "bench")
+        if law not in LAWS:
+            raise unknown_name(law, list(LAWS), "law")
+        if not LAWS[law].suits(robot.make(robot.lab).system):
+            raise CodedError("error.law_does_not_suit", law=LAWS[law].label)

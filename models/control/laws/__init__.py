@@ -1,0 +1,1 @@
+"""The control laws, one in each module; `registry.py` finds them."""

@@ -1,0 +1,139 @@
+"""Contouring: track by the clock, stiff across the path and soft along it."""
+
+from __future__ import annotations
+
+import casadi as ca
+
+from onpath.models.control.laws.law import ControlAction, Law, View
+from onpath.models.control.laws.references import (
+    clock_acceleration,
+    clock_ahead,
+    clock_rate,
+    tracking_error,
+)
+from onpath.models.control.space_output import normals
+from onpath.models.paths.projection import LocalCurve
+
+
+def contouring(view: View) -> ControlAction:
+    """Commanded y'', (p, 1), [m/s²], from the error in the frame (T, N) at the reference point.
+
+    With e = e_t T + e_n N, the frame turning at φ' = (angle of σ')' θ_r', and the ratio κ,
+
+        e_n'' = -K1 e_n - K2 e_n' - K3 ∫e_n dt,   e_t'' = -κ K1 e_t - √κ K2 e_t',
+        y'' = y_r'' + (e_t'' - 2 φ' e_n' - φ'' e_n - φ'² e_t) T
+                    + (e_n'' + 2 φ' e_t' + φ'' e_t - φ'² e_n) N.
+
+    On a space curve there are two normals, see `_in_space`.
+
+    κ is `contour_ratio`; √κ keeps the damping ratio. The frame is that of the reference point, as
+    in the source, so that the law is meant for errors that are small against the radius of
+    curvature.
+
+    Source: Chiu and Tomizuka, reference [1].
+    """
+    reference, frame, gains = view.reference, view.frame, view.gains
+    assert reference is not None
+    rate, ratio = clock_rate(view.clock), view.own_gains["contour_ratio"]
+    rates = rate, clock_acceleration(view.clock)
+    error, error_rate, feedforward = tracking_error(reference, frame, view.y, view.y_rate, *rates)
+    if reference.sigma.numel() == 3:
+        return _in_space(view, rates, error, error_rate, feedforward)
+    (gap, off), (gap_rate, off_rate) = frame.split(error, rate=True), frame.split(error_rate, True)
+    axes, turn, turn_rate = _turning_frame(reference, *rates)
+    e = axes.T @ gap
+    swapped = ca.vertcat(e[1], -e[0])
+    e_rate = axes.T @ gap_rate + turn * swapped
+    integral = axes.T @ frame.split(view.integral, rate=True)[0]
+    wanted = ca.vertcat(
+        -ratio * gains.k1 * e[0] - ca.sqrt(ratio) * gains.k2 * e_rate[0],
+        -gains.k1 * e[1] - gains.k2 * e_rate[1] - gains.k3 * integral[1],
+    )
+    swapped_rate = ca.vertcat(e_rate[1], -e_rate[0])
+    planar = axes @ (wanted - 2 * turn * swapped_rate - turn_rate * swapped - turn**2 * e)
+    residual = -gains.k1 * off - gains.k2 * off_rate
+    across = frame.join(axes[:, 1] * e[1], off, rate=True)
+    return ControlAction(feedforward + frame.join(planar, residual, rate=True), error=across)
+
+
+def _turning_frame(
+    reference: LocalCurve, rate: ca.SX, acceleration: ca.SX
+) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """The axes (T, N), (2, 2), and rate [rad/s] and acceleration [rad/s²] of their angle φ.
+
+    With φ the angle of σ', dφ/dθ = (σ' x σ'') / |σ'|² and
+
+        d²φ/dθ² = (σ' x σ''') / |σ'|² - 2 (σ' x σ'') (σ' · σ'') / |σ'|⁴.
+
+    Args:
+        reference: the curve about θ_r.
+        rate, acceleration: θ_r' and θ_r'', [rad/s], [rad/s²].
+    """
+    first, second, third = reference.first, reference.second, reference.third
+    length2 = ca.dot(first, first)
+    tangent = first / ca.sqrt(length2)
+    per_theta = _cross(first, second) / length2
+    second_per_theta = (_cross(first, third) - 2 * per_theta * ca.dot(first, second)) / length2
+    axes = ca.horzcat(tangent, ca.vertcat(-tangent[1], tangent[0]))
+    return axes, per_theta * rate, second_per_theta * rate**2 + per_theta * acceleration
+
+
+def _in_space(
+    view: View, rates: tuple[ca.SX, ca.SX], error: ca.SX, error_rate: ca.SX, feedforward: ca.SX
+) -> ControlAction:
+    """The law on a space curve, with the axes A = (T, n1, n2) of `normals` at the reference point.
+
+    A' = A Ω with the skew matrix Ω of the frame's angular velocity. With ε = A^T e,
+
+        y'' = y_r'' + A (ε'' + 2 Ω ε' + Ω' ε + Ω² ε),   ε' = A^T e' - Ω ε,
+
+    where the first component of ε'' is that along, and both others are that across the path.
+
+    Args:
+        rates: θ_r' [rad/s] and θ_r'' [rad/s²].
+    """
+    assert view.reference is not None
+    gains, ratio = view.gains, view.own_gains["contour_ratio"]
+    axes, turn, turn_rate = _turning_axes(view.reference, *rates)
+    e = axes.T @ error
+    e_rate = axes.T @ error_rate - turn @ e
+    stiffness = gains.k1 * ca.vertcat(ratio, 1, 1)
+    damping = gains.k2 * ca.vertcat(ca.sqrt(ratio), 1, 1)
+    lasting = gains.k3 * ca.vertcat(0, (axes.T @ view.integral)[1:])
+    wanted = -stiffness * e - damping * e_rate - lasting
+    moving = 2 * (turn @ e_rate) + turn_rate @ e + turn @ (turn @ e)
+    return ControlAction(feedforward + axes @ (wanted + moving), error=axes[:, 1:] @ e[1:])
+
+
+def _turning_axes(
+    reference: LocalCurve, rate: ca.SX, acceleration: ca.SX
+) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """The axes A of a space curve, Ω [rad/s] and Ω' [rad/s²], each (3, 3)."""
+    step, here = ca.SX.sym("step"), normals(reference)
+    bend, rise = normals(reference.moved(step)).bends
+    slopes = [ca.substitute(ca.jacobian(each, step), step, ca.SX(0)) for each in (bend, rise)]
+    per_theta = _skew(*here.bends, here.twist)
+    second = _skew(slopes[0], slopes[1], here.twist_rate)
+    axes = ca.horzcat(here.tangent, here.left, here.up)
+    return axes, per_theta * rate, second * rate**2 + per_theta * acceleration
+
+
+def _skew(bend: ca.SX, rise: ca.SX, twist: ca.SX) -> ca.SX:
+    """Ω of T' = bend n1 + rise n2, n1' = -bend T + twist n2, n2' = -rise T - twist n1."""
+    return ca.blockcat([[0, -bend, -rise], [bend, 0, -twist], [rise, twist, 0]])
+
+
+def _cross(a: ca.SX, b: ca.SX) -> ca.SX:
+    return a[0] * b[1] - a[1] * b[0]
+
+
+LAW = Law(
+    name="contouring",
+    label="Contouring",
+    text="Tracks by the clock, but stiffly across the curve and softly along it.",
+    source="Chiu and Tomizuka, a task coordinate frame approach, reference [1]",
+    command=contouring,
+    reference=clock_ahead,
+    by_clock=True,
+    gains=("K1", "K2", "K3", "contour_ratio"),
+)

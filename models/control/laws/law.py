@@ -1,0 +1,201 @@
+"""What a control law is: a function from the view of a robot and a path to a command.
+
+A law sees a `View` and returns a `ControlAction`: an acceleration y'' of the output, which
+`models/control/linearization.py` turns into torques, or the torques themselves. Everything is
+symbolic; `models/closed_loop/kernel.py` makes one function of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import casadi as ca
+
+from onpath.models.control.virtual_output import VirtualOutput
+from onpath.models.layout import Fields
+from onpath.models.paths.frames import Frame
+from onpath.models.paths.projection import LocalCurve
+from onpath.models.systems.system import MechanicalSystem
+
+Memory = tuple[tuple[str, int], ...]
+"""Names and sizes of the fields that a law keeps from tick to tick."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gains:
+    """The gains that most laws share.
+
+    Attributes:
+        k1, k2, k3: proportional [1/s²], derivative [1/s] and integral [1/s³] gain: of the
+            transversal law (18), and of the tracking error.
+        k4, k5: position [1/s²] and speed gain [1/s] of the tangential law (19).
+    """
+
+    k1: ca.SX
+    k2: ca.SX
+    k3: ca.SX
+    k4: ca.SX
+    k5: ca.SX
+
+
+@dataclass(frozen=True, slots=True)
+class PathReference:
+    """The wanted motion along the path.
+
+    Attributes:
+        position: 1 to hold the position θ_ref, 0 to hold the speed ω_ref.
+        target: θ_ref, [rad].
+        speed: ω_ref, [rad/s].
+        limit: largest |ω_ref| for laws without a clock, [rad/s].
+        acceleration: ω_ref', [rad/s²].
+    """
+
+    position: ca.SX
+    target: ca.SX
+    speed: ca.SX
+    limit: ca.SX
+    acceleration: ca.SX
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """The reference point that a law keeps, at the beginning of a tick.
+
+    Attributes:
+        theta: θ_r, [rad].
+        task: the wanted motion along the path.
+        closed: whether the path is a closed curve.
+        dt: length of a tick, [s].
+        interval: between two evaluations of the law, [s].
+        ahead: time by which the controller looks ahead, [s].
+        memory: the law's own memory.
+    """
+
+    theta: ca.SX
+    task: PathReference
+    closed: bool
+    dt: ca.SX
+    interval: ca.SX
+    ahead: ca.SX
+    memory: Fields
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """What a law is given in a tick, predicted to the middle of the interval of its command.
+
+    Attributes:
+        system: the equations of motion, and `q`, `v`, `model` their arguments: configuration and
+            velocity, (n, 1), and the plant's parameters as the controller assumes them, (k, 1).
+        frame: how the plane of the path lies in the output space.
+        y, y_rate: the controlled output and its rate, (p, 1), [m], [m/s].
+        output: coordinates along and across the path.
+        closest: the path about the point closest to y.
+        reference: the path about the point that `Law.reference` asks for; None if it asks for none.
+        task: the wanted motion along the path.
+        clock: the reference point.
+        gains: K1 to K5.
+        own_gains: the law's further gains, by the names of `Law.gains`.
+        integral: integral of `ControlAction.error`, (p, 1).
+    """
+
+    system: MechanicalSystem
+    q: ca.SX
+    v: ca.SX
+    model: ca.SX
+    frame: Frame
+    y: ca.SX
+    y_rate: ca.SX
+    output: VirtualOutput
+    closest: LocalCurve
+    reference: LocalCurve | None
+    task: PathReference
+    clock: Clock
+    gains: Gains
+    own_gains: Fields
+    integral: ca.SX
+
+
+@dataclass(frozen=True, slots=True)
+class Along:
+    """The part of a commanded acceleration along the path, which a torque limit may reduce.
+
+    Attributes:
+        command: v_par, (1, 1), [rad/s²].
+        direction: dy''/dv_par, (p, 1), [m/rad].
+    """
+
+    command: ca.SX
+    direction: ca.SX
+
+
+@dataclass(frozen=True, slots=True)
+class ControlAction:
+    """What a law commands.
+
+    Attributes:
+        acceleration: y'', (p, 1), [m/s²]; None if the law commands torques.
+        torque: u, (m, 1), [N m]; None if it commands an acceleration.
+        error: what the integral of K3 sums, (p, 1), [m]; None: nothing.
+        theta_ref: θ_r after the tick, [rad]; None: it runs by the clock, `references.clock_rate`.
+        along: the part of `acceleration` along the path, if it may be reduced.
+        memory: the law's own memory after the tick.
+    """
+
+    acceleration: ca.SX | None = None
+    torque: ca.SX | None = None
+    error: ca.SX | None = None
+    theta_ref: ca.SX | None = None
+    along: Along | None = None
+    memory: Fields = field(default_factory=dict[str, ca.SX])
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    """An entry of the registry.
+
+    Attributes:
+        name: as on the command line and in files.
+        label: as shown, in English.
+        text: one sentence.
+        source: where it comes from.
+        command: the law.
+        reference: clock -> parameter θ of a further point at which the law needs the path; None if
+            it needs the closest point only.
+        aim: log field of the point that it aims at: "theta" or "theta_ref".
+        gains: names of all parameters that it uses as gains.
+        by_clock: whether its reference point runs by the clock, whatever the robot does.
+        memory: what it keeps from tick to tick; all of it is 0 at the start.
+        square: whether it needs as many motors and outputs as coordinates, n = m = p.
+        commands_acceleration: whether it commands y'' rather than torques.
+        travels: whether it moves along the path at a wanted speed, or slides on it.
+        linear: whether its error has the poles of its gains; see `models/control/poles.py`.
+        motors: number of motors that it is made for; None: any.
+        spatial: whether it is made for outputs in space, p = 3.
+        always_integrates: whether it uses the integral even if K3 = 0.
+    """
+
+    name: str
+    label: str
+    text: str
+    source: str
+    command: Callable[[View], ControlAction]
+    reference: Callable[[Clock], ca.SX] | None = None
+    aim: str = "theta_ref"
+    gains: tuple[str, ...] = ("K1", "K2", "K3")
+    by_clock: bool = False
+    memory: Memory = ()
+    square: bool = False
+    commands_acceleration: bool = True
+    travels: bool = True
+    linear: bool = False
+    motors: int | None = None
+    spatial: bool = False
+    always_integrates: bool = False
+
+    def suits(self, system: MechanicalSystem) -> bool:
+        """Whether the law can be used with a robot."""
+        if (self.spatial and system.p != 3) or self.motors not in (None, system.m):
+            return False
+        return not self.square or system.n == system.m == system.p

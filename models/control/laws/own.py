@@ -1,0 +1,168 @@
+"""A law of one's own: formulas that a user types.
+
+A law names what it commands, in the names of `VIEW`:
+
+    across = -K1*xi - K2*dxi - K3*int_xi        λ'' = v_perp of (18), [m/s²]
+    along = -K5*(dtheta - speed)                θ'' = v_par of (19), [rad/s²]
+
+or the torques of all motors, `u1 = …`, `u2 = …`, [N m]. In space (p = 3) `across2` is the
+acceleration along the second normal; without it, that is -K1 xi2 - K2 dxi2 - K3 int_xi2.
+
+A law's text is its name: every function that takes the name of a law takes a text as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache, reduce
+
+import casadi as ca
+
+from onpath.models.control.laws.expressions import LARGEST_NUMBER, Formulas, read
+from onpath.models.control.laws.law import Along, ControlAction, Law, View
+from onpath.models.control.laws.references import (
+    clock_ahead,
+    clock_rate,
+    rate_at,
+    tracking_error,
+)
+from onpath.models.errors import CodedError
+
+MOST_KEPT = 64  # laws of which the formulas are kept
+LABEL = "Own law"
+PATH_FOLLOWING = "across = -K1*xi - K2*dxi - K3*int_xi; along = -K5*(dtheta - speed)"
+"""The law that a user begins with: path following, eqs. (18) and (19), in the speed task."""
+
+TIME = "own_time"
+VIEW = (
+    *("xi", "dxi", "theta", "dtheta", "e1", "e2", "de1", "de2", "y1", "y2", "v1", "v2"),
+    *("t", "theta_r", "speed", "int_xi", "K1", "K2", "K3", "K4", "K5"),
+)
+"""The names of a law, in the order in which a user is shown them."""
+SPACE = ("xi2", "dxi2", "int_xi2", "e3", "de3", "y3", "v3")
+"""The names that there are in space besides."""
+ERRORS = frozenset(("e1", "e2", "e3", "de1", "de2", "de3"))
+TARGETS = ("across", "along", "across2", "u1", "u2", "u3")
+
+
+def is_text(name: str) -> bool:
+    """Whether the name of a law is the text of one."""
+    return "=" in name
+
+
+def law_title(name: str) -> str:
+    """A law's name as English words, or its text."""
+    return name if is_text(name) else name.replace("_", " ")
+
+
+@lru_cache(MOST_KEPT)
+def own_law(text: str) -> Law:
+    """The law that a text describes.
+
+    Raises:
+        ValueError: the text describes none; see `expressions.read`.
+    """
+    formulas = read(text, (*VIEW, *SPACE), TARGETS)
+    _check_targets(formulas.targets)
+    names = frozenset(formulas.names)
+    motors = sum(target.startswith("u") for target in formulas.targets)
+    return Law(
+        name=text,
+        label=LABEL,
+        text=text,
+        source="typed",
+        command=lambda view: _command(formulas, view),
+        reference=clock_ahead if names & ERRORS else None,
+        aim="theta_ref" if names & (ERRORS | {"theta_r"}) else "theta",
+        gains=tuple(name for name in formulas.names if name.startswith("K")),
+        memory=((TIME, 1),),
+        motors=motors or None,
+        spatial=not names.isdisjoint(SPACE) or "across2" in formulas.targets,
+        commands_acceleration=motors == 0,
+        always_integrates="int_xi" in names or "int_xi2" in names,
+    )
+
+
+def tidy(text: str) -> str:
+    """The same law on one line, without blanks at the ends of its lines."""
+    lines = (line.strip() for line in text.replace("\n", ";").split(";"))
+    return "; ".join(line for line in lines if line)
+
+
+def _check_targets(given: tuple[str, ...]) -> None:
+    """Refuse a law that does not say all that it commands, or says it twice over."""
+    torques = [target for target in given if target.startswith("u")]
+    if not torques:
+        wanted = ["across", "along"]
+    elif len(torques) < len(given):
+        raise CodedError("error.law_mixed")
+    else:
+        wanted = [f"u{i + 1}" for i in range(max(int(torque[1:]) for torque in torques))]
+    missing = [target for target in wanted if target not in given]
+    if missing:
+        raise CodedError("error.law_without_line", name=missing[0])
+
+
+def _command(formulas: Formulas, view: View) -> ControlAction:
+    """What the formulas command, or nothing in a tick in which a number is not finite or is huge.
+
+    After such a tick the reference point is NaN, so that the run stops as diverged.
+    """
+    values, clock, error = _values(view), view.clock, ca.vertcat(view.output.xi, 0)
+    results = formulas(values)
+    valid = reduce(ca.fmin, [ca.fabs(result) < LARGEST_NUMBER for result in results.values()])
+    results = {name: ca.if_else(valid, result, 0) for name, result in results.items()}
+    theta_ref = clock.theta + clock.dt * clock_rate(clock)
+    theta_ref = ca.if_else(valid, theta_ref, ca.SX(float("nan")))
+    memory = {TIME: clock.memory[TIME] + clock.interval}
+    if "along" not in results:
+        torque = ca.vertcat(*(results[name] for name in sorted(results)))
+        return ControlAction(torque=torque, error=error, theta_ref=theta_ref, memory=memory)
+    across = ca.vertcat(results["across"], *_second_normal(view, values, results))
+    along = results["along"]
+    return ControlAction(
+        acceleration=view.output.acceleration(along, across),
+        error=error,
+        theta_ref=theta_ref,
+        along=Along(along, view.output.acceleration_per_along),
+        memory=memory,
+    )
+
+
+def _second_normal(
+    view: View, values: Mapping[str, ca.SX], results: Mapping[str, ca.SX]
+) -> list[ca.SX]:
+    """The acceleration along the second normal, if there is one."""
+    if view.frame.p == 2:
+        return []
+    gains = view.gains
+    given = -gains.k1 * values["xi2"] - gains.k2 * values["dxi2"] - gains.k3 * values["int_xi2"]
+    return [results.get("across2", given)]
+
+
+def _values(view: View) -> dict[str, ca.SX]:
+    """What the names mean.
+
+    Several components are numbered from 1; of `xi`, `dxi` and `int_xi` the first has no number.
+    """
+    output, clock, gains = view.output, view.clock, view.gains
+    values = {
+        "theta": output.theta,
+        "dtheta": output.theta_rate,
+        "t": clock.memory[TIME] + clock.ahead,
+        "theta_r": clock_ahead(clock),
+        "speed": ca.fmin(ca.fmax(rate_at(view), -view.task.limit), view.task.limit),
+        **{
+            f"K{i + 1}": k for i, k in enumerate((gains.k1, gains.k2, gains.k3, gains.k4, gains.k5))
+        },
+    }
+    integral = view.integral[: view.frame.p - 1]
+    for name, parts in (("xi", output.xi), ("dxi", output.xi_rate), ("int_xi", integral)):
+        values |= {f"{name}{i + 1 if i else ''}": parts[i] for i in range(view.frame.p - 1)}
+    vectors = {"y": view.y, "v": view.y_rate}
+    if view.reference is not None:
+        motion = view.reference, view.frame, view.y, view.y_rate, clock_rate(clock)
+        vectors["e"], vectors["de"], _ = tracking_error(*motion)
+    for name, vector in vectors.items():
+        values |= {f"{name}{i + 1}": vector[i] for i in range(view.frame.p)}
+    return values

@@ -1,0 +1,66 @@
+"""The registry of control laws: every module of this folder that defines a `LAW`."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pkgutil import iter_modules
+
+from onpath.models.control import laws
+from onpath.models.control.laws.law import Law
+from onpath.models.control.laws.own import is_text, own_law, tidy
+from onpath.models.control.laws.path_following import LAW as PATH_FOLLOWING
+from onpath.models.control.laws.trajectory_tracking import LAW as TRAJECTORY_TRACKING
+from onpath.models.systems.parameter_specs import unknown_name
+
+
+def found_laws() -> dict[str, Law]:
+    """The laws of the modules of `models/control/laws`, by name.
+
+    Trajectory tracking and path following come first, then the others in the order of the modules'
+    names.
+
+    Raises:
+        ValueError: two laws have the same name.
+    """
+    found = {law.name: law for law in (TRAJECTORY_TRACKING, PATH_FOLLOWING)}
+    for module in iter_modules(laws.__path__, f"{laws.__name__}."):
+        if module.name == __name__:
+            continue
+        law: Law | None = getattr(import_module(module.name), "LAW", None)
+        if law is None or found.get(law.name) is law:
+            continue
+        if law.name in found:
+            raise ValueError(f"{module.name}: there is another law named {law.name!r}")
+        found[law.name] = law
+    return found
+
+
+def law_named(name: str) -> Law:
+    """The law of this name, or the one that is typed there: see models/control/laws/own.py.
+
+    Raises:
+        ValueError: there is no such law.
+    """
+    if is_text(name):
+        return own_law(name)
+    if name not in LAWS:
+        raise unknown_name(name, list(LAWS), "law")
+    return LAWS[name]
+
+
+def law_name(text: str) -> str:
+    """The name of a law that a user asks for: one of the registry, or a typed law on one line.
+
+    Raises:
+        ValueError: there is no such law.
+    """
+    law_named(text)
+    return tidy(text) if is_text(text) else text
+
+
+LAWS = found_laws()
+NAMES = (TRAJECTORY_TRACKING.name, PATH_FOLLOWING.name)
+"""The two laws that a lab begins with, and that the paper's experiments compare."""
+SHARED_GAINS = ("K1", "K2", "K3", "K4", "K5")
+OWN_GAINS = tuple(sorted({gain for law in LAWS.values() for gain in law.gains} - {*SHARED_GAINS}))
+"""Names of the gains of single laws, besides K1 to K5."""

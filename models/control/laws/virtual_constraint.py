@@ -1,0 +1,52 @@
+"""A virtual constraint: the path acts like a smooth wire, and the end-point slides on it freely."""
+
+from __future__ import annotations
+
+import casadi as ca
+
+from onpath.models.control.laws.law import ControlAction, Law, View
+from onpath.models.control.laws.path_following import transversal
+from onpath.models.systems.system import coriolis
+
+
+def virtual_constraint(view: View) -> ControlAction:
+    """Commanded y'', (p, 1), [m/s²]: (18) across the path, and no force along it.
+
+    Gravity and friction are compensated by the model, u = c - C v + J^T F with C the Coriolis
+    matrix, so that the motors act like a force F at the end-point,
+
+        F = J⁻ᵀ M J⁻¹ (y'' - J' v) + J⁻ᵀ C v.
+
+    y'' = a + b v_par is affine in v_par, eq. (16), with v_perp from (18). The law takes the v_par
+    for which F has no component along the path, F · T = 0. On the path F then does no work: the
+    kinetic energy is constant, as that of a bead on a wire.
+
+    Source: virtual holonomic constraints, as in Mettin et al. [7] and Shiriaev et al. [8].
+    """
+    system, output, q, v = view.system, view.output, view.q, view.v
+    model = view.model
+    jacobian = ca.jacobian(system.controlled_output, system.q)
+    turning = ca.jtimes(jacobian @ system.v, system.q, system.v)
+    inverse = ca.inv_minor(jacobian)
+    inputs = [system.q, system.v, system.parameters]
+    outputs = [inverse, turning, system.mass, coriolis(system) @ system.v]
+    back, turned, mass, gyration = ca.Function("wire", inputs, outputs)(q, v, model)
+    direction = output.acceleration_per_along
+    along_joints = back @ direction  # dq/dθ along the path
+    resting = output.acceleration(ca.SX(0), transversal(view))
+    force_there = mass @ (back @ (resting - turned)) + gyration
+    free = -ca.dot(along_joints, force_there) / ca.dot(along_joints, mass @ along_joints)
+    return ControlAction(
+        resting + direction * free, error=ca.vertcat(output.xi, 0), theta_ref=output.theta
+    )
+
+
+LAW = Law(
+    name="virtual_constraint",
+    label="Virtual constraint",
+    text="Holds the end-point on the curve and leaves it alone along it, like a bead on a wire.",
+    source="Mettin et al. [7], Shiriaev, Perram and Canudas-de Wit [8]",
+    command=virtual_constraint,
+    aim="theta",
+    square=True,
+)

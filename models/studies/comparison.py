@@ -1,0 +1,302 @@
+"""A fair comparison of control laws: the same robot, path, gains and obstructions for all of them.
+
+Every run begins on the path with the wanted velocity along it, or beside it where the obstruction
+says so. Then nothing happens for `BEFORE`, the obstruction acts, and nothing happens for `AFTER`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loops import Loop
+from onpath.models.closed_loop.simulation import (
+    FREE,
+    Push,
+    brake_at,
+    first_state,
+    kernel_of,
+    kind_of,
+    settings_vector,
+)
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.distance import path_distance
+from onpath.models.systems.parameters import Parameters, time_step
+from onpath.models.systems.robots import Robot, RobotEntry
+
+BEFORE, AFTER = 0.5, 2.0  # [s]
+RIGHT_ANGLE = np.array([[0.0, 1.0], [-1.0, 0.0]])  # turns a tangent to the right, outwards
+
+
+@dataclass(frozen=True, slots=True)
+class Obstruction:
+    """What is in the robot's way, the same for all laws.
+
+    Attributes:
+        name: as on the command line and in files.
+        seconds: how long it acts.
+        places: at how many places of the path.
+        hold: whether a brake holds the end-point along the path.
+        hand: displacement (along, across) to which a hand pulls the end-point, [m], or None.
+        wall: distance along the path's tangent at which a wall stands in the way, [m], or None.
+        torque: limit of the torques, as a share of the largest torque that path following takes
+            when nothing obstructs it; 0: as the parameters say.
+        speed: factor of the wanted speed while it acts.
+        off: distance from the path at the start, [m].
+        rests: whether the robot starts at rest.
+    """
+
+    name: str
+    seconds: float = 2.0
+    places: int = 4
+    hold: bool = False
+    hand: tuple[float, float] | None = None
+    wall: float | None = None
+    torque: float = 0.0
+    speed: float = 1.0
+    off: float = 0.0
+    rests: bool = False
+
+
+OBSTRUCTIONS = {
+    each.name: each
+    for each in (
+        Obstruction("none", places=1),
+        Obstruction("brake", places=8, hold=True),
+        Obstruction("push_across", seconds=1.0, hand=(0.0, 0.03)),
+        Obstruction("push_ahead", seconds=1.0, hand=(0.04, 0.0)),
+        Obstruction("push_back", seconds=1.0, hand=(-0.04, 0.0)),
+        Obstruction("wall", wall=0.01),
+        Obstruction("weak_motors", torque=0.4),
+        Obstruction("too_fast", torque=1.0, speed=2.0),
+        Obstruction("start_off_at_rest", off=0.015, rests=True),
+        Obstruction("start_off_moving", off=0.015),
+    )
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What one run shows.
+
+    Attributes:
+        law, obstruction, place: of the run; the place is θ at its start, [rad].
+        max_distance_m: largest distance to the path, apart from any law.
+        mean_distance_m: its mean over the run.
+        delay_s: by how much the end-point is late at the end, at the wanted speed; negative: early.
+            Laps are those of the closest point, so that who cuts through the inside loses one.
+        peak_force_N, impulse_Ns: of the force on the end-point.
+        energy_given_J: largest work that the end-point has done on the hand, brake or wall.
+        overspeed: largest rate along the path after the release, as a share above the wanted one.
+        rms_torque_Nm: over the run and all motors.
+        diverged_at_s: when the run was stopped, or None; the other numbers end there.
+    """
+
+    law: str
+    obstruction: str
+    place: float
+    max_distance_m: float
+    mean_distance_m: float
+    delay_s: float
+    peak_force_N: float
+    impulse_Ns: float
+    energy_given_J: float
+    overspeed: float
+    rms_torque_Nm: float
+    diverged_at_s: float | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contest:
+    """The conditions that all laws share.
+
+    Attributes:
+        entry: the robot.
+        parameters: its parameters; the wanted motion is along the path at `speed`.
+        curve: the path.
+    """
+
+    entry: RobotEntry
+    parameters: Parameters
+    curve: Curve
+
+    @property
+    def robot(self) -> Robot:
+        """The robot for the parameters."""
+        return self.entry.make(self.parameters)
+
+    def laws(self) -> list[str]:
+        """The laws that can take part: they suit the robot, and move along the path."""
+        composite = getattr(self.parameters, "law", "") == "composite"
+        return [
+            name
+            for name, law in LAWS.items()
+            if law.travels
+            and law.suits(self.robot.system)
+            and (law.commands_acceleration or not composite)
+        ]
+
+
+def compare(
+    contest: Contest, laws: Sequence[str], obstructions: Sequence[str]
+) -> Iterator[list[Outcome]]:
+    """The outcomes of one law under one obstruction after the other, a list for each pair."""
+    torque = _largest_torque(contest)
+    for law in laws:
+        for name in obstructions:
+            obstruction = OBSTRUCTIONS[name]
+            places = 2 * np.pi * np.arange(obstruction.places) / obstruction.places - np.pi / 2
+            yield [_outcome(contest, law, obstruction, float(at), torque) for at in places]
+
+
+def worst(outcomes: Sequence[Outcome]) -> dict[str, float | None]:
+    """The worst of each measure over places; `diverged_at_s` is the earliest, or None."""
+    fields = [f.name for f in dataclasses.fields(Outcome)][3:-1]
+    stops = [o.diverged_at_s for o in outcomes if o.diverged_at_s is not None]
+    found: dict[str, float | None] = {
+        name: max((getattr(o, name) for o in outcomes), key=abs) for name in fields
+    }
+    return found | {"diverged_at_s": min(stops, default=None)}
+
+
+def _largest_torque(contest: Contest) -> float:
+    """The largest torque of path following when nothing obstructs it, [N m]."""
+    parts, _ = _run(contest, "path_following", OBSTRUCTIONS["none"], 0.0, 0.0)
+    return float(np.abs(parts["u"]).max())
+
+
+def _outcome(
+    contest: Contest, law: str, obstruction: Obstruction, place: float, torque: float
+) -> Outcome:
+    log, fault = _run(contest, law, obstruction, place, torque)
+    dt, speed = time_step(contest.parameters), contest.parameters.speed
+    if fault is not None:
+        log = {name: values[: max(fault, 1)] for name, values in log.items()}
+    seconds = len(log["theta"]) * dt
+    distance = path_distance(contest.robot.frame, contest.curve, log["y"][::5])
+    force = np.linalg.norm(log["force"], axis=1)
+    steps = np.diff(log["y"], axis=0, append=log["y"][-1:])
+    given = -np.cumsum((log["force"] * steps).sum(1))
+    after = round((BEFORE + obstruction.seconds) / dt)
+    rates = log["theta_rate"][after:, 0] / speed
+    expected = place + speed * seconds
+    return Outcome(
+        law=law,
+        obstruction=obstruction.name,
+        place=place,
+        max_distance_m=float(distance.max()),
+        mean_distance_m=float(distance.mean()),
+        delay_s=float(expected - log["theta"][-1, 0]) / speed,
+        peak_force_N=float(force.max()),
+        impulse_Ns=float(force.sum() * dt),
+        energy_given_J=max(float(given.max()), 0.0) + 0.0,
+        overspeed=max(float(rates.max()) - 1, 0.0) if rates.size else 0.0,
+        rms_torque_Nm=float(np.sqrt((log["u"] ** 2).mean())),
+        diverged_at_s=None if fault is None else fault * dt,
+    )
+
+
+def _run(
+    contest: Contest, law: str, obstruction: Obstruction, place: float, torque: float
+) -> tuple[dict[str, Array], int | None]:
+    """The log of a run, and the row in which it was stopped, if it was."""
+    robot, curve, own = contest.robot, contest.curve, contest.parameters
+    dt = time_step(own)
+    acting = dataclasses.replace(own, speed=own.speed * obstruction.speed)
+    if obstruction.torque:
+        acting = dataclasses.replace(acting, torque_limit=obstruction.torque * torque)
+    kernel = kernel_of(robot, kind_of(law, own, curve))
+    state = _start(contest, kernel, obstruction, place)
+    legs = (BEFORE, own, False), (obstruction.seconds, acting, True), (AFTER, own, False)
+    rows = list[Array]()
+    for seconds, parameters, obstructed in legs:
+        push = _push(contest, kernel, state, obstruction) if obstructed else FREE
+        loop = _loop(robot, kind_of(law, parameters, curve))
+        settings = settings_vector(robot, kernel, parameters, curve, push)
+        state, log = loop.run(state, settings, curve.table(), round(seconds / dt))
+        rows.append(log)
+    fields = kernel.log.unpack(np.concatenate(rows))
+    fault = robot.fault(fields["q"], fields["v"], own)
+    return fields, None if fault is None else fault[0]
+
+
+def _start(contest: Contest, kernel: Kernel, obstruction: Obstruction, place: float) -> Array:
+    """The state at the start: on the path or beside it, with the path's velocity or at rest."""
+    robot, curve = contest.robot, contest.curve
+    first = curve.at(np.array(place), 1)
+    outside = RIGHT_ANGLE @ first / np.linalg.norm(first)
+    q = robot.rest(robot.frame.lift(curve.at(np.array(place)) + obstruction.off * outside))
+    if obstruction.rests:
+        return first_state(robot, kernel, curve, q)
+    rate = robot.frame.lift(contest.parameters.speed * first) - robot.frame.lift(np.zeros(2))
+    jacobian = np.array(_jacobian(robot)(q, robot.plant(contest.parameters)))
+    v: Array = np.asarray(np.linalg.lstsq(jacobian, rate, rcond=None)[0], dtype=float)
+    state = kernel.state.unpack(first_state(robot, kernel, curve, q, v))
+    speed = contest.parameters.speed
+    return kernel.state.pack({**state, "theta_rate": speed, "theta": place, "theta_ref": place})
+
+
+def _push(contest: Contest, kernel: Kernel, state: Array, obstruction: Obstruction) -> Push:
+    """What acts from outside, at the place where the end-point is."""
+    robot, curve = contest.robot, contest.curve
+    fields = kernel.state.unpack(state)
+    y, theta = robot.endpoint(fields["q"]), float(fields["theta"][0])
+    anchor, tangent = brake_at(robot, curve, y, theta)
+    first = curve.at(np.array(theta), 1)
+    outside = robot.frame.lift(RIGHT_ANGLE @ first) - robot.frame.lift(np.zeros(2))
+    outside = outside / np.linalg.norm(outside)
+    hand = wall = None
+    if obstruction.hand is not None:
+        hand = y + obstruction.hand[0] * tangent + obstruction.hand[1] * outside
+    if obstruction.wall is not None:
+        wall = y + obstruction.wall * tangent, -tangent
+    return Push(hand=hand, hold=(anchor, tangent) if obstruction.hold else None, wall=wall)
+
+
+@lru_cache(maxsize=64)
+def _loop(robot: Robot, kind: Kind) -> Loop:
+    from onpath.models.closed_loop.translated_loop import translate_loop  # loads LLVM
+
+    return translate_loop(kernel_of(robot, kind))
+
+
+@lru_cache(maxsize=8)
+def _jacobian(robot: Robot) -> ca.Function:
+    """(q, parameters) -> dh/dq, (p, n)."""
+    system = robot.system
+    jacobian = ca.densify(ca.jacobian(system.output, system.q))
+    return ca.Function("jacobian", [system.q, system.parameters], [jacobian])
+
+
+def as_data(contest: Contest, results: Mapping[tuple[str, str], Sequence[Outcome]]) -> Any:
+    """The content of `--json`; numbers have nine significant digits."""
+    return {
+        "robot": contest.entry.name,
+        "parameters": dataclasses.asdict(contest.parameters),
+        "laws": {
+            law: {
+                name: [_rounded(dataclasses.asdict(o)) for o in outcomes]
+                for (own, name), outcomes in results.items()
+                if own == law
+            }
+            for law in dict.fromkeys(law for law, _ in results)
+        },
+    }
+
+
+def _rounded(values: dict[str, Any]) -> dict[str, Any]:
+    return {
+        name: float(f"{value:.9g}") if isinstance(value, float) else value
+        for name, value in values.items()
+        if name not in ("law", "obstruction")
+    }

@@ -1,0 +1,83 @@
+"""Reads the CSV files of `onpath experiment --csv` and of the lab as records of motion.
+
+The files are untrusted: what is not a table of finite numbers at even times is refused.
+"""
+
+from __future__ import annotations
+
+from math import isfinite
+from pathlib import Path
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.trajectory import header
+from onpath.models.studies.linear_model import MotionRecord
+from onpath.models.systems.robots import Robot
+
+LONGEST_LINE = 10_000  # characters
+MOST_ROWS = 1_000_000
+LAWS = ("law", "controller")  # name of the second column, now and in earlier versions
+
+
+def read_records(path: Path, robot: Robot) -> dict[str, MotionRecord]:
+    """The record of each law in the file.
+
+    Raises:
+        ValueError: not such a file, or not of this robot; the message says what is wrong.
+        OSError: it cannot be read.
+    """
+    with path.open(encoding="utf-8", errors="replace", newline="") as file:
+        names = _cells(file.readline(LONGEST_LINE), 1)
+        wanted = _columns(names, robot)
+        laws: dict[str, list[list[float]]] = {}
+        for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), ""), start=2):
+            if number > MOST_ROWS:
+                raise ValueError(f"{path}: more than {MOST_ROWS} lines")
+            cells = _cells(line, number)
+            if len(cells) != len(names):
+                raise ValueError(f"line {number}: expected {len(names)} cells, got {len(cells)}")
+            laws.setdefault(cells[1], []).append([_number(cells[j], number) for j in wanted])
+    if not laws:
+        raise ValueError(f"{path}: there are no rows")
+    return {law: _record(law, np.array(rows), robot) for law, rows in laws.items()}
+
+
+def _cells(line: str, number: int) -> list[str]:
+    if len(line) >= LONGEST_LINE:
+        raise ValueError(f"line {number} is longer than {LONGEST_LINE} characters")
+    return line.rstrip("\r\n").split(",")
+
+
+def _number(cell: str, line: int) -> float:
+    try:
+        value = float(cell)
+    except ValueError:
+        raise ValueError(f"line {line}: {cell[:20]!r} is not a number") from None
+    if not isfinite(value) or abs(value) > 1e9:
+        raise ValueError(f"line {line}: {cell[:20]} is out of range")
+    return value
+
+
+def _columns(names: list[str], robot: Robot) -> list[int]:
+    """Places of t, q, v, u and the force."""
+    if len(names) < 2 or names[0] != "t_s" or names[1] not in LAWS:
+        raise ValueError("line 1: expected a header that begins with t_s, law")
+    system, known = robot.system, header(robot)
+    rates = known[2 + system.n : 2 + 2 * system.n]
+    efforts = [n for n in known if n.startswith(("tau", "force"))]
+    wanted = ["t_s", *robot.coordinate_names, *rates, *efforts]
+    missing = [name for name in wanted if name not in names]
+    if missing:
+        raise ValueError(f"not a file of the robot {robot.name}: there is no column {missing[0]}")
+    return [names.index(name) for name in wanted]
+
+
+def _record(law: str, rows: Array, robot: Robot) -> MotionRecord:
+    n, m = robot.system.n, robot.system.m
+    steps = np.diff(rows[:, 0])
+    dt = float(np.median(steps)) if steps.size else 0.0
+    if dt <= 0 or np.abs(steps - dt).max() > 0.1 * dt:
+        raise ValueError(f"{law[:40]!r}: the times of its rows are not evenly spaced")
+    q, v, u, force = np.split(rows[:, 1:], np.cumsum([n, n, m]), axis=1)
+    return MotionRecord(dt, q, v, u, force)

@@ -1,0 +1,111 @@
+"""Declarations of parameters: unit, range, options and help of each, and the check of a value."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import Any
+
+from onpath.models.errors import CodedError, Message
+
+NOTHING = 1e-9  # smaller values of any parameter are set to 0, so that inverses are finite
+
+
+@dataclass(frozen=True, slots=True)
+class Spec:
+    """Declaration of a parameter.
+
+    Attributes:
+        group: "basic", "gains", "task", "realism" or "robot".
+        label: name on a widget.
+        unit: "" for none.
+        low, high, step: range of a number.
+        options: of a choice; empty for a number.
+        help: one line.
+        on: for a parameter of which 0 means "off": the value that switches it on.
+        former: former names of options, which are still accepted.
+    """
+
+    group: str
+    label: str
+    unit: str
+    low: float
+    high: float
+    step: float
+    options: tuple[Any, ...]
+    help: str
+    on: float | None = None
+    former: Mapping[str, str] | None = None
+
+    def present(self, value: Any) -> Any:
+        """The present name of an option; any other value unchanged."""
+        return self.former.get(str(value), value) if self.former else value
+
+
+def number(
+    default: float,
+    unit: str,
+    bounds: tuple[float, float, float],
+    text: str,
+    *,
+    group: str,
+    label: str,
+    on: float | None = None,
+) -> Any:
+    """A dataclass field for a number; `bounds` are (low, high, step)."""
+    spec = Spec(group, label, unit, *bounds, (), text, on)
+    return field(default=default, metadata={"spec": spec})
+
+
+def choice(
+    default: Any,
+    options: tuple[Any, ...],
+    text: str,
+    *,
+    group: str,
+    label: str,
+    former: Mapping[str, str] | None = None,
+) -> Any:
+    """A dataclass field for one of `options`; former names are accepted."""
+    spec = Spec(group, label, "", 0.0, 0.0, 0.0, options, text, former=former)
+    return field(default=default, metadata={"spec": spec})
+
+
+def unknown_name(name: str, known: list[str], what: str = "parameter") -> CodedError:
+    """The error for an unknown name, which suggests the nearest known ones."""
+    near = get_close_matches(name, known, n=3, cutoff=0.4) or get_close_matches(
+        name.lower(), known, n=3, cutoff=0.3
+    )
+    names = ", ".join(near or known)
+    hint = Message("error.did_you_mean" if near else "error.there_are", {"names": names})
+    return CodedError("error.unknown_name", kind=what, name=repr(name), hint=hint)
+
+
+def out_of_range(name: str, value: str, low: str, high: str) -> CodedError:
+    """The error for a number that is too small or too large; arguments are formatted."""
+    return CodedError("error.value_out_of_range", name=name, value=value, low=low, high=high)
+
+
+def checked(spec: Spec, name: str, value: Any) -> Any:
+    """`value` as the field takes it.
+
+    Raises:
+        ValueError: not a finite number in range, or not one of the options.
+    """
+    if spec.options:
+        present = str(spec.present(value))
+        for option in spec.options:
+            if str(option) == present:
+                return option
+        options = ", ".join(str(option) for option in spec.options)
+        raise CodedError("error.value_not_an_option", name=name, value=repr(value), options=options)
+    try:
+        result = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise CodedError("error.value_not_a_number", name=name, value=repr(value)) from None
+    if not math.isfinite(result) or not spec.low <= result <= spec.high:
+        unit = f" {spec.unit}" if spec.unit else ""
+        raise out_of_range(name, str(value), f"{spec.low:g}", f"{spec.high:g}{unit}")
+    return result if abs(result) > NOTHING else 0.0

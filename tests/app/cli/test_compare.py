@@ -1,0 +1,53 @@
+"""`onpath compare` on the command line."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from onpath.app.cli.main import run_command
+
+PAIR = ["--law", "path_following", "--law", "trajectory_tracking", "--obstruction", "wall"]
+
+
+def test_table_json_csv_and_picture_tell_the_same(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows, picture = tmp_path / "a.csv", tmp_path / "a.png"
+    arguments = ["compare", *PAIR, "--csv", str(rows), "--plot", str(picture)]
+    assert run_command(arguments) == 0
+    table = capsys.readouterr().out
+    assert run_command([*arguments, "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)["laws"]
+    with rows.open(newline="") as file:
+        read = list(csv.DictReader(file))
+    for law in PAIR[1], PAIR[3]:
+        own = [row for row in read if row["law"] == law]
+        largest = 1000 * max(o["max_distance_m"] for o in data[law]["wall"])
+        assert largest == pytest.approx(1000 * max(float(row["max_distance_m"]) for row in own))
+        assert f"{largest:.2f}" in table
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--law", "path_folowing"], "did you mean path_following"),
+        (["--law", "set_point"], "unknown law"),
+        (["--obstruction", "moon"], "unknown obstruction"),
+        (["--robot", "hexapod"], "unknown robot"),
+        (["--radius", "nan"], "--radius"),
+        (["--set", "speed=0"], "speed along the path"),
+        (["--set", "K1=inf"], "K1"),
+        (["--plot", "a.gif"], "expected a name ending in"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command(["compare", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert message in captured.err and captured.err.count("\n") == 1 and not captured.out

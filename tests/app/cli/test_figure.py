@@ -1,0 +1,73 @@
+"""`onpath figure`: every figure is drawn, twice the same, and errors are one clear line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from onpath.app.cli.main import run_command
+from onpath.app.exports.paper_figures import paper_figure
+from onpath.models.studies.paper_figures import FIGURES
+
+
+@pytest.mark.parametrize("number", FIGURES)
+def test_the_same_figure_has_the_same_bytes(
+    number: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    outputs = []
+    for kind in ("png", "png", "svg", "svg"):
+        file = tmp_path / f"figure.{kind}"
+        assert run_command(["figure", str(number), "--plot", str(file), "--json"]) == 0
+        outputs.append((file.read_bytes(), capsys.readouterr().out))
+    assert outputs[0] == outputs[1] and outputs[2] == outputs[3]
+    assert outputs[0][0].startswith(b"\x89PNG") and len(outputs[0][0]) > 20_000
+    result = json.loads(outputs[0][1])
+    assert result["figure"] == number and list(result["laws"]) == list(FIGURES[number].laws)
+
+
+def test_the_text_names_settings_and_numbers(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command(["figure", "5"]) == 0
+    text = capsys.readouterr().out
+    for words in ("from the paper's text", "illustrative", "2π rad/s", "max distance while held"):
+        assert words in text
+
+
+def test_the_obstruction_is_shaded_and_the_reference_drawn() -> None:
+    figure = FIGURES[5]
+    drawn = paper_figure(figure, figure.runs())
+    assert len(drawn.axes) == 5
+    for axes in drawn.axes:
+        (shade,) = axes.patches
+        assert shade.get_extents().transformed(axes.transData.inverted()).intervalx == (
+            pytest.approx([3.0, 5.0], abs=2e-3)
+        )
+    speed = drawn.axes[3].lines
+    assert np.asarray(speed[1].get_ydata()) == pytest.approx(2 * np.pi)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["figure"],
+        ["figure", "4"],
+        ["figure", "two"],
+        ["figure", "2", "3"],
+        ["figure", "2", "--plot", "x.txt"],
+        ["figure", "2", "--plot", "missing/x.png"],
+        ["figure", "2", "--json", "yes"],
+    ],
+)
+def test_errors_are_one_line(
+    arguments: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run_command(arguments) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.startswith("onpath: ") and said.err.count("\n") == 1
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,244 @@
+"""A bench gets another control law while its robot moves: what goes on, and what begins anew."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+import numpy as np
+import pytest
+
+from onpath.app.exports.figures import draw_history
+from onpath.app.exports.files import csv_bytes
+from onpath.app.exports.recording import record_scene
+from onpath.app.exports.replay import replay
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.setup import capture
+from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.snapshots.snapshot import MARKER
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT, RIGHT
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.systems.robots import Robot
+from tests.support.lab import FRAME, assert_sound, do, new_lab, run, states
+
+WITH_MEMORY = next(name for name, law in LAWS.items() if law.memory)
+ONLY_SQUARE = next(name for name, law in LAWS.items() if law.square)
+OTHERS = [name for name in LAWS if name not in DEFAULT_LAWS.values()]
+
+
+def change(lab: Lab, bench: str, law: str) -> None:
+    """Change a law at once, as a script does."""
+    lab.session.change_law(bench, law)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("bench", BENCHES)
+def test_the_robot_goes_on_from_where_it_is(bench: str, law: str) -> None:
+    lab = new_lab(0.5)
+    do(lab, c.SetParameter("K3", 500.0), c.Hold(True))
+    run(lab, 0.3)
+    before, time = states(lab.session)[bench], lab.session.time
+    own = lab.session.runs[bench]
+    old = {name: value.copy() for name, value in own.fields().items()}
+    change(lab, bench, law)
+    new = own.fields()
+    if law == DEFAULT_LAWS[bench]:
+        assert np.array_equal(own.state, before)
+        return
+    for name in ("q", "v", "theta", "theta_rate", "u", "encoder", "encoder_rate", "phase"):
+        assert np.array_equal(new[name], old[name]), name
+    assert new["theta_ref"] == new["theta"] and not new["integral"].any()
+    assert all(not new[name].any() for name, _ in LAWS[law].memory)
+    assert lab.session.time == time and lab.session.laws[bench] == law
+    event = lab.session.events[-1]
+    assert (event.name, event.detail, event.benches) == ("law", law, (bench,))
+    assert lab.session.grips.held == set(BENCHES)
+    run(lab, 0.2)
+    assert_sound(lab)
+
+
+class SlowCache(LoopCache):
+    """Loops of other laws than the usual ones are ready when it is said so."""
+
+    ready = False
+
+    def is_ready(self, robot: Robot, kind: Kind) -> bool:
+        return self.ready or kind.controller in DEFAULT_LAWS.values()
+
+
+def test_the_old_law_goes_on_until_the_new_loop_can_run() -> None:
+    cache = SlowCache()
+    lab = Lab(cache)
+    run(lab, 0.2)
+    do(lab, c.ChooseLaw(LEFT, "waiting_clock"))
+    time = lab.session.time
+    run(lab, 0.2)
+    assert lab.session.laws == DEFAULT_LAWS and lab.session.time > time + 0.15
+    assert take_snapshot(lab, 1.0).run.laws[LEFT] == "waiting_clock"  # what the menu shows
+    assert take_snapshot(lab, 1.0).laws == DEFAULT_LAWS  # what moves the robots
+    assert capture(lab.session).laws == {LEFT: "waiting_clock"}
+    cache.ready = True
+    run(lab, FRAME)
+    assert lab.session.laws == {**DEFAULT_LAWS, LEFT: "waiting_clock"}
+    cache.close()
+
+
+def test_a_choice_is_taken_back_before_its_loop_is_ready() -> None:
+    cache = SlowCache()
+    lab = Lab(cache)
+    do(lab, c.ChooseLaw(LEFT, "set_point"), c.ChooseLaw(LEFT, DEFAULT_LAWS[LEFT]))
+    cache.ready = True
+    run(lab, 0.1)
+    assert lab.session.laws == DEFAULT_LAWS == lab.session.chosen_laws
+    assert not [event for event in lab.session.events if event.name == "law"]
+    cache.close()
+
+
+@pytest.mark.parametrize(
+    ("bench", "law", "said"),
+    [
+        ("middle", "set_point", "unknown bench"),
+        (LEFT, "sett_point", "did you mean set_point"),
+        (RIGHT, "", "unknown law"),
+    ],
+)
+def test_a_wrong_name_is_refused_and_changes_nothing(bench: str, law: str, said: str) -> None:
+    lab = new_lab(0.1)
+    do(lab, c.ChooseLaw(bench, law))
+    assert said in lab.message and lab.message_level == "warning"
+    assert lab.session.chosen_laws == DEFAULT_LAWS
+
+
+def test_a_law_that_does_not_suit_the_robot() -> None:
+    lab = new_lab()
+    change(lab, RIGHT, ONLY_SQUARE)
+    do(lab, c.ChooseRobot("flexible"))
+    assert lab.session.laws == DEFAULT_LAWS and LAWS[ONLY_SQUARE].label in lab.message
+    do(lab, c.ChooseLaw(LEFT, ONLY_SQUARE))
+    assert "not possible with this robot" in lab.message and lab.session.chosen_laws == DEFAULT_LAWS
+
+
+def changing() -> Lab:
+    """A lab whose benches change their laws twice, with memories of different sizes."""
+    lab = new_lab(0.5)
+    change(lab, LEFT, WITH_MEMORY)
+    run(lab, 0.5)
+    change(lab, RIGHT, "waiting_clock")
+    change(lab, LEFT, "set_point")
+    run(lab, 0.5)
+    return lab
+
+
+def test_history_is_replayed_to_the_last_bit_across_changes() -> None:
+    lab = new_lab(0.5)
+    seen: list[tuple[str, float, np.ndarray, np.ndarray]] = []
+    for laws in ({LEFT: WITH_MEMORY}, {RIGHT: "waiting_clock", LEFT: "set_point"}, DEFAULT_LAWS):
+        for bench, law in laws.items():
+            change(lab, bench, law)
+        for _ in range(20):
+            run(lab, FRAME)
+            for bench, own in lab.session.runs.items():
+                row = own.shown()
+                seen.append((bench, lab.session.time, row["q"].copy(), row["u"].copy()))
+    runs = replay(lab.session.robot, lab.session.history.all())
+    names = [trajectory.controller for trajectory in runs[LEFT]]
+    assert names == ["trajectory_tracking", WITH_MEMORY, "set_point", "trajectory_tracking"]
+    fields = {
+        bench: {n: np.concatenate([p.fields[n] for p in parts]) for n in ("q", "u")}
+        for bench, parts in runs.items()
+    }
+    for bench, time, q, u in seen:
+        at = round(time * 1e3) - 1
+        assert np.array_equal(fields[bench]["q"][at], q)
+        assert np.array_equal(fields[bench]["u"][at], u)
+
+
+def test_looking_back_shows_each_frame_under_its_law() -> None:
+    lab = changing()
+    for ago, laws in (
+        (1.3, DEFAULT_LAWS),
+        (0.7, {**DEFAULT_LAWS, LEFT: WITH_MEMORY}),
+        (0.2, {LEFT: "set_point", RIGHT: "waiting_clock"}),
+    ):
+        do(lab, c.LookAt(ago))
+        shown = take_snapshot(lab, 1.0)
+        assert shown.laws == laws
+        assert shown.run.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}
+        assert_sound(lab)
+
+
+def test_going_on_from_before_a_change_and_undoing_that() -> None:
+    lab = changing()
+    end = states(lab.session)
+    do(lab, c.LookAt(1.2))
+    past = lab.session.history.at(lab.session.viewing or 0.0)
+    assert past is not None
+    do(lab, c.GoOn())
+    assert lab.session.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}  # those of now
+    for bench, own in lab.session.runs.items():
+        drive = past.drives[bench]
+        assert drive.kind.controller == DEFAULT_LAWS[bench]
+        assert np.array_equal(own.fields()["q"], drive.state[:2])
+        assert own.fields()["theta_ref"] == own.fields()["theta"]
+    told = [(event.detail, event.benches) for event in lab.session.events if event.name == "law"]
+    assert told == [("set_point", (LEFT,)), ("waiting_clock", (RIGHT,))]
+    run(lab, 0.3)
+    change(lab, RIGHT, "contouring")
+    do(lab, c.UndoGoOn())
+    assert lab.session.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}
+    for bench, state in states(lab.session).items():
+        assert np.array_equal(state, end[bench])
+    run(lab, 0.1)
+    do(lab, c.UndoGoOn())
+    assert lab.session.laws[RIGHT] == "contouring"
+    assert_sound(lab)
+
+
+def test_the_marker_is_what_the_law_aims_at() -> None:
+    lab = new_lab(0.4)
+    session = lab.session
+    for law in LAWS:
+        change(lab, RIGHT, law)
+        run(lab, 0.2)
+        own = session.runs[RIGHT].shown()[LAWS[law].aim]
+        place = session.robot.place(session.robot.frame.lift(session.editor.curve.at(own)))
+        view = take_snapshot(lab, 1.0).robots[RIGHT]
+        assert view.law == law and view.points[MARKER] == pytest.approx(place[0], abs=1e-6)
+
+
+def test_a_set_up_carries_the_laws() -> None:
+    lab = changing()
+    setup = capture(lab.session)
+    assert setup.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}
+    other = new_lab()
+    do(other, c.UseShared(encode(setup)))
+    assert other.session.laws == setup.laws and other.session.time == 0.0
+    assert capture(other.session) == setup == decode(encode(setup))
+    do(other, c.Reset())
+    assert other.session.laws == setup.laws
+    do(other, c.UseShared(encode(capture(new_lab().session))))
+    assert other.session.laws == DEFAULT_LAWS
+
+
+def test_files_tell_the_bench_and_the_law_of_every_row() -> None:
+    lab = changing()
+    change(lab, RIGHT, "set_point")  # both alike
+    run(lab, 0.2)
+    history = lab.session.history.all()
+    rows = list(csv.DictReader(io.StringIO(csv_bytes(lab.session.robot, history).decode())))
+    found = dict.fromkeys((row["bench"], row["law"]) for row in rows)
+    assert list(found) == [
+        (LEFT, "trajectory_tracking"),
+        (LEFT, WITH_MEMORY),
+        (LEFT, "set_point"),
+        (RIGHT, "path_following"),
+        (RIGHT, "waiting_clock"),
+        (RIGHT, "set_point"),
+    ]
+    assert len(rows) == 2 * round(lab.session.time * 1e3)
+    assert draw_history(replay(lab.session.robot, history)).startswith(b"\x89PNG")
+    assert record_scene(lab.session.robot, history).rstrip().endswith(b"</html>")

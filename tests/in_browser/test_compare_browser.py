@@ -1,0 +1,43 @@
+"""Laws are compared in the lab, in a real browser, while the lab goes on."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser, expect
+
+from onpath.app.lab import commands as c
+from onpath.app.server.lab_server import LabServer
+from tests.support.browser import Tab, wait_for
+
+TABLE = "table:has-text('largest force')"
+
+
+def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabServer) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    tab = Tab(server, context, draws=False)
+    tab.open("Compare laws")
+    tab.press("Compare")
+    before = tab.session.time
+    rows = tab.page.locator(f"{TABLE} tbody tr")
+    expect(rows).to_have_count(3, timeout=60_000)
+    wait_for(lambda: tab.session.time > before)
+    told = {cells[0]: float(cells[1]) for cells in map(str.split, _lines(tab))}
+    assert told["Trajectory"] > 40
+    assert told["Path"] < 6 and told["Waiting"] < 6
+    expect(tab.page.get_by_alt_text("Largest distance to the path over delay")).to_be_visible()
+
+    tab.ask(c.SetParameter("speed", 0.0))
+    tab.press("Compare")
+    tab.page.get_by_text("A comparison needs a closed path").wait_for()
+    assert tab.errors == []
+    context.close()
+
+
+def _lines(tab: Tab) -> list[str]:
+    """First word of the law and the distance of each row."""
+    rows = tab.page.locator(f"{TABLE} tbody tr").all()
+    cells = [row.locator("td").all_inner_texts() for row in rows]
+    return [f"{law.split()[0]} {distance}" for law, distance, *_ in cells]

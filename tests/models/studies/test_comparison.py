@@ -1,0 +1,113 @@
+"""The fair comparison: what it shows of the laws, and that it is the same each time."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from functools import lru_cache
+
+import pytest
+
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.paths.curves import circle
+from onpath.models.studies.comparison import (
+    AFTER,
+    BEFORE,
+    OBSTRUCTIONS,
+    Contest,
+    Outcome,
+    as_data,
+    compare,
+    worst,
+)
+from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
+
+CONTEST = Contest(FIVE_BAR, FIVE_BAR.parameters(), circle(0.05))
+PAIR = ("trajectory_tracking", "path_following")
+
+
+@lru_cache
+def outcomes(law: str, obstruction: str) -> tuple[Outcome, ...]:
+    """The outcomes on the rigid five-bar, a circle of 50 mm, with the default gains."""
+    (found,) = compare(CONTEST, [law], [obstruction])
+    return tuple(found)
+
+
+def distances(law: str, obstruction: str) -> list[float]:
+    return [1000 * o.max_distance_m for o in outcomes(law, obstruction)]
+
+
+@pytest.mark.parametrize("law", CONTEST.laws())
+def test_undisturbed_a_law_that_has_the_path_keeps_it(law: str) -> None:
+    """Started on the path with its velocity. The clock of the one and the current of the other have
+    first to find their rates."""
+    (outcome,) = outcomes(law, "none")
+    most = {"waiting_clock": 0.1, "velocity_field": 0.5}.get(law, 0.005)
+    assert 1000 * outcome.max_distance_m < most
+    assert outcome.peak_force_N == outcome.energy_given_J == 0
+
+
+def test_the_clock_makes_the_gap_and_waiting_nearly_closes_it() -> None:
+    """A brake of 2 s at eight places."""
+    assert min(distances("trajectory_tracking", "brake")) > 40
+    assert max(distances("path_following", "brake")) < 6
+    assert max(distances("waiting_clock", "brake")) < 6
+
+
+def test_the_readme_quotes_the_worst_places_of_the_brake() -> None:
+    """48, 4 and 4 mm."""
+    laws = ("trajectory_tracking", "path_following", "waiting_clock")
+    assert [round(max(distances(law, "brake"))) for law in laws] == [48, 4, 4]
+
+
+def test_who_waits_is_late_and_who_runs_by_the_clock_is_not() -> None:
+    for law in ("path_following", "waiting_clock"):
+        assert all(2.0 < outcome.delay_s < 2.4 for outcome in outcomes(law, "brake"))
+    assert all(abs(outcome.delay_s) < 0.01 for outcome in outcomes("trajectory_tracking", "brake"))
+
+
+def test_the_velocity_field_gives_no_more_than_it_stores() -> None:
+    stored = CONTEST.parameters.field_energy
+    for name in ("brake", "push_across", "push_ahead", "push_back", "wall"):
+        assert max(o.energy_given_J for o in outcomes("velocity_field", name)) < stored
+
+
+def test_under_weak_motors_path_following_keeps_the_path_better_than_tracking() -> None:
+    for name in ("weak_motors", "too_fast"):
+        assert max(distances("path_following", name)) < min(distances("trajectory_tracking", name))
+
+
+def test_only_laws_that_can_take_part_are_compared() -> None:
+    assert "set_point" in LAWS and "set_point" not in CONTEST.laws()
+    flexible = Contest(FLEXIBLE, FLEXIBLE.parameters(), circle(0.05))
+    assert "velocity_field" not in flexible.laws()
+    assert set(PAIR) <= set(flexible.laws())
+
+
+@pytest.mark.parametrize("obstruction", OBSTRUCTIONS.values(), ids=lambda o: o.name)
+def test_every_run_lasts_as_long_as_it_says(obstruction: object) -> None:
+    assert isinstance(obstruction, type(OBSTRUCTIONS["none"]))
+    found = outcomes("path_following", obstruction.name)
+    assert len(found) == obstruction.places
+    assert all(o.diverged_at_s is None for o in found)
+    seconds = BEFORE + obstruction.seconds + AFTER
+    for o in found:  # the mean is over the whole run, and the largest is at least the mean
+        assert 0 <= o.mean_distance_m <= o.max_distance_m
+        assert o.impulse_Ns <= o.peak_force_N * seconds + 1e-12
+
+
+def test_the_same_comparison_gives_the_same_numbers() -> None:
+    def run() -> str:
+        results = {(o[0].law, o[0].obstruction): o for o in compare(CONTEST, PAIR, ["brake"])}
+        return json.dumps(as_data(CONTEST, results))
+
+    assert run() == run()
+
+
+def test_the_worst_is_the_worst_of_each_measure() -> None:
+    found = outcomes("path_following", "brake")
+    summary = worst(found)
+    assert summary["max_distance_m"] == max(o.max_distance_m for o in found)
+    assert summary["diverged_at_s"] is None
+    stopped = dataclasses.replace(found[0], diverged_at_s=0.5)
+    assert worst([*found, stopped])["diverged_at_s"] == 0.5

@@ -1,0 +1,177 @@
+"""From a record of its motion, the parameters of any robot whose model is linear in them."""
+
+from __future__ import annotations
+
+import io
+import json
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from onpath.app.cli.main import run_command
+from onpath.models.closed_loop.trajectory import write_csv
+from onpath.models.studies.experiments import experiments, run
+from onpath.models.studies.linear_model import MotionRecord, estimate, linear_model
+from onpath.models.studies.record_file import LONGEST_LINE, read_records
+from onpath.models.systems.catalogue import ROBOTS
+
+RIGID = [name for name, entry in ROBOTS.items() if entry.flexible_link is None]
+
+
+@cache
+def text_of(robot: str, **values: float) -> str:
+    """The CSV of an obstruction with a payload that the controller does not know."""
+    chosen = experiments(robot)["obstruction"].with_values({"duration": 6.0, **values})
+    file = io.StringIO()
+    write_csv(file, chosen.robot(), [run(chosen, "path_following")])
+    return file.getvalue()
+
+
+def record(robot: str, folder: Path, **values: float) -> MotionRecord:
+    path = folder / "motion.csv"
+    path.write_text(text_of(robot, **values))
+    entry = ROBOTS[robot]
+    return read_records(path, entry.make(entry.parameters()))["path_following"]
+
+
+def found(robot: str, motion: MotionRecord):
+    entry = ROBOTS[robot]
+    made = entry.make(entry.parameters())
+    return estimate(made.system, [motion], made.plant(entry.parameters()))
+
+
+@pytest.mark.parametrize("robot", ["five_bar", "two_link_arm"])
+def test_a_file_gives_the_robot_back_to_four_digits(robot: str, tmp_path: Path) -> None:
+    result = found(robot, record(robot, tmp_path, payload=0.05))
+    entry = ROBOTS[robot]
+    loaded = entry.parameters()
+    made = entry.make(loaded)
+    plant = made.plant(replace(loaded, payload=0.05))  # type: ignore[call-arg]
+    true = dict(zip(made.system.parameter_names, plant.tolist(), strict=True))
+    assert {each.name for each in result.found} == set(linear_model(made.system).names)
+    for each in result.found:
+        assert not each.others
+        assert each.value == pytest.approx(true[each.name], rel=2e-4, abs=2e-5), each.name
+    assert result.unexplained < 1e-4 and not result.unexcited
+
+
+@pytest.mark.parametrize("robot", ["five_bar", "two_link_arm"])
+def test_errors_of_noisy_encoders_are_as_large_as_stated(robot: str, tmp_path: Path) -> None:
+    clean = record(robot, tmp_path, payload=0.05)
+    exact = {each.name: each.value for each in found(robot, clean).found}
+    z = list[float]()
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        step = 2 * np.pi / 20000
+        q = step * np.floor((clean.q + 1e-4 * rng.normal(size=clean.q.shape)) / step + 0.5)
+        v = clean.v + 5e-3 * rng.normal(size=clean.v.shape)
+        result = found(robot, replace(clean, q=q, v=v))
+        for each in result.found:
+            assert each.value == pytest.approx(exact[each.name], rel=0.02, abs=5e-3)
+            z.append((each.value - exact[each.name]) / each.error)
+    assert 0.5 < np.sqrt(np.mean(np.square(z))) < 2.0
+
+
+def test_dry_friction_is_found_where_there_is_some(tmp_path: Path) -> None:
+    result = found("five_bar", record("five_bar", tmp_path, coulomb=0.04))
+    values = {each.name: each.value for each in result.found}
+    assert values["c1"] == pytest.approx(0.04, rel=0.01)
+    assert values["c2"] == pytest.approx(0.04, rel=0.01)
+
+
+def test_what_the_motion_does_not_tell_apart_is_estimated_as_a_sum() -> None:
+    """In one small wave about the upright link, the weight acts as an inertia of G1 / ω²."""
+    t, omega = 1e-3 * np.arange(4001), 2 * np.pi
+    away = 0.011 * np.sin(omega * t)
+    q1, v1 = np.pi / 2 + away, 0.011 * omega * np.cos(omega * t)
+    gained, turned = np.diff(v1) / 1e-3, np.diff(q1) / 1e-3  # means over a step
+    torque = 0.02 * gained + 0.05 * turned - 0.1 * (away[1:] + away[:-1]) / 2
+    still = np.full(4000, np.pi)
+    q, v = np.stack([q1[:-1], still], axis=1), np.stack([v1[:-1], 0 * still], axis=1)
+    u = np.stack([torque, 0 * still], axis=1)
+    result = found("five_bar", MotionRecord(1e-3, q, v, u, 0 * q))
+    true = {"M11": 0.02, "G1": 0.1, "b1": 0.05}
+    assert {"M22", "b2"} <= {*result.unexcited}
+    sums = [each for each in result.found if each.name in ("M11", "G1")]
+    (each,) = sums
+    ((other, share),) = [pair for pair in each.others if pair[0] in ("M11", "G1")]
+    assert share == pytest.approx(omega ** (-2 if other == "G1" else 2), rel=1e-3)
+    assert each.value == pytest.approx(true[each.name] + share * true[other], rel=1e-3)
+    assert f" + {share:.3g} {other}" in each.label()
+
+
+def test_a_robot_that_is_not_linear_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command(["identify", str(tmp_path / "none.csv"), "--robot", "flexible"]) == 2
+    assert "not linear" in capsys.readouterr().err
+
+
+def test_the_command_prints_a_table_and_json(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "motion.csv"
+    path.write_text(text_of("five_bar", payload=0.05))
+    assert run_command(["identify", str(path)]) == 0
+    table = capsys.readouterr().out
+    assert "M11" in table and "0.0245" in table
+    assert run_command(["identify", str(path), "--json", "--law", "path_following"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    values = {each["name"]: each["value"] for each in data["parameters"]}
+    assert values["M11"] == pytest.approx(0.0246, rel=1e-3) and data["not_excited"] == []
+
+
+def damaged(text: str) -> dict[str, str]:
+    lines = text.splitlines()
+    cells = lines[700].split(",")
+    return {
+        "empty": "",
+        "no header": "\n".join(lines[1:]),
+        "only the header": lines[0] + "\n",
+        "prose": "Dear reader,\nthis is not a table.\n",
+        "a line of 10 MB": lines[0] + "\n" + "7" * 10_000_000 + "\n",
+        "a header of 10 MB": "t_s,law," + "x," * 5_000_000,
+        "not a number": "\n".join([*lines[:700], ",".join(["nan", *cells[1:]]), *lines[701:]]),
+        "infinite": "\n".join([*lines[:700], ",".join([*cells[:2], "1e400", *cells[3:]])]),
+        "text in a cell": "\n".join([*lines[:700], ",".join([*cells[:3], "abc", *cells[4:]])]),
+        "a cell less": "\n".join([*lines[:700], ",".join(cells[:-1])]),
+        "a column less": "\n".join(",".join(line.split(",")[:-6]) for line in lines),
+        "time stands still": "\n".join([*lines[:700], *[lines[700]] * 900]),
+        "too short": "\n".join(lines[:300]),
+        "every tenth of a second": "\n".join([lines[0], *lines[1::100]]),
+        "at rest": "\n".join(
+            [lines[0], *(f"{k / 1000:g},{lines[1].split(',', 1)[1]}" for k in range(3000))]
+        ),
+        "zeros": "\0" * 5000,
+    }
+
+
+@pytest.mark.parametrize("name", list(damaged(",,,\n" * 702)))
+def test_a_damaged_file_is_refused_in_one_line(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "damaged.csv"
+    path.write_text(damaged(text_of("five_bar", payload=0.05))[name])
+    assert run_command(["identify", str(path)]) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.startswith("onpath: ") and said.err.count("\n") == 1
+    assert len(said.err) < 300 < LONGEST_LINE
+
+
+def test_a_file_that_is_not_there_or_not_text(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command(["identify", str(tmp_path / "none.csv")]) == 2
+    (tmp_path / "noise.csv").write_bytes(np.random.default_rng(0).bytes(100_000))
+    assert run_command(["identify", str(tmp_path / "noise.csv")]) == 2
+    assert run_command(["identify", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.count("\n") == 3
+
+
+def test_every_rigid_robot_says_whether_it_is_linear() -> None:
+    for name in RIGID:
+        entry = ROBOTS[name]
+        assert linear_model(entry.make(entry.parameters()).system).names
