@@ -66,7 +66,7 @@ typedef struct {
   Real level_weights[3];
   Real level_constant;
   Real torque_limit, coulomb, encoder_step, encoder_filter, hold_ticks, dt;
-  Real stiction, torque_step, delay_ticks, sensor_noise, seed;
+  Real stiction, torque_step, look_ahead, delay_ticks, sensor_noise, seed;
   Real hand_active;
   Vec hand_target;
   Real hold_active;
@@ -194,42 +194,52 @@ static Real speed_ref_rate(const Settings *s, const State *x) {
   return clamp((s->speed - x->speed_ref) / s->dt, -s->ramp, s->ramp);
 }
 
+/* Coordinates of z and their rates along and across the path, whose closest point is known. */
+typedef struct {
+  Vec T, N;
+  Real length, curvature, bent, theta_rate, lambda, lambda_rate;
+} Place;
+
+static Place place(Local at, Vec z, Vec z_rate) {
+  Place p;
+  p.length = root(dot(at.first, at.first));
+  p.T = scaled(1 / p.length, at.first), p.N = (Vec){-p.T.y, p.T.x};
+  p.lambda = dot(p.N, sub(z, at.sigma)), p.lambda_rate = dot(p.N, z_rate);
+  p.curvature = dot(p.N, at.second) / (p.length * p.length);
+  p.bent = 1 - p.lambda * p.curvature;
+  p.theta_rate = dot(p.T, z_rate) / (p.length * p.bent);
+  return p;
+}
+
 /* Commanded y'' in the frame of the closest point: z = sigma + lambda N, differentiated twice. */
-static Vec command(const Settings *s, const State *x, Local at, Real theta, Vec z, Vec z_rate,
-                   Row *row) {
-  Real length = root(dot(at.first, at.first));
-  Vec T = scaled(1 / length, at.first), N = {-T.y, T.x};
-  Real lambda = dot(N, sub(z, at.sigma)), lambda_rate = dot(N, z_rate);
-  Real stretch = dot(T, at.second), curvature = dot(N, at.second) / (length * length);
-  Real bent = 1 - lambda * curvature, g = length * bent;
-  Real theta_rate = dot(T, z_rate) / g, turn = curvature * length * theta_rate;
-  Real curving = dot(N, at.third) / (length * length) - 3 * curvature * stretch / length;
-  Real g_rate = theta_rate * (stretch * bent - length * lambda * curving)
-                - length * lambda_rate * curvature;
-  Real across = -s->K1 * lambda - s->K2 * lambda_rate - s->K3 * x->integral.x;
-  Real to_target = -s->K4 * wrap(theta - s->target) - s->K5 * theta_rate;
-  Real speed_rate = speed_ref_rate(s, x), speed = speed_ref(s, x) + s->dt / 2 * speed_rate;
-  Real onward = choose(s->position != 0, to_target, speed_rate + s->K5 * (speed - theta_rate));
-  row->theta = theta, row->theta_rate = theta_rate;
-  row->xi = lambda, row->xi_rate = lambda_rate;
-  Vec tangential = scaled(g * onward + g_rate * theta_rate - lambda_rate * turn, T);
-  return along(tangential, across + g * theta_rate * turn, N);
+static Vec command(const Settings *s, const State *x, Local at, Place p, Real theta, Real ahead) {
+  Real g = p.length * p.bent, turn = p.curvature * p.length * p.theta_rate;
+  Real stretch = dot(p.T, at.second), per_square = 1 / (p.length * p.length);
+  Real curving = dot(p.N, at.third) * per_square - 3 * p.curvature * stretch / p.length;
+  Real g_rate = p.theta_rate * (stretch * p.bent - p.length * p.lambda * curving)
+                - p.length * p.lambda_rate * p.curvature;
+  Real across = -s->K1 * p.lambda - s->K2 * p.lambda_rate - s->K3 * x->integral.x;
+  Real to_target = -s->K4 * wrap(theta - s->target) - s->K5 * p.theta_rate;
+  Real speed_rate = speed_ref_rate(s, x), speed = speed_ref(s, x) + ahead * speed_rate;
+  Real onward = choose(s->position != 0, to_target, speed_rate + s->K5 * (speed - p.theta_rate));
+  Vec tangential = scaled(g * onward + g_rate * p.theta_rate - p.lambda_rate * turn, p.T);
+  return along(tangential, across + g * p.theta_rate * turn, p.N);
 }
 
 static void tick(const Settings *s, const Real *table, State *x, Row *row) {
-  Real half = s->dt / 2;
-  Vec gain = scaled(half, acceleration(&s->model, x->q, x->v, x->u));
-  Vec q = along(x->q, half, along(x->v, all(0.5), gain)), v = add(x->v, gain);
+  Real ahead = s->look_ahead;
+  Vec gain = scaled(ahead, acceleration(&s->model, x->q, x->v, x->u));
+  Vec q = along(x->q, ahead, along(x->v, all(0.5), gain)), v = add(x->v, gain);
   Angles a = angles(q);
-  Vec z = tip(&s->model, a), z_rate = tip_rate(&s->model, a, v);
-  Real theta = x->theta + s->dt * x->theta_rate;
-  Local at = project(curve_at(table, theta), z, &theta);
-  Vec wanted = torques(&s->model, a, v, command(s, x, at, theta, z, z_rate, row));
+  Vec z = tip(&s->model, a);
+  Real theta = x->theta + s->dt * x->theta_rate, theta_now = theta;
+  Local predicted = curve_at(table, theta), at = project(predicted, z, &theta);
+  Place there = place(at, z, tip_rate(&s->model, a, v));
+  Vec wanted = torques(&s->model, a, v, command(s, x, at, there, theta, ahead));
 
-  Real length = root(dot(at.first, at.first));
-  Real bend = (at.first.x * at.second.y - at.first.y * at.second.x) / (length * length * length);
-  Real now = dot(at.first, tip_rate(&s->model, a, x->v))
-             / (length * length * (1 - row->xi * bend));
+  a = angles(x->q), z = tip(&s->model, a);
+  at = project(predicted, z, &theta_now);
+  Place now = place(at, z, tip_rate(&s->model, a, x->v));
 
   Real limit = s->torque_limit;
   Mask acts = x->phase < 0.5;
@@ -237,7 +247,6 @@ static void tick(const Settings *s, const Real *table, State *x, Row *row) {
   Vec u = {choose(acts, clamp(wanted.x, -limit, limit), x->u.x),
            choose(acts, clamp(wanted.y, -limit, limit), x->u.y)};
 
-  a = angles(x->q);
   Vec y = tip(&s->plant, a), force = pushes(s, y, tip_rate(&s->plant, a, x->v));
   Vec tau = {s->plant.l1 * (a.c1 * force.y - a.s1 * force.x)
                  + u.x - s->coulomb * x->v.x / root(x->v.x * x->v.x + 0.0025),
@@ -249,16 +258,17 @@ static void tick(const Settings *s, const Real *table, State *x, Row *row) {
 
   integrate(&s->plant, &x->q, &x->v, tau, s->dt);
   Mask integrates = acts & not(saturated);
-  Real more = choose(integrates, s->dt * s->hold_ticks * row->xi, all(0));
+  Real more = choose(integrates, s->dt * s->hold_ticks * there.lambda, all(0));
   x->integral.x = choose(s->K3 == 0, all(0), x->integral.x + more);
   x->integral.y = choose(s->K3 == 0, all(0), x->integral.y);
-  Real speed_rate = speed_ref_rate(s, x), speed = speed_ref(s, x) + half * speed_rate;
+  Real speed_rate = speed_ref_rate(s, x), speed = speed_ref(s, x) + s->dt / 2 * speed_rate;
   x->speed_ref = speed_ref(s, x) + s->dt * speed_rate;
   Real top = magnitude(speed), gap = wrap(s->target - x->theta_ref) / s->dt;
   x->theta_ref += s->dt * choose(s->position != 0, clamp(gap, -top, top), speed);
-  x->theta = theta, x->theta_rate = row->theta_rate;
-  row->speed = now * (length - half * now * dot(at.first, at.second) / length);
-  row->theta_rate = now, row->theta -= half * now, row->xi -= half * row->xi_rate;
+  x->theta = theta, x->theta_rate = there.theta_rate;
+  row->theta = theta_now, row->theta_rate = now.theta_rate;
+  row->speed = now.theta_rate * now.length;
+  row->xi = now.lambda, row->xi_rate = now.lambda_rate;
   x->encoder = row->q, x->encoder_rate = row->v, x->u = u;
   x->phase = choose(x->phase + 1 < s->hold_ticks - 0.5, x->phase + 1, all(0));
 }

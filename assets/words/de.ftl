@@ -623,6 +623,10 @@ parameter-stiction-help = bis zu diesem Drehmoment bleibt ein ruhendes Gelenk in
 parameter-torque_step-label = Drehmomentstufen
 parameter-torque_step-help = das Drehmoment der Motoren ist ein Vielfaches davon; 0: beliebig
 
+parameter-look_ahead-label = Vorausschau
+parameter-look_ahead-help = wie weit der Regler vorausrechnet: eine halbe Millisekunde, oder einen halben Regeltakt, was bei langsamem Takt die Geschwindigkeit richtig hält, aber das größte K2 halbiert
+parameter-look_ahead-option-half_tick = halbe Millisekunde
+parameter-look_ahead-option-half_interval = halber Regeltakt
 parameter-delay-label = Rechenzeit
 parameter-delay-unit = Regeltakte
 parameter-delay-help = Zeit von einer Messung bis zum Drehmoment, das aus ihr berechnet wird; 0: sofort

@@ -1,8 +1,8 @@
 """The closed loop as one function: one tick of one robot under one control law.
 
-A tick measures, predicts half a tick ahead, projects onto the path, evaluates the control law,
-limits the torque, adds external forces, integrates the plant and writes a log row. State, settings
-and curve are inputs of the function, so that no user action requires it to be rebuilt.
+A tick measures, predicts a little ahead, projects onto the path, evaluates the control law, limits
+the torque, adds external forces, integrates the plant and writes a log row. State, settings and
+curve are inputs of the function, so that no user action requires it to be rebuilt.
 
 A tick lasts dt = 1 ms (0.5 ms at 2 kHz). The control law is evaluated in every `hold_ticks`-th
 tick, and its torque is held in between.
@@ -19,6 +19,7 @@ from onpath.models.closed_loop.law_view import (
     clock_at,
     controlled,
     coordinates,
+    interval,
     law_view,
     predicted,
 )
@@ -147,7 +148,7 @@ def _bases(system: MechanicalSystem, kind: Kind, law: Law) -> ca.Function:
     settings_symbol, settings = settings_layout(system).symbols("settings")
     columns = basis(predicted(state, settings), kind.closed)
     if law.reference is not None:
-        reference = law.reference(clock_at(kind, law, state, settings))
+        reference = law.reference(clock_at(kind, law, state, settings, settings["look_ahead"]))
         columns = ca.horzcat(columns, basis(reference, kind.closed))
     return ca.Function("bases", [state_symbol, settings_symbol], [ca.densify(columns)])
 
@@ -170,8 +171,9 @@ def _advance(
     settings_symbol, settings = settings_layout(system).symbols("settings")
     values = ca.SX.sym("values", kind.table_shape[0], 1 if law.reference is None else 2)
     measured_q, measured_v, reading = measure(system, kind, state, settings)
-    q, v = look_ahead(system, state, settings, measured_q, measured_v)
-    beam = _beam(system, state, settings, q, v) if kind.law == "composite" else None
+    measured, h = (measured_q, measured_v), settings["look_ahead"]
+    q, v = look_ahead(system, state, settings, *measured, h)
+    beam = _beam(system, state, settings, q, v, h) if kind.law == "composite" else None
     view = law_view(system, frame, kind, law, state, settings, values, (q, v), beam)
     command = law.command(view)
     wanted, memory = _wanted(kind, state, settings, view, command, beam)
@@ -180,7 +182,7 @@ def _advance(
     tip, force, moved = move(system, kind, state, settings, drive.parts, plant)
     after = {
         **moved,
-        **_next_places(state, settings, view, command),
+        **_next_places(kind, law, state, settings, view, command),
         "integral": _integral(kind, law, state, settings, acts, saturated, command),
         **remembered(kind, state, acts, reading, measured_v[: system.m]),
         **memory,
@@ -188,24 +190,25 @@ def _advance(
         **drive.memory,
         "phase": ca.SX(0) if kind.free else _next_phase(state, settings),
     }
-    rate = view.output.theta_rate
-    if beam is None:  # the logged speed is that of the measured velocities
-        y_pair = controlled(system, settings, q, measured_v)
-        rate = coordinates(frame, kind, state, settings, values[:, 0], *y_pair)[0].theta_rate
+    y_pair = controlled(system, settings, *measured)
+    if kind.law == "composite":
+        now = _beam(system, state, settings, *measured, ca.SX(0))
+        y_pair = now.y, now.y_rate
+    output = coordinates(frame, kind, state, settings, values[:, 0], *y_pair)[0]
     row = {**state, "speed_ref": wanted_speed(state, settings)[0], "y": tip}
-    row |= {"u": drive.mean, "force": force} | logged(view.output, rate, settings)
+    row |= {"u": drive.mean, "force": force} | logged(output)
     later = kept_layout(system, kind, law.memory).join(after)
     outputs = [later, log_layout(system).join(row), bases(later, settings_symbol)]
     return ca.Function("advance", [state_symbol, settings_symbol, values], ca.cse(outputs))
 
 
 def _beam(
-    system: MechanicalSystem, state: Fields, settings: Fields, q: ca.SX, v: ca.SX
+    system: MechanicalSystem, state: Fields, settings: Fields, q: ca.SX, v: ca.SX, h: ca.SX
 ) -> composite.Compensation:
-    """Composite control's estimate of the flexible link, half a tick ahead."""
+    """Composite control's estimate of the flexible link at q and v, the time h ahead."""
     memory = {name: state[name] for name, _ in composite.MEMORY.fields}
     gains = composite.CompositeGains(*[settings[name] for name in composite.GAINS])
-    later = composite.ahead(memory, settings["dt"] / 2)
+    later = composite.ahead(memory, h)
     return composite.compensation(system, q, v, settings["model"], later, gains)
 
 
@@ -264,19 +267,22 @@ def _integral(
     """
     if command.error is None:
         return ca.SX.zeros(*state["integral"].shape)
-    interval, on = settings["dt"], settings["K3"] != 0
+    weight, on = interval(kind, settings), settings["K3"] != 0
     if not kind.free:
-        interval = acts * (1 - saturated) * interval * settings["hold_ticks"]
+        weight = acts * (1 - saturated) * weight
     if law.always_integrates:
         on = ca.SX(1)
     elif law.by_clock:
         on = on * settings["tracker_integral"]
-    return on * (state["integral"] + interval * command.error)
+    return on * (state["integral"] + weight * command.error)
 
 
-def _next_places(state: Fields, settings: Fields, view: View, command: ControlAction) -> Fields:
+def _next_places(
+    kind: Kind, law: Law, state: Fields, settings: Fields, view: View, command: ControlAction
+) -> Fields:
     """The closest point, θ_r, as the law says or by the clock, and ω_ref after the tick."""
-    by_clock = view.clock.theta + settings["dt"] * clock_rate(view.clock)
+    clock = clock_at(kind, law, state, settings, settings["dt"] / 2)
+    by_clock = clock.theta + settings["dt"] * clock_rate(clock)
     return {
         "theta": view.output.theta,
         "theta_rate": view.output.theta_rate,

@@ -50,9 +50,14 @@ def coordinates(
     return virtual_output(closest, frame, level, y, y_rate), closest
 
 
-def clock_at(kind: Kind, law: Law, state: Fields, settings: Fields) -> Clock:
-    """The reference point at the beginning of the tick."""
-    task = task_at(state, settings)
+def interval(kind: Kind, settings: Fields) -> ca.SX:
+    """The time between two evaluations of the control law, T, [s]."""
+    return settings["dt"] if kind.free else settings["dt"] * settings["hold_ticks"]
+
+
+def clock_at(kind: Kind, law: Law, state: Fields, settings: Fields, ahead: ca.SX) -> Clock:
+    """The reference point at the beginning of the tick; its rate is that `ahead` [s] later."""
+    task = task_at(state, settings, ahead)
     if kind.law == "composite":
         task = replace(task, speed=state["speed_chain"][0], acceleration=ca.SX(0))
     return Clock(
@@ -60,8 +65,8 @@ def clock_at(kind: Kind, law: Law, state: Fields, settings: Fields) -> Clock:
         task=task,
         closed=kind.closed,
         dt=settings["dt"],
-        interval=settings["dt"] if kind.free else settings["dt"] * settings["hold_ticks"],
-        ahead=settings["dt"] / 2,
+        interval=interval(kind, settings),
+        ahead=ahead,
         memory={name: state[name] for name, _ in law.memory},
     )
 
@@ -81,11 +86,12 @@ def law_view(
     q, v = ahead
     y, y_rate = controlled(system, settings, q, v) if beam is None else (beam.y, beam.y_rate)
     output, closest = coordinates(frame, kind, state, settings, values[:, 0], y, y_rate)
-    task = task_at(state, settings)
+    h = settings["look_ahead"]
+    task = task_at(state, settings, h)
     if beam is not None:
         speed = composite.wanted_speed(beam, output, settings["K5"])
         task = replace(task, speed=speed, acceleration=ca.SX(0))
-    clock, reference = clock_at(kind, law, state, settings), None
+    clock, reference = clock_at(kind, law, state, settings, h), None
     if law.reference is not None:
         reference = LocalCurve.from_values(law.reference(clock), kind.closed, values[:, 1])
     return View(

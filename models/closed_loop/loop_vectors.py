@@ -62,7 +62,7 @@ def settings_layout(system: MechanicalSystem) -> Layout:
     scalars = (*GAINS, "position", "target", "speed", "ramp", "speed_limit", "tracker_integral")
     flexible = (*composite.GAINS, "strain_noise") if system.n > system.m else ()
     realism = ("torque_limit", "coulomb", "encoder_step", "encoder_filter", "hold_ticks", "dt")
-    realism += ("stiction", "torque_step", "delay_ticks", "sensor_noise", "seed")
+    realism += ("stiction", "torque_step", "look_ahead", "delay_ticks", "sensor_noise", "seed")
     return Layout(
         (
             *((name, 1) for name in (*scalars, *OWN_GAINS, *flexible)),

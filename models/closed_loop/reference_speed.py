@@ -24,9 +24,9 @@ def next_speed(state: Fields, settings: Fields) -> ca.SX:
     return speed + settings["dt"] * rate
 
 
-def task_at(state: Fields, settings: Fields) -> PathReference:
-    """The wanted motion along the path, half a tick ahead."""
+def task_at(state: Fields, settings: Fields, h: ca.SX) -> PathReference:
+    """The wanted motion along the path, the time h [s] ahead."""
     speed, rate = wanted_speed(state, settings)
-    ahead = speed + settings["dt"] / 2 * rate
+    ahead = speed + h * rate
     goal = settings["position"], settings["target"]
     return PathReference(*goal, ahead, settings["speed_limit"], rate)

@@ -18,7 +18,14 @@ from onpath.models.control.speed_limit import NO_SPEED_LIMIT, speed_limit
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve, saddle
 from onpath.models.paths.distance import closest_parameter
-from onpath.models.systems.parameters import LEVEL_SET, TICK, Parameters, rise_of, time_step
+from onpath.models.systems.parameters import (
+    LEVEL_SET,
+    TICK,
+    Parameters,
+    look_ahead_time,
+    rise_of,
+    time_step,
+)
 from onpath.models.systems.robots import Robot
 
 NO_LIMIT = 1000.0  # [N m], the limit when there is none: far above any motor, but finite
@@ -135,6 +142,7 @@ def settings_vector(
             "hold_ticks": (interval := round(1 / (parameters.control_rate * dt))),
             "dt": dt,
             **{name: getattr(parameters, name) for name in ("stiction", "torque_step")},
+            "look_ahead": look_ahead_time(parameters),
             "delay_ticks": parameters.delay * interval,
             "sensor_noise": parameters.sensor_noise,
             "seed": round(parameters.seed),

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onpath.models.errors import Message
-from onpath.models.systems.parameters import Parameters, time_step
+from onpath.models.systems.parameters import Parameters, look_ahead_time
 
 Complex = NDArray[np.complex128]
 LEAST_DECAY = 1e-3  # [1/s]; slower decay (time constant above 1000 s) does not count as stable
@@ -88,7 +88,7 @@ def channels(parameters: Parameters) -> tuple[Channel, Channel]:
     Source: eqs. (17)-(19).
     """
     interval = 1 / parameters.control_rate
-    ahead = time_step(parameters) / 2
+    ahead = look_ahead_time(parameters)
     k1, k2, k3 = parameters.K1, parameters.K2, parameters.K3
     across = (k1, k2, k3), "xvia" if k3 else "xva"
     along = (0.0, parameters.K5, 0.0), "va"
@@ -128,7 +128,7 @@ def _sampled(
     State: position x, velocity v, integral i, and the accelerations a_1 to a_{l+1} commanded one to
     l + 1 intervals ago, with delay = l + f, 0 <= f < 1. The last one still acts, up to the time f t
     of the interval, and then a_l, which is the present command u if l = 0. The controller predicts
-    h ahead (models/closed_loop/kernel.py), without knowledge of the delay:
+    h ahead (models/closed_loop/sensing.py), without knowledge of the delay:
 
         x̂ = x + h v + h²/2 a_{l+1},   v̂ = v + h a_{l+1},   u = -k1 x̂ - k2 v̂ - k3 i,
         x⁺ = x + t v + f (1 - f/2) t² a_{l+1} + (1 - f)² t²/2 a_l,   i⁺ = i + t x̂,

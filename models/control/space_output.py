@@ -122,6 +122,5 @@ def space_output(closest: LocalCurve, frame: Frame, y: ca.SX, y_rate: ca.SX) -> 
         inverse=ca.horzcat(per_theta * n.tangent + sideways, n.left, n.up),
         offset=offset,
         per_radian=n.length,
-        stretch=ca.dot(n.tangent, closest.second),
         frame=frame,
     )

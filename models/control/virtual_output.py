@@ -66,7 +66,6 @@ class VirtualOutput:
         inverse: (d, d) with d = 2, or 3 for a space curve.
         offset: (θ'', λ'') at z'' = 0, (d, 1).
         per_radian: |σ'|, [m/rad].
-        stretch: d|σ'|/dθ = σ' · σ'' / |σ'|, [m/rad²].
         frame: how the plane of the path lies in the output space.
     """
 
@@ -77,7 +76,6 @@ class VirtualOutput:
     inverse: ca.SX
     offset: ca.SX
     per_radian: ca.SX
-    stretch: ca.SX
     frame: Frame
 
     def acceleration(self, tangential: ca.SX, transversal: ca.SX) -> ca.SX:
@@ -167,6 +165,5 @@ def virtual_output(
         inverse=inverse,
         offset=ca.vertcat(theta_offset, offset),
         per_radian=length,
-        stretch=second_t,
         frame=frame,
     )

@@ -235,6 +235,14 @@ class Parameters:
         group="realism",
         label="Control rate",
     )
+    look_ahead: str = choice(
+        "half_tick",
+        ("half_tick", "half_interval"),
+        "how far the controller predicts: half a millisecond, or half of its interval, which keeps"
+        " the speed right at low control rates, but halves the largest K2",
+        group="realism",
+        label="Look-ahead",
+    )
     delay: float = number(
         0.0,
         "control intervals",
@@ -285,6 +293,18 @@ def own_parameters(kind: type[P], parameters: Parameters) -> P:
 def time_step(parameters: Parameters) -> float:
     """Length of a tick, [s]: 1 ms, or one control interval if that is shorter."""
     return min(TICK, 1 / parameters.control_rate)
+
+
+def look_ahead_time(parameters: Parameters) -> float:
+    """How far the controller looks ahead, [s]: see `look_ahead` in models/closed_loop/sensing.py.
+
+    Composite control looks half a tick ahead, whatever is chosen, as its filters move in every
+    tick; with half an interval of 5 ms it is unstable.
+    """
+    composite = getattr(parameters, "law", "") == "composite"
+    if parameters.look_ahead == "half_interval" and not composite:
+        return 1 / parameters.control_rate / 2
+    return time_step(parameters) / 2
 
 
 def rise_of(parameters: Parameters) -> float:

@@ -50,6 +50,13 @@ def test_spoiler_shows_across_and_along(spoiler: str) -> None:
     assert_stated(stated, [follower.largest(1, 6), float(follower.rate[1000:].mean())])
 
 
+def test_look_ahead_of_half_an_interval_makes_late_control_as_fast_as_it_should_be() -> None:
+    follower = play(6.0, [], **PD, control_rate=100, look_ahead="half_interval")["follower"]
+    rate, off = said("06", "at 100 Hz blue then turns at # rad/s, and stays within # mm")
+    assert_stated([rate], [float(follower.rate[1000:].mean())])
+    assert 0.9 * value(off) < follower.largest(1, 6) < value(off)
+
+
 def test_late_control_is_fast_control() -> None:
     rates = [
         play(6.0, [], **PD, **SPOILERS[name])["follower"].rate[1000:].mean()
@@ -94,13 +101,19 @@ def test_arm_that_nobody_has_identified() -> None:
 
 def test_largest_damping_is_where_the_poles_say() -> None:
     at_100, at_50 = said("06", "they are unstable from # on, and at 50 Hz from # on, not 100")
-    for rate, stated in ((100, value(at_100)), (50, value(at_50))):
+    (far,) = said("06", "T counts twice, and they are unstable from # on")
+    cases = (100, at_100, "half_tick"), (50, at_50, "half_tick"), (100, far, "half_interval")
+    for rate, text, look_ahead in cases:
+        stated = value(text)
         stable = [
-            channels(FiveBarParameters(control_rate=rate, K2=damping, **PD))[0].stable
+            channels(FiveBarParameters(control_rate=rate, K2=damping, look_ahead=look_ahead, **PD))[
+                0
+            ].stable
             for damping in (stated - 1, stated)
         ]
         assert stable == [True, False]
-        assert stated == pytest.approx(2 / (1 / rate + 1e-3), abs=1)  # "as if T were 1 ms longer"
+        late = 1e-3 if look_ahead == "half_tick" else 1 / rate  # "as if T were 1 ms longer"
+        assert stated == pytest.approx(2 / (1 / rate + late), abs=1.5)
     with_it = play(3.0, [], K1=2500, K2=200, control_rate=100, **PD)["follower"]
     assert 1.0 <= with_it.t[-1] < 1.1  # "stops the blue robot after one second"
 

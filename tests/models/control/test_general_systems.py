@@ -149,6 +149,7 @@ def rest_of_settings(system: MechanicalSystem, dt: float) -> Numbers:
         "speed_limit": 1e3,
         "hold_ticks": 1.0,
         "dt": dt,
+        "look_ahead": dt / 2,
         "encoder_step": 1.0,
     }
     conic: Numbers = {"level_weights": np.array([1.0, 1.0, 0.0]), "level_constant": 1.0}

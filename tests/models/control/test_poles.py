@@ -74,6 +74,19 @@ def test_undamped_swing_grows_or_stays_as_the_poles_say(rate: int) -> None:
     assert rate > 200 or grown > 2
 
 
+@pytest.mark.parametrize("rate", [100, 500, 1000])
+def test_half_an_interval_ahead_the_error_is_of_second_order(rate: int) -> None:
+    """At half the interval the distance from the circle is a quarter, and not half."""
+
+    def largest(rate: int, look_ahead: str) -> float:
+        log = simulated(2.0, 0.0, control_rate=rate, look_ahead=look_ahead)[1]
+        return float(np.abs(log["xi"][1000:, 0]).max())
+
+    near, far = (largest(r, "half_interval") for r in (2 * rate, rate))
+    assert 3 < far / near < 5
+    assert far < largest(rate, "half_tick") or rate == 1000
+
+
 @pytest.mark.parametrize("gain", [2.0, 10.0, 40.0])
 def test_speed_settles_as_the_pole_says(gain: float) -> None:
     along = channels(dataclasses.replace(PD, K5=gain))[1]
@@ -100,12 +113,15 @@ UNSTABLE = [
     {"control_rate": 50, "K1": 2500.0, "K2": 10.0},
     {"control_rate": 1000, "K1": 100.0, "K2": 10.0, "K3": 1500.0},
     {"control_rate": 100, "K1": 2500.0, "K2": 0.0},
+    {"control_rate": 50, "K1": 400.0, "K2": 60.0, "look_ahead": "half_interval"},
 ]
 STABLE = [
     {"control_rate": 50, "K1": 400.0, "K2": 70.0},
     {"control_rate": 50, "K1": 400.0, "K2": 20.0},
     {"control_rate": 1000, "K1": 100.0, "K2": 10.0, "K3": 700.0},
     {"control_rate": 1000, "K1": 2500.0, "K2": 200.0},
+    {"control_rate": 50, "K1": 400.0, "K2": 40.0, "look_ahead": "half_interval"},
+    {"control_rate": 50, "K1": 2500.0, "K2": 10.0, "look_ahead": "half_interval"},
 ]
 
 
@@ -114,7 +130,7 @@ STABLE = [
     ("values", "stable"), [(v, True) for v in STABLE] + [(v, False) for v in UNSTABLE], ids=repr
 )
 def test_predicted_instability_is_what_happens(
-    name: str, values: dict[str, float], stable: bool
+    name: str, values: dict[str, Any], stable: bool
 ) -> None:
     across = channels(dataclasses.replace(PD, **values))[0]
     assert across.stable is stable
