@@ -16,11 +16,11 @@ import casadi as ca
 
 from onpath.models.closed_loop.delay import driven
 from onpath.models.closed_loop.law_view import (
+    beam_estimate,
     clock_at,
-    controlled,
-    coordinates,
     interval,
     law_view,
+    measured_output,
     predicted,
 )
 from onpath.models.closed_loop.loop_kind import Kind
@@ -173,7 +173,7 @@ def _advance(
     measured_q, measured_v, reading = measure(system, kind, state, settings)
     measured, h = (measured_q, measured_v), settings["look_ahead"]
     q, v = look_ahead(system, state, settings, *measured, h)
-    beam = _beam(system, state, settings, q, v, h) if kind.law == "composite" else None
+    beam = beam_estimate(system, state, settings, q, v, h) if kind.law == "composite" else None
     view = law_view(system, frame, kind, law, state, settings, values, (q, v), beam)
     command = law.command(view)
     wanted, memory = _wanted(kind, state, settings, view, command, beam)
@@ -190,26 +190,12 @@ def _advance(
         **drive.memory,
         "phase": ca.SX(0) if kind.free else _next_phase(state, settings),
     }
-    y_pair = controlled(system, settings, *measured)
-    if kind.law == "composite":
-        now = _beam(system, state, settings, *measured, ca.SX(0))
-        y_pair = now.y, now.y_rate
-    output = coordinates(frame, kind, state, settings, values[:, 0], *y_pair)[0]
+    output = measured_output(system, frame, kind, state, settings, values[:, 0], measured)
     row = {**state, "speed_ref": wanted_speed(state, settings)[0], "y": tip}
     row |= {"u": drive.mean, "force": force} | logged(output)
     later = kept_layout(system, kind, law.memory).join(after)
     outputs = [later, log_layout(system).join(row), bases(later, settings_symbol)]
     return ca.Function("advance", [state_symbol, settings_symbol, values], ca.cse(outputs))
-
-
-def _beam(
-    system: MechanicalSystem, state: Fields, settings: Fields, q: ca.SX, v: ca.SX, h: ca.SX
-) -> composite.Compensation:
-    """Composite control's estimate of the flexible link at q and v, the time h ahead."""
-    memory = {name: state[name] for name, _ in composite.MEMORY.fields}
-    gains = composite.CompositeGains(*[settings[name] for name in composite.GAINS])
-    later = composite.ahead(memory, h)
-    return composite.compensation(system, q, v, settings["model"], later, gains)
 
 
 def _wanted(

@@ -50,6 +50,33 @@ def coordinates(
     return virtual_output(closest, frame, level, y, y_rate), closest
 
 
+def beam_estimate(
+    system: MechanicalSystem, state: Fields, settings: Fields, q: ca.SX, v: ca.SX, h: ca.SX
+) -> composite.Compensation:
+    """Composite control's estimate of the flexible link at q and v, the time h [s] ahead."""
+    memory = {name: state[name] for name, _ in composite.MEMORY.fields}
+    gains = composite.CompositeGains(*[settings[name] for name in composite.GAINS])
+    later = composite.ahead(memory, h)
+    return composite.compensation(system, q, v, settings["model"], later, gains)
+
+
+def measured_output(
+    system: MechanicalSystem,
+    frame: Frame,
+    kind: Kind,
+    state: Fields,
+    settings: Fields,
+    values: ca.SX,
+    measured: tuple[ca.SX, ca.SX],
+) -> VirtualOutput:
+    """The virtual output of the measured (q, v), at the beginning of the tick."""
+    pair = controlled(system, settings, *measured)
+    if kind.law == "composite":
+        beam = beam_estimate(system, state, settings, *measured, ca.SX(0))
+        pair = beam.y, beam.y_rate
+    return coordinates(frame, kind, state, settings, values, *pair)[0]
+
+
 def interval(kind: Kind, settings: Fields) -> ca.SX:
     """The time between two evaluations of the control law, T, [s]."""
     return settings["dt"] if kind.free else settings["dt"] * settings["hold_ticks"]
