@@ -35,7 +35,7 @@ from onpath.models.closed_loop.simulation import (
     settings_vector,
 )
 from onpath.models.closed_loop.translated_loop import translate_loop
-from onpath.models.control.laws.registry import NAMES
+from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
@@ -49,9 +49,9 @@ def bench(quick: bool = False) -> None:
     """Print all tables; `quick` leaves out what needs clients or a browser."""
     _begin()
     with tempfile.TemporaryDirectory() as folder:
-        _loops(Path(folder), 20 if quick else 60)
+        _loops(20 if quick else 60)
         _yardstick(Path(folder), 20 if quick else 60)
-        _modes(Path(folder), 10 if quick else 30)
+        _modes(10 if quick else 30)
     _making(3 if quick else 9)
     if not quick:
         _crowds([ClientLoad(1), ClientLoad(20), ClientLoad(20, workers=2)])
@@ -59,21 +59,35 @@ def bench(quick: bool = False) -> None:
         _mouse()
 
 
-def _loops(folder: Path, repeats: int) -> None:
-    """Median microseconds per simulated millisecond; the tiers are measured in turn."""
-    print(f"{'robot':12s} {'controller':20s} {'pushed':7s} {'tier':12s} {'µs/ms':>8s}")
+def _loops(repeats: int) -> None:
+    """Median microseconds per simulated millisecond, and the ratio to path following.
+
+    The compiled loops of all laws are measured in turn, while nothing acts from outside and with
+    forces; then the interpreted loop of path following.
+    """
+    print(
+        f"{'robot':12s} {'law':20s} {'µs/ms':>8s} {'ratio':>6s} {'with forces':>12s} {'ratio':>6s}"
+    )
     for entry in ROBOTS.values():
-        for controller in NAMES:
-            for lean in (True, False):
-                _row(entry, controller, lean, folder, repeats)
+        parameters = entry.parameters()
+        system = entry.make(parameters).system
+        laws = [name for name, law in LAWS.items() if law.suits(system)]
+        free, pushed = (_compared(entry, parameters, laws, lean, repeats) for lean in (True, False))
+        for name in laws:
+            print(f"{entry.name:12s} {name:20s} {free[name]} {pushed[name]:>19s}")
+        call = _prepared(entry, parameters, "path_following", True)["interpreted"]
+        took = _per_tick({"interpreted": call}, repeats)["interpreted"]
+        print(f"{entry.name:12s} {'  interpreted':20s} {took:8.2f}")
     print()
 
 
-def _row(entry: RobotEntry, controller: str, lean: bool, folder: Path, repeats: int) -> None:
-    times = _per_tick(_prepared(entry, entry.parameters(), controller, lean, folder), repeats)
-    for tier, value in times.items():
-        pushed = "no" if lean else "may be"
-        print(f"{entry.name:12s} {controller:20s} {pushed:7s} {tier:12s} {value:8.2f}")
+def _compared(
+    entry: RobotEntry, parameters: Parameters, laws: list[str], lean: bool, repeats: int
+) -> dict[str, str]:
+    """Time of each law's compiled loop, and its ratio to path following."""
+    calls = {name: _prepared(entry, parameters, name, lean)["compiled"] for name in laws}
+    times = _per_tick(calls, repeats)
+    return {n: f"{t:8.2f} {t / times['path_following']:6.2f}" for n, t in times.items()}
 
 
 def _yardstick(folder: Path, repeats: int) -> None:
@@ -98,7 +112,7 @@ def _yardstick(folder: Path, repeats: int) -> None:
 
 
 def _prepared(
-    entry: RobotEntry, parameters: Parameters, controller: str, lean: bool, folder: Path
+    entry: RobotEntry, parameters: Parameters, controller: str, lean: bool
 ) -> dict[str, Callable[[], object]]:
     """The calls to time, of `TICKS` ticks."""
     robot, curve = entry.make(parameters), circle(0.05)
@@ -120,21 +134,21 @@ def _per_tick(calls: Mapping[str, Callable[[], object]], repeats: int) -> dict[s
 
 
 def _interleaved(calls: Mapping[str, Callable[[], object]], repeats: int) -> dict[str, float]:
-    """Median seconds of each call; they run in turn, so that drift affects all equally."""
+    """Median processor seconds of each call; in turn, so that drift affects all equally."""
     times: dict[str, list[float]] = {name: [] for name in calls}
     for _ in range(repeats):
         for name, call in calls.items():
-            begin = time.perf_counter()
+            begin = time.thread_time()
             call()
-            times[name].append(time.perf_counter() - begin)
+            times[name].append(time.thread_time() - begin)
     return {name: float(np.median(values)) for name, values in times.items()}
 
 
-def _modes(folder: Path, repeats: int) -> None:
+def _modes(repeats: int) -> None:
     """Cost of the flexible follower against the number of modes."""
     for modes in range(1, 7):
         parameters = replace(FlexibleParameters(), modes=modes)
-        calls = _prepared(FLEXIBLE, parameters, "path_following", True, folder)
+        calls = _prepared(FLEXIBLE, parameters, "path_following", True)
         times = _per_tick(calls, repeats)
         shown = ", ".join(f"{tier} {value:.2f} µs" for tier, value in times.items())
         print(f"flexible, {modes} modes: {shown}")
