@@ -798,6 +798,13 @@ error-path_takes_no_numbers = die Bahn { $name } nimmt keine Zahlen
 error-half_a_point = ein halber Punkt: Eine Bahn braucht so viele x wie y
 error-points_out_of_bounds = 2 bis { $most } Punkte, höchstens { $reach } m von der Mitte
 error-coefficients = eine gezeichnete Bahn hat { $wanted } Koeffizienten, nicht { $count }
+error-implicit_lines =
+    { $count ->
+        [0] die Gleichung hat im Umkreis von { $region } mm keine Lösung: erwartet wird eine geschlossene Linie
+        [one] die Lösungen der Gleichung sind eine offene Linie oder verlassen den Umkreis von { $region } mm: erwartet wird eine geschlossene Linie
+       *[other] die Lösungen der Gleichung sind { $count } Linien: erwartet wird eine geschlossene Linie
+    }
+error-implicit_shape = die Lösungen der Gleichung haben eine Form, der eine glatte Bahn nicht folgen kann: sie läge bis zu { $apart } mm daneben
 error-no_level_set = diese Bahn hat keine Niveaumenge s(y): Eine solche haben hier nur Kreise und Ellipsen
 error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
 

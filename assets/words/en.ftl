@@ -581,6 +581,13 @@ error-path_takes_no_numbers = the path { $name } takes no numbers
 error-half_a_point = half a point: a path needs as many x as y
 error-points_out_of_bounds = 2 to { $most } points, within { $reach } m of the middle
 error-coefficients = a drawn path has { $wanted } coefficients, not { $count }
+error-implicit_lines =
+    { $count ->
+        [0] the equation has no solution within { $region } mm of the centre: one closed line is expected
+        [one] the solutions of the equation are an open line, or leave the { $region } mm around the centre: one closed line is expected
+       *[other] the solutions of the equation are { $count } lines: one closed line is expected
+    }
+error-implicit_shape = the solutions of the equation have a shape that a smooth path cannot follow: it is up to { $apart } mm off
 error-no_level_set = this path has no level set s(y): only circles and ellipses have one here
 error-cannot_follow = { $robot } cannot follow this path: { $reasons }
 

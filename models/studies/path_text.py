@@ -5,6 +5,7 @@
     segment -0.05 0 0.05 0.02      begin and end, [m]
     closed 0.05 0 0 0.04 -0.05 0   points of a smooth closed path: z1 z2 z1 z2 ..., [m]
     open 0.05 0 0 0.04 -0.05 0     the same, not closed
+    implicit z1**2/0.0036 + z2**2/0.0016 - 1   the closed line on which this is 0, z1 and z2 in [m]
     {"closed": true, "points": [[0.05, 0], [0, 0.04], [-0.05, 0]]}
     ellipse                        any preset by its name
 
@@ -17,16 +18,20 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any, cast
 
+import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.control.laws.expressions import read
 from onpath.models.paths import curves
 from onpath.models.paths.curve_fit import closed_through, open_through
 from onpath.models.paths.curves import Curve
+from onpath.models.paths.implicit_curves import implicit_curve
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.parameter_specs import unknown_name
 
 LONGEST_TEXT = 50_000  # [characters]
+IMPLICIT = "implicit"
 LARGEST = 1.0  # [m], of any coordinate or length
 FORMS: Mapping[str, tuple[tuple[int, ...], str]] = {
     "circle": ((1, 3), "circle RADIUS [Z1 Z2]"),
@@ -49,14 +54,25 @@ def curve_from_text(text: str) -> Curve:
         return presets()[text.strip()].curve
     if text.lstrip().startswith(("{", "[")):
         return _from_json(text)
+    if text.lstrip().startswith(IMPLICIT):
+        return _implicit(text.lstrip())
     form, *words = text.replace(",", " ").split() or [""]
     if form not in FORMS:
-        known = list(dict.fromkeys([*presets(), *FORMS]))
+        known = list(dict.fromkeys([*presets(), *FORMS, IMPLICIT]))
         raise unknown_name(text.strip()[:60], known, "path")
     counts, shape = FORMS[form]
     if len(words) not in counts:
         raise ValueError(f"path: expected {shape}, [m], got {len(words)} numbers")
     return _MAKERS[form](_numbers(words, shape))
+
+
+def _implicit(text: str) -> Curve:
+    """The path on which an expression of z1 and z2 is 0."""
+    equation = text.replace(IMPLICIT, "s".ljust(len(IMPLICIT) - 1) + "=", 1)  # columns stay
+    formulas = read(equation, ("z1", "z2"), ("s",))
+    z = ca.SX.sym("z", 2)
+    value = formulas({"z1": z[0], "z2": z[1]})["s"]
+    return implicit_curve(ca.Function("s", [z], [value]))
 
 
 def _from_json(text: str) -> Curve:

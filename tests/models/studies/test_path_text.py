@@ -80,3 +80,35 @@ def test_any_text_is_a_curve_or_a_complaint(text: str) -> None:
     except ValueError:
         return
     assert isinstance(curve, Curve) and np.isfinite(curve.series).all()
+
+
+def test_an_equation_means_its_closed_line() -> None:
+    """The ellipse agrees with the one in closed form, a squircle with its equation."""
+    angle = np.linspace(-np.pi, np.pi, 200)
+    oval = curve_from_text("implicit z1**2/0.0036 + z2**2/0.0016 - 1")
+    assert (
+        oval.closed and oval.nearest(curve_from_text("ellipse 0.06 0.04").at(angle))[1].max() < 1e-5
+    )
+    square = curve_from_text("implicit (z1/0.05)**4 + ((z2 - 0.01)/0.04)**4 - 1")
+    z1, z2 = square.at(angle).T
+    value = (z1 / 0.05) ** 4 + ((z2 - 0.01) / 0.04) ** 4
+    assert np.abs(value - 1).max() < 0.02  # some 0.2 mm
+
+
+@pytest.mark.parametrize(
+    ("expression", "words"),
+    [
+        ("z1**2 + z2**2 + 1", "no solution"),
+        ("z1", "an open line"),
+        ("(z1**2 + z2**2 - 0.0009)*(z1**2 + z2**2 - 0.0016)", "2 lines"),
+        ("max(abs(z1), abs(z2)) - 0.05", "cannot follow"),
+        ("z1**2 + z3**2 - 1", "column 18: there is no .z3"),
+        ("sqrt(-1 - z1**2)", "no solution"),
+        ("1/0", "no solution|finite"),
+        ("().__class__", "line 1, column"),
+        ("", "line 1, column"),
+    ],
+)
+def test_an_equation_without_one_smooth_closed_line_is_refused(expression: str, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        curve_from_text(f"implicit {expression}")
