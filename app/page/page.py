@@ -13,6 +13,7 @@ from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel
+from onpath.app.page.overlays import Overlays, Switches
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.app.page.panels.class_panel import ClassPanel
@@ -52,6 +53,7 @@ class Page:
         self._channel = FrameChannel(client)
         self.exporter, self._rebuilds = Exporter(client), RebuildThread(client)
         self._framed, self._settling = 0.0, SETTLING
+        self._switches = Switches()
         self._building, self.is_outdated = True, False
         client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
@@ -80,9 +82,13 @@ class Page:
         with self._channel:
             if isinstance(snapshot, Motion):
                 self._scene.update(snapshot)
+                self._overlays.update(snapshot)
                 return
-            self._scene.update(snapshot.motion)
+            motion = snapshot.motion
+            self._scene.update(motion)
             self._scene.update_traces(snapshot)
+            self._overlays.update(motion)
+            self._overlays.follow(snapshot)
             self._frame_camera()
             for part in self._parts:
                 part.follow(snapshot)
@@ -127,6 +133,8 @@ class Page:
         self._built = self._key(first)
         self._scene = Scene(self._client, stage_of(robot), _hooks(post, robot), words)
         self._scene.build(first)
+        drawn = self._client.scene, self._scene.stage, robot
+        self._overlays = Overlays(*drawn, self._switches, self._rebuilds.submit)
         self._parts: list[Part] = []
         self._build_panels(first, words, post)
         add_keys(self._client.gui, words, post, self.reset_view)
@@ -157,6 +165,9 @@ class Page:
         if not first.key.presenting:
             with tabs.add_tab(words("lesson.all_controls"), viser.Icon.ADJUSTMENTS_HORIZONTAL):
                 self._parts += controls.everything(first)
+        else:
+            with tabs.add_tab(words("show.title"), viser.Icon.EYE):
+                self._parts.append(controls.show())
         lesson = LessonPanel(self._client, words, post, course, self._scene, change, first, tab=tab)
         self._parts.append(lesson)
 
@@ -168,6 +179,7 @@ class Page:
             self.exporter,
             self._rebuilds.submit,
             self._scene,
+            self._overlays,
             self._desk,
             self.reset_view,
         )

@@ -10,6 +10,7 @@ import viser
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.page.overlays import Overlays
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.compare_panel import ComparePanel
 from onpath.app.page.panels.flexible_panel import FlexiblePanel
@@ -21,6 +22,7 @@ from onpath.app.page.panels.past_panel import PastPanel
 from onpath.app.page.panels.path_panel import PathChoice, PathPanel
 from onpath.app.page.panels.robot_panel import RobotPanel
 from onpath.app.page.panels.run_panel import RunPanel
+from onpath.app.page.panels.show_panel import ShowPanel
 from onpath.app.page.panels.widgets import (
     ParameterWidgets,
     Post,
@@ -36,7 +38,7 @@ from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 
 ALL = (
-    *("robot", "laws", "hold", "path", "flexible", "gains", "editor"),
+    *("robot", "laws", "hold", "path", "flexible", "gains", "editor", "show"),
     *("plots", "compare", "past", "keep"),
     "copy",
 )
@@ -56,6 +58,7 @@ class PanelFactory:
     Args:
         submit: runs something in another thread.
         scene: target of drawing, pulling and shading.
+        overlays: what is shown in the scene on demand.
         reset_view: resets the camera.
     """
 
@@ -67,10 +70,11 @@ class PanelFactory:
         exporter: Exporter,
         submit: Callable[[Callable[[], None]], None],
         scene: Scene,
+        overlays: Overlays,
         desk: PageContext,
         reset_view: Callable[[], None],
     ) -> None:
-        self._reset_view = reset_view
+        self._reset_view, self._overlays = reset_view, overlays
         self._gui, self._words, self._post = gui, words, post
         self._exporter, self._submit = exporter, submit
         self._scene, self._desk = scene, desk
@@ -99,6 +103,10 @@ class PanelFactory:
                 parts.append(LivePlot(self._gui, self._words, first.key.fields, plot, height=200))
         return parts
 
+    def show(self) -> Part:
+        """Build the folder "Show" alone, open."""
+        return ShowPanel(self._gui, self._words, self._overlays, expanded=True)
+
     def _add(self, name: str, first: PageSnapshot) -> list[Part]:
         gui, words, post, exporter = self._gui, self._words, self._post, self._exporter
         make: dict[str, Callable[[], Part | None]] = {
@@ -114,6 +122,7 @@ class PanelFactory:
             "laws": lambda: LawPanel(gui, words, post, first),
             "copy": lambda: self._copy(first),
             "flexible": lambda: self._flexible(first),
+            "show": lambda: ShowPanel(gui, words, self._overlays),
             "identify": lambda: _silent(add_identify(gui, words, post)),
         }
         part = make[name]()

@@ -46,6 +46,7 @@ class TeacherView(Page):
             self._parts.append(FollowedStudent(gui, own, teaching))
             self._build_numbers(words)
             self._build_distance(first, words)
+            self._parts.append(self._controls(own, post).show())
         else:
             self._parts.append(TeacherControls(gui, own, teaching))
             self._build_numbers(words)

@@ -54,6 +54,13 @@ def update_node(handle: Any, **arrays: np.ndarray) -> None:
     handle._impl.api._queue_scene_message(message)
 
 
+def move_node(handle: Any, position: np.ndarray) -> None:
+    """Set a scene node's position, without viser's check whether it has changed."""
+    handle._impl.position[:] = position
+    message = _messages.SetPositionMessage(handle._impl.name, tuple(position.tolist()))
+    handle._impl.api._queue_scene_message(message)
+
+
 class NodeGroup:
     """Float32 properties of some nodes that are always updated together, from one array.
 

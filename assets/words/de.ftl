@@ -357,6 +357,23 @@ flexible-drawn = { $factor }× gezeichnet
 pull-path-s-plane = Bahnebene
 pull-horizontal-plane = waagerechter Ebene
 
+## Was auf Wunsch in der Szene gezeigt wird
+
+show-title = Zeigen
+show-labels = Winkel, Längen und Achsen
+show-labels_hint = q, ℓ und die Achsen von y, wie in den Bildern 1 und 4 der Arbeit
+show-tube = Schlauch um die Bahn
+show-tube_hint = Wo der nächste Punkt der Bahn eindeutig ist: Dort ist der virtuelle Ausgang definiert
+show-grid = Koordinaten (θ, ξ)
+show-grid_hint = Linien quer zur Bahn haben denselben nächsten Punkt, also dasselbe θ; Linien längs der Bahn denselben Abstand ξ.
+show-rank = Rangtest (11)
+show-rank_hint = Wie weit der Endpunkt an jedem Ort davon entfernt ist, dass es die Regelgesetze nicht mehr gibt
+show-width = Bis { $width } mm neben der Bahn ist der nächste Punkt eindeutig.
+show-width_none = Die Bahn ist gerade: Der nächste Punkt ist überall eindeutig.
+show-steps = Linien alle { $xi } mm in ξ und alle { $theta }° in θ.
+show-rank_scale = Kleinster Singulärwert von (∂h/∂q) g_v: Beschleunigung des Ausgangs je Drehmoment, in der Richtung, in der sie am kleinsten ist, in (m/s²)/(N m). Bei 0 geht der Rang verloren, Gl. (11).
+show-rank_alpha = Mit α = { $alpha } und geradem Balken.
+
 ## Bilder über der Zeit: Namen in der Liste, dann Überschriften mit Einheiten
 
 plots-more = Weitere Verläufe
@@ -369,9 +386,9 @@ plot-speed = Geschwindigkeit längs der Bahn
 plot-torques = Drehmomente
 plot-across = ξ₁ quer
 plot-across_rate = ξ₂ Rate quer
-plot-place = θ Ort längs
-plot-rate = θ' Rate längs
-plot-modes = Moden des Balkens
+plot-place = η₂¹ = θ Ort längs
+plot-rate = η₂² = θ' Rate längs
+plot-modes = η₁ Moden des Balkens
 plot-deflection = Durchbiegung der Spitze
 plot-energy = innere Energie
 plot-force = Kraft
@@ -383,9 +400,9 @@ axis-across = ξ₁ [mm]
 axis-across_rate = ξ₂ [mm/s]
 axis-across-level_set = ξ₁ = s(y) [mm²]
 axis-across_rate-level_set = ξ₂ = s'(y) [mm²/s]
-axis-place = θ [rad]
-axis-rate = θ' [rad/s]
-axis-modes = jede Mode, an der Spitze [mm]
+axis-place = η₂¹ = θ [rad]
+axis-rate = η₂² = θ' [rad/s]
+axis-modes = η₁: jede Mode, an der Spitze [mm]
 axis-deflection = Durchbiegung [mm]
 axis-energy = Energie im Balken [mJ]
 axis-force = Kraft [N]

@@ -342,6 +342,23 @@ flexible-drawn = drawn { $factor }×
 pull-path-s-plane = path's plane
 pull-horizontal-plane = horizontal plane
 
+## What is shown in the scene on demand
+
+show-title = Show
+show-labels = Angles, lengths and axes
+show-labels_hint = q, ℓ and the axes of y, as in the paper's figures 1 and 4
+show-tube = Tube around the path
+show-tube_hint = Where the closest point of the path is unique: the virtual output is defined there
+show-grid = Coordinates (θ, ξ)
+show-grid_hint = Lines across the path have the same closest point and so the same θ; lines along it the same distance ξ.
+show-rank = Rank test (11)
+show-rank_hint = How far the end-point is, at each place, from where the control laws no longer exist
+show-width = The closest point is unique up to { $width } mm from the path.
+show-width_none = The path is straight: the closest point is unique everywhere.
+show-steps = Lines every { $xi } mm of ξ and every { $theta }° of θ.
+show-rank_scale = Smallest singular value of (∂h/∂q) g_v: acceleration of the output per torque, in the direction in which it is least, in (m/s²)/(N m). At 0 the rank is lost, eq. (11).
+show-rank_alpha = With α = { $alpha } and a straight link.
+
 ## Plots: names in the list, then titles with units
 
 plots-more = More plots
@@ -354,9 +371,9 @@ plot-speed = speed along the path
 plot-torques = torques
 plot-across = ξ₁ across
 plot-across_rate = ξ₂ rate across
-plot-place = θ place along
-plot-rate = θ' rate along
-plot-modes = modes of the link
+plot-place = η₂¹ = θ place along
+plot-rate = η₂² = θ' rate along
+plot-modes = η₁ modes of the link
 plot-deflection = deflection of the tip
 plot-energy = internal energy
 plot-force = force
@@ -368,9 +385,9 @@ axis-across = ξ₁ [mm]
 axis-across_rate = ξ₂ [mm/s]
 axis-across-level_set = ξ₁ = s(y) [mm²]
 axis-across_rate-level_set = ξ₂ = s'(y) [mm²/s]
-axis-place = θ [rad]
-axis-rate = θ' [rad/s]
-axis-modes = each mode, at the tip [mm]
+axis-place = η₂¹ = θ [rad]
+axis-rate = η₂² = θ' [rad/s]
+axis-modes = η₁: each mode, at the tip [mm]
 axis-deflection = deflection [mm]
 axis-energy = energy in the link [mJ]
 axis-force = force [N]

@@ -42,10 +42,7 @@ def closed_through(points: Array) -> Curve:
     points = _distinct(points, least=3)
     ring = np.vstack([points, points[:1]])
     spline = _spline_through(ring, "periodic")
-    samples = _equal_arc(spline, endpoint=False)
-    spectrum = np.fft.rfft(samples, axis=0) / SAMPLES
-    harmonics = spectrum[1 : HARMONICS + 1] * _half_turns()[:, None]
-    return fourier(spectrum[0].real, 2 * harmonics.real, -2 * harmonics.imag)
+    return _fourier_of(_equal_arc(spline, endpoint=False))
 
 
 def open_through(points: Array) -> Curve:
@@ -68,6 +65,22 @@ def open_through(points: Array) -> Curve:
     x = _even(-1, 1, SAMPLES)
     coefficients: Array = chebyshev.chebfit(x, samples, HARMONICS).astype(np.float64)
     return chebyshev_curve(coefficients)
+
+
+def through_samples(samples: Array, closed: bool) -> Curve:
+    """The curve with given points at evenly spaced θ from -π to π.
+
+    A curve of this project is recovered from its own samples up to rounding.
+
+    Args:
+        samples: shape (n, d), [m], with n - 1 > 2 HARMONICS; a closed curve's last point is its
+            first one.
+        closed: whether the curve is closed.
+    """
+    if closed:
+        return _fourier_of(samples[:-1])
+    at = np.linspace(-1.0, 1.0, len(samples))
+    return chebyshev_curve(chebyshev.chebfit(at, samples, HARMONICS))
 
 
 def from_stroke(points: Array, closed: bool, passes: int = 40) -> Curve:
@@ -175,6 +188,13 @@ def _equal_arc(spline: CubicSpline, endpoint: bool) -> Array:
     s = _arc_length(points)
     even = _even(0, s[-1], SAMPLES, endpoint=endpoint)
     return np.asarray(spline(np.interp(even, s, knots)), dtype=np.float64)
+
+
+def _fourier_of(samples: Array) -> Curve:
+    """The truncated Fourier series of samples at θ_n = -π + 2πn/N, shape (N, d)."""
+    spectrum = np.fft.rfft(samples, axis=0) / len(samples)
+    harmonics = spectrum[1 : HARMONICS + 1] * _half_turns()[:, None]
+    return fourier(spectrum[0].real, 2 * harmonics.real, -2 * harmonics.imag)
 
 
 def _half_turns() -> Array:

@@ -33,6 +33,50 @@ class Depths:
 
 
 @dataclass(frozen=True, slots=True)
+class Angle:
+    """A joint angle to label, measured in the links' plane at the beginning of a bar.
+
+    Attributes:
+        name: as shown, such as "q₁".
+        bar: the bar to which the angle leads.
+        after: the bar from whose direction it is measured; None: from the horizontal.
+        near: which of the values 2π apart is meant: the one nearest to this, [rad].
+    """
+
+    name: str
+    bar: int
+    after: int | None = None
+    near: float = math.pi / 2
+
+
+@dataclass(frozen=True, slots=True)
+class Waist:
+    """The angle by which the links' plane turns about the vertical, from the axis of y1.
+
+    Attributes:
+        name: as shown.
+        bar: a bar whose horizontal projection leads forward; None: so does the end-point's.
+    """
+
+    name: str
+    bar: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Length:
+    """A length to label.
+
+    Attributes:
+        name: as shown, such as "ℓ₁".
+        begin, end: numbers of the ends of bars between which it is; bar i has 2 i and 2 i + 1.
+    """
+
+    name: str
+    begin: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
 class Drawing:
     """The data from which the scene draws a robot; None is derived from its bars and reach.
 
@@ -52,6 +96,7 @@ class Drawing:
         force: place of the force's magnitude.
         force_scale: length of the force's arrow, [m/N].
         sheet: low and high corner (x, z), and y, of the area for freehand strokes.
+        angles, waist, lengths: what is labelled on demand, as in the paper's figures 1 and 4.
     """
 
     strip: int = 0
@@ -68,3 +113,6 @@ class Drawing:
     force: Point | None = None
     force_scale: float = 0.005
     sheet: tuple[tuple[float, float], tuple[float, float], float] | None = None
+    angles: tuple[Angle, ...] = ()
+    waist: Waist | None = None
+    lengths: tuple[Length, ...] = ()

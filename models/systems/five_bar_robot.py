@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.systems import five_bar
-from onpath.models.systems.drawing import Drawing
+from onpath.models.systems.drawing import Angle, Drawing, Length
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import BalancedLinkage, PlanarRobot, RobotEntry, first_fault
@@ -24,7 +25,12 @@ SLOW, FAR = (
     20.0,
     0.5,
 )  # [rad/s], |sin(q1 - q2)|: too far from a fault to have had one in SHORT ticks
-DRAWING = Drawing(box=((-0.16, -0.03, -0.19), (0.31, 0.03, 0.425)))
+ANGLES = (Angle("q₁", bar=0), Angle("q₂", bar=1, near=math.pi))
+DRAWING = Drawing(
+    box=((-0.16, -0.03, -0.19), (0.31, 0.03, 0.425)),
+    angles=ANGLES,
+    lengths=(Length("ℓ₁", 0, 1), Length("ℓ₂", 2, 3), Length("ℓ₄", 1, 7)),
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,8 +14,16 @@ from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, SlantedPlane
 from onpath.models.systems import five_bar, flexible_five_bar
 from onpath.models.systems.beam import MOST_MODES, BeamModes, beam_modes
-from onpath.models.systems.drawing import BACK_LAYER, BOSS, FRONT_LAYER, Depths, Drawing
-from onpath.models.systems.five_bar_robot import collapse
+from onpath.models.systems.drawing import (
+    BACK_LAYER,
+    BOSS,
+    FRONT_LAYER,
+    Depths,
+    Drawing,
+    Length,
+    Waist,
+)
+from onpath.models.systems.five_bar_robot import ANGLES, collapse
 from onpath.models.systems.flexible_five_bar import RIGID, FlexibleLinks
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.forces import Grip, SpringLimits
@@ -47,6 +55,9 @@ DRAWING = Drawing(
     force=(0.0, -0.5, 0.13),
     force_scale=0.04,
     sheet=((-0.24, 0.1), (0.24, 0.5), -0.56),
+    angles=ANGLES,
+    waist=Waist("q₃", bar=3),
+    lengths=(Length("ℓ₁", 0, 1), Length("ℓ₂", 2, 3), Length("ℓ", 1, -1)),
 )
 
 

@@ -35,7 +35,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, LevelPlane
-from onpath.models.systems.drawing import Depths, Drawing
+from onpath.models.systems.drawing import Angle, Depths, Drawing, Length, Waist
 from onpath.models.systems.parameter_specs import number
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import RigidRobot, RobotEntry, first_fault
@@ -59,6 +59,9 @@ DRAWING = Drawing(
     note=(0.25, -0.12, -0.1),
     force=(0.3, -0.12, -0.06),
     sheet=((0.02, 0.34), (-0.14, 0.32), -0.16),
+    angles=(Angle("q₂", bar=0), Angle("q₃", bar=1, after=0, near=-math.pi / 2)),
+    waist=Waist("q₁"),
+    lengths=(Length("ℓ₂", 0, 1), Length("ℓ₃", 2, 3)),
 )
 
 
@@ -284,6 +287,7 @@ ROBOT = RobotEntry(
     name="spatial_arm",
     label="Spatial arm",
     text="Three motors, a turning base: its path may leave the plane.",
+    picture="spatial_arm.png",
     parameters=SpatialParameters,
     lab=SpatialParameters(),
     make=lambda _: spatial_arm_robot(),

@@ -23,6 +23,7 @@ Source: Spong and Vidyasagar, Robot Dynamics and Control, 6.4, the planar elbow 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -31,7 +32,7 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
-from onpath.models.systems.drawing import Drawing
+from onpath.models.systems.drawing import Angle, Drawing, Length
 from onpath.models.systems.parameter_specs import number
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import PlanarRobot, RobotEntry, first_fault
@@ -41,6 +42,11 @@ GRAVITY = 9.81  # [m/s^2]
 NAMES = ("a1", "a2", "a3", "g1", "g2", "b1", "b2", "l1", "l2")
 STRETCHED = 0.02  # -sin q2 below which the arm counts as stretched or folded
 SINGULAR = Message("stop.singular")
+DRAWING = Drawing(
+    motors=(1,),
+    angles=(Angle("q₁", bar=0), Angle("q₂", bar=1, after=0, near=-math.pi / 2)),
+    lengths=(Length("ℓ₁", 0, 1), Length("ℓ₂", 2, 3)),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +174,7 @@ class TwoLinkArm(PlanarRobot):
     @property
     def drawing(self) -> Drawing:
         """See `Robot.drawing`: one more motor, at the elbow."""
-        return Drawing(motors=(1,))
+        return DRAWING
 
     def plant(self, parameters: Parameters) -> Array:
         """See `Robot.plant`."""

@@ -518,8 +518,12 @@ def test_a_parameter_without_words_has_those_of_its_declaration() -> None:
 
 
 def test_plots_call_eta_what_the_paper_does() -> None:
-    """eta_2 is (theta, theta'), eta_1 the motion inside: neither is theta or its rate alone."""
+    """eta_2 = (theta, theta') with components eta_2^1 and eta_2^2; eta_1 is the motion inside."""
+    symbols = {"place": "η₂¹ = θ", "rate": "η₂² = θ'", "modes": "η₁"}
+    symbols |= {"across": "ξ₁", "across_rate": "ξ₂"}
     for language in languages():
         said = Words(language)
-        shown = [said(f"{kind}.{name}") for kind in ("plot", "axis") for name in ("place", "rate")]
-        assert all("θ" in text and "η" not in text for text in shown)
+        for name, symbol in symbols.items():
+            title = said(f"axis.{name}")
+            assert title.startswith(symbol) and re.search(r"\[.+\]$", title)
+            assert said(f"plot.{name}").startswith(symbol)

@@ -1,0 +1,168 @@
+"""What a page draws in its scene on demand: labels, tube, coordinate curves, rank test.
+
+Like the shading of the singular zone this is the page's own matter: no command, nothing of the lab.
+So it works in the same way on a teacher's page that shows a student's lab.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import viser
+
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
+from onpath.app.lab.snapshots.snapshot import Motion
+from onpath.app.scene.rank_nodes import RankNodes, map_corners
+from onpath.app.scene.robot_labels import RobotLabels
+from onpath.app.scene.stage import Stage
+from onpath.app.scene.tube_nodes import TubeNodes, TubeShape, tube_shape
+from onpath.models.control.rank_test import RankGrid, rank_grid
+from onpath.models.systems.robots import Robot
+
+Submit = Callable[[Callable[[], None]], None]
+Result = TypeVar("Result")
+
+
+@dataclass(slots=True)
+class Switches:
+    """What a user wants to see; kept while a page is rebuilt.
+
+    Attributes:
+        labels: angles, lengths and axes of the robots.
+        tube: the tube around the path.
+        grid: curves of constant θ and of constant ξ.
+        rank: the rank test as a map.
+    """
+
+    labels: bool = False
+    tube: bool = False
+    grid: bool = False
+    rank: bool = False
+
+
+class Background(Generic[Result]):
+    """The latest result of a computation in another thread.
+
+    Args:
+        submit: runs something in another thread.
+
+    Attributes:
+        key, value: of the latest result; None before the first one.
+    """
+
+    def __init__(self, submit: Submit) -> None:
+        self._submit, self._busy = submit, False
+        self._asked: Hashable = None
+        self.key: Hashable = None
+        self.value: Result | None = None
+
+    def ask(self, key: Hashable, compute: Callable[[], Result]) -> None:
+        """Compute unless this was the last thing asked for, or something is being computed."""
+        if self._busy or key == self._asked:
+            return
+        self._asked, self._busy = key, True
+
+        def work() -> None:
+            try:
+                self.value, self.key = compute(), key
+            finally:
+                self._busy = False
+
+        self._submit(work)
+
+
+class Overlays:
+    """The nodes that are drawn on demand. Called on the simulation thread, like the page.
+
+    Args:
+        scene: the client's scene, without earlier overlays.
+        stage: where the robots stand.
+        robot: what kind of robot they are.
+        switches: what is to be seen; others change it.
+        submit: runs something in another thread.
+
+    Attributes:
+        switches: see above.
+    """
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        stage: Stage,
+        robot: Robot,
+        switches: Switches,
+        submit: Submit,
+    ) -> None:
+        self._scene, self._stage, self._robot = scene, stage, robot
+        self.switches = switches
+        self._labels: RobotLabels | None = None
+        self._tube: TubeNodes | None = None
+        self._rank: RankNodes | None = None
+        self._shape: Background[TubeShape] = Background(submit)
+        self._map: Background[RankGrid] = Background(submit)
+        self._drawn_tube: Hashable = None
+        self._drawn_map: Hashable = None
+
+    @property
+    def shape(self) -> TubeShape | None:
+        """The tube that is drawn, or None."""
+        return self._shape.value if self._tube is not None else None
+
+    @property
+    def rank_map(self) -> RankGrid | None:
+        """The map that is drawn, or None."""
+        return self._map.value if self._rank is not None else None
+
+    def update(self, motion: Motion) -> None:
+        """Move what moves with the robots."""
+        if self._labels is not None:
+            self._labels.update(motion)
+
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Draw what is wanted, and remove what is not; nothing if that has not changed."""
+        self._follow_labels(snapshot)
+        self._follow_tube(snapshot)
+        self._follow_map(snapshot)
+
+    def _follow_labels(self, snapshot: PageSnapshot) -> None:
+        wanted = self.switches.labels
+        if wanted and self._labels is None:
+            parts = self._scene, self._stage, self._robot, snapshot.motion
+            self._labels = RobotLabels(*parts)
+        elif not wanted and self._labels is not None:
+            self._labels.remove()
+            self._labels = None
+
+    def _follow_tube(self, snapshot: PageSnapshot) -> None:
+        fill, grid, path = self.switches.tube, self.switches.grid, snapshot.path
+        if fill or grid:
+            self._shape.ask(path.version, lambda: tube_shape(self._robot, path))
+        shape = self._shape.value if fill or grid else None
+        wanted = None if shape is None else (self._shape.key, fill, grid)
+        if wanted == self._drawn_tube:
+            return
+        self._drawn_tube = wanted
+        if self._tube is not None:
+            self._tube.remove()
+            self._tube = None
+        if shape is not None:
+            self._tube = TubeNodes(self._scene, self._stage, shape, fill, grid)
+
+    def _follow_map(self, snapshot: PageSnapshot) -> None:
+        if self.switches.rank:
+            parameters = parameters_of(snapshot)
+            key = self._robot.plant(parameters).tobytes()
+            corners = map_corners(self._stage, self._robot)
+            self._map.ask(key, lambda: rank_grid(self._robot, parameters, *corners))
+        grid = self._map.value if self.switches.rank else None
+        wanted = None if grid is None else self._map.key
+        if wanted == self._drawn_map:
+            return
+        self._drawn_map = wanted
+        if self._rank is not None:
+            self._rank.remove()
+            self._rank = None
+        if grid is not None:
+            self._rank = RankNodes(self._scene, self._stage, self._robot, grid)

@@ -1,0 +1,108 @@
+"""The folder "Show": what is drawn in the scene on demand, and what its lines and colours mean."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+import viser
+
+from onpath.app.common.palette import SCALE
+from onpath.app.common.templates import render
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.overlays import Overlays
+from onpath.app.page.panels.widgets import on_user_update
+from onpath.app.scene.rank_nodes import largest
+from onpath.app.scene.tube_nodes import TubeShape
+from onpath.lessons.words import Words
+from onpath.models.control.rank_test import RankGrid
+from onpath.models.systems.catalogue import ROBOTS
+
+SWITCHES = {
+    "labels": ("show.labels", "show.labels_hint"),
+    "tube": ("show.tube", "show.tube_hint"),
+    "grid": ("show.grid", "show.grid_hint"),
+    "rank": ("show.rank", "show.rank_hint"),
+}
+"""Label and hint of each switch."""
+TICKS = 3
+"""Numbers beside the colour scale."""
+
+
+class ShowPanel:
+    """Switches, all off at first, and a legend for those that need one.
+
+    Args:
+        overlays: what is switched.
+        expanded: whether the folder is open at first.
+    """
+
+    def __init__(
+        self, gui: viser.GuiApi, words: Words, overlays: Overlays, expanded: bool = False
+    ) -> None:
+        self._words, self._overlays = words, overlays
+        self._boxes: dict[str, viser.GuiCheckboxHandle] = {}
+        self._said: tuple[Any, ...] = (None,)
+        with gui.add_folder(words("show.title"), expand_by_default=expanded):
+            for name in SWITCHES:
+                self._add(gui, name)
+                if name == "grid":
+                    self._numbers = gui.add_html("")
+            self._legend = gui.add_html("")
+
+    def _add(self, gui: viser.GuiApi, name: str) -> None:
+        switches = self._overlays.switches
+        label, hint = map(self._words, SWITCHES[name])
+        box = gui.add_checkbox(label, getattr(switches, name), hint=hint)
+        on_user_update(box, lambda on: setattr(switches, name, on))
+        self._boxes[name] = box
+
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show what is switched on, also from elsewhere on the page, and its numbers."""
+        overlays = self._overlays
+        for name, box in self._boxes.items():
+            wanted = getattr(overlays.switches, name)
+            if box.value != wanted:
+                box.value = wanted
+        alpha = _alpha(snapshot) if overlays.rank_map is not None else None
+        said = overlays.shape, overlays.switches.grid, overlays.rank_map, alpha
+        if said != self._said:
+            self._said = said
+            self._numbers.content = tube_numbers(*said[:2], self._words)
+            self._legend.content = rank_legend(overlays.rank_map, alpha, self._words)
+
+
+def _alpha(snapshot: PageSnapshot) -> float | None:
+    """α, on which the controlled output of a robot with a flexible link depends."""
+    if ROBOTS[snapshot.key.robot].flexible_link is None:
+        return None
+    return float(snapshot.parameters["alpha"])
+
+
+def tube_numbers(shape: TubeShape | None, grid: bool, words: Words) -> str:
+    """The width of the tube and the distances between the curves, as HTML; empty without a tube."""
+    if shape is None:
+        return ""
+    said = words("show.width_none")
+    if shape.width < inf:
+        said = words("show.width", width=f"{1e3 * shape.width:.1f}")
+    lines = words("show.steps", xi=f"{1e3 * shape.step:g}", theta=f"{shape.degrees:g}")
+    return render("panel/note.html", said=f"{said} {lines}" if grid else said, small=True)
+
+
+def rank_legend(grid: RankGrid | None, alpha: float | None, words: Words) -> str:
+    """The colour scale with its numbers and unit, as HTML; empty without a map.
+
+    Args:
+        alpha: of a flexible link, or None.
+    """
+    if grid is None:
+        return ""
+    most = largest(grid.values)
+    return render(
+        "panel/rank_legend.html",
+        colours=[colour.hex for colour in SCALE],
+        ticks=[f"{most * i / (TICKS - 1):.3g}" for i in range(TICKS)],
+        alpha=None if alpha is None else f"{alpha:g}",
+        words=words,
+    )

@@ -1,0 +1,111 @@
+"""Labels on the robots, on demand: joint angles with their arcs, lengths, and the axes of y."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onpath.app.common import palette
+from onpath.app.lab.snapshots.snapshot import END, Motion
+from onpath.app.scene.label_geometry import Labelled, axes_of, labelled
+from onpath.app.scene.stage import Stage, add_text
+from onpath.app.viser_adapter.frame_channel import move_node, update_node
+from onpath.models.systems.robots import Robot
+
+if TYPE_CHECKING:
+    import viser
+
+LETTERS = 0.024
+"""Height of the letters [m]."""
+LINE = 0.0018
+"""Thickness of the arcs [m]."""
+PAST = 0.016
+"""How far past its end the name of an axis stands [m]."""
+MOVED = 1e-4
+"""Movements below this are not drawn [m]."""
+SUBSCRIPTS = "₀₁₂₃₄₅₆₇₈₉"
+
+
+class RobotLabels:
+    """Nodes of the labels of all robots; made when they are to be shown, and then removed.
+
+    Args:
+        scene: the client's scene.
+        stage: where the robots stand.
+        robot: what kind of robot they are.
+        motion: how they stand now.
+    """
+
+    def __init__(self, scene: viser.SceneApi, stage: Stage, robot: Robot, motion: Motion) -> None:
+        self._robot, self._stage = robot, stage
+        self._origins = stage.origins
+        self._nodes: list[viser.SceneNodeHandle] = []
+        self._names: list[viser.LabelHandle] = []
+        self._arcs: viser.LineSegmentsHandle | None = None
+        places, lines = self._drawn(motion)
+        self._places, self._lines = places, lines
+        for bench, own in zip(stage.bases, self._labelled(motion), strict=True):
+            for name in own.names:
+                at = places[len(self._names)]
+                node = add_text(scene, f"/show/labels/{bench}/{name}", name, at, LETTERS)
+                self._names.append(node)
+        if len(lines):
+            self._arcs = scene.add_line_segments(
+                "/show/arcs", lines, palette.SLATE.rgb, thickness=LINE
+            )
+            self._nodes.append(self._arcs)
+        self._add_axes(scene)
+
+    def update(self, motion: Motion) -> None:
+        """Move labels and arcs with the robots; sends nothing while they stand still."""
+        places, lines = self._drawn(motion)
+        if not np.isfinite(places).all() or not np.isfinite(lines).all():
+            return
+        moved = np.abs(places - self._places).max(axis=1, initial=0.0) > MOVED
+        for i in np.flatnonzero(moved).tolist():
+            self._places[i] = places[i]
+            move_node(self._names[i], places[i])
+        if self._arcs is not None and np.abs(lines - self._lines).max() > MOVED:
+            self._lines = lines
+            update_node(self._arcs, points=lines)
+
+    def remove(self) -> None:
+        """Remove all nodes."""
+        for node in (*self._names, *self._nodes):
+            node.remove()
+
+    def _labelled(self, motion: Motion) -> list[Labelled]:
+        """What is labelled of each robot, in its own frame."""
+        bars, points = 2 * motion.counts.bars, 3 * motion.counts.points
+        found = list[Labelled]()
+        for i, drawn in enumerate(motion.drawn):
+            ends = drawn[:points].reshape(-1, 3)[:bars]
+            found.append(labelled(self._robot, ends, motion.point(i, END)))
+        return found
+
+    def _drawn(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+        """Places of all names, (k, 3), and all lines, (n, 2, 3), in the world."""
+        each = list(zip(self._labelled(motion), self._origins, strict=True))
+        places = np.concatenate([own.places + origin for own, origin in each])
+        return places, np.concatenate([own.lines + origin for own, origin in each])
+
+    def _add_axes(self, scene: viser.SceneApi) -> None:
+        axes = axes_of(self._robot)
+        everywhere = (self._origins[:, None, None] + axes).reshape(-1, 2, 3)
+        arrows = scene.add_arrows(
+            "/show/axes",
+            everywhere,
+            palette.INK.linear,
+            shaft_radius=0.0014,
+            head_radius=0.005,
+            head_length=0.013,
+        )
+        self._nodes.append(arrows)
+        for i, (begin, end) in enumerate(everywhere):
+            way = (end - begin) / np.linalg.norm(end - begin)
+            number = i % len(axes) + 1
+            name = f"/show/axes/{i // len(axes)}/{number}"
+            self._nodes.append(
+                add_text(scene, name, f"y{SUBSCRIPTS[number]}", end + PAST * way, LETTERS)
+            )

@@ -1,0 +1,122 @@
+"""The tube around a path in which the closest point is unique, and the coordinates in it.
+
+With the unit tangent T and unit normals of σ, a ball that touches the curve at σ(a) on its side N
+and reaches σ(b) has the radius |d|² / (2 N · d), d = σ(b) - σ(a). Along the normal N the closest
+point is σ(a) up to the smallest of these radii,
+
+    w(a) = min over b with N · d > 0 of |d|² / (2 N · d),
+
+the local width on that side. As b approaches a, the radius becomes that of curvature. The smallest
+local width on any side is the width of the tube, in which the closest point is unique everywhere:
+
+    W = min over a, b of |d|² / (2 |d - (T · d) T|).
+
+Source: Federer, Curvature measures, Transactions of the AMS 93 (1959), theorem 4.18, where W is
+called the reach; section II.D of the paper, which needs such a neighbourhood of the path.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.paths.curves import Curve
+
+SAMPLES = 240
+"""Points of the curve that are compared with each other."""
+BEYOND = 0.5
+"""How far the continuation of an open curve is looked at, in parts of its parameter's range."""
+TINY = 1e-12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LocalTube:
+    """Frames and widths along a curve.
+
+    Attributes:
+        theta: shape (n,), [rad].
+        sigma: σ(θ), shape (n, d), [m].
+        normals: unit normals, shape (n, d - 1, d): to the left; in space, to the left in the plan
+            view and up, as for ξ (see models/control/space_output.py).
+        left, right: local widths along the first normal and against it, shape (n,), [m]; infinite
+            where nothing is on that side.
+    """
+
+    theta: Array
+    sigma: Array
+    normals: Array
+    left: Array
+    right: Array
+
+
+def tube_width(curve: Curve) -> float:
+    """W, the radius of the largest tube with a unique closest point, [m]; infinite for a line."""
+    theta = _compared(curve)
+    gaps, tangents = _gaps(curve, theta, theta)
+    across = gaps - (gaps * tangents[:, None]).sum(-1, keepdims=True) * tangents[:, None]
+    radius = _radii(gaps, np.linalg.norm(across, axis=-1))
+    curvature = np.abs(curve.curvature(theta)).max()
+    return float(min(radius.min(), 1 / curvature if curvature > TINY else np.inf))
+
+
+def local_tube(curve: Curve, theta: Array) -> LocalTube:
+    """Frames and local widths of a curve at θ, shape (n,)."""
+    others = _compared(curve)
+    gaps, tangents = _gaps(curve, theta, others)
+    normals = _normals(tangents)
+    side = (gaps * normals[:, None, 0]).sum(-1)
+    second, squared = curve.at(theta, 2), (curve.at(theta, 1) ** 2).sum(-1)
+    bend = (second * normals[:, 0]).sum(-1) / squared
+    left, right = (
+        np.minimum(_radii(gaps, s * side).min(axis=1), _radius_of(s * bend)) for s in (1, -1)
+    )
+    return LocalTube(theta, curve.at(theta), normals, left, right)
+
+
+def offset(tube: LocalTube, xi: Array) -> Array:
+    """The points with these coordinates across the curve: σ(θ) + Σ ξ_i N_i.
+
+    Args:
+        xi: shape (..., n, d - 1), or one that broadcasts to it, [m].
+
+    Returns:
+        Shape (..., n, d), [m].
+    """
+    return tube.sigma + (np.asarray(xi)[..., None] * tube.normals).sum(-2)
+
+
+def _compared(curve: Curve) -> Array:
+    """θ of the points that are compared, on an open curve also beyond its ends, (k,), [rad]."""
+    if curve.closed:
+        return curve.sample(SAMPLES)
+    return np.linspace(-(1 + BEYOND) * np.pi, (1 + BEYOND) * np.pi, SAMPLES)
+
+
+def _gaps(curve: Curve, theta: Array, others: Array) -> tuple[Array, Array]:
+    """σ(b) - σ(a), (n, k, d), and the unit tangents T(a), (n, d)."""
+    first = curve.at(theta, 1)
+    tangents = first / np.maximum(np.linalg.norm(first, axis=-1, keepdims=True), TINY)
+    return curve.at(others) - curve.at(theta)[:, None], tangents
+
+
+def _normals(tangents: Array) -> Array:
+    """Unit normals, (n, d) -> (n, d - 1, d); see `LocalTube`."""
+    if tangents.shape[-1] == 2:
+        return np.stack([-tangents[:, 1], tangents[:, 0]], axis=-1)[:, None]
+    left = np.cross([0.0, 0.0, 1.0], tangents)
+    left /= np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), TINY)
+    return np.stack([left, np.cross(tangents, left)], axis=1)
+
+
+def _radii(gaps: Array, side: Array) -> Array:
+    """|d|² / (2 side) where side > 0 and the points are apart, else infinity, (n, k)."""
+    squared = (gaps**2).sum(-1)
+    counts = (side > TINY) & (squared > TINY)
+    return np.where(counts, squared / (2 * np.where(counts, side, 1.0)), np.inf)
+
+
+def _radius_of(bend: Array) -> Array:
+    """The radius of curvature on one side: 1 / bend where bend > 0, else infinity."""
+    return np.where(bend > TINY, 1 / np.where(bend > TINY, bend, 1.0), np.inf)
