@@ -84,7 +84,7 @@ class Overlays:
         submit: runs something in another thread.
 
     Attributes:
-        switches: see above.
+        stage, switches: see above.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class Overlays:
         switches: Switches,
         submit: Submit,
     ) -> None:
-        self._scene, self._stage, self._robot = scene, stage, robot
+        self._scene, self.stage, self._robot = scene, stage, robot
         self.switches = switches
         self._labels: RobotLabels | None = None
         self._tube: TubeNodes | None = None
@@ -104,6 +104,7 @@ class Overlays:
         self._map: Background[RankGrid] = Background(submit)
         self._drawn_tube: Hashable = None
         self._drawn_map: Hashable = None
+        self._corners = map_corners(stage, robot)
 
     @property
     def shape(self) -> TubeShape | None:
@@ -129,7 +130,7 @@ class Overlays:
     def _follow_labels(self, snapshot: PageSnapshot) -> None:
         wanted = self.switches.labels
         if wanted and self._labels is None:
-            parts = self._scene, self._stage, self._robot, snapshot.motion
+            parts = self._scene, self.stage, self._robot, snapshot.motion
             self._labels = RobotLabels(*parts)
         elif not wanted and self._labels is not None:
             self._labels.remove()
@@ -148,14 +149,13 @@ class Overlays:
             self._tube.remove()
             self._tube = None
         if shape is not None:
-            self._tube = TubeNodes(self._scene, self._stage, shape, fill, grid)
+            self._tube = TubeNodes(self._scene, self.stage, shape, fill, grid)
 
     def _follow_map(self, snapshot: PageSnapshot) -> None:
         if self.switches.rank:
             parameters = parameters_of(snapshot)
             key = self._robot.plant(parameters).tobytes()
-            corners = map_corners(self._stage, self._robot)
-            self._map.ask(key, lambda: rank_grid(self._robot, parameters, *corners))
+            self._map.ask(key, lambda: rank_grid(self._robot, parameters, *self._corners))
         grid = self._map.value if self.switches.rank else None
         wanted = None if grid is None else self._map.key
         if wanted == self._drawn_map:
@@ -165,4 +165,4 @@ class Overlays:
             self._rank.remove()
             self._rank = None
         if grid is not None:
-            self._rank = RankNodes(self._scene, self._stage, self._robot, grid)
+            self._rank = RankNodes(self._scene, self.stage, self._robot, grid)

@@ -83,7 +83,8 @@ def labelled(robot: Robot, ends: np.ndarray, tip: np.ndarray) -> Labelled:
     for length in drawing.lengths:
         begin, end = ends[length.begin], ends[length.end]
         names.append(length.name)
-        places.append((begin + end) / 2 + BESIDE * _left_of(end - begin, plane))
+        aside = (-BESIDE if length.right else BESIDE) * _left_of(end - begin, plane)
+        places.append(begin + length.at * (end - begin) + aside)
     drawn = np.concatenate(lines) if lines else np.zeros((0, 2, 3))
     return Labelled(names, np.array(places).reshape(-1, 3), drawn)
 
@@ -137,7 +138,7 @@ def _arc(
     end = _direction(_along(ends, angle.bar), plane)
     turn = angle.near + remainder(end - begin - angle.near, 2 * pi)
     centre = ends[2 * angle.bar] + BEFORE * plane.near
-    return _drawn(centre, radius, (begin, turn), (plane.ahead, UP), both=False)
+    return _drawn(centre, radius, (begin, turn), (plane.ahead, UP), angle.at)
 
 
 def _direction(vector: np.ndarray, plane: LinksPlane) -> float:
@@ -150,7 +151,7 @@ def _waist_arc(plane: LinksPlane) -> tuple[np.ndarray, np.ndarray]:
     across = np.cross(UP, plane.start)
     turn = atan2(float(plane.ahead @ across), float(plane.ahead @ plane.start))
     centre = WAIST_HEIGHT * UP
-    return _drawn(centre, WAIST_RADIUS, (0.0, turn), (plane.start, across), both=True)
+    return _drawn(centre, WAIST_RADIUS, (0.0, turn), (plane.start, across), 0.5, both=True)
 
 
 def _drawn(
@@ -158,21 +159,23 @@ def _drawn(
     radius: float,
     angles: tuple[float, float],
     basis: tuple[np.ndarray, np.ndarray],
-    both: bool,
+    at: float,
+    both: bool = False,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """An arc with the line from which it is measured, and outside its middle a place for a name.
+    """An arc with the line from which it is measured, and outside it a place for a name.
 
     Args:
         angles: where it begins, and how far it turns, [rad].
         basis: unit vectors of its plane.
+        at: where along the arc the name stands, from 0 to 1.
         both: whether there is a line at its end, too.
     """
     begin, turn = angles
     u, v = basis
-    at = begin + np.linspace(0.0, turn, SIDES + 1)[:, None]
-    line = centre + radius * (np.cos(at) * u + np.sin(at) * v)
+    turned = begin + np.linspace(0.0, turn, SIDES + 1)[:, None]
+    line = centre + radius * (np.cos(turned) * u + np.sin(turned) * v)
     rays = [centre + (radius + BEYOND) * (cos(a) * u + sin(a) * v) for a in (begin, begin + turn)]
     arms = [(centre, ray) for ray in (rays if both else rays[:1])]
-    middle = begin + turn / 2
+    middle = begin + at * turn
     place = centre + (radius + BEYOND) * (cos(middle) * u + sin(middle) * v)
     return np.concatenate([np.stack([line[:-1], line[1:]], axis=1), np.array(arms)]), place

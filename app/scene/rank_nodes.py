@@ -10,15 +10,19 @@ from viser.transforms import SO3
 from onpath.app.common import palette
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.stage import Stage
-from onpath.models.control.rank_test import RankGrid
+from onpath.models.control.rank_test import RankGrid, cell_centres
 from onpath.models.systems.robots import Robot
 
 if TYPE_CHECKING:
     import viser
 
-OPACITY = 0.75
-BEHIND_LINKS, BEHIND_PATH = 0.052, 0.008
-"""Depth of the map behind the path's plane [m]: the first one if the links move in that plane."""
+BEHIND_LINKS, BEHIND_PATH = (0.052, 0.7), (0.008, 0.5)
+"""Depth of the map behind the path's plane [m], and its opacity: if the links move in that plane,
+and if they do not."""
+FINER = 4
+"""Pixels of the picture for a cell of the map, in either direction, between which it is smooth."""
+GAP = 0.97
+"""Share of the width between neighbours that the map takes."""
 UPRIGHT = 0.5
 """Least vertical part of a unit vector that counts as upright."""
 
@@ -32,7 +36,7 @@ def map_corners(stage: Stage, robot: Robot) -> tuple[np.ndarray, np.ndarray]:
     origin, right, up = _axes(robot)
     base, reach = plane_coordinates(robot, np.zeros(3)), stage.reach[1]
     low, high = base - reach, base + reach
-    apart = float(np.ptp(stage.origins @ right)) / 2 / float(right @ right)
+    apart = GAP * float(np.ptp(stage.origins @ right)) / 2 / float(right @ right)
     middle = float(((stage.low + stage.high) / 2 - origin) @ right) / float(right @ right)
     if apart > 0:
         low[0], high[0] = max(low[0], middle - apart), min(high[0], middle + apart)
@@ -42,18 +46,45 @@ def map_corners(stage: Stage, robot: Robot) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
-def map_picture(values: np.ndarray) -> np.ndarray:
-    """The map as an image from top to bottom, transparent where it has no value.
+def map_picture(robot: Robot, grid: RankGrid, opacity: float) -> np.ndarray:
+    """The map as an image from top to bottom, transparent where the robot cannot reach.
 
-    Args:
-        values: see `RankGrid.values`.
+    It is interpolated between the cells. Its values fall to 0 at both limits of the reach.
 
     Returns:
-        RGBA, shape (rows, columns, 4), uint8.
+        RGBA, shape (FINER rows, FINER columns, 4), uint8.
     """
-    alpha = np.where(np.isfinite(values), round(255 * OPACITY), 0).astype(np.uint8)
-    colours = palette.on_scale(values / largest(values))
+    rows, columns = grid.values.shape
+    z = cell_centres(grid.low, grid.high, (FINER * columns, FINER * rows))
+    far = np.linalg.norm(robot.place(robot.frame.lift(z)), axis=-1)
+    pixel = (grid.high - grid.low).max() / (FINER * columns)
+    inner, outer = robot.reach
+    inside = np.clip(np.minimum(far - inner, outer - far) / pixel + 0.5, 0.0, 1.0)
+    inside[_finer(np.isfinite(grid.values).astype(float)) == 0] = 0.0  # also for other reasons
+    colours = palette.on_scale(_finer(np.nan_to_num(grid.values)) / largest(grid.values))
+    alpha = np.round(255 * opacity * inside).astype(np.uint8)
     return np.concatenate([colours, alpha[..., None]], axis=-1)[::-1]
+
+
+def _finer(values: np.ndarray) -> np.ndarray:
+    """Bilinear interpolation between the centres of cells, at `FINER` times as many points."""
+    for _ in range(2):
+        count = len(values)
+        at = (np.arange(FINER * count) + 0.5) / FINER - 0.5
+        low = np.clip(np.floor(at).astype(int), 0, max(count - 2, 0))
+        high = np.minimum(low + 1, count - 1)
+        share = np.clip(at - low, 0.0, 1.0)[:, None]
+        values = ((1 - share) * values[low] + share * values[high]).T
+    return values
+
+
+def map_opacity(stage: Stage) -> float:
+    """Lower where the map is in front of the links, which do not move in the path's plane."""
+    return BEHIND_LINKS[1] if _contains_base(stage) else BEHIND_PATH[1]
+
+
+def _contains_base(stage: Stage) -> bool:
+    return abs(float(stage.path_plane.point @ stage.away)) < 1e-9
 
 
 def largest(values: np.ndarray) -> float:
@@ -74,18 +105,17 @@ class RankNodes:
 
     def __init__(self, scene: viser.SceneApi, stage: Stage, robot: Robot, grid: RankGrid) -> None:
         origin, right, up = _axes(robot)
-        away = stage.path_plane.normal / np.linalg.norm(stage.path_plane.normal)
-        contains_base = abs(float(stage.path_plane.point @ away)) < 1e-9
+        depth, opacity = BEHIND_LINKS if _contains_base(stage) else BEHIND_PATH
         first, second = (grid.low + grid.high) / 2
-        depth = BEHIND_LINKS if contains_base else BEHIND_PATH
-        middle = origin + first * right + second * up + depth * away
+        middle = origin + first * right + second * up + depth * stage.away
+        picture = map_picture(robot, grid, opacity)
         width, height = (grid.high - grid.low) * [np.linalg.norm(right), np.linalg.norm(up)]
         x, y = right / np.linalg.norm(right), -up / np.linalg.norm(up)  # an image's y is downward
         turned = SO3.from_matrix(np.column_stack([x, y, np.cross(x, y)])).wxyz
         self._nodes = [
             scene.add_image(
                 f"/show/rank/{bench}",
-                map_picture(grid.values),
+                picture,
                 float(width),
                 float(height),
                 format="png",

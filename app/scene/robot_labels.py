@@ -105,7 +105,7 @@ class RobotLabels:
         for i, (begin, end) in enumerate(everywhere):
             way = (end - begin) / np.linalg.norm(end - begin)
             number = i % len(axes) + 1
-            name = f"/show/axes/{i // len(axes)}/{number}"
+            name = f"/show/axis_names/{i // len(axes)}/{number}"
             self._nodes.append(
                 add_text(scene, name, f"y{SUBSCRIPTS[number]}", end + PAST * way, LETTERS)
             )

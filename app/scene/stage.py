@@ -72,6 +72,14 @@ class Stage:
         return np.stack(list(self.bases.values()))
 
     @property
+    def away(self) -> np.ndarray:
+        """Unit normal of the path's plane, away from the camera's initial position, shape (3,)."""
+        normal = self.path_plane.normal / np.linalg.norm(self.path_plane.normal)
+        turn, level = self.azimuth, np.cos(self.elevation)
+        forward = [-np.sin(turn) * level, np.cos(turn) * level, -np.sin(self.elevation)]
+        return normal if normal @ forward > 0 else -normal
+
+    @property
     def reachable(self) -> Box:
         """Where the mouse can drag to: as far from the home of the end-point as the robot reaches.
 

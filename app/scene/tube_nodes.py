@@ -24,8 +24,8 @@ WIDEST = 0.06
 """Radius up to which a tube is drawn [m]."""
 LINES = 24
 """Curves of constant θ: one every 15 degrees of a circle."""
-MOST_OFFSETS = 4
-"""Most curves of constant ξ on one side of the path."""
+LEAST_OFFSETS = 4
+"""Curves of constant ξ on each side of the path, at least."""
 ALONG = 120
 """Points along the path."""
 AROUND = 16
@@ -34,7 +34,7 @@ SPREAD = 0.97
 """Share of the tube's width that is drawn: at its very rim curves may collapse to a point."""
 BEHIND = {"fill": 0.006, "grid": 0.004}
 """Depths behind the path's plane [m]."""
-FILL, GRID_LINE = palette.SELECTED, palette.SLATE
+FILL, GRID_LINE = palette.SELECTED, palette.STEEL
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,7 +63,7 @@ def tube_shape(robot: Robot, path: PathView) -> TubeShape:
     curve = drawn_curve(robot, path)
     width = tube_width(curve)
     shown = SPREAD * min(width, WIDEST)
-    step = _round_step(shown / MOST_OFFSETS)
+    step = _round_step(shown / LEAST_OFFSETS)
     theta = np.linspace(-np.pi, np.pi, ALONG + 1)
     tube = local_tube(curve, theta)
     across = np.arange(1, floor(shown / step + 1e-9) + 1) * step
@@ -94,9 +94,9 @@ def drawn_curve(robot: Robot, path: PathView) -> Curve:
 
 
 def _round_step(step: float) -> float:
-    """The smallest of 1, 2 and 5 times a power of ten, at least `step`, [m]."""
+    """The largest of 1, 2 and 5 times a power of ten, at most `step`, [m]."""
     power = 10.0 ** floor(log10(step))
-    return next(power * digit for digit in (1, 2, 5, 10) if power * digit >= step * (1 - 1e-9))
+    return next(power * digit for digit in (5, 2, 1) if power * digit <= step * (1 + 1e-9))
 
 
 def _polyline(points: np.ndarray) -> np.ndarray:
@@ -154,17 +154,17 @@ class TubeNodes:
     def __init__(
         self, scene: viser.SceneApi, stage: Stage, shape: TubeShape, fill: bool, grid: bool
     ) -> None:
-        away = stage.path_plane.normal / np.linalg.norm(stage.path_plane.normal)
+        away = stage.away
         self._nodes: list[viser.SceneNodeHandle] = []
         if fill:
             back = stage.origins + BEHIND["fill"] * away
-            band = add_copies(scene, "/show/tube", shape.fill, back, FILL, opacity=0.3)
+            band = add_copies(scene, "/show/tube", shape.fill, back, FILL, opacity=0.22)
             self._nodes.append(band)
         if grid:
             back = stage.origins + BEHIND["grid"] * away
             lines = np.concatenate([shape.normals, shape.offsets])
             points = (back[:, None, None] + lines).reshape(-1, 2, 3)
-            node = scene.add_line_segments("/show/grid", points, GRID_LINE.rgb, thickness=0.0009)
+            node = scene.add_line_segments("/show/grid", points, GRID_LINE.rgb, thickness=0.0008)
             self._nodes.append(node)
 
     def remove(self) -> None:

@@ -360,11 +360,11 @@ pull-horizontal-plane = waagerechter Ebene
 ## Was auf Wunsch in der Szene gezeigt wird
 
 show-title = Zeigen
-show-labels = Winkel, Längen und Achsen
-show-labels_hint = q, ℓ und die Achsen von y, wie in den Bildern 1 und 4 der Arbeit
-show-tube = Schlauch um die Bahn
+show-labels = Namen, Achsen
+show-labels_hint = Winkel q, Längen ℓ und die Achsen von y, wie in den Bildern 1 und 4 der Arbeit
+show-tube = Schlauch
 show-tube_hint = Wo der nächste Punkt der Bahn eindeutig ist: Dort ist der virtuelle Ausgang definiert
-show-grid = Koordinaten (θ, ξ)
+show-grid = Netz (θ, ξ)
 show-grid_hint = Linien quer zur Bahn haben denselben nächsten Punkt, also dasselbe θ; Linien längs der Bahn denselben Abstand ξ.
 show-rank = Rangtest (11)
 show-rank_hint = Wie weit der Endpunkt an jedem Ort davon entfernt ist, dass es die Regelgesetze nicht mehr gibt

@@ -345,11 +345,11 @@ pull-horizontal-plane = horizontal plane
 ## What is shown in the scene on demand
 
 show-title = Show
-show-labels = Angles, lengths and axes
-show-labels_hint = q, ℓ and the axes of y, as in the paper's figures 1 and 4
-show-tube = Tube around the path
+show-labels = Labels, axes
+show-labels_hint = Angles q, lengths ℓ and the axes of y, as in the paper's figures 1 and 4
+show-tube = Tube
 show-tube_hint = Where the closest point of the path is unique: the virtual output is defined there
-show-grid = Coordinates (θ, ξ)
+show-grid = Grid (θ, ξ)
 show-grid_hint = Lines across the path have the same closest point and so the same θ; lines along it the same distance ξ.
 show-rank = Rank test (11)
 show-rank_hint = How far the end-point is, at each place, from where the control laws no longer exist

@@ -41,12 +41,14 @@ class Angle:
         bar: the bar to which the angle leads.
         after: the bar from whose direction it is measured; None: from the horizontal.
         near: which of the values 2π apart is meant: the one nearest to this, [rad].
+        at: where along its arc the name stands, from 0 to 1.
     """
 
     name: str
     bar: int
     after: int | None = None
     near: float = math.pi / 2
+    at: float = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +71,15 @@ class Length:
     Attributes:
         name: as shown, such as "ℓ₁".
         begin, end: numbers of the ends of bars between which it is; bar i has 2 i and 2 i + 1.
+        at: where between them the name stands, from 0 to 1.
+        right: whether it stands to the right of the way from begin to end, not to the left.
     """
 
     name: str
     begin: int
     end: int
+    at: float = 0.5
+    right: bool = False
 
 
 @dataclass(frozen=True, slots=True)

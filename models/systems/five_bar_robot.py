@@ -25,11 +25,16 @@ SLOW, FAR = (
     20.0,
     0.5,
 )  # [rad/s], |sin(q1 - q2)|: too far from a fault to have had one in SHORT ticks
-ANGLES = (Angle("q₁", bar=0), Angle("q₂", bar=1, near=math.pi))
+ANGLES = (Angle("q₁", bar=0), Angle("q₂", bar=1, near=math.pi, at=0.72))
+LENGTHS = (
+    Length("ℓ₁", 0, 1, at=0.6, right=True),
+    Length("ℓ₂", 2, 3),
+    Length("ℓ₄", 1, 7, at=0.3),
+)
 DRAWING = Drawing(
     box=((-0.16, -0.03, -0.19), (0.31, 0.03, 0.425)),
     angles=ANGLES,
-    lengths=(Length("ℓ₁", 0, 1), Length("ℓ₂", 2, 3), Length("ℓ₄", 1, 7)),
+    lengths=LENGTHS,
 )
 
 

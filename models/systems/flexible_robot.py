@@ -23,7 +23,7 @@ from onpath.models.systems.drawing import (
     Length,
     Waist,
 )
-from onpath.models.systems.five_bar_robot import ANGLES, collapse
+from onpath.models.systems.five_bar_robot import ANGLES, LENGTHS, collapse
 from onpath.models.systems.flexible_five_bar import RIGID, FlexibleLinks
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.forces import Grip, SpringLimits
@@ -57,7 +57,7 @@ DRAWING = Drawing(
     sheet=((-0.24, 0.1), (0.24, 0.5), -0.56),
     angles=ANGLES,
     waist=Waist("q₃", bar=3),
-    lengths=(Length("ℓ₁", 0, 1), Length("ℓ₂", 2, 3), Length("ℓ", 1, -1)),
+    lengths=(LENGTHS[0], Length("ℓ", 1, -1, at=0.6)),
 )
 
 

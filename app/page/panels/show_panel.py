@@ -12,7 +12,7 @@ from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.overlays import Overlays
 from onpath.app.page.panels.widgets import on_user_update
-from onpath.app.scene.rank_nodes import largest
+from onpath.app.scene.rank_nodes import largest, map_opacity
 from onpath.app.scene.tube_nodes import TubeShape
 from onpath.lessons.words import Words
 from onpath.models.control.rank_test import RankGrid
@@ -69,7 +69,9 @@ class ShowPanel:
         if said != self._said:
             self._said = said
             self._numbers.content = tube_numbers(*said[:2], self._words)
-            self._legend.content = rank_legend(overlays.rank_map, alpha, self._words)
+            self._legend.content = rank_legend(
+                overlays.rank_map, alpha, self._words, map_opacity(overlays.stage)
+            )
 
 
 def _alpha(snapshot: PageSnapshot) -> float | None:
@@ -90,11 +92,14 @@ def tube_numbers(shape: TubeShape | None, grid: bool, words: Words) -> str:
     return render("panel/note.html", said=f"{said} {lines}" if grid else said, small=True)
 
 
-def rank_legend(grid: RankGrid | None, alpha: float | None, words: Words) -> str:
+def rank_legend(
+    grid: RankGrid | None, alpha: float | None, words: Words, opacity: float = 1.0
+) -> str:
     """The colour scale with its numbers and unit, as HTML; empty without a map.
 
     Args:
         alpha: of a flexible link, or None.
+        opacity: of the map.
     """
     if grid is None:
         return ""
@@ -102,6 +107,7 @@ def rank_legend(grid: RankGrid | None, alpha: float | None, words: Words) -> str
     return render(
         "panel/rank_legend.html",
         colours=[colour.hex for colour in SCALE],
+        opacity=opacity,
         ticks=[f"{most * i / (TICKS - 1):.3g}" for i in range(TICKS)],
         alpha=None if alpha is None else f"{alpha:g}",
         words=words,

@@ -1,0 +1,210 @@
+"""What is drawn on demand costs nothing when off, and is made anew only for a reason."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+import viser
+
+from onpath.app.common import palette
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
+from onpath.app.page.overlays import Background, Overlays, Switches
+from onpath.app.page.panels.show_panel import SWITCHES, rank_legend, tube_numbers
+from onpath.app.scene.rank_nodes import largest, map_corners, map_picture
+from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.scene.tube_nodes import drawn_curve, tube_shape
+from onpath.lessons.words import ENGLISH
+from onpath.models.control.rank_test import rank_grid
+from onpath.models.paths.curves import saddle
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.robots import RobotEntry
+from tests.support.lab import do, run, store
+
+ENTRIES = pytest.mark.parametrize("entry", ROBOTS.values(), ids=ROBOTS)
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[viser.ViserServer]:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    server = viser.ViserServer(host="127.0.0.1", port=port, verbose=False)
+    yield server
+    server.stop()
+
+
+class Shown:
+    """A lab, and the overlays that follow it; `sent` are the messages since it was last read."""
+
+    def __init__(self, entry: RobotEntry, scene: Any) -> None:
+        self.lab = Lab(store(), entry)
+        run(self.lab, 0.1)
+        robot, self.messages = self.lab.session.robot, list[Any]()
+        stage = stage_of(robot)
+        self.overlays = Overlays(scene, stage, robot, Switches(), lambda work: work())
+
+    def follow(self) -> list[str]:
+        """Names of the messages by which the scene follows the lab."""
+        self.messages.clear()
+        self.overlays.update(take_motion(self.lab))
+        self.overlays.follow(take_page_snapshot(self.lab, 1.0))
+        return [type(message).__name__ for message in self.messages]
+
+
+@pytest.fixture
+def shown(entry: RobotEntry, server: viser.ViserServer, monkeypatch: pytest.MonkeyPatch) -> Shown:
+    server.scene.reset()
+    made = Shown(entry, server.scene)
+    queue = server.scene._queue_scene_message
+
+    def take(message: Any) -> None:
+        made.messages.append(message)
+        queue(message)
+
+    monkeypatch.setattr(server.scene, "_queue_scene_message", take)
+    return made
+
+
+@ENTRIES
+def test_off_it_sends_nothing_whatever_happens(shown: Shown) -> None:
+    assert shown.follow() == []
+    do(shown.lab, c.ChoosePath("ellipse"), c.SetParameter("payload", 0.1))
+    run(shown.lab, 0.2)
+    assert shown.follow() == []
+
+
+@ENTRIES
+@pytest.mark.parametrize("name", SWITCHES)
+def test_a_switch_draws_and_removes_and_a_still_lab_sends_nothing_more(
+    shown: Shown, name: str
+) -> None:
+    do(shown.lab, c.SetRunning(False))
+    setattr(shown.overlays.switches, name, True)
+    assert shown.follow()
+    assert shown.follow() == []
+    setattr(shown.overlays.switches, name, False)
+    assert set(shown.follow()) == {"RemoveSceneNodeMessage"}
+    assert shown.follow() == []
+
+
+@ENTRIES
+def test_only_labels_move_with_the_robots(shown: Shown) -> None:
+    switches = shown.overlays.switches
+    switches.tube = switches.grid = switches.rank = True
+    shown.follow()
+    run(shown.lab, 0.2)
+    assert shown.follow() == []
+    switches.labels = True
+    shown.follow()
+    run(shown.lab, 0.2)
+    assert set(shown.follow()) == {"SetPositionMessage", "SceneNodeUpdateMessage"}
+
+
+@ENTRIES
+def test_a_path_makes_the_tube_anew_and_a_parameter_of_the_plant_the_map(shown: Shown) -> None:
+    do(shown.lab, c.SetRunning(False))
+    switches, overlays = shown.overlays.switches, shown.overlays
+    switches.tube = switches.rank = True
+    shown.follow()
+    tube, rank = overlays.shape, overlays.rank_map
+    do(shown.lab, c.SetParameter("K1", 350.0))
+    assert shown.follow() == []
+    of_plant = "rho" if shown.lab.session.entry.flexible_link else "payload"
+    do(shown.lab, c.SetParameter(of_plant, 0.15))
+    shown.follow()
+    assert overlays.rank_map is not rank and overlays.shape is tube
+    rank = overlays.rank_map
+    do(shown.lab, c.ChoosePath("ellipse"))
+    shown.follow()
+    assert overlays.shape is not tube and overlays.rank_map is rank
+
+
+@ENTRIES
+def test_the_tube_is_that_of_the_path_that_is_drawn(entry: RobotEntry) -> None:
+    lab = Lab(store(), entry)
+    do(lab, c.SetRunning(False), c.ChoosePath("ellipse"))
+    lab.session.editor.advance(10.0)
+    snapshot = take_page_snapshot(lab, 1.0)
+    robot, curve = lab.session.robot, lab.session.editor.curve
+    assert np.allclose(drawn_curve(robot, snapshot.path).series, curve.series, atol=1e-10)
+    shape = tube_shape(robot, snapshot.path)
+    z = robot.frame.planar(robot.unplace(shape.offsets[:, 0]))
+    _, distance = curve.plan.nearest(z)
+    steps = distance / shape.step
+    assert np.abs(steps - np.round(steps)).max() < 1e-6 and steps.max() >= 3.9
+    assert distance.max() < shape.width
+
+
+def test_the_tube_of_a_rising_path_lies_around_it_in_space() -> None:
+    entry = ROBOTS["spatial_arm"]
+    lab = Lab(store(), entry)
+    do(lab, c.SetRunning(False), c.SetParameter("rise", 0.03))
+    lab.session.editor.advance(10.0)
+    robot, path = lab.session.robot, take_page_snapshot(lab, 1.0).path
+    curve = drawn_curve(robot, path)
+    flat = lab.session.editor.design.curve
+    assert np.allclose(curve.series, saddle(flat, 0.03).series, atol=1e-10)
+    shape = tube_shape(robot, path)
+    around = robot.unplace(shape.fill.vertices)
+    gaps = around[:, None] - curve.at(curve.sample(2000))
+    distance = np.linalg.norm(gaps, axis=-1).min(axis=1)
+    assert np.ptp(distance) < 1e-6 and 0.9 * shape.width < distance.mean() < shape.width
+
+
+@ENTRIES
+def test_the_map_is_seen_where_the_robot_reaches_and_nowhere_else(entry: RobotEntry) -> None:
+    robot = entry.make(entry.lab)
+    low, high = map_corners(stage_of(robot), robot)
+    grid = rank_grid(robot, entry.lab, low, high)
+    assert grid.values.shape == (64, 64)
+    home = (np.zeros(2) - low) / (high - low)
+    assert ((home > 0) & (home < 1)).all()
+    picture = map_picture(robot, grid, 1.0)
+    finer = len(picture) // 64
+    opaque = picture[::-1, :, 3].reshape(64, finer, 64, finer).mean(axis=(1, 3)) > 127
+    differ = opaque != np.isfinite(grid.values)
+    assert differ.mean() < 0.02
+    brightest = np.unravel_index(np.nanargmax(grid.values), grid.values.shape)
+    row, column = (int((i + 0.5) * finer) for i in brightest)
+    shade = picture[len(picture) - 1 - row, column, :3].astype(int)
+    assert np.abs(shade - palette.SCALE[-1].rgb).max() < 12
+
+
+def test_the_colour_scale_is_viridis() -> None:
+    import matplotlib
+
+    shares = np.linspace(0.0, 1.0, 101)
+    viridis = 255 * matplotlib.colormaps["viridis"](shares)[:, :3]
+    assert np.abs(palette.on_scale(shares) - viridis).max() < 12
+
+
+def test_numbers_stand_beside_the_colours_and_the_lines() -> None:
+    entry = ROBOTS["flexible"]
+    robot = entry.make(entry.lab)
+    grid = rank_grid(robot, entry.lab, *map_corners(stage_of(robot), robot))
+    legend = rank_legend(grid, 0.5, ENGLISH)
+    assert f"{largest(grid.values):.3g}" in legend and "(m/s²)/(N m)" in legend
+    assert "α = 0.5" in legend and "α" not in rank_legend(grid, None, ENGLISH)
+    assert rank_legend(None, None, ENGLISH) == "" == tube_numbers(None, True, ENGLISH)
+    shape = tube_shape(robot, take_page_snapshot(Lab(store(), entry), 1.0).path)
+    assert "50.0 mm" in tube_numbers(shape, False, ENGLISH)
+    assert "every" in tube_numbers(shape, True, ENGLISH)
+
+
+def test_a_computation_that_fails_can_be_asked_for_again() -> None:
+    waiting: list[Any] = []
+    found: Background[int] = Background(waiting.append)
+    found.ask("a", lambda: 1 // 0)
+    found.ask("b", lambda: 2)
+    assert len(waiting) == 1 and found.value is None
+    with pytest.raises(ZeroDivisionError):
+        waiting.pop()()
+    found.ask("b", lambda: 2)
+    waiting.pop()()
+    assert (found.key, found.value) == ("b", 2)

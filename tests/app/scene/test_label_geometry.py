@@ -1,0 +1,91 @@
+"""Labels stand where the quantities are: an arc turns by its joint angle, and ends at its bar."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from onpath.app.scene.label_geometry import SIDES, Labelled, axes_of, labelled
+from onpath.models.arrays import Array
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.robots import Robot, RobotEntry
+from tests.support.drawing import drawn
+
+ENTRIES = pytest.mark.parametrize("entry", ROBOTS.values(), ids=ROBOTS)
+
+
+def poses(robot: Robot, count: int = 12) -> Array:
+    """Configurations with the end-point at places where paths are, (count, n)."""
+    z = np.random.default_rng(5).uniform(-0.08, 0.08, (count, 2))
+    return robot.rest(robot.frame.lift(z))
+
+
+def labels(robot: Robot, q: Array) -> tuple[Labelled, Array]:
+    """The labels in a configuration, and the ends of the bars."""
+    ends = drawn(robot.skeleton, q, 1.0)[0].reshape(-1, 3)
+    return labelled(robot, ends, robot.place(robot.endpoint(q))), ends
+
+
+def turned(line: Array, centre: Array) -> float:
+    """Angle by which the pieces of an arc turn about its centre, [rad]."""
+    rays = [line[0, 0] - centre, *(line[:, 1] - centre)]
+    steps = [np.dot(a, b) / np.linalg.norm(a) / np.linalg.norm(b) for a, b in pairwise(rays)]
+    return float(np.arccos(np.clip(steps, -1.0, 1.0)).sum())
+
+
+@ENTRIES
+def test_arcs_turn_by_the_joint_angles_that_they_name(entry: RobotEntry) -> None:
+    robot = entry.make(entry.lab)
+    count = len(robot.drawing.angles)
+    for q in poses(robot):
+        found, _ = labels(robot, q)
+        begin = 0
+        for number, name in enumerate(coordinates(robot)):
+            arc, centre = found.lines[begin : begin + SIDES], found.lines[begin + SIDES, 0]
+            joint = "₁₂₃".index(name[1])
+            assert turned(arc, centre) == pytest.approx(abs(q[joint]), abs=1e-6)
+            begin += SIDES + (1 if number < count else 2)  # a waist has a line at either end
+        assert begin == len(found.lines)
+
+
+def coordinates(robot: Robot) -> list[str]:
+    """Names of the angles, in the order in which they are drawn."""
+    drawing = robot.drawing
+    waist = [] if drawing.waist is None else [drawing.waist.name]
+    return [*(angle.name for angle in drawing.angles), *waist]
+
+
+@ENTRIES
+def test_an_arc_ends_at_its_bar(entry: RobotEntry) -> None:
+    robot = entry.make(entry.lab)
+    for q in poses(robot):
+        found, ends = labels(robot, q)
+        for number, angle in enumerate(robot.drawing.angles):
+            begin = number * (SIDES + 1)
+            centre, end = found.lines[begin + SIDES, 0], found.lines[begin + SIDES - 1, 1]
+            along = ends[2 * angle.bar + 1] - ends[2 * angle.bar]
+            ray = (end - centre) / np.linalg.norm(end - centre)
+            assert ray @ along / np.linalg.norm(along) == pytest.approx(1.0, abs=1e-6)
+
+
+@ENTRIES
+def test_every_joint_is_named_and_lengths_do_not_change(entry: RobotEntry) -> None:
+    robot = entry.make(entry.lab)
+    joints = sum("rad" in name for name in robot.coordinate_names)
+    assert sorted(coordinates(robot)) == [f"q{'₁₂₃'[i]}" for i in range(joints)]
+    each = [labels(robot, q)[1] for q in poses(robot)]
+    for length in robot.drawing.lengths:
+        sizes = [np.linalg.norm(ends[length.end] - ends[length.begin]) for ends in each]
+        assert np.ptp(sizes) < 1e-9
+
+
+@ENTRIES
+def test_axes_begin_where_the_output_is_0_and_point_where_it_grows(entry: RobotEntry) -> None:
+    robot = entry.make(entry.lab)
+    for number, (begin, end) in enumerate(axes_of(robot)):
+        y = robot.unplace(np.array([begin, end]))
+        assert np.allclose(y[0], 0.0)
+        assert y[1] == pytest.approx(y[1][number] * np.eye(robot.system.p)[number])
+        assert y[1][number] > 0
