@@ -18,6 +18,7 @@ from functools import lru_cache
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.systems.parameters import Parameters
@@ -94,7 +95,7 @@ def least_gain(matrices: Array) -> Array:
 
     Source: the rank test (11) as a number with a unit.
     """
-    return np.linalg.svd(matrices, compute_uv=False)[..., -1]
+    return np.asarray(np.linalg.svd(matrices, compute_uv=False), dtype=float)[..., -1]
 
 
 def rank_map(robot: Robot, parameters: Parameters, z: Array) -> Array:
@@ -146,7 +147,7 @@ def cell_centres(low: Array, high: Array, shape: tuple[int, int]) -> Array:
     return np.stack(np.meshgrid(first, second), axis=-1)
 
 
-def _in_reach(robot: Robot, parameters: Parameters, z: Array) -> tuple[Array, Array]:
+def _in_reach(robot: Robot, parameters: Parameters, z: Array) -> tuple[NDArray[np.bool_], Array]:
     """Which points z, (..., 2), are in reach, (...), and D at those, (k, p, m)."""
     inside = (robot.margin(z.reshape(-1, 2)) > IN_REACH).reshape(z.shape[:-1])
     q = robot.rest(robot.frame.lift(z[inside]))

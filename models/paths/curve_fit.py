@@ -80,7 +80,7 @@ def through_samples(samples: Array, closed: bool) -> Curve:
     if closed:
         return _fourier_of(samples[:-1])
     at = np.linspace(-1.0, 1.0, len(samples))
-    return chebyshev_curve(chebyshev.chebfit(at, samples, HARMONICS))
+    return chebyshev_curve(np.asarray(chebyshev.chebfit(at, samples, HARMONICS), dtype=float))
 
 
 def from_stroke(points: Array, closed: bool, passes: int = 40) -> Curve:

@@ -84,7 +84,7 @@ def offset(tube: LocalTube, xi: Array) -> Array:
     Returns:
         Shape (..., n, d), [m].
     """
-    return tube.sigma + (np.asarray(xi)[..., None] * tube.normals).sum(-2)
+    return np.asarray(tube.sigma + (xi[..., None] * tube.normals).sum(-2), dtype=float)
 
 
 def _compared(curve: Curve) -> Array:

@@ -300,6 +300,7 @@ def test_the_panel_of_a_flexible_link_is_that_of_every_robot_that_has_one(
         exporter=given,
         submit=given,
         scene=given,
+        overlays=given,
         desk=given,
         reset_view=given,
     )

@@ -15,6 +15,7 @@ from onpath.models.control.rank_test import (
 )
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
 from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 from onpath.models.systems.system import conditioning
@@ -50,7 +51,7 @@ def test_number_does_not_depend_on_units() -> None:
 
 # The map, against a Jacobian by finite differences of the inverse's own end-point.
 
-TIP = FLEXIBLE.parameters(alpha=1.0)  # whose controlled output is the actual end-point
+TIP = FlexibleParameters(alpha=1.0)  # whose controlled output is the actual end-point
 CASES = {name: entry.parameters() for name, entry in ROBOTS.items()} | {FLEXIBLE.name: TIP}
 EVERY = pytest.mark.parametrize("name", CASES)
 
@@ -140,7 +141,7 @@ def test_a_flexible_link_loses_rank_inside_the_workspace(
     With half of the deflection in the output this happens only near the extremities, in 1 to 2 % of
     a vertical section; with the tip itself in two thirds of it.
     """
-    parameters = FLEXIBLE.parameters(alpha=alpha)
+    parameters = FlexibleParameters(alpha=alpha)
     robot = FLEXIBLE.make(parameters)
     r, height = np.meshgrid(np.linspace(0.02, 0.8, 150), np.linspace(-0.9, 0.45, 150))
     y = np.stack([r, 0 * r, height], axis=-1).reshape(-1, 3)
