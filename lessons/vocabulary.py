@@ -35,7 +35,7 @@ from onpath.models.systems.parameters import changed, specs
 
 CONTROLS = (
     *("hold", "path", "editor", "gains", "plots", "past", "robot", "laws", "copy", "flexible"),
-    *("identify", "show"),
+    *("identify", "show", "direction", "wall", "start"),
 )
 EVENTS: tuple[str, ...] = get_args(EventName)
 HIGHEST = 1e6

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Generator
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,7 +18,6 @@ from onpath.app.lab.advance_together import Frame, Ticks
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import MOST_TICKS
 from onpath.app.simulation.simulation_thread import FRAME, ScheduledLab
-from onpath.models.closed_loop.simulation import Push
 from onpath.models.control.benches import BENCHES
 from onpath.models.systems.parameters import time_step
 
@@ -129,4 +129,4 @@ class Mirror(ScheduledLab):
         for bench, this, that in zip(BENCHES, old.robots, new.robots, strict=True):
             if this.hand and that.hand and this.hand != that.hand:
                 at = (1 - passed) * np.array(this.hand) + passed * np.array(that.hand)
-                pushes[bench] = Push(at, pushes[bench].hold)
+                pushes[bench] = replace(pushes[bench], hand=at)

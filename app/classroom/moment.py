@@ -6,7 +6,8 @@ adopts it continues exactly as the original does.
 
 from __future__ import annotations
 
-from typing import Annotated
+from dataclasses import astuple, replace
+from typing import Annotated, Any
 
 import msgspec
 import numpy as np
@@ -20,6 +21,7 @@ from onpath.app.lab.setup import EXAGGERATIONS, RATES, Word
 from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import log_layout, state_layout
+from onpath.models.closed_loop.obstacles import Wall
 from onpath.models.closed_loop.simulation import Push
 from onpath.models.control.benches import BENCHES, check_laws
 from onpath.models.control.laws.registry import LAWS
@@ -78,7 +80,8 @@ class RobotMoment(msgspec.Struct, frozen=True):
         sample: see `app.lab.plot_samples`.
         max_distance: largest distance to the path so far, [m].
         diverged: why and when its simulation was stopped [s], or None.
-        hand, anchor, tangent: the push on it, in output coordinates; empty if there is none.
+        hand, anchor, tangent, normal: the push on it, in output coordinates; empty if there is
+            none. The brake acts along the tangent, and along the normal, too, if there is one.
     """
 
     law: Word
@@ -89,6 +92,7 @@ class RobotMoment(msgspec.Struct, frozen=True):
     hand: Vector
     anchor: Vector
     tangent: Vector
+    normal: Vector = ()
 
 
 class Moment(msgspec.Struct, frozen=True):
@@ -99,6 +103,7 @@ class Moment(msgspec.Struct, frozen=True):
         moves: whether simulated time runs.
         is_seen: whether the student's tab is drawing.
         achieved: simulated seconds per second.
+        wall: z1, z2 and angle of the wall; empty if there is none.
     """
 
     robot: Word
@@ -118,6 +123,7 @@ class Moment(msgspec.Struct, frozen=True):
     robots: Annotated[tuple[RobotMoment, ...], msgspec.Meta(min_length=2, max_length=2)]
     is_seen: bool
     achieved: float
+    wall: Annotated[tuple[float, ...], msgspec.Meta(max_length=3)] = ()
 
 
 def tell(scheduled: ScheduledLab) -> Moment:
@@ -156,6 +162,7 @@ def tell(scheduled: ScheduledLab) -> Moment:
         robots=robots,
         is_seen=scheduled.is_seen,
         achieved=scheduled.achieved,
+        wall=() if session.wall is None else astuple(session.wall),
     )
 
 
@@ -172,6 +179,7 @@ def _robot(
         hand=() if push.hand is None else tuple(push.hand.tolist()),
         anchor=tuple(anchor.tolist()),
         tangent=tuple(tangent.tolist()),
+        normal=() if push.hold_normal is None else tuple(push.hold_normal.tolist()),
     )
 
 
@@ -224,12 +232,15 @@ def read_moment(text: str) -> Moment:
     for each, law in zip(moment.robots, laws_of(moment).values(), strict=True):
         _numbers(each.state, state_layout(robot.system, LAWS[law].memory).size)
         _numbers(each.sample, len(samples))
-        for pull in (each.hand, each.anchor, each.tangent):
+        for pull in (each.hand, each.anchor, each.tangent, each.normal):
             _numbers(pull, robot.system.p if pull else 0)
         if each.diverged is not None:
             _sayable(each.diverged.reason())
-        if bool(each.anchor) != bool(each.tangent):
+        if bool(each.anchor) != bool(each.tangent) or (each.normal and not each.anchor):
             raise ValueError("half a brake")
+    if moment.wall:
+        _numbers(moment.wall, 3)
+        wall_of(moment)
     most = [each.max_distance for each in moment.robots]
     _numbers((moment.time, moment.achieved, *most), 4)
     if not {*moment.held, moment.grabbed} <= {*BENCHES, None}:
@@ -240,6 +251,15 @@ def read_moment(text: str) -> Moment:
 def laws_of(moment: Moment) -> dict[str, str]:
     """Control law of each bench."""
     return {bench: own.law for bench, own in zip(BENCHES, moment.robots, strict=True)}
+
+
+def wall_of(moment: Moment) -> Wall | None:
+    """The wall of the lab.
+
+    Raises:
+        ValueError: it is out of range.
+    """
+    return Wall(*moment.wall) if moment.wall else None
 
 
 def parameters_of(moment: Moment) -> Parameters:
@@ -288,9 +308,10 @@ def take_over(lab: Lab, new: Moment, old: Moment | None) -> None:
     session.time, session.running, session.rate = new.time, new.running, new.rate
     session.exaggeration, grips = new.exaggeration, session.grips
     grips.grabbed, grips.held = new.grabbed, {*new.held}
+    session.set_wall(wall_of(new))
     lab.show_message(new.message, new.level)
     for bench, robot in zip(BENCHES, new.robots, strict=True):
-        grips.pushes[bench] = _push(robot)
+        grips.pushes[bench] = replace(grips.pushes[bench], **_pull(robot))
         session.change_law(bench, laws_of(new)[bench])
         _take_robot(session, session.runs[bench], robot)
 
@@ -309,9 +330,13 @@ def _curve(line: Line) -> Curve:
     return from_terms(line.closed, np.array(line.terms).reshape(terms_of(line.closed), -1))
 
 
-def _push(robot: RobotMoment) -> Push:
-    hold = (np.array(robot.anchor), np.array(robot.tangent)) if robot.anchor else None
-    return Push(np.array(robot.hand) if robot.hand else None, hold)
+def _pull(robot: RobotMoment) -> dict[str, Any]:
+    """The fields of `Push` of a hand and a brake."""
+    return {
+        "hand": np.array(robot.hand) if robot.hand else None,
+        "hold": (np.array(robot.anchor), np.array(robot.tangent)) if robot.anchor else None,
+        "hold_normal": np.array(robot.normal) if robot.normal else None,
+    }
 
 
 def _take_robot(session: Session, run: ClosedLoopRun, robot: RobotMoment) -> None:

@@ -16,6 +16,7 @@ from viser.infra._async_message_buffer import AsyncMessageBuffer
 
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Segment
+from onpath.app.lab.snapshots.obstacles import wall_then
 from onpath.app.lab.snapshots.robot_geometry import robot_views
 from onpath.app.lab.snapshots.snapshot import PathView, Snapshot
 from onpath.app.lab.snapshots.take_snapshot import CURVE_POINTS
@@ -96,4 +97,5 @@ def _snapshot(robot: Robot, segment: Segment, number: int, before: list[Segment]
         selected=None,
         refused=np.zeros((0, 3)),
     )
-    return Snapshot(segment.time, True, 1.0, views, path, False, None, "", "info")
+    wall = wall_then(robot, segment)
+    return Snapshot(segment.time, True, 1.0, views, path, False, None, "", "info", wall=wall)

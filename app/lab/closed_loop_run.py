@@ -13,13 +13,13 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, Loop
 from onpath.models.closed_loop.simulation import (
     Push,
-    first_state,
     kernel_of,
     kind_of,
     primed,
     pushed,
     settings_vector,
 )
+from onpath.models.closed_loop.start import ON_PATH, Start, start_state
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
@@ -52,7 +52,7 @@ class ClosedLoopRun:
         law: str,
         parameters: Parameters,
         curve: Curve,
-        start: np.ndarray,
+        start: Start = ON_PATH,
     ) -> None:
         self.robot = robot
         self.bench, self.law = bench, law
@@ -63,10 +63,11 @@ class ClosedLoopRun:
         self._input = self._made_input(frozen=False)
         self.reset(curve, start)
 
-    def reset(self, curve: Curve, start: np.ndarray) -> None:
-        """Place the end-point at `start`, (p,), at rest, and the reference point on `curve`."""
+    def reset(self, curve: Curve, start: Start) -> None:
+        """Begin anew at a start, which must be within reach."""
+        assert self._inputs is not None
         kernel = self._kernel
-        self.state = first_state(self.robot, kernel, curve, self.robot.rest(start))
+        self.state = start_state(self.robot, kernel, curve, self._inputs[0], start)
         self.row = np.zeros(kernel.log.size)
         self._fill_row(curve)
         self.diverged = None

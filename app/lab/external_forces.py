@@ -1,15 +1,17 @@
-"""External forces on the robots of a lab: holding them back and pulling at them."""
+"""External forces on the robots of a lab: holding them back, pulling at them, and a wall."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.simulation import FREE, Push, brake_at
+from onpath.models.closed_loop.obstacles import ALONG, Wall, brake_in
+from onpath.models.closed_loop.simulation import FREE, Push
 from onpath.models.control.benches import BENCHES
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import Frame
@@ -35,6 +37,7 @@ class ExternalForces:
         robot: the model of the robots.
         runs: by bench.
         note: see `Note`.
+        wall: in the way of both end-points, or None.
 
     Attributes:
         held: benches whose robots are held back.
@@ -43,26 +46,45 @@ class ExternalForces:
         pushes: external force on each robot; the same object until something changes.
     """
 
-    def __init__(self, robot: Robot, runs: Mapping[str, ClosedLoopRun], note: Note) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        runs: Mapping[str, ClosedLoopRun],
+        note: Note,
+        wall: Wall | None = None,
+    ) -> None:
         self._robot, self._runs, self._note = robot, runs, note
         self.held: set[str] = set()
         self.hands: dict[str, Array] = {}
         self.grabbed: str | None = None
         self.pushes: dict[str, Push] = dict.fromkeys(BENCHES, FREE)
         self._offsets: dict[str, Array] = {}
+        if wall is not None:
+            self.set_wall(wall)
 
-    def hold(self, names: Sequence[str], on: bool, curve: Curve) -> None:
-        """Begin or end holding robots back, each at its current position along the path."""
+    def set_wall(self, wall: Wall | None) -> None:
+        """Place, move or take away the wall of both benches."""
+        lifted = None if wall is None else wall.lifted(self._robot.frame)
+        for name, push in self.pushes.items():
+            self.pushes[name] = replace(push, wall=lifted)
+
+    def hold(self, names: Sequence[str], on: bool, curve: Curve, direction: str = ALONG) -> None:
+        """Begin or end holding robots back, each at its current position.
+
+        Args:
+            direction: in which the brake acts, one of `DIRECTIONS`.
+        """
         changed = tuple(name for name in names if on != (name in self.held))
         if changed:
             self._note("hold" if on else "let_go", benches=changed)
         for name in changed:
             (self.held.add if on else self.held.discard)(name)
-            brake = None
+            brake, second = None, None
             if on:
                 row = self._runs[name].shown()
-                brake = brake_at(self._robot, curve, row["y"], float(row["theta"][0]))
-            self.pushes[name] = Push(self.hands.get(name), brake)
+                theta = float(row["theta"][0])
+                brake, second = brake_in(self._robot, curve, row["y"], theta, direction)
+            self.pushes[name] = replace(self.pushes[name], hold=brake, hold_normal=second)
 
     def grab(self, bench: str, target: Array, together: Sequence[str]) -> None:
         """Pull an end-point towards a target, and others by the same displacement.
@@ -80,13 +102,13 @@ class ExternalForces:
         home, reach = self._robot.frame.lift(np.zeros(2)), self._robot.reach[1]
         for name, offset in self._offsets.items():
             self.hands[name] = (target + offset).clip(home - reach, home + reach)
-            self.pushes[name] = Push(self.hands[name], self.pushes[name].hold)
+            self.pushes[name] = replace(self.pushes[name], hand=self.hands[name])
 
     def release(self) -> None:
         """Release all end-points; robots that are held back stay so."""
         if self.hands:
             self._note("release", benches=tuple(self.hands))
         for name in self.hands:
-            self.pushes[name] = Push(None, self.pushes[name].hold)
+            self.pushes[name] = replace(self.pushes[name], hand=None)
         self.hands.clear()
         self.grabbed = None

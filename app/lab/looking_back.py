@@ -78,6 +78,7 @@ def _take(session: Session, timeline: Timeline) -> None:
     session.time, session.history = timeline.time, timeline.history
     session.runs, session.grips = timeline.runs, timeline.grips
     session.events = timeline.events
+    session.grips.set_wall(session.wall)
     if timeline.curve is not session.editor.curve:
         for run in session.runs.values():
             run.change_path(session.editor.curve)

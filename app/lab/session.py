@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Mapping, Sequence
 from operator import is_
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,11 +21,11 @@ from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout, samples_of
 from onpath.app.lab.segments import HistoryFrame, Inputs, Instant
 from onpath.app.lab.timeline import LabEvent, Timeline
-from onpath.models.arrays import Array
+from onpath.models.closed_loop.obstacles import ALONG, Wall
+from onpath.models.closed_loop.start import ON_PATH, Start, check_start
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.layout import Layout
-from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 from onpath.models.systems.parameters import TICK, Parameters, rise_of, time_step
@@ -32,6 +33,15 @@ from onpath.models.systems.robots import Robot
 
 MOST_TICKS = 200  # per frame
 MOST_EVENTS = 1500  # 0.2 MB
+
+
+class Belongings(NamedTuple):
+    """What a robot keeps while another one is used; see `Session`."""
+
+    parameters: Parameters
+    editor: PathEditor | None = None
+    start: Start = ON_PATH
+    wall: Wall | None = None
 
 
 class Session:
@@ -45,7 +55,10 @@ class Session:
         entry, robot, parameters: catalogue entry, model and parameters of the current robot.
         runs: the two closed loops, by bench.
         editor: the path.
-        grips: external forces that hold the robots back or pull at them.
+        start: where and how the next run starts.
+        wall: in the way of both end-points, or None; it stays from run to run.
+        hold_direction: in which the next brake acts, one of `DIRECTIONS`.
+        grips: external forces on the robots.
         history: the last minute.
         time: simulated, [s].
         running: whether simulated time advances.
@@ -62,7 +75,7 @@ class Session:
 
     def __init__(self, store: LoopCache, entry: RobotEntry = FIVE_BAR) -> None:
         self._store = store
-        self.earlier: dict[str, tuple[Parameters, PathEditor]] = {}
+        self.earlier: dict[str, Belongings] = {}
         self.history = History(self._samples)
         self._inputs: Inputs | None = None
         self.runs: dict[str, ClosedLoopRun] = {}
@@ -71,6 +84,7 @@ class Session:
         self.running = True
         self.rate = 1.0
         self.copy = True
+        self.hold_direction = ALONG
         self.exaggeration = 1.0
         self.events: deque[LabEvent] = deque(maxlen=MOST_EVENTS)
         self.faults: list[str] = []
@@ -82,7 +96,7 @@ class Session:
     def choose_robot(self, entry: RobotEntry) -> None:
         """Choose another robot, with its previous parameters and path."""
         if entry is not self.entry:
-            self.earlier[self.entry.name] = (self.parameters, self.editor)
+            self.earlier[self.entry.name] = self.belongings()
             self._set_up(entry)
             self.note("robot", entry.name)
 
@@ -102,13 +116,19 @@ class Session:
             self.editor.robot = robot
             self._restart()
 
+    def belongings(self) -> Belongings:
+        """What the present robot keeps while another one is used."""
+        start = self.start if self._can_start() else ON_PATH
+        return Belongings(self.parameters, self.editor, start, self.wall)
+
     def _set_up(self, entry: RobotEntry) -> None:
         self.entry = entry
-        parameters, editor = self.earlier.get(entry.name, (entry.lab, None))
+        parameters, editor, start, wall = self.earlier.get(entry.name, Belongings(entry.lab))
         self.parameters: Parameters = parameters
         self.robot: Robot = entry.make(parameters)
         rise = rise_of(parameters)
         self.editor = editor or PathEditor(self.robot, self.presets["circle"], rise)
+        self.start, self.wall = start, wall
         self._restart()
 
     # The control laws
@@ -214,11 +234,15 @@ class Session:
         self.simulate(max(1, round(max(TICK, 1 / self.parameters.control_rate) / dt)))
 
     def reset(self, laws: Mapping[str, str] | None = None) -> None:
-        """Put both robots at the start, at rest. Clears the history; keeps path and parameters.
+        """Put both robots at the start. Clears the history; keeps path, parameters and wall.
 
         Args:
             laws: control laws from now on, the defaults where there is none; None: those of now.
+
+        Raises:
+            ValueError: the start is not possible on the present path; nothing has changed.
         """
+        self.check_start(self.start)
         if laws is not None:
             self._coming.clear()
         self._restart(laws)
@@ -235,17 +259,33 @@ class Session:
         self.undo_timeline: Timeline | None = None
         self.history.clear()
         self.faults.clear()
-        start = self.start_point(self.editor.curve)
         curve = self.editor.curve
+        start = self.start if self._can_start() else ON_PATH
         self.runs = {
             bench: ClosedLoopRun(self.robot, bench, law, self.parameters, curve, start)
             for bench, law in laws.items()
         }
-        self.grips = ExternalForces(self.robot, self.runs, self.note)
+        self.grips = ExternalForces(self.robot, self.runs, self.note, self.wall)
 
-    def start_point(self, curve: Curve) -> Array:
-        """Start of a run, on the path, (p,), [m]."""
-        return self.robot.frame.lift(curve.at(np.array(0.0)))
+    # Start and wall
+
+    def check_start(self, start: Start) -> None:
+        """Refuse a start that is not possible on the present path; see `check_start`."""
+        if start != ON_PATH:
+            check_start(self.robot, self.editor.curve, self.parameters, start)
+
+    def _can_start(self) -> bool:
+        try:
+            self.check_start(self.start)
+        except ValueError:
+            return False
+        return True
+
+    def set_wall(self, wall: Wall | None) -> None:
+        """Place, move or take away the wall."""
+        if wall != self.wall:
+            self.wall = wall
+            self.grips.set_wall(wall)
 
     def targets(self, bench: str) -> list[str]:
         """The benches that a gesture at `bench` acts on."""

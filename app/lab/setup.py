@@ -9,15 +9,17 @@ the same one.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Annotated, Any
 
 import msgspec
 import numpy as np
 
 from onpath.app.lab.path_editor import BLEND
-from onpath.app.lab.session import Session
+from onpath.app.lab.session import Belongings, Session
+from onpath.models.closed_loop.obstacles import ALONG, Wall, check_direction
 from onpath.models.closed_loop.simulation import raised
+from onpath.models.closed_loop.start import ON_PATH, Start, check_start
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, check_laws
 from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curve_faults import curve_faults
@@ -60,10 +62,17 @@ class Path(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class RobotSetup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One robot's path, and its parameters where they differ from the initial ones."""
+    """One robot's path, and its parameters where they differ from the initial ones.
+
+    Attributes:
+        start: where and how its runs start: the numbers of `Start` that are not 0, by name.
+        wall: z1, z2 and angle of a wall in its way; empty if there is none.
+    """
 
     parameters: Annotated[dict[Word, int | float | Word], msgspec.Meta(max_length=100)] = {}
     path: Path = Path()
+    start: Annotated[dict[Word, float], msgspec.Meta(max_length=10)] = {}
+    wall: Annotated[tuple[float, ...], msgspec.Meta(max_length=3)] = ()
 
 
 class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -72,6 +81,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Attributes:
         benches: the set-up of each robot, by name.
         laws: control laws that differ from a new lab's, by bench.
+        hold: direction in which brakes act.
     """
 
     robot: Word = FIVE_BAR.name
@@ -80,6 +90,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     copy: bool = True
     exaggeration: float = 1.0
     laws: Annotated[dict[Word, Word], msgspec.Meta(max_length=len(BENCHES))] = {}
+    hold: Word = ALONG
 
 
 class StoredSetup(Setup, frozen=True, forbid_unknown_fields=True):
@@ -90,11 +101,13 @@ class StoredSetup(Setup, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Wanted:
-    """Robot, parameters and path in the form that a session uses."""
+    """A robot's set-up in the form that a session uses."""
 
     entry: RobotEntry
     parameters: Parameters
     design: PathDesign
+    start: Start = ON_PATH
+    wall: Wall | None = None
 
 
 def to_data(setup: Setup) -> dict[str, Any]:
@@ -120,7 +133,8 @@ def from_data(data: Any) -> Setup:
     """
     stored = msgspec.convert(data, StoredSetup)
     benches = stored.benches if stored.defaults == DEFAULTS else _brought_up(stored.benches)
-    setup = Setup(stored.robot, benches, stored.rate, stored.copy, stored.exaggeration, stored.laws)
+    own: dict[str, Any] = {name: getattr(stored, name) for name in Setup.__struct_fields__}
+    setup = Setup(**{**own, "benches": benches})
     planned(setup, presets())
     return setup
 
@@ -134,18 +148,14 @@ def _brought_up(benches: Mapping[str, RobotSetup]) -> dict[str, RobotSetup]:
         if own.get("K3", 0.0) != 0.0:
             own["tracker_integral"] = "on"
         if own:
-            found[robot] = RobotSetup(own, bench.path)
+            found[robot] = msgspec.structs.replace(bench, parameters=own)
     return found
 
 
 def capture(session: Session) -> Setup:
     """The current set-up of a session; a path being dragged counts only after the drag."""
-    benches = {name: (own, editor.design) for name, (own, editor) in session.earlier.items()}
-    benches[session.entry.name] = session.parameters, session.editor.design
-    found = {
-        name: RobotSetup(_differences(ROBOTS[name].lab, own), capture_path(design, session.presets))
-        for name, (own, design) in sorted(benches.items())
-    }
+    benches = {**session.earlier, session.entry.name: session.belongings()}
+    found = {name: _captured(name, own, session.presets) for name, own in sorted(benches.items())}
     return Setup(
         robot=session.entry.name,
         benches={name: bench for name, bench in found.items() if bench != RobotSetup()},
@@ -153,13 +163,27 @@ def capture(session: Session) -> Setup:
         copy=session.copy,
         exaggeration=_rounded(session.exaggeration),
         laws={b: law for b, law in session.chosen_laws.items() if law != DEFAULT_LAWS[b]},
+        hold=session.hold_direction,
+    )
+
+
+def _captured(name: str, own: Belongings, paths: Mapping[str, PathDesign]) -> RobotSetup:
+    """The set-up of one robot."""
+    start = {n: _rounded(value) for n, value in asdict(own.start).items()}
+    wall = own.wall
+    return RobotSetup(
+        _differences(ROBOTS[name].lab, own.parameters),
+        capture_path(own.editor.design, paths) if own.editor else Path(),
+        {n: value for n, value in start.items() if value},
+        () if wall is None else (_rounded(wall.z1), _rounded(wall.z2), _rounded(wall.angle)),
     )
 
 
 def with_paths_of_today(setup: Setup) -> tuple[Setup, tuple[Message, ...]]:
     """A kept set-up with the circle in place of every path that is refused today, and why it is.
 
-    A path that was accepted when it was kept may be refused now.
+    A path that was accepted when it was kept may be refused now. A start that is not possible, too,
+    is replaced by that of a new lab.
 
     Raises:
         ValueError: the set-up is impossible for another reason.
@@ -168,8 +192,13 @@ def with_paths_of_today(setup: Setup) -> tuple[Setup, tuple[Message, ...]]:
     for name, wanted in planned(setup, presets()).items():
         if reasons := _path_faults(wanted):
             kept = benches.get(name, RobotSetup())
-            benches[name] = msgspec.structs.replace(kept, path=Path())
+            benches[name] = msgspec.structs.replace(kept, path=Path(), start={})
             told = (*told, *reasons)
+        elif wanted.start != ON_PATH:
+            try:
+                _check_start(wanted)
+            except ValueError:
+                benches[name] = msgspec.structs.replace(benches[name], start={})
     return msgspec.structs.replace(setup, benches=benches), told
 
 
@@ -178,6 +207,13 @@ def _path_faults(wanted: Wanted) -> tuple[Message, ...]:
     robot = wanted.entry.make(wanted.parameters)
     path = raised(wanted.design.curve, wanted.parameters)
     return tuple(fault.reason for fault in curve_faults(robot.margin, path))
+
+
+def _check_start(wanted: Wanted) -> None:
+    """Refuse a start that is not possible; see `check_start`."""
+    if wanted.start != ON_PATH:
+        path = raised(wanted.design.curve, wanted.parameters)
+        check_start(wanted.entry.make(wanted.parameters), path, wanted.parameters, wanted.start)
 
 
 def restore(session: Session, setup: Setup) -> None:
@@ -192,8 +228,9 @@ def restore(session: Session, setup: Setup) -> None:
     for bench in wanted.values():
         if reasons := _path_faults(bench):
             raise CodedError("error.cannot_follow", robot=bench.entry.label, reasons=reasons)
+        _check_start(bench)
     session.rate, session.copy = setup.rate, setup.copy
-    session.exaggeration = setup.exaggeration
+    session.exaggeration, session.hold_direction = setup.exaggeration, setup.hold
     for name in sorted(wanted, key=lambda name: name == setup.robot):
         bench = wanted[name]
         session.choose_robot(bench.entry)
@@ -202,6 +239,7 @@ def restore(session: Session, setup: Setup) -> None:
         session.set_parameters(bench.parameters)
         session.editor.commit(bench.design)
         session.editor.advance(BLEND)
+        session.start, session.wall = bench.start, bench.wall
     session.reset(setup.laws)
 
 
@@ -221,6 +259,7 @@ def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
     names = dict.fromkeys((*setup.benches, setup.robot))
     wanted = {name: _wanted(name, setup.benches.get(name, RobotSetup()), paths) for name in names}
     check_laws(setup.laws, wanted[setup.robot].entry)
+    check_direction(setup.hold)
     return wanted
 
 
@@ -231,7 +270,12 @@ def _wanted(name: str, bench: RobotSetup, paths: Mapping[str, PathDesign]) -> Wa
     for field, value in bench.parameters.items():
         tiny = isinstance(value, float) and abs(value) <= NOTHING
         parameters = changed(parameters, field, 0.0 if tiny else value)
-    return Wanted(ROBOTS[name], parameters, _design(bench.path, paths))
+    if unknown := set(bench.start) - set(asdict(ON_PATH)):
+        raise unknown_name(min(unknown), list(asdict(ON_PATH)), "start")
+    if len(bench.wall) not in (0, 3):
+        raise CodedError("error.half_a_wall")
+    start, wall = Start(**bench.start), Wall(*bench.wall) if bench.wall else None
+    return Wanted(ROBOTS[name], parameters, _design(bench.path, paths), start, wall)
 
 
 def _within(what: str, value: float, bounds: tuple[float, ...]) -> None:

@@ -235,4 +235,7 @@ def _hooks(post: Post, robot: Robot) -> SceneCallbacks:
         on_point_dragged=move,
         on_point_drag_end=lambda _: post(c.EndMove()),
         on_point_selected=lambda index: post(c.SelectPoint(index)),
+        on_wall_moved=lambda at: post(c.MoveWall(plane_coordinates(robot, at))),
+        on_wall_turned=lambda end, at: post(c.SwingWall(end, plane_coordinates(robot, at))),
+        on_start_moved=lambda at: post(c.MoveStart(plane_coordinates(robot, at))),
     )

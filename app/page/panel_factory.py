@@ -21,8 +21,10 @@ from onpath.app.page.panels.law_panel import LawPanel
 from onpath.app.page.panels.past_panel import PastPanel
 from onpath.app.page.panels.path_panel import PathChoice, PathPanel
 from onpath.app.page.panels.robot_panel import RobotPanel
-from onpath.app.page.panels.run_panel import RunPanel
+from onpath.app.page.panels.run_panel import HoldDirection, RunPanel
 from onpath.app.page.panels.show_panel import ShowPanel
+from onpath.app.page.panels.start_panel import StartPanel
+from onpath.app.page.panels.wall_panel import WallPanel
 from onpath.app.page.panels.widgets import (
     ParameterWidgets,
     Post,
@@ -38,7 +40,8 @@ from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 
 ALL = (
-    *("robot", "laws", "hold", "path", "flexible", "gains", "editor", "show"),
+    *("robot", "laws", "hold", "direction", "path", "flexible", "gains", "editor", "wall", "start"),
+    "show",
     *("plots", "compare", "past", "keep"),
     "copy",
 )
@@ -111,6 +114,7 @@ class PanelFactory:
         gui, words, post, exporter = self._gui, self._words, self._post, self._exporter
         make: dict[str, Callable[[], Part | None]] = {
             "hold": lambda: RunPanel(gui, words, post, self._reset_view),
+            "direction": lambda: HoldDirection(gui, words, post, first),
             "path": lambda: PathChoice(gui, words, post, first),
             "editor": lambda: self._editor(first),
             "gains": lambda: GainsPanel(gui, words, post, first),
@@ -123,6 +127,8 @@ class PanelFactory:
             "copy": lambda: self._copy(first),
             "flexible": lambda: self._flexible(first),
             "show": lambda: ShowPanel(gui, words, self._overlays),
+            "wall": lambda: WallPanel(gui, words, post, first),
+            "start": lambda: StartPanel(gui, words, post, first, self._scene.show_start),
             "identify": lambda: _silent(add_identify(gui, words, post)),
         }
         part = make[name]()

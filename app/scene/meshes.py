@@ -229,6 +229,33 @@ def cross() -> Mesh:
     return crisp(*(extruded(arm @ r, -0.06, 0.06, 0.02) for r in (turn, turn.T)))
 
 
+WALL = (0.13, 0.04)  # length of the drawn part of a wall, and its depth behind the surface [m]
+_WALL_LAYERS = (-0.016, -0.002)  # away from the viewer, so that the path stays visible [m]
+
+
+@lru_cache
+def wall_body() -> Mesh:
+    """A wall's solid side, by which it is dragged: along x, with its surface at z = 0 above it."""
+    half, depth = WALL[0] / 2, WALL[1]
+    outline = np.array([(-half, -depth), (half, -depth), (half, 0.0), (-half, 0.0)])
+    return crisp(extruded(outline, *_WALL_LAYERS, 0.001))
+
+
+@lru_cache
+def wall_lines() -> Mesh:
+    """A wall's surface, hatched on its solid side, and dashes where it goes on to both sides."""
+    half, depth = WALL[0] / 2, WALL[1]
+    plate = np.array([(-half, -0.004), (half, -0.004), (half, 0.0), (-half, 0.0)])
+    lines = [plate]
+    for x in np.arange(-half + 0.005, half - 0.02, 0.02):
+        slanted = [(x, -0.7 * depth), (x + 0.004, -0.7 * depth), (x + 0.024, 0.0), (x + 0.02, 0.0)]
+        lines.append(np.array(slanted))
+    beyond = half + 0.01 + 0.02 * np.arange(4)
+    for x in (*beyond, *(-beyond - 0.01)):
+        lines.append(np.array([(x, -0.002), (x + 0.01, -0.002), (x + 0.01, 0.0), (x, 0.0)]))
+    return crisp(*(extruded(line, *_WALL_LAYERS, 0.0002) for line in lines))
+
+
 def sheet(low: tuple[float, float], high: tuple[float, float], y: float) -> Mesh:
     """A rectangle in (x, z) at depth y, facing the camera, [m]."""
     (x0, z0), (x1, z1) = low, high

@@ -30,6 +30,8 @@ from onpath.app.scene.stage import (
     build_stage,
     view_of,
 )
+from onpath.app.scene.start_nodes import StartNodes
+from onpath.app.scene.wall_nodes import WallNodes
 from onpath.app.viser_adapter.camera import place_camera
 from onpath.lessons.words import ENGLISH, Words
 
@@ -64,6 +66,9 @@ class SceneCallbacks:
         on_point_dragged: a control point has a new position, shape (3,), in the robot's frame [m].
         on_point_drag_end: the control point is released.
         on_point_selected: a control point was clicked or grabbed.
+        on_wall_moved: the wall's middle has a new place, shape (3,), in the robot's frame [m].
+        on_wall_turned: an end of the wall, 1 or -1, must point at a place, shape (3,), [m].
+        on_start_moved: the start of the next run has a new place, shape (3,), [m].
     """
 
     on_grab: Callable[[str, np.ndarray], None] = _ignore
@@ -71,6 +76,9 @@ class SceneCallbacks:
     on_point_dragged: Callable[[int, np.ndarray], None] = _ignore
     on_point_drag_end: Callable[[int], None] = _ignore
     on_point_selected: Callable[[int], None] = _ignore
+    on_wall_moved: Callable[[np.ndarray], None] = _ignore
+    on_wall_turned: Callable[[int, np.ndarray], None] = _ignore
+    on_start_moved: Callable[[np.ndarray], None] = _ignore
 
 
 class Scene:
@@ -106,6 +114,16 @@ class Scene:
         self._grip: tuple[DragPlane, np.ndarray] | None = None
         self._path: PathView | None = None
         self._path_nodes = PathNodes(client.scene, self._origins, self._connect_points)
+        self._wall = WallNodes(
+            client.scene,
+            self._origins,
+            self._at_robot,
+            self._hooks.on_wall_moved,
+            self._hooks.on_wall_turned,
+        )
+        self._start = StartNodes(
+            client.scene, self._origins, self._at_robot, self._hooks.on_start_moved
+        )
         self._point_offset = np.zeros(3)
         self._covered: int | None = None
         self._freehand: Freehand | None = None
@@ -143,6 +161,8 @@ class Scene:
         if self._path is None or motion.path.version != self._path.version:
             self._path = motion.path
             self._path_nodes.draw(motion.path)
+        self._wall.draw(motion.wall)
+        self._start.draw(motion.start)
 
     def update_traces(self, snapshot: Snapshot) -> None:
         """Redraws traces, titles, markers, force labels and a stroke; called at 5 to 10 Hz."""
@@ -173,6 +193,10 @@ class Scene:
         self._zone = add_copies(
             self._client.scene, "/zone", zone, self._origins, palette.WARNING, opacity=0.16
         )
+
+    def show_start(self, visible: bool) -> None:
+        """Shows the start of the next run, to be dragged, or hides it."""
+        self._start.show(visible)
 
     def show_titles(self, visible: bool) -> None:
         """Shows or hides the titles, which are drawn on top of everything else."""
@@ -270,6 +294,12 @@ class Scene:
             return None
         robot, index = divmod(instance, count)
         return self._benches[robot], index
+
+    def _at_robot(
+        self, event: DragEvent, pointer: tuple[float, float, float], robot: int
+    ) -> np.ndarray | None:
+        """Pointer position on the path's plane in the frame of a robot, by its number."""
+        return self._on_plane(event, pointer, self._benches[robot])
 
     def _on_plane(
         self,

@@ -281,6 +281,11 @@ run-let_go = Loslassen
 run-hold_hint = Hält die Spitzen längs der Bahn fest, bis du noch einmal drückst. Taste: H
 run-press = Festhalten, solange gedrückt
 run-press_hint = Hält die Spitzen fest, solange die Maustaste unten ist.
+run-direction = Halten
+run-direction_along = längs der Bahn
+run-direction_across = quer zur Bahn
+run-direction_both = in beiden Richtungen
+run-direction_hint = In welchen Richtungen eine Bremse die Spitzen hält; in den anderen sind sie frei
 run-run = Laufen lassen
 run-pause = Pause
 run-run_hint = Die simulierte Zeit steht still. Taste: Leertaste
@@ -294,6 +299,32 @@ controls-copy = Für beide
 controls-copy_hint = Hand und Bremse wirken auf beide Roboter gleich
 controls-editor = Bahn bearbeiten
 controls-help = Hilfe und Tasten
+
+## Die Wand und der Start
+
+wall-title = Wand
+wall-switch = Eine Wand im Weg
+wall-hint = Beide Roboter haben sie am selben Ort bei sich. Sie drückt und zieht nie; die schraffierte Seite ist fest. Zieh sie in der Szene; zieh an einem gelben Ende, um sie zu drehen. Tasten: M, I J K L, T
+wall-place = Wand { $name } [mm]
+wall-angle = Normale [°]
+wall-angle_hint = Richtung der freien Seite, gegen den Uhrzeigersinn von rechts aus: 90 ist oben
+wall-forces = Kraft auf die Wand
+
+start-title = Start
+start-show = Zeigen, um ihn zu ziehen
+start-show_hint = Eine grüne Kugel in der Szene: dort beginnt der nächste Lauf; ihr Pfeil ist die Geschwindigkeit
+start-theta = Längs der Bahn [°]
+start-theta_hint = θ des Punktes der Bahn, bei dem er beginnt
+start-beside = Neben der Bahn [mm]
+start-beside_hint = Abstand nach links von der Bahn; negativ: nach rechts
+start-along = Tempo längs [mm/s]
+start-along_hint = Geschwindigkeit der Spitze längs der Bahn
+start-across = Tempo quer [mm/s]
+start-across_hint = Geschwindigkeit der Spitze quer zur Bahn, nach links
+start-clock_offset = Uhr voraus [°]
+start-clock_offset_hint = Wie weit der Bezugspunkt eines Gesetzes mit Uhr dem nächsten Bahnpunkt voraus ist
+start-reset = Dort beginnen
+start-default = Auf der Bahn
 
 ## Die Bahn
 
@@ -481,6 +512,13 @@ key-pull_right = Die Spitzen nach rechts ziehen
 key-pull_up = Die Spitzen nach oben ziehen
 key-pull_down = Die Spitzen nach unten ziehen
 key-let_go = Die Spitzen loslassen
+key-wall = Eine Wand aufstellen oder wegnehmen
+key-wall_left = Die Wand nach links schieben
+key-wall_right = Die Wand nach rechts schieben
+key-wall_up = Die Wand nach oben schieben
+key-wall_down = Die Wand nach unten schieben
+key-wall_turn = Die Wand gegen den Uhrzeigersinn drehen
+key-wall_turn_back = Die Wand im Uhrzeigersinn drehen
 key-back = Eine Sekunde weiter zurückblicken
 key-forward = Eine Sekunde nach vorn blicken
 key-go_on = Von dem Augenblick aus weiter, den du siehst; was danach kam, wird vergessen
@@ -493,6 +531,7 @@ keyname-Ins = Einfg
 keyname-Del = Entf
 keyname-Home = Pos1
 keyname-Ctrl = Strg
+keyname-Shift = Umschalt
 
 help-title = Wie das Labor zu bedienen ist
 help-close = Schließen
@@ -827,6 +866,9 @@ error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
 
 ## Refusals: numbers and names
 
+error-start_out_of_reach = dort kann der Roboter nicht starten: der Ort ist außer Reichweite oder zu nah an einer singulären Stellung
+error-start_not_possible = so kann der Roboter nicht starten: { $reason }
+error-half_a_wall = eine Wand hat einen Ort und einen Winkel: drei Zahlen
 error-not_a_number = das ist keine Zahl
 error-not_a_point = das ist kein Punkt
 error-value_out_of_range = { $name }: { $value } liegt nicht zwischen { $low } und { $high }

@@ -266,6 +266,11 @@ run-let_go = Let go
 run-hold_hint = Holds the end-points back along the path until pressed again. Key: H
 run-press = Hold while pressed
 run-press_hint = Holds the end-points back as long as the mouse button is down.
+run-direction = Hold
+run-direction_along = along the path
+run-direction_across = across the path
+run-direction_both = in both directions
+run-direction_hint = In which directions a brake holds the end-points; in the others they are free
 run-run = Run
 run-pause = Pause
 run-run_hint = Simulated time stops. Key: space
@@ -279,6 +284,32 @@ controls-copy = Copy to both
 controls-copy_hint = Pulling and holding act on both robots in the same way
 controls-editor = Path editor
 controls-help = Help and keys
+
+## The wall and the start
+
+wall-title = Wall
+wall-switch = A wall in the way
+wall-hint = Both robots get it at the same place of their own. It pushes and never pulls; its hatched side is solid. Drag it in the scene; drag a yellow end to turn it. Keys: M, I J K L, T
+wall-place = Wall { $name } [mm]
+wall-angle = Normal [°]
+wall-angle_hint = Direction of the free side, counter-clockwise from the right: 90 is up
+wall-forces = Force on the wall
+
+start-title = Start
+start-show = Show it, to drag it
+start-show_hint = A green ball in the scene: where the next run starts; its arrow is the velocity
+start-theta = Along the path [°]
+start-theta_hint = θ of the point of the path by which it starts
+start-beside = Beside the path [mm]
+start-beside_hint = Distance to the left of the path; negative: to the right
+start-along = Speed along [mm/s]
+start-along_hint = Velocity of the end-point along the path
+start-across = Speed across [mm/s]
+start-across_hint = Velocity of the end-point across the path, to the left
+start-clock_offset = Clock ahead [°]
+start-clock_offset_hint = How far the reference point of a law with a clock is ahead of the closest point
+start-reset = Reset to it
+start-default = On the path
 
 ## The path
 
@@ -464,6 +495,13 @@ key-pull_right = Pull the end-points right
 key-pull_up = Pull the end-points up
 key-pull_down = Pull the end-points down
 key-let_go = Let the end-points go
+key-wall = Place a wall, or take it away
+key-wall_left = Move the wall left
+key-wall_right = Move the wall right
+key-wall_up = Move the wall up
+key-wall_down = Move the wall down
+key-wall_turn = Turn the wall counter-clockwise
+key-wall_turn_back = Turn the wall clockwise
 key-back = Look back one more second
 key-forward = Look forward one second
 key-go_on = Go on from the moment shown; discard what came after
@@ -476,6 +514,7 @@ keyname-Ins = Ins
 keyname-Del = Del
 keyname-Home = Home
 keyname-Ctrl = Ctrl
+keyname-Shift = Shift
 
 help-title = How to use the lab
 help-close = Close
@@ -610,6 +649,9 @@ error-cannot_follow = { $robot } cannot follow this path: { $reasons }
 
 ## Refusals: numbers and names
 
+error-start_out_of_reach = the robot cannot start there: the place is out of its reach, or too near to where it is singular
+error-start_not_possible = the robot cannot start like this: { $reason }
+error-half_a_wall = a wall has a place and an angle: three numbers
 error-not_a_number = that is not a number
 error-not_a_point = that is not a point
 error-value_out_of_range = { $name }: { $value } is not between { $low } and { $high }

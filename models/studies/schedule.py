@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from onpath.models.closed_loop.obstacles import DIRECTIONS, FARTHEST, Wall
 from onpath.models.studies.speed_profile import SpeedProfile, profile_from
 
-FARTHEST = 0.4  # [m], from the middle of the path's plane, along each axis
-DIRECTIONS = ("along", "across", "both")
 _TIMES = ("hold", "push", "wall")
 
 
@@ -91,6 +90,10 @@ class Schedule:
     def hand(self) -> tuple[float, float]:
         """Where the hand is, in the path's plane, [m]."""
         return self.push_z1, self.push_z2
+
+    def wall(self) -> Wall:
+        """The wall, while there is one."""
+        return Wall(self.wall_z1, self.wall_z2, self.wall_angle)
 
     def ticks(self, what: str, dt: float) -> range:
         """The ticks of an interval: "hold", "push" or "wall".

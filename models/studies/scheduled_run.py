@@ -5,21 +5,20 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterator
 
-import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.obstacles import brake_in
 from onpath.models.closed_loop.simulation import (
     Push,
-    brake_at,
     first_state,
     settings_vector,
     time_step,
 )
+from onpath.models.closed_loop.start import lead, velocity_at
 from onpath.models.paths.curves import PERIOD, Curve
-from onpath.models.paths.distance import closest_parameter
 from onpath.models.studies.schedule import Schedule
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -57,7 +56,7 @@ class ScheduledRun:
         self._loop, self._dt = InterpretedLoop(kernel), time_step(parameters)
         self._hold = schedule.ticks("hold", self._dt)
         self._waits = schedule.hold_at is not None and len(self._hold) > 0
-        self._brake: tuple[Array, Array, Array] | None = None
+        self._brake: tuple[tuple[Array, Array], Array | None] | None = None
         self._tick, self._state = 0, self._first(start)
 
     def parts(self) -> Iterator[tuple[Array, bool]]:
@@ -120,25 +119,18 @@ class ScheduledRun:
         if self._tick in schedule.ticks("push", dt):
             hand = frame.lift(np.array(schedule.hand()))
         if self._tick in schedule.ticks("wall", dt):
-            place = frame.lift(np.array([schedule.wall_z1, schedule.wall_z2]))
-            angle = schedule.wall_angle
-            wall = place, _direction(self._robot, np.array([np.cos(angle), np.sin(angle)]))
+            wall = schedule.wall().lifted(frame)
         if not self._held():
             return Push(hand, wall=wall)
         if self._brake is None:
             self._brake = self._braked()
-        anchor, tangent, normal = self._brake
-        along = {"along": (tangent, None), "across": (normal, None), "both": (tangent, normal)}
-        first, second = along[schedule.hold_direction]
-        return Push(hand, (anchor, first), second, wall)
+        return Push(hand, *self._brake, wall)
 
-    def _braked(self) -> tuple[Array, Array, Array]:
-        """Anchor, tangent and normal, in the path's plane, of a brake that is applied now."""
+    def _braked(self) -> tuple[tuple[Array, Array], Array | None]:
+        """A brake that is applied now, see `brake_in`."""
         fields = self._fields()
         theta, y = float(fields["theta"][0]), self._robot.endpoint(fields["q"])
-        first = self._curve.at(np.array(theta), 1)
-        normal = _direction(self._robot, np.array([-first[1], first[0]]))
-        return *brake_at(self._robot, self._curve, y, theta), normal
+        return brake_in(self._robot, self._curve, y, theta, self._schedule.hold_direction)
 
     def _fields(self) -> dict[str, Array]:
         return self._kernel.state.unpack(self._state)
@@ -152,41 +144,7 @@ class ScheduledRun:
         if self._curve.dimension == 3:
             given.append(start[-1] - frame.lift(z)[-1])  # the height at which it starts anyway
         y = start if places == (None, None) else frame.lift(np.array(given))
-        q = self._robot.rest(y)
-        v = self._velocity(q, y)
+        q, along, across = self._robot.rest(y), schedule.start_along, schedule.start_across
+        v = velocity_at(self._robot, self._parameters, self._curve, q, along, across)
         state = first_state(self._robot, self._kernel, self._curve, q, v)
-        theta_ref = self._kernel.state.unpack(state)["theta_ref"]
-        theta_ref += schedule.clock_offset
-        if not self._curve.closed:
-            np.clip(theta_ref, -np.pi, np.pi, out=theta_ref)
-        return state
-
-    def _velocity(self, q: Array, y: Array) -> Array:
-        """Joint velocities for the end-point's velocity at the start, shape (n,).
-
-        Coordinates without a motor are at rest.
-        """
-        along, across = self._schedule.start_along, self._schedule.start_across
-        v = np.zeros_like(q)
-        if along == 0 == across:
-            return v
-        frame, system = self._robot.frame, self._robot.system
-        first = self._curve.at(np.array(closest_parameter(frame, self._curve, y)), 1)
-        plan = first[:2] / np.linalg.norm(first[:2])
-        left = np.array([-plan[1], plan[0], 0.0])[: len(first)]
-        rate = along * (first / np.linalg.norm(first)) + across * left
-        y_rate = frame.lift(rate) - frame.lift(np.zeros(2))
-        jacobian = ca.Function(
-            "jacobian",
-            [system.q, system.parameters],
-            [ca.densify(ca.jacobian(system.output, system.q))],
-        )
-        gain = np.array(jacobian(q, self._robot.plant(self._parameters)))[:, : system.m]
-        v[: system.m] = np.linalg.lstsq(gain, y_rate, rcond=None)[0]
-        return v
-
-
-def _direction(robot: Robot, z: Array) -> Array:
-    """A vector of the path's plane, (2,), as a unit vector of the output space, (p,)."""
-    vector = robot.frame.lift(z) - robot.frame.lift(np.zeros(2))
-    return vector / np.linalg.norm(vector)
+        return lead(state, self._kernel, self._curve, schedule.clock_offset)

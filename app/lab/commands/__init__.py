@@ -1,7 +1,14 @@
 """Commands to a lab: frozen records with an `apply` method."""
 
 from onpath.app.lab.commands.classroom import Freeze, ReportState, TakeSetup, TakeStep
-from onpath.app.lab.commands.forces import Grab, Hold, MoveHand, Release, SetCopy
+from onpath.app.lab.commands.forces import (
+    Grab,
+    Hold,
+    MoveHand,
+    Release,
+    SetCopy,
+    SetHoldDirection,
+)
 from onpath.app.lab.commands.laws import ChooseLaw
 from onpath.app.lab.commands.lessons import (
     Act,
@@ -32,6 +39,7 @@ from onpath.app.lab.commands.path import (
     Undo,
 )
 from onpath.app.lab.commands.sharing import Share, UseShared
+from onpath.app.lab.commands.start import MoveStart, SetStart, StartOnPath
 from onpath.app.lab.commands.time import (
     GoOn,
     LookAt,
@@ -43,12 +51,14 @@ from onpath.app.lab.commands.time import (
     StepOnce,
     UndoGoOn,
 )
+from onpath.app.lab.commands.wall import TURN, MoveWall, NudgeWall, PlaceWall, SetWall, SwingWall
 from onpath.app.lab.lab import Command as Command
 from onpath.app.lab.setup import EXAGGERATIONS, RATES
 
 __all__ = [
     "EXAGGERATIONS",
     "RATES",
+    "TURN",
     "Act",
     "AddPoint",
     "AnswerQuiz",
@@ -70,9 +80,13 @@ __all__ = [
     "LookBack",
     "MoveHand",
     "MovePoint",
+    "MoveStart",
+    "MoveWall",
     "NudgePoint",
+    "NudgeWall",
     "OpenLesson",
     "PlacePoint",
+    "PlaceWall",
     "PlayStep",
     "Predict",
     "Redo",
@@ -85,14 +99,19 @@ __all__ = [
     "SelectPoint",
     "SetCopy",
     "SetExaggeration",
+    "SetHoldDirection",
     "SetLanguage",
     "SetParameter",
     "SetPresenting",
     "SetRate",
     "SetRunning",
+    "SetStart",
+    "SetWall",
     "Share",
     "ShowHint",
+    "StartOnPath",
     "StepOnce",
+    "SwingWall",
     "TakeSetup",
     "TakeStep",
     "Undo",

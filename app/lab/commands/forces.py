@@ -10,6 +10,7 @@ from onpath.app.lab.commands import checks
 from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.obstacles import check_direction
 from onpath.models.control.benches import BENCHES, RIGHT
 
 
@@ -31,7 +32,27 @@ class Hold(Command):
         if self.bench is not None:
             names = session.targets(checks.bench(self.bench))
         on = not session.grips.held.intersection(names) if self.on is None else self.on
-        session.grips.hold(names, on, session.editor.curve)
+        session.grips.hold(names, on, session.editor.curve, session.hold_direction)
+
+
+@dataclass(frozen=True, slots=True)
+class SetHoldDirection(Command):
+    """Choose the direction in which brakes act; one that is on is applied anew where it is.
+
+    Attributes:
+        direction: one of `models.closed_loop.obstacles.DIRECTIONS`.
+    """
+
+    direction: str
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        direction = check_direction(self.direction)
+        lab.return_to_present()
+        session = lab.session
+        session.hold_direction, held = direction, sorted(session.grips.held)
+        session.grips.hold(held, False, session.editor.curve)
+        session.grips.hold(held, True, session.editor.curve, direction)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -29,6 +29,7 @@ class RunState:
         copy: whether pulling and holding act on both robots.
         exaggeration: magnification of the drawn deflection.
         laws: control law of each bench, also while the past is viewed or its loop is being made.
+        hold_direction: in which brakes act, one of `models.closed_loop.obstacles.DIRECTIONS`.
     """
 
     now: float
@@ -38,6 +39,32 @@ class RunState:
     copy: bool
     exaggeration: float
     laws: dict[str, str]
+    hold_direction: str
+
+
+@dataclass(frozen=True, slots=True)
+class WallState:
+    """The wall; see `models.closed_loop.obstacles.Wall`.
+
+    Attributes:
+        forces: between each end-point and the wall, by bench, [N].
+    """
+
+    z1: float
+    z2: float
+    angle: float
+    forces: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class StartState:
+    """The start of the next run; see `models.closed_loop.start.Start`."""
+
+    theta: float
+    beside: float
+    along: float
+    across: float
+    clock_offset: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +128,8 @@ class PageSnapshot(Snapshot):
         parameters: of the robot and its controllers.
         joints: the right robot's joint coordinates, shape (n,), [rad].
         run, edit, lesson, plots: state of these parts of the page.
+        obstacle: the wall, or None.
+        beginning: the start of the next run.
         shared: the last share code made.
         nickname: the student's nickname in the class, or empty.
     """
@@ -113,6 +142,8 @@ class PageSnapshot(Snapshot):
     plots: PlotSamples
     shared: str
     nickname: str
+    obstacle: WallState | None
+    beginning: StartState
 
 
 def parameters_of(snapshot: PageSnapshot) -> Parameters:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import prod
 from typing import NamedTuple
 
 import numpy as np
 
 MARKER, TIP, END, FORCE = -4, -3, -2, -1  # indices of these in a robot's points
+
+
+def _nothing() -> np.ndarray:
+    return np.zeros((0, 3))
 
 
 class PoseShapes(NamedTuple):
@@ -187,12 +191,15 @@ class Motion:
         counts: numbers of parts of each robot.
         drawn: `RobotView.points` and `RobotView.poses` of each robot, left first, shape
             (robots, counts.size).
+        wall, start: see `Snapshot`.
     """
 
     key: PageKey
     path: PathView
     counts: Counts
     drawn: np.ndarray
+    wall: np.ndarray = field(default_factory=_nothing)
+    start: np.ndarray = field(default_factory=_nothing)
 
     def point(self, robot: int, index: int) -> np.ndarray:
         """A point of one robot, shape (3,); see `RobotView.points`."""
@@ -215,6 +222,10 @@ class Snapshot:
         message_level: "info", "warning" or "error".
         note: remark on the scale of the drawing, or "".
         key: see `PageKey`.
+        wall: a point of the wall's surface [m], and two unit vectors: along the wall in the path's
+            plane, and its normal towards the free side, shape (3, 3); (0, 3) if there is none.
+        start: where the next run starts, and that place moved by a second's velocity [m], shape
+            (2, 3); (0, 3) if it is not known.
     """
 
     time: float
@@ -228,6 +239,8 @@ class Snapshot:
     message_level: str
     note: str = ""
     key: PageKey = PageKey()
+    wall: np.ndarray = field(default_factory=_nothing)
+    start: np.ndarray = field(default_factory=_nothing)
 
     @property
     def laws(self) -> dict[str, str]:
@@ -239,4 +252,4 @@ class Snapshot:
         """The part of it that is shown most often."""
         views = list(self.robots.values())
         drawn = np.stack([np.concatenate([view.points.ravel(), view.poses]) for view in views])
-        return Motion(self.key, self.path, views[0].counts, drawn)
+        return Motion(self.key, self.path, views[0].counts, drawn, self.wall, self.start)

@@ -11,6 +11,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Instant
 from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.obstacles import drawn_start, drawn_wall, start_state, wall_state
 from onpath.app.lab.snapshots.page_snapshot import (
     LessonSnapshot,
     PageSnapshot,
@@ -49,7 +50,8 @@ def take_motion(lab: Lab, before: PageSnapshot | Motion | None = None, student: 
     session, key = lab.session, page_key(lab, student)
     instant, curve, _ = _shown(session)
     drawn, counts = drawn_robots(session.robot, curve, instant, session.exaggeration)
-    return Motion(key, _path_view(session, curve, key, before), counts, drawn)
+    path = _path_view(session, curve, key, before)
+    return Motion(key, path, counts, drawn, drawn_wall(session), _drawn_start(session))
 
 
 def take_page_snapshot(
@@ -78,12 +80,15 @@ def take_page_snapshot(
             copy=session.copy,
             exaggeration=session.exaggeration,
             laws=session.chosen_laws,
+            hold_direction=session.hold_direction,
         ),
         edit=_path_edit(session),
         lesson=_lesson(lab),
         plots=_plots(session, scene["time"], scene["key"], before),
         shared=lab.shared,
         nickname=nickname,
+        obstacle=wall_state(session),
+        beginning=start_state(session),
     )
 
 
@@ -107,7 +112,13 @@ def _scene(
         "message_level": level,
         "note": scale_note(session, lab.words),
         "key": key,
+        "wall": drawn_wall(session),
+        "start": _drawn_start(session),
     }
+
+
+def _drawn_start(session: Session) -> Array:
+    return drawn_start(session.robot, session.editor.curve, session.start)
 
 
 def _shown(session: Session) -> tuple[Instant, Curve, float]:

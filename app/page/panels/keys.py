@@ -14,6 +14,7 @@ from onpath.lessons.words import Words
 
 NUDGE = 0.001  # [m], step of a control point
 TUG = 0.005  # [m], step of the pulling hand
+SHIFT = 0.002  # [m], step of the wall
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +62,13 @@ KEYS = (
     Key("pull_up", "W", "W", c.MoveHand(0.0, TUG)),
     Key("pull_down", "S", "S", c.MoveHand(0.0, -TUG)),
     Key("let_go", "X", "X", c.Release()),
+    Key("wall", "M", "M", c.SetWall()),
+    Key("wall_left", "J", "J", c.NudgeWall(right=-SHIFT)),
+    Key("wall_right", "L", "L", c.NudgeWall(right=SHIFT)),
+    Key("wall_up", "I", "I", c.NudgeWall(up=SHIFT)),
+    Key("wall_down", "K", "K", c.NudgeWall(up=-SHIFT)),
+    Key("wall_turn", "T", "T", c.NudgeWall(turn=c.TURN)),
+    Key("wall_turn_back", "T", "Shift T", c.NudgeWall(turn=-c.TURN), "shift"),
     Key("back", "B", "B", c.LookBack(1.0)),
     Key("forward", "F", "F", c.LookBack(-1.0)),
     Key("go_on", "G", "G", c.GoOn()),

@@ -10,6 +10,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.widgets import Post, on_hold, on_press, on_user_update
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.obstacles import DIRECTIONS
 
 RATE_LABELS = {f"{rate:g}×": rate for rate in c.RATES}
 
@@ -72,3 +73,31 @@ class RunPanel:
         rate = f"{run.rate:g}×"
         if self._rate.value != rate:
             self._rate.value = rate
+
+
+class HoldDirection:
+    """A menu for the direction in which brakes act."""
+
+    def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
+        labels = {name: words(f"run.direction_{name}") for name in DIRECTIONS}
+        names = {label: name for name, label in labels.items()}
+        self._labels, self._just_changed = labels, False
+        self._menu = gui.add_dropdown(
+            words("run.direction"),
+            list(names),
+            initial_value=labels[first.run.hold_direction],
+            hint=words("run.direction_hint"),
+        )
+
+        def choose(label: str) -> None:
+            self._just_changed = True
+            post(c.SetHoldDirection(names[label]))
+
+        on_user_update(self._menu, choose)
+
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show the lab's direction; see `LawPanel.follow`."""
+        late, self._just_changed = self._just_changed, False
+        label = self._labels[snapshot.run.hold_direction]
+        if not late and self._menu.value != label:
+            self._menu.value = label

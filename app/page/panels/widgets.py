@@ -124,6 +124,13 @@ def note(said: str, small: bool = False) -> str:
     return render("panel/note.html", said=said, small=small)
 
 
+def set_number(handle: viser.GuiInputHandle[float], value: float) -> None:
+    """Show a number in a box, to a tenth, unless it is shown already."""
+    shown = round(value, 1) + 0.0  # turns -0 into 0
+    if handle.value != shown:
+        handle.value = shown
+
+
 def label_of(words: Words, name: str, spec: Spec) -> str:
     """Displayed label of a parameter."""
     return words.get(f"parameter.{name}.label", spec.label)

@@ -155,6 +155,38 @@ def test_a_hand_that_pulls_is_near_meanwhile_and_exact_after() -> None:
     assert both.distance() < SAME and not both.mirror.session.grips.grabbed
 
 
+def test_a_wall_and_a_brake_in_both_directions_act_there_too() -> None:
+    both = Followed()
+    both.run(1.0)
+    for command in (
+        *(c.SetWall(True), c.NudgeWall(up=-0.01, turn=0.3), c.SetHoldDirection("both")),
+        *(c.Hold(True), c.MoveHand(0.01, 0.0), c.Release(), c.Hold(False), c.SetWall(False)),
+    ):
+        do(both.lab, command)
+        both.run(0.8)
+        assert both.distance() < SAME, command
+        for mine, theirs in zip(
+            both.mirror.session.grips.pushes.values(),
+            both.session.grips.pushes.values(),
+            strict=True,
+        ):
+            assert (mine.wall is None) == (theirs.wall is None)
+            assert (mine.hold_normal is None) == (theirs.hold_normal is None)
+        shown, real = (take_snapshot(lab, 1.0).wall for lab in (both.mirror.lab, both.lab))
+        np.testing.assert_allclose(shown, real, atol=1e-12)
+
+
+def test_a_moment_of_an_earlier_version_has_no_wall() -> None:
+    lab = new_lab(0.1)
+    plain = msgspec.json.decode(told(ScheduledLab(lab)))
+    for name in ("wall",):
+        del plain[name]
+    for robot in plain["robots"]:
+        del robot["normal"]
+    moment = read_moment(msgspec.json.encode(plain).decode())
+    assert moment.wall == () and moment.robots[0].normal == ()
+
+
 @pytest.mark.parametrize(
     "still", [c.SetRunning(False), c.LookAt(0.4), Freeze(True)], ids=lambda s: type(s).__name__
 )

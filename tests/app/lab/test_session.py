@@ -16,7 +16,9 @@ from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_sn
 from onpath.app.storage.lab_state import _now, _state, put_back
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.schema import Action
+from onpath.models.closed_loop.obstacles import DIRECTIONS
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of, settings_vector
+from onpath.models.closed_loop.start import BOUNDS
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.curve_faults import curve_faults
@@ -124,6 +126,17 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
         c.ChooseLaw, SOME_BENCHES, st.sampled_from([*LAWS, "", "no_law", "path following"])
     ),
     c.SetCopy: st.builds(c.SetCopy, st.booleans()),
+    c.SetHoldDirection: st.builds(c.SetHoldDirection, st.sampled_from([*DIRECTIONS, "", "up"])),
+    c.SetWall: st.builds(c.SetWall, st.sampled_from([None, True, True, False])),
+    c.MoveWall: st.builds(c.MoveWall, points(1)),
+    c.SwingWall: st.builds(c.SwingWall, st.integers(-2, 2), points(1)),
+    c.NudgeWall: st.builds(c.NudgeWall, WILD, WILD, WILD),
+    c.PlaceWall: st.builds(c.PlaceWall, *[st.one_of(st.none(), st.floats(-0.1, 0.1), WILD)] * 3),
+    c.SetStart: st.builds(
+        c.SetStart, st.sampled_from([*BOUNDS, "", "up"]), st.one_of(st.floats(-0.1, 0.1), WILD)
+    ),
+    c.MoveStart: st.builds(c.MoveStart, points(1)),
+    c.StartOnPath: st.builds(c.StartOnPath),
     c.SetExaggeration: st.builds(c.SetExaggeration, WILD),
     c.ChoosePath: st.builds(
         c.ChoosePath, st.sampled_from([*new_lab().session.presets, "", "hexagon"])
@@ -166,7 +179,7 @@ def test_no_sequence_of_commands_breaks_a_lab(steps: list[tuple[c.Command, int]]
             lab.advance(lab.session.rate * FRAME)
         assert_sound(lab)
     do(lab, c.ResetParameters(), c.ChoosePath("circle"), c.SetRate(1.0))
-    do(lab, c.SetRunning(True))
+    do(lab, c.SetWall(False), c.StartOnPath(), c.SetRunning(True))
     run(lab, 0.4)  # the path has blended in
     do(lab, c.Reset())
     run(lab, 0.8)
@@ -220,7 +233,7 @@ def test_no_sequence_of_commands_breaks_a_lesson(
     do(lab, c.CloseLesson())
     assert lab.lessons.lesson is None and lab.locked is None
     do(lab, c.ChooseRobot("five_bar"), c.ResetParameters(), c.ChoosePath("circle"))
-    do(lab, c.SetRate(1.0), c.SetRunning(True))
+    do(lab, c.SetRate(1.0), c.SetWall(False), c.StartOnPath(), c.SetRunning(True))
     run(lab, 0.4)  # the path has blended in
     do(lab, c.Reset())
     run(lab, 0.5)

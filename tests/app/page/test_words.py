@@ -56,7 +56,18 @@ PAGE = sorted(
     ]
 )
 KEYS_MADE = (
-    *("quantity.", "stat.", "during.", "event.", "robot.", "kind.", "language.", "report."),
+    *(
+        "start.",
+        "run.direction",
+        "quantity.",
+        "stat.",
+        "during.",
+        "event.",
+        "robot.",
+        "kind.",
+        "language.",
+        "report.",
+    ),
     *("bench.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
     *("lesson.back", "lesson.again", "lesson.close"),

@@ -1,0 +1,67 @@
+"""Commands that choose where and how a run starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from onpath.app.lab.commands.checks import finite, point
+from onpath.app.lab.lab import Command, Lab
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.start import BOUNDS, ON_PATH, Start, nearest_start
+from onpath.models.systems.parameter_specs import unknown_name
+
+
+@dataclass(frozen=True, slots=True)
+class SetStart(Command):
+    """Set one number of the start of the next run.
+
+    Attributes:
+        name: a field of `Start`.
+        value: SI.
+    """
+
+    name: str
+    value: float
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        if self.name not in BOUNDS:
+            raise unknown_name(self.name, list(BOUNDS), "start")
+        _take(lab, replace(lab.session.start, **{self.name: finite(self.value)}))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MoveStart(Command):
+    """Move the start of the next run to a place of the path's plane.
+
+    Attributes:
+        target: shape (2,), [m].
+    """
+
+    target: Array
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        session = lab.session
+        target = point(self.target, 2)
+        _take(lab, nearest_start(session.editor.curve, target, session.start))
+
+
+@dataclass(frozen=True, slots=True)
+class StartOnPath(Command):
+    """Start on the path at θ = 0, at rest, as a new lab does."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        _take(lab, ON_PATH)
+
+
+def _take(lab: Lab, start: Start) -> None:
+    """Start there at the next reset.
+
+    Raises:
+        ValueError: that is not possible; nothing has changed.
+    """
+    lab.session.check_start(start)
+    lab.session.start = start
+    lab.clear_message()

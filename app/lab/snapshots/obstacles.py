@@ -1,0 +1,99 @@
+"""The wall and the start of a lab, as its scene draws them and its panels show them."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from onpath.app.lab.segments import Segment
+from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import StartState, WallState
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loop_vectors import settings_layout
+from onpath.models.closed_loop.obstacles import Wall, wall_force
+from onpath.models.closed_loop.start import Start, left_of
+from onpath.models.control.benches import BENCHES, LEFT
+from onpath.models.paths.curves import Curve
+from onpath.models.systems.robots import Robot
+
+NOWHERE = np.zeros((0, 3))
+
+
+def drawn_wall(session: Session) -> Array:
+    """`Motion.wall`, at the instant that is shown."""
+    lifted = _lifted(session)
+    if lifted is None:
+        return NOWHERE
+    if session.viewing is None and session.wall is not None:
+        return _placed(session.robot, session.wall)
+    return _rows(session.robot, *lifted)
+
+
+def wall_then(robot: Robot, past: Segment) -> Array:
+    """`Motion.wall` during a segment of a history."""
+    lifted = _lifted_then(robot, past)
+    return NOWHERE if lifted is None else _rows(robot, *lifted)
+
+
+def wall_state(session: Session) -> WallState | None:
+    """Numbers of the present wall, and the forces on the wall that is shown."""
+    wall, lifted = session.wall, _lifted(session)
+    if wall is None:
+        return None
+    forces = dict[str, float].fromkeys(BENCHES, 0.0)
+    if lifted is not None:
+        robot, n = session.robot, session.robot.system.n
+        past = None if session.viewing is None else session.history.at(session.viewing)
+        instant, plant = (
+            past.instant() if past else session.instant(),
+            robot.plant(session.parameters),
+        )
+        for bench, state in zip(BENCHES, instant.states, strict=True):
+            forces[bench] = wall_force(robot, plant, state[:n], state[n : 2 * n], lifted)
+    return WallState(wall.z1, wall.z2, wall.angle, forces)
+
+
+def start_state(session: Session) -> StartState:
+    """Numbers of the start of the next run."""
+    start = session.start
+    return StartState(start.theta, start.beside, start.along, start.across, start.clock_offset)
+
+
+@lru_cache(maxsize=256)
+def drawn_start(robot: Robot, curve: Curve, start: Start) -> Array:
+    """`Motion.start`; the same array for the same arguments."""
+    z, first = start.place(curve), curve.at(np.array(start.theta), 1)
+    rate = start.along * first / np.linalg.norm(first) + start.across * left_of(curve, start.theta)
+    return robot.place(robot.frame.lift(np.stack([z, z + rate])))
+
+
+def _lifted(session: Session) -> tuple[Array, Array] | None:
+    """Point and normal of the wall at the instant that is shown; None if there is none."""
+    past = None if session.viewing is None else session.history.at(session.viewing)
+    if past is None:
+        return None if session.wall is None else session.wall.lifted(session.robot.frame)
+    return _lifted_then(session.robot, past)
+
+
+def _lifted_then(robot: Robot, past: Segment) -> tuple[Array, Array] | None:
+    """Point and normal of the wall during a segment; None if there was none."""
+    settings = settings_layout(robot.system).unpack(past.drives[LEFT].settings)
+    if not settings["wall_active"][0]:
+        return None
+    return settings["wall_place"], settings["wall_normal"]
+
+
+@lru_cache(maxsize=256)
+def _placed(robot: Robot, wall: Wall) -> Array:
+    return _rows(robot, *wall.lifted(robot.frame))
+
+
+def _rows(robot: Robot, place: Array, normal: Array) -> Array:
+    """See `Motion.wall`."""
+    corners = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])
+    origin, right, up = robot.place(robot.frame.lift(corners))
+    middle, ahead = robot.place(np.stack([place, place + normal]))
+    outward = ahead - middle
+    along = np.cross(np.cross(right - origin, up - origin), outward)
+    return np.stack([middle, along / np.linalg.norm(along), outward / np.linalg.norm(outward)])

@@ -1,0 +1,87 @@
+"""Where and how the next run starts: numbers, and the start in the scene, to be dragged."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import asdict
+from functools import partial
+
+import viser
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, StartState
+from onpath.app.page.panels.widgets import Post, on_press, on_user_update, set_number
+from onpath.lessons.words import Words
+from onpath.models.closed_loop.start import BOUNDS
+
+UNITS = {
+    "theta": math.radians(1.0),
+    "beside": 1e-3,
+    "along": 1e-3,
+    "across": 1e-3,
+    "clock_offset": math.radians(1.0),
+}
+"""Units of the numbers on the page, in SI: degrees, mm and mm/s."""
+STEPS = {"theta": 5.0, "beside": 1.0, "along": 10.0, "across": 10.0, "clock_offset": 5.0}
+
+
+class StartPanel:
+    """A folder for the start of the next run.
+
+    Args:
+        show: shows the start in the scene, or hides it.
+    """
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        words: Words,
+        post: Post,
+        first: PageSnapshot,
+        show: Callable[[bool], None],
+    ) -> None:
+        self._shown: StartState | None = None
+        self._just_changed = False
+        with gui.add_folder(words("start.title"), expand_by_default=False):
+            seen = gui.add_checkbox(words("start.show"), False, hint=words("start.show_hint"))
+            self._numbers = {name: self._add(gui, words, name) for name in UNITS}
+            ways = {words("start.reset"): c.Reset(), words("start.default"): c.StartOnPath()}
+            buttons = gui.add_button_group("", list(ways))
+        on_user_update(seen, show)
+        for name, handle in self._numbers.items():
+            on_user_update(handle, partial(self._change, post, name))
+        on_press(buttons, lambda: post(ways[buttons.value]))
+        self.follow(first)
+
+    @staticmethod
+    def _add(gui: viser.GuiApi, words: Words, name: str) -> viser.GuiInputHandle[float]:
+        most = round(BOUNDS[name] / UNITS[name], 3)
+        return gui.add_number(
+            words(f"start.{name}"),
+            0.0,
+            min=-most,
+            max=most,
+            step=STEPS[name],
+            hint=words(f"start.{name}_hint"),
+        )
+
+    def _change(self, post: Post, name: str, value: float) -> None:
+        self._just_changed = True
+        most = BOUNDS[name]
+        post(c.SetStart(name, min(max(value * UNITS[name], -most), most)))
+
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show the lab's start.
+
+        A snapshot that is shown right after a change may have been taken before it, so it does not
+        set the number back; the next one is right, and does so if the lab has refused the start.
+        """
+        if self._just_changed:
+            self._just_changed, self._shown = False, None
+            return
+        if snapshot.beginning == self._shown:
+            return
+        self._shown = snapshot.beginning
+        for name, value in asdict(snapshot.beginning).items():
+            set_number(self._numbers[name], value / UNITS[name])

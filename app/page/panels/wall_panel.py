@@ -1,0 +1,92 @@
+"""The wall: a switch, its place and angle as numbers, and the forces on it."""
+
+from __future__ import annotations
+
+import math
+
+import viser
+
+from onpath.app.common.palette import OF_BENCH
+from onpath.app.common.templates import render
+from onpath.app.lab import commands as c
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, WallState, robot_of
+from onpath.app.page.panels.widgets import Post, on_user_update, set_number
+from onpath.lessons.benches import bench_titles
+from onpath.lessons.words import Words
+
+FARTHEST = 400.0  # [mm]
+
+
+class WallPanel:
+    """A folder for the wall; its numbers are visible while there is one."""
+
+    def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
+        self._words = words
+        self._shown: tuple[WallState | None, ...] = ()
+        self._post, self._just_changed = post, False
+        with gui.add_folder(words("wall.title"), expand_by_default=False):
+            self._switch = gui.add_checkbox(
+                words("wall.switch"), first.obstacle is not None, hint=words("wall.hint")
+            )
+            names = [f"y{axis}" for axis in robot_of(first).frame.axes]
+            self._first, self._second = (
+                gui.add_number(
+                    words("wall.place", name=name), 0.0, min=-FARTHEST, max=FARTHEST, step=1.0
+                )
+                for name in names
+            )
+            self._angle = gui.add_number(
+                words("wall.angle"),
+                0.0,
+                min=-180.0,
+                max=180.0,
+                step=5.0,
+                hint=words("wall.angle_hint"),
+            )
+            self._forces = gui.add_html("")
+        self._numbers = self._first, self._second, self._angle
+        on_user_update(self._switch, lambda on: self._change(c.SetWall(on)))
+        on_user_update(self._first, lambda mm: self._change(c.PlaceWall(first=mm / 1e3)))
+        on_user_update(self._second, lambda mm: self._change(c.PlaceWall(second=mm / 1e3)))
+        on_user_update(self._angle, lambda d: self._change(c.PlaceWall(angle=math.radians(d))))
+        self._show_rest(first.obstacle is not None)
+        self.follow(first)
+
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show the lab's wall.
+
+        A snapshot that is shown right after a change may have been taken before it, so it does not
+        set the changed number back; the next one is right.
+        """
+        wall = snapshot.obstacle
+        if self._just_changed:
+            self._just_changed, self._shown = False, ()
+            return
+        if self._shown == (wall,):
+            return
+        self._shown = (wall,)
+        if self._switch.value != (wall is not None):
+            self._switch.value = wall is not None
+        self._show_rest(wall is not None)
+        if wall is None:
+            return
+        set_number(self._first, wall.z1 * 1e3)
+        set_number(self._second, wall.z2 * 1e3)
+        set_number(self._angle, math.degrees(wall.angle))
+        titles = bench_titles(snapshot.laws, self._words)
+        forces = [
+            (OF_BENCH[bench].hex, titles[bench], f"{force:.1f}")
+            for bench, force in wall.forces.items()
+        ]
+        content = render("panel/forces.html", title=self._words("wall.forces"), forces=forces)
+        if self._forces.content != content:
+            self._forces.content = content
+
+    def _change(self, command: c.Command) -> None:
+        self._just_changed = True
+        self._post(command)
+
+    def _show_rest(self, visible: bool) -> None:
+        for handle in (*self._numbers, self._forces):
+            if handle.visible != visible:
+                handle.visible = visible

@@ -1,0 +1,115 @@
+"""The start of the next run at every robot: a ball that is dragged, and an arrow: its velocity."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onpath.app.common import palette
+from onpath.app.scene import meshes
+from onpath.app.scene.stage import add_copies
+from onpath.app.viser_adapter.frame_channel import update_node
+
+if TYPE_CHECKING:
+    import viser
+
+    StartDrag = viser.SceneNodeDragEvent[viser.BatchedMeshHandle]
+    Pointer = Callable[[StartDrag, tuple[float, float, float], int], np.ndarray | None]
+
+RADIUS = 0.01
+"""Radius of the ball [m]."""
+SECONDS = 0.15
+"""Length of the arrow: the way in this time [s]."""
+LEAST = 1e-3
+"""Shortest arrow that is drawn [m]."""
+BEFORE = np.array([0.0, -0.012, 0.0])
+"""Offset towards the viewer, so that no control point covers the ball [m]."""
+
+
+class StartNodes:
+    """Nodes of the start, drawn once for each robot, while they are shown.
+
+    Args:
+        scene: the client's scene.
+        origins: of the robots' frames in the world, shape (k, 3), [m].
+        pointer: see `WallNodes`.
+        on_move: called with the new place, shape (3,), in the robot's frame [m].
+    """
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        origins: np.ndarray,
+        pointer: Pointer,
+        on_move: Callable[[np.ndarray], None],
+    ) -> None:
+        self._scene, self._origins = scene, origins
+        self._pointer, self._on_move = pointer, on_move
+        self._ball: viser.BatchedMeshHandle | None = None
+        self._arrows: viser.ArrowsHandle | None = None
+        self._start = np.zeros((2, 3))
+        self._offset = np.zeros(3)
+
+    def show(self, visible: bool) -> None:
+        """Show or hide the start."""
+        if visible and self._ball is None:
+            self._ball = add_copies(
+                self._scene,
+                "/start/ball",
+                meshes.ball(RADIUS),
+                self._places,
+                palette.GREEN,
+                shadow=False,
+            )
+            self._ball.on_drag("left")(self._dragged)
+            self._arrows = self._scene.add_arrows(
+                "/start/velocity",
+                self._ways,
+                palette.GREEN.linear,
+                shaft_radius=0.0028,
+                head_radius=0.007,
+                head_length=0.014,
+                visible=self._moves,
+            )
+        elif not visible and self._ball is not None and self._arrows is not None:
+            self._ball.remove()
+            self._arrows.remove()
+            self._ball = self._arrows = None
+
+    def draw(self, start: np.ndarray) -> None:
+        """Draw a start, see `Snapshot.start`; sends nothing if it is drawn already."""
+        if start is self._start or not len(start) or np.array_equal(start, self._start):
+            return
+        self._start = start
+        if self._ball is not None and self._arrows is not None:
+            update_node(self._ball, batched_positions=self._places)
+            update_node(self._arrows, points=self._ways)
+            if self._arrows.visible != self._moves:
+                self._arrows.visible = self._moves
+
+    @property
+    def _places(self) -> np.ndarray:
+        return self._origins + self._start[0] + BEFORE
+
+    @property
+    def _ways(self) -> np.ndarray:
+        way = SECONDS * (self._start[1] - self._start[0])
+        return np.stack([self._places, self._places + way], axis=1)
+
+    @property
+    def _moves(self) -> bool:
+        return bool(np.linalg.norm(SECONDS * (self._start[1] - self._start[0])) > LEAST)
+
+    async def _dragged(self, event: StartDrag) -> None:
+        """Mouse callback; a coroutine without await, because viser runs those in order."""
+        robot = event.instance_index
+        if robot is None or robot >= len(self._origins):  # a browser may send any
+            return
+        if event.phase == "start":  # keep the press's offset from the middle, so no jump
+            pressed = self._pointer(event, event.start_position, robot)
+            self._offset = np.zeros(3) if pressed is None else self._start[0] - pressed
+        target = self._pointer(event, event.end_position, robot)
+        if target is not None:
+            self._on_move(target + self._offset)

@@ -1,0 +1,161 @@
+"""The initial state of a run: place by the path, velocity, and lead of the reference point."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, dataclass, fields
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.simulation import first_state
+from onpath.models.errors import CodedError
+from onpath.models.paths.curve_faults import LEAST_MARGIN
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.distance import closest_parameter
+from onpath.models.systems.parameter_specs import out_of_range
+from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import Robot
+
+BOUNDS = {"theta": np.pi, "beside": 0.2, "along": 2.0, "across": 2.0, "clock_offset": np.pi}
+"""Largest absolute value of each number of a start, SI."""
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Where and how a run starts, by the path.
+
+    Attributes:
+        theta: parameter of a point of the path, [rad].
+        beside: distance of the end-point from there, along the normal, to the left of the path
+            positive, [m].
+        along, across: velocity of the end-point along the path's tangent, and along its normal to
+            the left, [m/s].
+        clock_offset: how far the reference point of a law with a clock is ahead of the closest
+            point, [rad].
+
+    Raises:
+        CodedError: a number is out of range or not finite.
+    """
+
+    theta: float = 0.0
+    beside: float = 0.0
+    along: float = 0.0
+    across: float = 0.0
+    clock_offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        for field, value in zip(fields(self), astuple(self), strict=True):
+            most = BOUNDS[field.name]
+            if not -most <= value <= most:  # NaN fails too
+                raise out_of_range(field.name, f"{value:g}", f"{-most:g}", f"{most:g}")
+
+    def place(self, curve: Curve) -> Array:
+        """The point of the path's plane, or of space, where it is, (2,) or (3,), [m]."""
+        here = curve.at(np.array(self.theta))
+        return here + self.beside * left_of(curve, self.theta) if self.beside else here
+
+
+ON_PATH = Start()
+"""On the path at θ = 0, at rest."""
+
+
+def left_of(curve: Curve, theta: float) -> Array:
+    """The unit normal to the left of a path, level if it is a space curve, (2,) or (3,)."""
+    first = curve.at(np.array(theta), 1)
+    plan = first[:2] / np.linalg.norm(first[:2])
+    return np.array([-plan[1], plan[0], 0.0])[: len(first)]
+
+
+def nearest_start(curve: Curve, z: Array, start: Start = ON_PATH) -> Start:
+    """A start at a point z of the path's plane, shape (2,), as near to it as a start can be.
+
+    Args:
+        start: whose velocity and clock offset are kept.
+    """
+    theta = float(curve.plan.nearest(z[None])[0][0])
+    theta = float(
+        np.clip((theta + np.pi) % (2 * np.pi) - np.pi if curve.closed else theta, -np.pi, np.pi)
+    )
+    beside = float((z - curve.at(np.array(theta))[:2]) @ left_of(curve, theta)[:2])
+    beside = float(np.clip(beside, -BOUNDS["beside"], BOUNDS["beside"]))
+    return Start(theta, beside, start.along, start.across, start.clock_offset)
+
+
+def velocity_at(
+    robot: Robot, parameters: Parameters, curve: Curve, q: Array, along: float, across: float
+) -> Array:
+    """Joint velocities for a velocity of the end-point by the path, shape (n,).
+
+    Coordinates without a motor are at rest.
+
+    Args:
+        q: configuration, shape (n,).
+        along, across: velocity along the tangent, and along the normal to the left, at the closest
+            point, [m/s].
+    """
+    v = np.zeros_like(q)
+    if along == 0 == across:
+        return v
+    frame, system = robot.frame, robot.system
+    theta = closest_parameter(frame, curve, robot.endpoint(q))
+    first = curve.at(np.array(theta), 1)
+    rate = along * (first / np.linalg.norm(first)) + across * left_of(curve, theta)
+    y_rate = frame.lift(rate) - frame.lift(np.zeros(2))
+    gain = _jacobian(robot)(q, robot.plant(parameters)).full()[:, : system.m]
+    v[: system.m] = np.linalg.lstsq(gain, y_rate, rcond=None)[0]
+    return v
+
+
+@lru_cache(maxsize=64)
+def _jacobian(robot: Robot) -> ca.Function:
+    """The function (q, parameters) -> dh/dq, (p, n)."""
+    system = robot.system
+    matrix = ca.densify(ca.jacobian(system.output, system.q))
+    return ca.Function("jacobian", [system.q, system.parameters], [matrix])
+
+
+def lead(state: Array, kernel: Kernel, curve: Curve, offset: float) -> Array:
+    """Put the reference point of a first state ahead by an offset, [rad], or at a path's end."""
+    theta_ref = kernel.state.unpack(state)["theta_ref"]
+    theta_ref += offset
+    if not curve.closed:
+        np.clip(theta_ref, -np.pi, np.pi, out=theta_ref)
+    return state
+
+
+def start_state(
+    robot: Robot, kernel: Kernel, curve: Curve, parameters: Parameters, start: Start
+) -> Array:
+    """The first state of a run, shape (kernel.state.size,).
+
+    Raises:
+        ValueError: the start is out of reach.
+    """
+    q, v = _motion(robot, curve, parameters, start)
+    return lead(first_state(robot, kernel, curve, q, v), kernel, curve, start.clock_offset)
+
+
+def check_start(robot: Robot, curve: Curve, parameters: Parameters, start: Start) -> None:
+    """Refuse a start that is out of reach, near a singular configuration, or too fast.
+
+    Raises:
+        CodedError: it is one of these.
+    """
+    z = start.place(curve)
+    if not robot.margin(z[None])[0] >= LEAST_MARGIN:
+        raise CodedError("error.start_out_of_reach")
+    q, v = _motion(robot, curve, parameters, start)
+    fault = robot.fault(q[None], v[None], parameters)
+    if fault is not None:
+        raise CodedError("error.start_not_possible", reason=fault[1])
+
+
+def _motion(
+    robot: Robot, curve: Curve, parameters: Parameters, start: Start
+) -> tuple[Array, Array]:
+    """Configuration and velocity of a start, each shape (n,)."""
+    q = robot.rest(robot.frame.lift(start.place(curve)))
+    return q, velocity_at(robot, parameters, curve, q, start.along, start.across)

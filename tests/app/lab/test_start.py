@@ -1,0 +1,217 @@
+"""Where and how a run starts: the same as in an experiment, kept with the set-up, or refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.setup import RobotSetup, Setup, capture, from_data, restore
+from onpath.app.lab.share_code import decode, encode
+from onpath.models.closed_loop.start import BOUNDS, ON_PATH, Start, nearest_start
+from onpath.models.control.benches import BENCHES
+from onpath.models.paths.path_design import presets
+from onpath.models.studies.experiments import experiments
+from onpath.models.studies.experiments import run as run_experiment
+from onpath.models.systems.catalogue import ROBOTS
+from tests.support.lab import (
+    FOLLOWER,
+    TRACKER,
+    assert_sound,
+    do,
+    new_lab,
+    replayed,
+    run,
+    states,
+    take_snapshot,
+    y,
+)
+
+OFF = Start(theta=0.7, beside=-0.012, along=0.2, across=-0.1, clock_offset=0.4)
+
+
+def at(start: Start, robot: str = "five_bar") -> Any:
+    """A lab at that start."""
+    lab = new_lab()
+    do(lab, c.ChooseRobot(robot))
+    values = {name: getattr(start, name) for name in BOUNDS}
+    do(lab, *[c.SetStart(name, value) for name, value in values.items()], c.Reset())
+    assert lab.message == "" and lab.session.start == start
+    return lab
+
+
+@pytest.mark.parametrize("robot", list(ROBOTS))
+def test_it_starts_where_and_as_it_is_told(robot: str) -> None:
+    lab = at(OFF, robot)
+    session = lab.session
+    curve, frame = session.editor.curve, session.robot.frame
+    first = curve.at(np.array(0.7), 1)[:2]
+    along = first / np.linalg.norm(first)
+    left = np.array([-along[1], along[0]])
+    for name, state in session.runs.items():
+        z = frame.planar(y(session, name)) - curve.at(np.array(0.7))[:2]
+        assert (z @ along, z @ left) == pytest.approx((0.0, -0.012), abs=1e-6)
+        assert state.fields()["theta_ref"][0] == pytest.approx(0.7 + 0.4, abs=1e-3)
+    before = {name: frame.planar(y(session, name)) for name in BENCHES}
+    session.simulate(1)
+    if session.robot.system.n == session.robot.system.m:  # a beam bends at once
+        for name, z in before.items():
+            step = (frame.planar(y(session, name)) - z) / 1e-3
+            assert (step @ along, step @ left) == pytest.approx((0.2, -0.1), abs=0.02)
+    assert_sound(lab)
+
+
+def test_it_is_the_start_of_an_experiment() -> None:
+    """The same numbers, given to `onpath experiment`, give the same motion."""
+    circle = presets()["circle"].curve
+    z = OFF.place(circle)
+    lab = at(OFF)
+    run(lab, 0.5)
+    mine = replayed(lab.session)
+    values = {
+        "start_z1": z[0],
+        "start_z2": z[1],
+        "start_along": 0.2,
+        "start_across": -0.1,
+        "clock_offset": 0.4,
+        "hold_from": 0,
+        "hold_to": 0,
+        "duration": 0.4,
+    }
+    experiment = experiments()["obstruction"].with_values(values)
+    for name, law in lab.session.laws.items():
+        there = run_experiment(experiment, law)
+        here = mine[name].fields["y"][: len(there.t)]
+        assert np.abs(here - there.fields["y"]).max() < 1e-6, law
+
+
+def test_on_the_path_with_velocity_along_it_the_follower_stays_on_it() -> None:
+    """Invariance: whatever the velocity is, and wherever the clock."""
+    for along in (-0.5, 0.2, 0.5):
+        lab = at(Start(theta=1.0, along=along, clock_offset=1.0))
+        run(lab, 1.0)
+        assert lab.session.runs[FOLLOWER].max_distance < 2e-6
+        assert lab.session.runs[TRACKER].max_distance > 5e-3
+
+
+def test_a_new_lab_starts_as_ever() -> None:
+    lab = new_lab()
+    before = states(lab.session)
+    do(lab, c.SetStart("beside", 0.02), c.Reset(), c.StartOnPath(), c.Reset())
+    for name, state in states(lab.session).items():
+        np.testing.assert_array_equal(state, before[name])
+
+
+def test_it_takes_effect_at_reset_and_stays() -> None:
+    lab = new_lab(0.3)
+    before = states(lab.session)
+    do(lab, c.SetStart("beside", 0.02))
+    for name, state in states(lab.session).items():
+        np.testing.assert_array_equal(state, before[name])
+    for _ in range(2):
+        do(lab, c.Reset())
+        assert lab.session.runs[FOLLOWER].distance == pytest.approx(0.02, abs=1e-9)
+    do(lab, c.ChooseRobot("two_link_arm"))
+    assert lab.session.start == ON_PATH
+    do(lab, c.ChooseRobot("five_bar"))
+    assert lab.session.runs[FOLLOWER].distance == pytest.approx(0.02, abs=1e-9)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.sampled_from(sorted(presets())), st.floats(-0.1, 0.1), st.floats(-0.1, 0.1))
+def test_a_drag_takes_it_to_the_mouse(name: str, z1: float, z2: float) -> None:
+    """Beside an end of an open path it is as near as a normal there comes."""
+    curve, z = presets()[name].curve, np.array([z1, z2])
+    start = nearest_start(curve, z, OFF)
+    assert (start.along, start.across, start.clock_offset) == (0.2, -0.1, 0.4)
+    missed = float(np.linalg.norm(start.place(curve) - z))
+    if curve.closed:
+        assert missed < 2e-5
+    else:
+        assert missed <= curve.nearest(z[None])[1][0] + 1e-9
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        c.SetStart("beside", -0.19),
+        c.SetStart("beside", math.nan),
+        c.SetStart("theta", 4.0),
+        c.SetStart("along", math.inf),
+        c.SetStart("__class__", 0.0),
+        c.SetStart("along", "fast"),  # type: ignore[arg-type]
+        c.MoveStart(np.array([0.24, 0.1])),
+        c.MoveStart(np.array([math.nan, 0.0])),
+        c.MoveStart(np.zeros(5)),
+    ],
+    ids=repr,
+)
+def test_what_is_not_possible_is_refused_and_changes_nothing(command: c.Command) -> None:
+    lab = new_lab(0.2)
+    before, start = states(lab.session), lab.session.start
+    do(lab, command)
+    assert lab.message and lab.message_level == "warning"
+    assert lab.session.start is start
+    for name, state in states(lab.session).items():
+        np.testing.assert_array_equal(state, before[name])
+
+
+def test_a_start_that_another_path_puts_out_of_reach_is_refused_at_reset() -> None:
+    lab = new_lab()
+    do(lab, c.SetStart("beside", -0.09), c.Reset())  # 90 mm outside the circle, still in reach
+    assert lab.message == "" and lab.session.runs[FOLLOWER].distance == pytest.approx(0.09)
+    do(lab, c.ChoosePath("clover"))
+    run(lab, 0.5)
+    before = states(lab.session)
+    do(lab, c.Reset())
+    assert "cannot start there" in lab.message and lab.session.time == pytest.approx(0.5, abs=0.02)
+    for name, state in states(lab.session).items():
+        np.testing.assert_array_equal(state, before[name])
+    setup = capture(lab.session)  # can be restored: without that start
+    assert setup.benches["five_bar"].start == {}
+    restore(new_lab().session, setup)
+    do(lab, c.ChooseRobot("two_link_arm"), c.ChooseRobot("five_bar"))
+    assert lab.session.runs[FOLLOWER].distance < 1e-9
+
+
+def test_set_ups_and_share_codes_carry_it_and_old_ones_start_as_ever() -> None:
+    lab = at(OFF)
+    setup = capture(lab.session)
+    other = new_lab()
+    restore(other.session, decode(encode(setup)))
+    assert other.session.start == OFF and capture(other.session) == setup
+    for name in BENCHES:
+        assert y(other.session, name) == pytest.approx(y(at(OFF).session, name), abs=1e-9)
+    restore(other.session, from_data({"benches": {"five_bar": {"parameters": {"K1": 300.0}}}}))
+    assert other.session.start == ON_PATH
+    assert other.session.runs[FOLLOWER].distance < 1e-12
+
+
+@pytest.mark.parametrize(
+    "start", [{"beside": -0.19}, {"theta": 9.0}, {"up": 1.0}, {"along": "x"}, {"across": 1e300}]
+)
+def test_a_set_up_with_an_impossible_start_is_refused_as_a_whole(start: dict[str, Any]) -> None:
+    lab = new_lab(0.2)
+    before = capture(lab.session), states(lab.session)
+    with pytest.raises(ValueError):
+        restore(lab.session, Setup(benches={"five_bar": RobotSetup({"K1": 100.0}, start=start)}))
+    assert capture(lab.session) == before[0]
+    for name, state in states(lab.session).items():
+        np.testing.assert_array_equal(state, before[1][name])
+
+
+def test_it_is_drawn_where_it_is_and_follows_the_path() -> None:
+    lab = at(OFF)
+    for path in ("circle", "clover"):
+        do(lab, c.ChoosePath(path))
+        run(lab, 0.5)
+        session = lab.session
+        z = OFF.place(session.editor.curve)
+        drawn = take_snapshot(lab, 1.0).start
+        assert drawn[0] == pytest.approx(session.robot.place(session.robot.frame.lift(z)))
+        assert np.linalg.norm(drawn[1] - drawn[0]) == pytest.approx(math.hypot(0.2, 0.1))
