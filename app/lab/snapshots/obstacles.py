@@ -41,7 +41,7 @@ def wall_state(session: Session) -> WallState | None:
     wall, lifted = session.wall, _lifted(session)
     if wall is None:
         return None
-    forces = dict[str, float].fromkeys(BENCHES, 0.0)
+    forces: dict[str, float] = {bench: 0.0 for bench in BENCHES}
     if lifted is not None:
         robot, n = session.robot, session.robot.system.n
         past = None if session.viewing is None else session.history.at(session.viewing)
