@@ -9,11 +9,12 @@ from functools import lru_cache
 import numpy as np
 
 from onpath.app.classroom.classroom import Member
-from onpath.app.classroom.results import LETTERS, Distribution, tasks_passed
+from onpath.app.classroom.results import Distribution, tasks_passed
 from onpath.app.common.palette import AMBER, GREEN, GREY, OF_BENCH, SLATE
 from onpath.app.common.templates import render
 from onpath.lessons.benches import ROLES, robot_names
 from onpath.lessons.course import Course
+from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import MOST_POINTS as MOST_OF_TRUTH
 from onpath.lessons.progress import Progress, Truth
 from onpath.lessons.record import QUANTITIES

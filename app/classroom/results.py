@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from onpath.app.classroom.classroom import Member
 from onpath.app.common.visible_text import is_visible
 from onpath.lessons.course import Course
+from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Answer, Notes, Progress, Truth
 from onpath.lessons.schema import Choice, Lesson, Prediction, Quiz, Sketch
 
 HEADER = ("number", "nickname", "lesson", "step", "kind", "item", "result", "right", "value")
 FORMULA = frozenset("=+-@|%\u2212\u2795\u2796\ua78a\U0001f7f0")
 """Beginnings of a formula, also as minus, heavy or short sign; other widths and sizes by NFKC."""
-LETTERS = "ABCDEFGH"
 
 
 @dataclass(frozen=True, slots=True)

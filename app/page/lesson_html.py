@@ -8,11 +8,10 @@ from onpath.app.common.palette import AZURE, BORDER, GREEN
 from onpath.app.common.templates import render
 from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.checks import Verdict
+from onpath.lessons.option_order import LETTERS
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Choice, Lesson, Quiz, Sketch, Step, Task
 from onpath.lessons.words import Words
-
-LETTERS = "ABCDEFGH"
 
 
 def heading(lesson: Lesson, step: Step, run: LessonState) -> str:
@@ -43,18 +42,25 @@ def asked(block: Sketch) -> str:
     return render("lesson/box.html", title=block.question, colour=BORDER.hex)
 
 
-def question(block: Choice | Quiz, chosen: int | None, revealed: bool, words: Words) -> str:
+def question(
+    block: Choice | Quiz,
+    order: tuple[int, ...],
+    chosen: int | None,
+    revealed: bool,
+    words: Words,
+) -> str:
     """A question with lettered options and, once revealed, the correct one and the explanation.
 
     Args:
+        order: the options' indices in the order in which they are shown; see `option_order`.
         chosen: index of the student's answer; None when there is none.
     """
     return render(
         "lesson/question.html",
         title=block.question,
         colour=AZURE.hex,
-        options=list(zip(LETTERS, block.options, strict=False)),
-        chosen=chosen,
+        options=[(LETTERS[place], block.options[i]) for place, i in enumerate(order)],
+        own=None if chosen is None else block.options[chosen],
         revealed=revealed,
         words=words,
     )

@@ -17,6 +17,7 @@ from onpath.app.page.panels.widgets import Post, on_press, on_user_update
 from onpath.app.scene.scene import Scene
 from onpath.lessons.benches import robot_names
 from onpath.lessons.course import Course
+from onpath.lessons.option_order import LETTERS
 from onpath.lessons.schema import Choice, Prediction, Quiz, Sketch, Step, Task, Text
 from onpath.lessons.words import Words
 
@@ -33,6 +34,7 @@ class LessonPanel:
     Args:
         change: changes widgets in another thread; see `RebuildThread.change`.
         tab: parent of the widgets; without one, a separate panel on the left.
+        student: session code of the lab; decides the order of options, see `option_order`.
     """
 
     def __init__(
@@ -45,9 +47,10 @@ class LessonPanel:
         change: Callable[[Callable[[], None]], None],
         first: PageSnapshot,
         tab: viser.GuiTabHandle | None = None,
+        student: str = "",
     ) -> None:
         self._client, self._gui, self._post, self._change = client, client.gui, post, change
-        self._scene, self._words, self._course = scene, words, course
+        self._scene, self._words, self._course, self._student = scene, words, course, student
         self._handles: list[Any] = []
         self._tasks: list[tuple[Task, viser.GuiHtmlHandle]] = []
         self._chart: PredictionChart | None = None
@@ -87,7 +90,7 @@ class LessonPanel:
             board.draw()
 
     def _view(self, snapshot: PageSnapshot) -> LessonView:
-        return LessonView(self._course, self._words, snapshot.lesson)
+        return LessonView(self._course, self._words, snapshot.lesson, self._student)
 
     def _rebuild(self, run: LessonView) -> None:
         try:
@@ -143,9 +146,10 @@ class LessonPanel:
         elif isinstance(block, Task):
             self._add_task(block, run)
         elif isinstance(block, Quiz):
-            chosen = run.notes.quiz.get(f"{run.index}.{number}")
-            self._html(page.question(block, chosen, chosen is not None, run.words))
-            self._add_letters(block, lambda option: self._post(c.AnswerQuiz(number, option)))
+            key = f"{run.index}.{number}"
+            chosen, order = run.notes.quiz.get(key), run.order(block, key)
+            self._html(page.question(block, order, chosen, chosen is not None, run.words))
+            self._add_letters(order, lambda at: self._post(c.AnswerQuiz(number, order[at])))
         elif isinstance(block, Choice | Sketch):
             self._add_prediction(block, run)
 
@@ -166,17 +170,18 @@ class LessonPanel:
             else:
                 self._add_chart(block, run)
             return
-        chosen = answer.option if answer else None
-        self._html(page.question(block, chosen, False, run.words))
+        chosen, order = answer.option if answer else None, run.order(block)
+        self._html(page.question(block, order, chosen, False, run.words))
         if answer is None:
             commit = self._commit_button()
-            letters = self._add_letters(block, lambda option: self._choose(option, commit, run))
-            commit.order = letters.order + 0.5
 
-    def _choose(self, option: int, commit: viser.GuiButtonHandle, run: LessonView) -> None:
-        self._draft = c.Predict(option=option)
-        commit.label = f"{run.words('lesson.commit')}: {page.LETTERS[option]}"
-        commit.disabled = False
+            def choose(place: int) -> None:
+                self._draft = c.Predict(option=order[place])
+                commit.label = f"{run.words('lesson.commit')}: {LETTERS[place]}"
+                commit.disabled = False
+
+            letters = self._add_letters(order, choose)
+            commit.order = letters.order + 0.5
 
     def _commit_button(self) -> viser.GuiButtonHandle:
         commit = self._gui.add_button(self._words("lesson.commit"), icon=viser.Icon.LOCK)
@@ -186,8 +191,13 @@ class LessonPanel:
         self._handles.append(commit)
         return commit
 
-    def _add_letters(self, block: Choice | Quiz, act: Callable[[int], None]) -> Any:
-        letters = page.LETTERS[: len(block.options)]
+    def _add_letters(self, order: tuple[int, ...], act: Callable[[int], None]) -> Any:
+        """A button for each place of an option.
+
+        Args:
+            act: is given the place.
+        """
+        letters = LETTERS[: len(order)]
         group = self._gui.add_button_group("", list(letters))
         on_press(group, lambda: act(letters.index(group.value)))
         self._handles.append(group)
@@ -257,7 +267,7 @@ class LessonPanel:
             self._add_chart(block, run)
         elif truth is not None and not run.playing:
             chosen = answer.option if answer else None
-            self._html(page.question(block, chosen, True, run.words))
+            self._html(page.question(block, run.order(block), chosen, True, run.words))
 
     def _add_chart(self, block: Sketch, run: LessonView) -> None:
         self._chart = PredictionChart(self._gui, block, run.answer(), run.laws_shown, run.words)

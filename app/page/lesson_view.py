@@ -5,7 +5,8 @@ from __future__ import annotations
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
 from onpath.lessons.course import Course
-from onpath.lessons.schema import StepSetup
+from onpath.lessons.option_order import option_order
+from onpath.lessons.schema import Choice, Quiz, StepSetup
 from onpath.lessons.words import Words
 
 NO_SETUP = StepSetup()
@@ -14,12 +15,18 @@ NO_SETUP = StepSetup()
 class LessonView(LessonState):
     """A student's position in the lessons and the lab's results for the open step.
 
+    Args:
+        student: session code of the lab; decides the order of options.
+
     Attributes:
         playing, verdicts, truth: see `LessonSnapshot`.
     """
 
-    def __init__(self, course: Course, words: Words, shown: LessonSnapshot) -> None:
+    def __init__(
+        self, course: Course, words: Words, shown: LessonSnapshot, student: str = ""
+    ) -> None:
         super().__init__(course, shown.progress, words)
+        self._student = student
         self.version, self.playing = shown.version, shown.playing
         self.verdicts, self.truth = shown.verdicts, shown.truth
 
@@ -34,3 +41,17 @@ class LessonView(LessonState):
         """Set-up of the open step."""
         lesson = self.lesson
         return NO_SETUP if lesson is None else lesson.scene_at(self.index)
+
+    def order(self, block: Choice | Quiz, key: str = "") -> tuple[int, ...]:
+        """The order in which the options of a question are shown; see `option_order`.
+
+        In the presentation, where a whole class reads the same page, it is the author's.
+
+        Args:
+            key: of a quiz in the notes; without one, the open step's prediction is meant.
+        """
+        if not key:
+            found = self.prediction()
+            key = "" if found is None else found[0]
+        student = "" if self.progress.presenting else self._student
+        return option_order(len(block.options), f"{self.progress.lesson} {key}", student)

@@ -168,7 +168,10 @@ class Page:
         else:
             with tabs.add_tab(words("show.title"), viser.Icon.EYE):
                 self._parts.append(controls.show())
-        lesson = LessonPanel(self._client, words, post, course, self._scene, change, first, tab=tab)
+        scene, student = self._scene, self._desk.code
+        lesson = LessonPanel(
+            self._client, words, post, course, scene, change, first, tab=tab, student=student
+        )
         self._parts.append(lesson)
 
     def _controls(self, words: Words, post: Post) -> PanelFactory:
