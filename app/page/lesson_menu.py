@@ -1,9 +1,8 @@
-"""The lesson menu: an overview with progress, the language, and large type for a projector."""
+"""The lesson menu: an overview with progress."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 
 import viser
 
@@ -11,9 +10,10 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
 from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.panels.widgets import Post, close_once, on_menu_press, on_press, on_user_update
+from onpath.app.page.panels.dialog import dialog
+from onpath.app.page.panels.widgets import Post, on_menu_press, on_press
 from onpath.lessons.course import Course
-from onpath.lessons.words import Words, languages
+from onpath.lessons.words import Words
 
 
 class LessonMenu:
@@ -24,7 +24,7 @@ class LessonMenu:
     ) -> None:
         self._gui, self._words, self._post, self._course = gui, words, post, course
         self.follow(first)
-        button = gui.add_button(words("lesson.lessons"), icon=viser.Icon.SCHOOL, color="green")
+        button = gui.add_button(words("lesson.lessons"), icon=viser.Icon.SCHOOL, color="gray")
         on_menu_press(button, self._open)
 
     def follow(self, snapshot: PageSnapshot) -> None:
@@ -33,8 +33,7 @@ class LessonMenu:
 
     def _open(self) -> Callable[[], None]:
         run, gui = self._run, self._gui
-        with gui.add_modal(run.words("lesson.choose")) as modal:
-            close = partial(close_once, modal)
+        with dialog(gui, self._words, run.words("lesson.choose")) as close:
             for number, name in enumerate(run.course.lessons, start=1):
                 lesson = run.course.lesson(name, run.words.language)
                 gui.add_html(page.entry(lesson, run, number))
@@ -45,20 +44,7 @@ class LessonMenu:
                     hint=lesson.front.title,
                 )
                 on_press(open_it, self._then(close, c.OpenLesson(name)))
-            self._add_choices(close)
         return close
-
-    def _add_choices(self, close: Callable[[], None]) -> None:
-        run, gui = self._run, self._gui
-        names = {run.words(f"language.{code}"): code for code in languages()}
-        language = gui.add_dropdown(
-            run.words("lesson.language"),
-            list(names),
-            initial_value=run.words(f"language.{run.words.language}"),
-        )
-        on_user_update(language, lambda name: self._chosen(close, c.SetLanguage(names[name])))
-        large = gui.add_checkbox(run.words("lesson.presenting"), run.progress.presenting)
-        on_user_update(large, lambda on: self._chosen(close, c.SetPresenting(on)))
 
     def _chosen(self, close: Callable[[], None], command: c.Command) -> None:
         close()

@@ -11,10 +11,12 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.build_queue import one_at_a_time
+from onpath.app.page.first_minute import FirstMinute
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel
 from onpath.app.page.overlays import Overlays, Switches
 from onpath.app.page.page_context import PageContext
+from onpath.app.page.page_menus import PageMenus
 from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.app.page.panels.class_panel import ClassPanel
 from onpath.app.page.panels.keys import add_keys
@@ -28,12 +30,15 @@ from onpath.app.scene.scene import Scene, SceneCallbacks
 from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.viser_adapter.frame_channel import FrameChannel
+from onpath.app.viser_adapter.local_storage import ask_item
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot
 
 SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
+SPEAKS = "speaks"
+"""Where a browser keeps whether what happens is spoken."""
 
 
 class Page:
@@ -55,6 +60,8 @@ class Page:
         self._framed, self._settling = 0.0, SETTLING
         self._switches = Switches()
         self._building, self.is_outdated = True, False
+        self._speaks = True
+        ask_item(client, SPEAKS, self._heard)
         client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
         self._is_phone = self._is_narrow()
@@ -136,17 +143,18 @@ class Page:
         drawn = self._client.scene, self._scene.stage, robot
         self._overlays = Overlays(*drawn, self._switches, self._rebuilds.submit)
         self._parts: list[Part] = []
+        self._client.gui.add_html(render("panel/page.html", words=words))
         self._build_panels(first, words, post)
         add_keys(self._client.gui, words, post, self.reset_view)
         self._building = self.is_outdated = False
 
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
         gui = self._client.gui
-        self._client.gui.add_html(render("panel/wide_sheet.html"))
         controls = self._controls(words, post)
         if not first.key.in_lesson:
             self._build_head(first, words, post)
             self._parts += controls.everything(first)
+            self._parts.append(FirstMinute(self._client, words))
             return
         change = self._rebuilds.change
         tab = None
@@ -191,14 +199,29 @@ class Page:
         """Build the permanent widgets: readout, lesson menu and distance plot."""
         gui = self._client.gui
         self._build_numbers(words)
+        self._build_menus(first, words, post)
         if self._desk.course.lessons:
             self._parts.append(LessonMenu(gui, words, post, self._desk.course, first))
         if self._desk.seat is not None:
             self._parts.append(ClassPanel(gui, words, self._desk.seat, first))
         self._build_distance(first, words)
 
+    def _build_menus(self, first: PageSnapshot, words: Words, post: Post) -> None:
+        """Build the buttons for language, display and help."""
+        PageMenus(self._client.gui, words, post, first, self._is_speaking, self._set_speaking)
+
+    def _is_speaking(self) -> bool:
+        return self._speaks
+
+    def _set_speaking(self, on: bool) -> None:
+        self._speaks = on
+        self._client.local_storage.set_item(SPEAKS, "yes" if on else "no")
+
+    def _heard(self, kept: str) -> None:
+        self._speaks = kept != "no"
+
     def _build_numbers(self, words: Words) -> None:
-        self._parts.append(Readout(self._client.gui, words))
+        self._parts.append(Readout(self._client.gui, words, self._is_speaking))
 
     def _build_distance(self, first: PageSnapshot, words: Words) -> None:
         """Build the plot of the distance from the path."""

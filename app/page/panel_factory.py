@@ -16,7 +16,6 @@ from onpath.app.page.panels.compare_panel import ComparePanel
 from onpath.app.page.panels.flexible_panel import FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
 from onpath.app.page.panels.keep_panel import KeepPanel
-from onpath.app.page.panels.keys import help_text
 from onpath.app.page.panels.law_panel import LawPanel
 from onpath.app.page.panels.past_panel import PastPanel
 from onpath.app.page.panels.path_panel import PathChoice, PathPanel
@@ -25,13 +24,7 @@ from onpath.app.page.panels.run_panel import HoldDirection, RunPanel
 from onpath.app.page.panels.show_panel import ShowPanel
 from onpath.app.page.panels.start_panel import StartPanel
 from onpath.app.page.panels.wall_panel import WallPanel
-from onpath.app.page.panels.widgets import (
-    ParameterWidgets,
-    Post,
-    on_menu_press,
-    on_press,
-    on_user_update,
-)
+from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_user_update
 from onpath.app.page.plots import MORE, LivePlot, MorePlots
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
@@ -84,10 +77,7 @@ class PanelFactory:
 
     def everything(self, first: PageSnapshot) -> list[Part]:
         """Build all panels."""
-        parts = [part for name in ALL for part in self._add(name, first)]
-        helping = self._gui.add_button(self._words("controls.help"), icon=viser.Icon.HELP)
-        on_menu_press(helping, self._help)
-        return parts
+        return [part for name in ALL for part in self._add(name, first)]
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         """Build the run panel and the controls listed by a lesson's step."""
@@ -168,25 +158,6 @@ class PanelFactory:
             hint=self._words("controls.copy_hint"),
         )
         on_user_update(copy, lambda on: self._post(c.SetCopy(on)))
-
-    def _help(self) -> Callable[[], None]:
-        gui, words = self._gui, self._words
-        escape = gui.add_command(words("help.escape"), hotkey="escape")
-        with gui.add_modal(words("help.title")) as modal:
-            gui.add_markdown(help_text(words))
-            close = gui.add_button(words("help.close"))
-
-        def shut() -> None:
-            if not modal.closed:
-                escape.remove()
-                modal.close()
-
-        async def escaped(_: object) -> None:
-            shut()
-
-        on_press(close, shut)
-        escape.on_trigger(escaped)
-        return shut
 
 
 def _silent(_: object) -> None:

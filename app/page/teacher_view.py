@@ -50,6 +50,7 @@ class TeacherView(Page):
         else:
             self._parts.append(TeacherControls(gui, own, teaching))
             self._build_numbers(words)
+            self._build_menus(first, own, post)
             self._build_distance(first, words)
             self._parts += self._controls(own, post).everything(first)
         submit, course = self._rebuilds.submit, self._desk.course

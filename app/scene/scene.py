@@ -15,6 +15,7 @@ import numpy as np
 from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import END, TIP, Motion, PathView, Snapshot
 from onpath.app.scene import meshes
+from onpath.app.scene.captions import Captions
 from onpath.app.scene.freehand import Freehand
 from onpath.app.scene.path_nodes import PathNodes
 from onpath.app.scene.pointer_projection import DragPlane, pointer_on_plane
@@ -127,6 +128,7 @@ class Scene:
         self._point_offset = np.zeros(3)
         self._covered: int | None = None
         self._freehand: Freehand | None = None
+        self._captions = Captions(words)
         self._zone: viser.BatchedMeshHandle | None = None
 
     @property
@@ -166,7 +168,7 @@ class Scene:
 
     def update_traces(self, snapshot: Snapshot) -> None:
         """Redraws traces, titles, markers, force labels and a stroke; called at 5 to 10 Hz."""
-        self._titles.show(snapshot.laws)
+        self._titles.show(snapshot.laws, self._captions.of(snapshot))
         self._machine.update_laws(snapshot.laws)
         self._machine.update_traces([snapshot.robots[bench] for bench in self._benches])
         freehand = self._freehand  # another thread may end the stroke

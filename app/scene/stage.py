@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import chain, product
 from typing import TYPE_CHECKING
@@ -228,10 +228,14 @@ class ChangingText:
 
 
 class Titles:
-    """What stands over the robots: their control laws, and what these aim at."""
+    """What stands over the robots: their control laws, and what they are doing.
+
+    A robot without a caption does what its law says, and has the law's aim there.
+    """
 
     def __init__(self, scene: viser.SceneApi, stage: Stage, words: Words = ENGLISH) -> None:
-        self._words, self._shown = words, dict[str, str]()
+        self._words, self._laws = words, dict[str, str]()
+        self._titles = dict[str, str]()
         self._texts = {
             bench: [
                 ChangingText(scene, f"/titles/{bench}/{part}", base + stage.title, size, below)
@@ -240,15 +244,14 @@ class Titles:
             for bench, base in stage.bases.items()
         }
 
-    def show(self, laws: dict[str, str]) -> None:
-        """Show the control law of each bench; sends nothing if they are shown already."""
-        if laws == self._shown:
-            return
-        self._shown = laws
-        for bench, title in bench_titles(laws, self._words).items():
-            law, aim = self._texts[bench]
+    def show(self, laws: dict[str, str], captions: Mapping[str, str]) -> None:
+        """Show law and caption of each bench; sends nothing if they are shown already."""
+        if laws != self._laws:
+            self._laws, self._titles = laws, bench_titles(laws, self._words)
+        for bench, title in self._titles.items():
+            law, below = self._texts[bench]
             law.show(title)
-            aim.show(self._words(f"aim.{LAWS[laws[bench]].aim}"))
+            below.show(captions[bench] or self._words(f"aim.{LAWS[laws[bench]].aim}"))
 
     def hide(self, hidden: bool) -> None:
         """Hide the titles, which are drawn on top of everything else, or show them again."""

@@ -1,4 +1,4 @@
-"""Gives the page that browsers get our title, and our scripts of assets/page before viser's own."""
+"""Gives the page that browsers get our title, and what is in assets/page before viser's scripts."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from websockets.http11 import Response
 
 from onpath.assets import asset_path
 
+ELEMENTS = {".js": b"script", ".css": b"style"}
 TITLES = b"<title>Viser</title>", b"<title>OnPath</title>"
 
 
@@ -33,9 +34,10 @@ def with_scripts(page: bytes, scripts: bytes) -> bytes:
 
 @cache
 def our_scripts() -> bytes:
-    """All files of assets/page, in order of name, each as a <script> element."""
-    files = sorted(asset_path("page").glob("*.js"))
-    return b"".join(b"<script>\n" + file.read_bytes() + b"</script>\n" for file in files)
+    """All files of assets/page, in order of name, each as a <script> or <style> element."""
+    files = sorted(file for file in asset_path("page").iterdir() if file.suffix in ELEMENTS)
+    elements = [(ELEMENTS[file.suffix], file.read_bytes()) for file in files]
+    return b"".join(b"<%b>\n%b</%b>\n" % (name, text, name) for name, text in elements)
 
 
 @lru_cache(maxsize=4)

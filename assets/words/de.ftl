@@ -255,11 +255,43 @@ aim-theta_ref = zielt auf seinen Bezugspunkt
 
 ## Die Seite: was immer da ist
 
+page-scene = Zwei Roboter, die einer Bahn folgen, von vorn gesehen. Was sie tun, wird laufend angesagt; die Tasten des Labors stehen unter „Hilfe und Tasten“.
+page-keys = Alle Befehle
+page-viewer = Einstellungen der Anzeige
+
+spoken-running = Läuft.
+spoken-paused = Pause.
+spoken-held = Festgehalten.
+spoken-on_path = Beide auf der Bahn.
+
+display-title = Sprache, Anzeige
+display-speak = Sagen, was geschieht (für Bildschirmleser)
+
+code-copy = Kopieren
+code-copied = Kopiert
+
 readout-distance = Abstand zur Bahn
 readout-now = jetzt
 readout-most = höchstens
 readout-paused = t = { $time } s, angehalten
 readout-running = t = { $time } s, läuft mit { $speed }×
+
+caption-torn_off = weggerissen: { $mm } mm
+caption-held = festgehalten: { $mm } mm
+caption-waits = wartet: { $mm } mm
+caption-pulled = gezogen: { $mm } mm
+caption-chases = eilt seinem Punkt nach: { $mm } mm
+caption-off = neben der Bahn: { $mm } mm
+caption-stopped = angehalten
+caption-spoken = { $robot }: { $caption }.
+
+invite-hold = Zwei gleiche Roboter folgen einer Bahn. Was geschieht, wenn ihnen etwas im Weg steht?
+invite-hold_button = Halte sie fest
+invite-let_go = Den einen reißt seine Uhr von der Bahn; der andere wartet, so lange es dauert.
+invite-let_go_button = Lass sie los
+invite-pull = Fasse einen Roboter an der Spitze und ziehe: mit der Maus, dem Finger oder den Tasten A, D, W, S.
+invite-bend = Verbiege die Bahn: Ziehe an einem ihrer grauen Punkte.
+invite-skip = Einführung überspringen
 
 scene-force = Kraft { $force } N
 scene-true_scale = maßstäblich
@@ -445,8 +477,8 @@ past-ago = Sekunden zuvor
 past-ago_hint = Hält an und zeigt das Labor, wie es war
 past-go_on = Von hier aus weiter
 past-go_on_hint = Vergisst, was danach kam; das lässt sich rückgängig machen. Laufen lassen kehrt stattdessen in die Gegenwart zurück. Taste: G
-past-undo = Weitergehen zurücknehmen
-past-undo_hint = Holt das Vergessene zurück und legt beiseite, was stattdessen geschah. Taste: U
+past-undo = Vergessenes zurückholen
+past-undo_hint = Nimmt „Von hier aus weiter“ zurück und legt beiseite, was seither geschah. Taste: U
 
 export-title = Mitnehmen
 export-table = CSV, letzte 60 s
@@ -522,7 +554,7 @@ key-wall_turn_back = Die Wand im Uhrzeigersinn drehen
 key-back = Eine Sekunde weiter zurückblicken
 key-forward = Eine Sekunde nach vorn blicken
 key-go_on = Von dem Augenblick aus weiter, den du siehst; was danach kam, wird vergessen
-key-undo_go_on = Das Weitergehen zurücknehmen: das Vergessene zurückholen
+key-undo_go_on = Zurückholen, was beim Weitergehen aus der Vergangenheit vergessen wurde
 key-view = Die Ansicht zurücksetzen
 
 keyname-space = Leertaste
@@ -535,7 +567,6 @@ keyname-Shift = Umschalt
 
 help-title = Wie das Labor zu bedienen ist
 help-close = Schließen
-help-escape = Das Hilfefenster schließen
 help-text =
     Drücke **Beide festhalten** und sieh zu: Den linken Roboter (orange) reißt es mit der
     Folgeregelung von der Bahn, denn sein Punkt läuft nach der Uhr weiter. Der rechte (blau) wartet
@@ -568,8 +599,8 @@ say-laws_replaced = Nicht für diesen Roboter: { $laws }. An dieser Stelle steht
 say-looking_back = Das ist die Vergangenheit. Laufen lassen kehrt in die Gegenwart zurück; Von hier aus weiter vergisst, was danach kam, und lässt sich rückgängig machen.
 say-let_go = Die Spitzen sind losgelassen.
 say-present = Zurück in der Gegenwart.
-say-went_on = Weiter ab { $time } s. Die { $seconds } s danach sind vergessen: Weitergehen zurücknehmen (Taste U) holt sie zurück.
-say-brought_back = Zurück bei { $time } s, wie vor dem Weitergehen. Was stattdessen geschah, liegt beiseite: Weitergehen zurücknehmen (Taste U) wechselt dorthin zurück.
+say-went_on = Weiter ab { $time } s. Die { $seconds } s danach sind vergessen; Taste U holt sie zurück.
+say-brought_back = Zurück bei { $time } s, wie vor dem Weitergehen. Was stattdessen geschah, liegt beiseite; Taste U wechselt dorthin zurück.
 
 identified-found = Aus den letzten { $seconds } s des rechten Roboters: { $values }.
 identified-value = { $value }, geglaubt war { $before }

@@ -240,11 +240,43 @@ aim-theta_ref = aims at its reference point
 
 ## The page: what is always there
 
+page-scene = Two robots that follow a path, seen from the front. What they do is said as it happens; the keys of the lab are under “Help and keys”.
+page-keys = All commands
+page-viewer = Settings of the viewer
+
+spoken-running = Running.
+spoken-paused = Paused.
+spoken-held = Held back.
+spoken-on_path = Both on the path.
+
+display-title = Language, display
+display-speak = Say what happens, for screen readers
+
+code-copy = Copy
+code-copied = Copied
+
 readout-distance = distance to the path
 readout-now = now
 readout-most = most
 readout-paused = t = { $time } s, paused
 readout-running = t = { $time } s, running at { $speed }×
+
+caption-torn_off = torn off: { $mm } mm
+caption-held = held back: { $mm } mm
+caption-waits = waits: { $mm } mm
+caption-pulled = pulled: { $mm } mm
+caption-chases = chases its point: { $mm } mm
+caption-off = off the path: { $mm } mm
+caption-stopped = stopped
+caption-spoken = { $robot }: { $caption }.
+
+invite-hold = Two equal robots follow one path. What if something stands in their way?
+invite-hold_button = Hold them back
+invite-let_go = One is torn off the path by its clock; the other waits for as long as it takes.
+invite-let_go_button = Let them go
+invite-pull = Take a robot by its tip and pull: with the mouse, a finger, or the keys A, D, W, S.
+invite-bend = Bend the path: drag one of its grey points.
+invite-skip = Skip the introduction
 
 scene-force = force { $force } N
 scene-true_scale = true scale
@@ -430,8 +462,8 @@ past-ago = Seconds ago
 past-ago_hint = Pauses and shows the lab as it was
 past-go_on = Go on from here
 past-go_on_hint = Discards what came after; can be undone. Run returns to the present instead. Key: G
-past-undo = Undo going on
-past-undo_hint = Restores what was discarded, and sets aside what was done instead. Key: U
+past-undo = Restore what was discarded
+past-undo_hint = Takes back “Go on from here”, and sets aside what was done since. Key: U
 
 export-title = Export
 export-table = CSV, last 60 s
@@ -505,7 +537,7 @@ key-wall_turn_back = Turn the wall clockwise
 key-back = Look back one more second
 key-forward = Look forward one second
 key-go_on = Go on from the moment shown; discard what came after
-key-undo_go_on = Undo going on: restore what was discarded
+key-undo_go_on = Restore what was discarded by going on from the past
 key-view = Reset the view
 
 keyname-space = space
@@ -518,7 +550,6 @@ keyname-Shift = Shift
 
 help-title = How to use the lab
 help-close = Close
-help-escape = Close the help window
 help-text = **Hold both back** and watch: under trajectory tracking, the left robot (orange) is torn
     off its path, because its point runs on by the clock. Under path following, the right one (blue)
     waits on its path and continues when you let go.
@@ -550,8 +581,8 @@ say-laws_replaced = Not for this robot: { $laws }. A usual law is in its place.
 say-looking_back = This is the past. Run returns to the present; Go on from here discards what came after, and can be undone.
 say-let_go = The end-points have been let go.
 say-present = Back in the present.
-say-went_on = Going on from { $time } s. The { $seconds } s that came after are discarded: Undo going on (key U) restores them.
-say-brought_back = Back at { $time } s, as it was before going on. What was done instead is set aside: Undo going on (key U) changes back to it.
+say-went_on = Going on from { $time } s. The { $seconds } s that came after are discarded; key U restores them.
+say-brought_back = Back at { $time } s, as it was before going on. What was done instead is set aside; key U changes back to it.
 
 identified-found = From the right robot's last { $seconds } s: { $values }.
 identified-value = { $value }, previously { $before }

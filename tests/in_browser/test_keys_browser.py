@@ -238,7 +238,7 @@ def test_going_on_is_reported_and_undone_by_key_and_button(tab: Tab) -> None:
     tab.open("Look back")
     tab.press("Go on from here")
     wait_for(lambda: "are discarded" in tab.said())
-    tab.press("Undo going on")
+    tab.press("Restore what was discarded")
     wait_for(lambda: lab.session.time == end and not lab.session.running)
     tab.settle()  # the button that was pressed may be drawn anew
     tab.page.keyboard.press("u")

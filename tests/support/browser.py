@@ -21,6 +21,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import page_key
+from onpath.app.page.first_minute import INVITATIONS, KEPT_AS
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_feed import LabFeed
@@ -39,6 +40,8 @@ COARSE = "fixedDpr=0.5"  # option of viser: half the pixels in each direction, f
 COARSER = "fixedDpr=0.1"  # for tabs whose picture is not checked
 WAIT = 60.0  # [s]; software rendering on a busy machine shows a few frames a second
 
+SEEN = f'localStorage.setItem("viser-user:{KEPT_AS}", "{len(INVITATIONS)}")'
+"""Makes a browser one that has seen the first minute."""
 NEAR = 1.5  # [px], from where the mouse is to where the lab has heard that it is
 wait_for = partial(waiting.wait_for, seconds=WAIT)
 THREE_FRAMES = """() => new Promise(done => {
@@ -88,10 +91,19 @@ class Tab:
     Args:
         context: a new context stands for another browser, a shared one for another tab.
         draws: whether triangles are drawn.
+        newcomer: whether the invitations of the first minute are shown.
     """
 
-    def __init__(self, server: LabServer, context: BrowserContext, draws: bool = True) -> None:
+    def __init__(
+        self,
+        server: LabServer,
+        context: BrowserContext,
+        draws: bool = True,
+        newcomer: bool = False,
+    ) -> None:
         self.server = server
+        if not newcomer:
+            context.add_init_script(SEEN)
         if not draws:
             context.add_init_script(NO_TRIANGLES + SELDOM)
         context.set_default_timeout(WAIT * 1e3)

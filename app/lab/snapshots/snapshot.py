@@ -217,6 +217,8 @@ class Snapshot:
         robots: by bench, left first.
         path: followed by both robots.
         held: whether Hold is on.
+        held_back: benches of the robots that it holds.
+        stopped: benches of the robots that have diverged by then and stand still.
         grabbed: bench of the robot whose end-point is being pulled, or None.
         message: message to the user (a divergence, a refusal), plain text, or "".
         message_level: "info", "warning" or "error".
@@ -241,6 +243,8 @@ class Snapshot:
     key: PageKey = PageKey()
     wall: np.ndarray = field(default_factory=_nothing)
     start: np.ndarray = field(default_factory=_nothing)
+    held_back: tuple[str, ...] = ()
+    stopped: tuple[str, ...] = ()
 
     @property
     def laws(self) -> dict[str, str]:

@@ -114,11 +114,19 @@ def _scene(
         "key": key,
         "wall": drawn_wall(session),
         "start": _drawn_start(session),
+        "held_back": tuple(bench for bench in session.runs if bench in session.grips.held),
+        "stopped": _stopped(session, time),
     }
 
 
 def _drawn_start(session: Session) -> Array:
     return drawn_start(session.robot, session.editor.curve, session.start)
+
+
+def _stopped(session: Session, time: float) -> tuple[str, ...]:
+    """Benches whose robots had diverged by a time, [s]."""
+    faults = {bench: run.diverged for bench, run in session.runs.items()}
+    return tuple(bench for bench, fault in faults.items() if fault and fault.time <= time)
 
 
 def _shown(session: Session) -> tuple[Instant, Curve, float]:

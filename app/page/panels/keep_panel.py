@@ -23,7 +23,7 @@ class KeepPanel:
         self._desk, self._words, self._code = desk, words, ""
         with gui.add_folder(words("keep.title"), expand_by_default=False):
             if desk.keeps:
-                gui.add_html(_code(words("keep.yours"), shown(desk.code)))
+                gui.add_html(_code(words("keep.yours"), shown(desk.code), words))
                 self._typed = gui.add_text(words("keep.other"), "", hint=words("keep.other_hint"))
                 go = gui.add_button(words("keep.go"), color="gray", icon=viser.Icon.LOGIN)
                 self._said = gui.add_html("")
@@ -44,7 +44,7 @@ class KeepPanel:
         """Show the requested share code."""
         if snapshot.shared != self._code:
             self._code = snapshot.shared
-            self._share.content = _code(self._words("keep.shared"), snapshot.shared)
+            self._share.content = _code(self._words("keep.shared"), self._code, self._words)
 
     def _code_in_report(self) -> str:
         """The session code if the user wants it in the report: whoever reads it can use it."""
@@ -61,5 +61,5 @@ class KeepPanel:
         self._said.content = render("lesson/text.html", content=said)
 
 
-def _code(label: str, code: str) -> str:
-    return render("panel/code.html", label=label, code=code)
+def _code(label: str, code: str, words: Words) -> str:
+    return render("panel/code.html", label=label, code=code, words=words)

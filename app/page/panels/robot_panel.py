@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 
 import viser
 
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseRobot
-from onpath.app.page.panels.widgets import Post, close_once, on_menu_press, on_press
+from onpath.app.page.panels.dialog import dialog
+from onpath.app.page.panels.widgets import Post, on_menu_press, on_press
 from onpath.app.page.robot_picture import picture_of
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
@@ -32,8 +32,7 @@ class RobotPanel:
 
     def _open(self) -> Callable[[], None]:
         words = self._words
-        with self._gui.add_modal(words("robots.choose")) as modal:
-            close = partial(close_once, modal)
+        with dialog(self._gui, words, words("robots.choose")) as close:
             for entry in ROBOTS.values():
                 label = label_of(entry, words)
                 text = words.get(f"machine.{entry.name}.text", entry.text)

@@ -26,7 +26,6 @@ class RunPanel:
         self._hold = gui.add_button(
             words("run.hold_both"),
             icon=viser.Icon.HAND_STOP,
-            color="orange",
             hint=words("run.hold_hint"),
         )
         press = gui.add_button(
@@ -36,7 +35,10 @@ class RunPanel:
             hint=words("run.press_hint"),
         )
         self._run = gui.add_button(
-            words("run.pause"), icon=viser.Icon.PLAYER_PAUSE, hint=words("run.run_hint")
+            words("run.pause"),
+            icon=viser.Icon.PLAYER_PAUSE,
+            color="gray",
+            hint=words("run.run_hint"),
         )
         row: dict[str, Callable[[], None]] = {
             words("run.step"): lambda: post(c.StepOnce()),
@@ -65,7 +67,6 @@ class RunPanel:
             label = self._words("run.let_go" if held else "run.hold")
         if self._hold.label != label:
             self._hold.label = label
-            self._hold.color = "red" if held else "orange"
         label = self._words("run.pause" if snapshot.running else "run.run")
         if self._run.label != label:
             self._run.label = label

@@ -11,6 +11,7 @@ from onpath.app.classroom.results import class_csv, distribution, prediction_at,
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.panels.dialog import mark_closing
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.course import Course
@@ -252,6 +253,7 @@ class TeacherPanel:
         with self._gui.add_modal(title) as modal:
             self._gui.add_html(note(question))
             yes = self._gui.add_button(self._words("class.yes"), color="red")
+            mark_closing(self._gui, self._words)
             no = self._gui.add_button(self._words("class.no"), color="gray")
 
         def agreed() -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -135,7 +136,9 @@ def message(text: str) -> str:
 
 def shown(words: Words, text: str) -> str:
     """The readout with a message, as a browser is given it."""
-    view = SimpleNamespace(distance=0.001, max_distance=float("nan"))
+    view = SimpleNamespace(
+        law=DEFAULT_LAWS[LEFT], force=np.zeros(3), distance=0.001, max_distance=float("nan")
+    )
     robots = {LEFT: view, RIGHT: view}
     snapshot = SimpleNamespace(
         robots=robots,
@@ -145,6 +148,9 @@ def shown(words: Words, text: str) -> str:
         achieved_speed=1.0,
         message=text,
         message_level="error",
+        held=False,
+        held_back=(),
+        stopped=(),
     )
     sent: list[str] = []
     gui: Any = SimpleNamespace(add_html=lambda content: None)
@@ -172,7 +178,7 @@ PLACES: dict[str, Callable[[str], str]] = {
     "note": lambda text: render("panel/note.html", said=text, small=False),
     "text": lesson_html.text,
     "remark": lambda text: lesson_html.remark(text, italic=True),
-    "code": lambda text: render("panel/code.html", label=text, code=text),
+    "code": lambda text: render("panel/code.html", label=text, code=text, words=ENGLISH),
     "robot": lambda text: render("panel/robot.html", label=text, text=text, picture=text),
     "class code": lambda text: class_html.class_code(text, 1, ENGLISH),
     "report": gone,

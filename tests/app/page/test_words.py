@@ -56,18 +56,9 @@ PAGE = sorted(
     ]
 )
 KEYS_MADE = (
-    *(
-        "start.",
-        "run.direction",
-        "quantity.",
-        "stat.",
-        "during.",
-        "event.",
-        "robot.",
-        "kind.",
-        "language.",
-        "report.",
-    ),
+    *("start.", "run.direction"),
+    *("quantity.", "stat.", "during.", "event.", "robot.", "kind.", "language.", "report."),
+    *("caption.", "invite.", "spoken."),
     *("bench.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
     *("lesson.back", "lesson.again", "lesson.close"),

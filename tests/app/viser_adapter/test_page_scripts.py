@@ -15,6 +15,7 @@ from onpath.app.viser_adapter.secure_server import make_server
 from onpath.assets import asset_path
 
 SCRIPTS = sorted(asset_path("page").glob("*.js"))
+FILES = sorted(asset_path("page").glob("*.*s"))
 INDEX = Path(viser.__file__).parent / "client" / "build" / "index.html"
 
 
@@ -54,11 +55,14 @@ def test_nothing_else_is_touched(port: int) -> None:
 
 
 def test_every_script_is_an_element_of_its_own_in_order_of_name() -> None:
-    assert SCRIPTS
-    texts = [file.read_bytes() for file in SCRIPTS]
-    assert all(text.isascii() and text.endswith(b"\n") for text in texts)
-    assert not any(b"</script" in text.lower() or b"<!--" in text for text in texts)
-    assert our_scripts() == b"".join(b"<script>\n" + text + b"</script>\n" for text in texts)
+    assert SCRIPTS and set(SCRIPTS) < set(FILES)
+    texts = {file: file.read_bytes() for file in FILES}
+    assert all(text.isascii() and text.endswith(b"\n") for text in texts.values())
+    for ends in (b"</script", b"</style", b"<!--"):
+        assert not any(ends in text.lower() for text in texts.values())
+    kinds = [b"style" if file.suffix == ".css" else b"script" for file in FILES]
+    elements = zip(kinds, texts.values(), strict=True)
+    assert our_scripts() == b"".join(b"<%b>\n%b</%b>\n" % (k, t, k) for k, t in elements)
 
 
 @pytest.mark.parametrize(

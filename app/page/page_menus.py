@@ -1,0 +1,70 @@
+"""The two small buttons of every page: its language and display, and the help."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import viser
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.panels.dialog import dialog
+from onpath.app.page.panels.keys import help_text
+from onpath.app.page.panels.widgets import Post, on_menu_press, on_user_update
+from onpath.lessons.words import Words, languages
+
+HALF = "dark"
+"""Colour of buttons that share a row; assets/page/style.css makes them quiet and half as wide."""
+
+
+class PageMenus:
+    """Both buttons and their windows.
+
+    Args:
+        speaks: whether what happens is spoken by a screen reader.
+        set_speaking: switches that.
+    """
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        words: Words,
+        post: Post,
+        first: PageSnapshot,
+        speaks: Callable[[], bool],
+        set_speaking: Callable[[bool], None],
+    ) -> None:
+        self._gui, self._words, self._post = gui, words, post
+        self._speaks, self._set_speaking = speaks, set_speaking
+        self._presenting = first.key.presenting
+        display = gui.add_button(words("display.title"), color=HALF, icon=viser.Icon.LANGUAGE)
+        on_menu_press(display, self._open_display)
+        helping = gui.add_button(words("controls.help"), color=HALF, icon=viser.Icon.HELP)
+        on_menu_press(helping, self._open_help)
+
+    def _open_display(self) -> Callable[[], None]:
+        gui, words = self._gui, self._words
+        names = {words(f"language.{code}"): code for code in languages()}
+        with dialog(gui, words, words("display.title")) as close:
+            language = gui.add_dropdown(
+                words("lesson.language"),
+                list(names),
+                initial_value=words(f"language.{words.language}"),
+            )
+            large = gui.add_checkbox(words("lesson.presenting"), self._presenting)
+            speak = gui.add_checkbox(words("display.speak"), self._speaks())
+
+        def chosen(command: c.Command) -> None:
+            close()
+            self._post(command)
+
+        on_user_update(language, lambda name: chosen(c.SetLanguage(names[name])))
+        on_user_update(large, lambda on: chosen(c.SetPresenting(on)))
+        on_user_update(speak, self._set_speaking)
+        return close
+
+    def _open_help(self) -> Callable[[], None]:
+        words = self._words
+        with dialog(self._gui, words, words("help.title")) as close:
+            self._gui.add_markdown(help_text(words))
+        return close

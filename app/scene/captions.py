@@ -1,0 +1,74 @@
+"""What each robot is doing just now, in a few words with the distance from the path."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from onpath.app.lab.snapshots.snapshot import RobotView, Snapshot
+from onpath.lessons.words import Words
+from onpath.models.control.laws.registry import law_named
+
+OFF = 0.005
+"""Distance from which on a robot counts as off the path [m]."""
+PULLED = 0.05
+"""Force from which on a robot counts as pulled [N]."""
+
+
+class Captions:
+    """A caption for each robot, empty for one that does what its law's title says.
+
+    While a robot is held back, its caption has the largest distance since then: that of one that is
+    torn off swings to and fro.
+    """
+
+    def __init__(self, words: Words) -> None:
+        self._words = words
+        self._before = dict[str, float]()  # `max_distance` when a robot was first seen held back
+        self._largest = dict[str, float]()  # distance since then
+
+    def of(self, snapshot: Snapshot) -> dict[str, str]:
+        """The captions for a snapshot, by bench; call it with one snapshot after the other."""
+        return {bench: self._of(bench, view, snapshot) for bench, view in snapshot.robots.items()}
+
+    def _of(self, bench: str, view: RobotView, snapshot: Snapshot) -> str:
+        is_held = bench in snapshot.held_back
+        distance = self._largest_held(bench, view) if is_held else view.distance
+        if not is_held:
+            self._before.pop(bench, None)
+        kind = "stopped" if bench in snapshot.stopped else _kind(view, is_held, distance)
+        return self._words(f"caption.{kind}", mm=f"{1e3 * distance:.0f}") if kind else ""
+
+    def _largest_held(self, bench: str, view: RobotView) -> float:
+        """Largest distance since a robot has been held back, [m].
+
+        Snapshots miss the peaks of the distance, but `max_distance` does not.
+        """
+        if bench not in self._before:
+            self._before[bench], self._largest[bench] = view.max_distance, 0.0
+        grown = view.max_distance if view.max_distance > self._before[bench] else 0.0
+        self._largest[bench] = max(self._largest[bench], view.distance, grown)
+        return self._largest[bench]
+
+
+def _kind(view: RobotView, is_held: bool, distance: float) -> str:
+    """Which caption: by what the robot does, and whether its law runs by the clock."""
+    by_clock, is_off = law_named(view.law).by_clock, distance >= OFF
+    if is_held:
+        return ("torn_off" if is_off else "held") if by_clock else "off" if is_off else "waits"
+    if np.linalg.norm(view.force) > PULLED:
+        return "pulled"
+    if not is_off:
+        return ""
+    return "chases" if by_clock else "off"
+
+
+def spoken(captions: Mapping[str, str], titles: Mapping[str, str], words: Words) -> str:
+    """One line with the captions of all robots that have one."""
+    said = [
+        words("caption.spoken", robot=titles[bench], caption=caption)
+        for bench, caption in captions.items()
+        if caption
+    ]
+    return " ".join(said)

@@ -1,0 +1,78 @@
+// What viser draws without it: the page's language, names for screen readers, and folder headings
+// that are buttons. Names come from the labels on the page, or from the lab's words in [data-page].
+//
+// viser's page is drawn by React, which may draw any part of it anew at any time: so everything is
+// looked at again soon after the page has changed, and what is named already is left alone.
+(() => {
+  "use strict";
+
+  const SOON = 150;  // [ms], within which changes of the page are looked at together
+  const FOLDER = ".mantine-Paper-root > .mantine-Paper-root:has(> svg)";
+  const ROW = ".mantine-Flex-root:has(label)";
+  const ICON = "button.mantine-ActionIcon-root:not([aria-label])";
+
+  function set(element, name, value) {
+    if (value && element.getAttribute(name) !== value) element.setAttribute(name, value);
+  }
+
+  // A slider's handle, the box beside it and a field to type in are named by the label of their row.
+  function nameFields() {
+    for (const field of document.querySelectorAll('[role="slider"], input:not([type="hidden"])')) {
+      if (field.labels?.length) continue;
+      set(field, "aria-label", field.closest(ROW)?.querySelector("label").textContent);
+    }
+  }
+
+  function nameFolders() {
+    for (const heading of document.querySelectorAll(FOLDER)) {
+      const content = heading.nextElementSibling;
+      set(heading, "role", "button");
+      set(heading, "tabindex", "0");
+      set(heading, "aria-expanded", String(content?.getAttribute("aria-hidden") !== "true"));
+    }
+  }
+
+  function nameTheRest() {
+    const words = document.querySelector("[data-page]")?.dataset;
+    if (words === undefined) return;
+    set(document.documentElement, "lang", words.language);
+    for (const icon of document.querySelectorAll(ICON)) {
+      set(icon, "aria-label", icon.querySelector(".tabler-icon-list-search") ? words.keys : words.viewer);
+    }
+    const scene = document.querySelector("canvas[data-engine]");
+    if (scene !== null) {
+      set(scene, "role", "img");
+      set(scene, "aria-label", words.scene);
+    }
+    for (const plot of document.querySelectorAll(".uplot")) {
+      const canvas = plot.querySelector("canvas");
+      if (canvas === null) continue;
+      set(canvas, "role", "img");
+      set(canvas, "aria-label", plot.querySelector(".u-title")?.textContent);
+    }
+  }
+
+  function look() {
+    due = false;
+    nameFields();
+    nameFolders();
+    nameTheRest();
+  }
+
+  let due = false;
+  const watch = new MutationObserver(() => {
+    if (due) return;
+    due = true;
+    setTimeout(look, SOON);
+  });
+  const changes = { childList: true, subtree: true, attributes: true };
+  watch.observe(document, { ...changes, attributeFilter: ["aria-hidden"] });
+
+  document.addEventListener("keydown", (event) => {
+    const heading = event.target;
+    if (!(heading instanceof Element) || !heading.matches(FOLDER)) return;
+    if (event.key !== "Enter" && event.key !== " ") return;
+    event.preventDefault();
+    heading.click();
+  }, { capture: true });
+})();

@@ -1,0 +1,84 @@
+"""The invitations of the first minute: each once, after the one before has been followed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.page import first_minute
+from onpath.app.page.first_minute import INVITATIONS, FirstMinute
+from onpath.lessons.words import ENGLISH
+from tests.support.lab import do, new_lab, run
+
+
+class Guest:
+    """A browser that keeps something, and what it is shown."""
+
+    def __init__(self, kept: str, patch: pytest.MonkeyPatch) -> None:
+        self.kept, self.html = kept, SimpleNamespace(content="")
+        storage = SimpleNamespace(set_item=lambda key, value: setattr(self, "kept", value))
+        gui = SimpleNamespace(add_html=lambda content: self.html)
+
+        def ask(client: Any, key: str, answer: Callable[[str], None]) -> None:
+            answer(self.kept)
+
+        patch.setattr(first_minute, "ask_item", ask)
+        client: Any = SimpleNamespace(gui=gui, local_storage=storage)
+        self.part = FirstMinute(client, ENGLISH)
+
+    def after(self, lab: Lab, seconds: float) -> str:
+        """Which invitation is shown when the lab has run for some seconds; empty: none."""
+        for _ in range(round(10 * seconds) + 1):
+            self.part.follow(take_page_snapshot(lab, 1.0))
+            run(lab, 0.1)
+        shown = [i.name for i in INVITATIONS if ENGLISH(f"invite.{i.name}") in self.html.content]
+        return "".join(shown)
+
+
+@pytest.fixture
+def guest(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], Guest]:
+    return lambda kept: Guest(kept, monkeypatch)
+
+
+def test_a_newcomer_is_led_from_a_hold_to_a_pull_to_a_bent_path(
+    guest: Callable[[str], Guest],
+) -> None:
+    lab, new = new_lab(), guest("")
+    assert new.after(lab, 0.2) == "hold"
+    do(lab, c.Hold(True))
+    assert new.after(lab, 0.5) == ""
+    assert new.after(lab, 4.0) == "let_go"
+    do(lab, c.Hold(False))
+    assert new.after(lab, 0.5) == ""
+    assert new.after(lab, 4.0) == "pull"
+    do(lab, c.MoveHand(0.01, 0.0))
+    assert new.after(lab, 0.5) == ""
+    do(lab, c.Release())
+    assert new.after(lab, 4.0) == "bend"
+    do(lab, c.MovePoint(2, 1.2 * lab.session.editor.points()[2]))
+    assert new.after(lab, 4.0) == "" and new.kept == str(len(INVITATIONS))
+
+
+@pytest.mark.parametrize("kept", ["0", "", "5", "-1", "x" * 2000, "١", "2"])
+def test_what_a_browser_keeps_is_where_it_goes_on_if_it_makes_sense(
+    kept: str, guest: Callable[[str], Guest]
+) -> None:
+    expected = "pull" if kept == "2" else "hold"
+    assert guest(kept).after(new_lab(), 4.0) == expected
+
+
+def test_who_has_seen_all_is_left_in_peace(guest: Callable[[str], Guest]) -> None:
+    assert guest(str(len(INVITATIONS))).after(new_lab(), 4.0) == ""
+
+
+def test_a_reset_does_not_stop_the_invitations(guest: Callable[[str], Guest]) -> None:
+    lab, again = new_lab(3.0), guest("2")
+    assert again.after(lab, 1.0) == ""
+    do(lab, c.Reset())
+    assert again.after(lab, 4.0) == "pull"

@@ -1,0 +1,94 @@
+"""What is said over each robot is what a run of the lab shows."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.scene.captions import Captions, spoken
+from onpath.lessons.words import ENGLISH
+from tests.support.lab import FOLLOWER, TRACKER, do, new_lab, run
+
+
+def seen(lab: Lab, captions: Captions, seconds: float) -> dict[str, str]:
+    """The captions at the end of some seconds, shown ten times a second."""
+    said = captions.of(take_page_snapshot(lab, 1.0))
+    for _ in range(round(10 * seconds)):
+        run(lab, 0.1)
+        said = captions.of(take_page_snapshot(lab, 1.0))
+    return said
+
+
+def number(caption: str) -> float:
+    found = re.search(r"(\d+) mm", caption)
+    assert found is not None, caption
+    return float(found[1])
+
+
+def test_what_a_hold_does_is_said_of_the_law_that_has_a_clock_and_of_the_one_without() -> None:
+    lab, captions = new_lab(1.0), Captions(ENGLISH)
+    assert seen(lab, captions, 0.5) == {TRACKER: "", FOLLOWER: ""}
+    do(lab, c.Hold(True))
+    held = seen(lab, captions, 2.0)
+    most = {bench: round(1e3 * run.max_distance) for bench, run in lab.session.runs.items()}
+    assert held[TRACKER] == f"torn off: {most[TRACKER]} mm" and most[TRACKER] > 40
+    assert held[FOLLOWER].startswith("waits: ") and number(held[FOLLOWER]) <= 5
+    do(lab, c.Hold(False))
+    assert seen(lab, captions, 4.0) == {TRACKER: "", FOLLOWER: ""}
+
+
+def test_captions_follow_the_law_not_the_side() -> None:
+    lab, captions = new_lab(), Captions(ENGLISH)
+    lab.session.change_law(TRACKER, "path_following")
+    run(lab, 1.0)
+    do(lab, c.Hold(True))
+    held = seen(lab, captions, 1.0)
+    assert all(caption.startswith("waits: ") for caption in held.values()), held
+
+
+def test_a_second_hold_is_measured_anew() -> None:
+    lab, captions = new_lab(1.0), Captions(ENGLISH)
+    do(lab, c.Hold(True))
+    seen(lab, captions, 2.0)
+    do(lab, c.Hold(False))
+    seen(lab, captions, 4.0)
+    do(lab, c.Hold(True))
+    assert number(captions.of(take_page_snapshot(lab, 1.0))[TRACKER]) < 5
+
+
+def test_only_the_robot_that_is_held_back_is_said_to_be() -> None:
+    lab, captions = new_lab(1.0), Captions(ENGLISH)
+    do(lab, c.SetCopy(False), c.Hold(True, FOLLOWER))
+    said = seen(lab, captions, 1.0)
+    assert said[TRACKER] == "" and said[FOLLOWER].startswith("waits")
+
+
+def test_a_stopped_robot_is_said_to_be_stopped_also_where_the_lab_is_shown_elsewhere() -> None:
+    lab, captions = new_lab(0.5), Captions(ENGLISH)
+    lab.session.runs[FOLLOWER].fields()["v"][:] = 500.0
+    run(lab, 0.5)
+    shown = from_bytes(to_bytes(take_page_snapshot(lab, 1.0)))
+    assert isinstance(shown, Snapshot)
+    assert captions.of(shown)[FOLLOWER] == "stopped"
+
+
+def test_nothing_is_spoken_of_robots_that_have_no_caption() -> None:
+    titles = {TRACKER: "One", FOLLOWER: "Other"}
+    assert spoken({TRACKER: "", FOLLOWER: "waits: 2 mm"}, titles, ENGLISH) == "Other: waits: 2 mm."
+    assert spoken({TRACKER: "", FOLLOWER: ""}, titles, ENGLISH) == ""
+
+
+@pytest.mark.parametrize("bench", [TRACKER, FOLLOWER])
+def test_a_pull_is_said_and_ends(bench: str) -> None:
+    lab, captions = new_lab(1.0), Captions(ENGLISH)
+    do(lab, *[c.MoveHand(0.01, 0.0)] * 3)
+    said = seen(lab, captions, 0.5)
+    assert said[bench].startswith("pulled: ")
+    do(lab, c.Release())
+    assert not seen(lab, captions, 3.0)[bench]

@@ -1,0 +1,205 @@
+"""The first minute, and what a screen reader and keys find on the page, in a real browser."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser, expect
+
+from onpath.app.lab import commands as c
+from onpath.app.page.first_minute import INVITATIONS
+from onpath.app.server.lab_server import LabServer
+from tests.support.browser import WAIT, Tab, wait_for
+from tests.support.checkout import ROOT
+
+AXE = ROOT / "tests" / "vendor" / "axe-core" / "axe.min.js"
+RULES = """async () => (await axe.run({ resultTypes: ["violations"] })).violations
+    .filter(each => ["serious", "critical"].includes(each.impact))
+    .map(each => [each.id, ...each.nodes.map(node => node.html)])"""
+WINDOW = {"width": 1280, "height": 800}
+LESSON = "01-path-or-timetable"
+expect.set_options(timeout=WAIT * 1e3)
+
+
+def visit(browser: Browser, server: LabServer, newcomer: bool = False, **options: Any) -> Tab:
+    context = browser.new_context(**{"viewport": WINDOW, **options})
+    return Tab(server, context, draws=False, newcomer=newcomer)
+
+
+@pytest.fixture(scope="module")
+def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
+    tab = visit(browser, server)
+    yield tab
+    assert tab.errors == []
+    tab.page.context.close()
+
+
+def violations(tab: Tab) -> list[list[str]]:
+    """What axe-core finds that is serious or critical."""
+    tab.settle()
+    if not tab.page.evaluate("'axe' in window"):
+        tab.page.add_script_tag(path=AXE)
+    return tab.page.evaluate(RULES)
+
+
+# The first minute.
+
+
+def test_a_newcomer_is_invited_and_who_has_followed_is_not_asked_again(
+    browser: Browser, server: LabServer
+) -> None:
+    tab = visit(browser, server, newcomer=True)
+    invitation, spoken = tab.page.locator("#op-invitation"), tab.page.locator("#op-voice")
+    tab.button("Hold them back").click()
+    wait_for(lambda: len(tab.session.grips.held) == 2)
+    expect(invitation).to_be_hidden()
+    expect(spoken).to_contain_text(re.compile(r"Held back\. Trajectory tracking: torn off: \d+ mm"))
+    expect(spoken).to_contain_text(re.compile(r"Path following: waits: \d mm"))
+    tab.button("Let them go").click()
+    wait_for(lambda: not tab.session.grips.held)
+    expect(invitation).to_contain_text("pull")
+    tab.page.keyboard.press("d")
+    wait_for(lambda: tab.session.grips.hands)
+    expect(invitation).to_be_hidden()
+    tab.page.keyboard.press("x")
+    expect(invitation).to_contain_text("Bend the path")
+    tab.reload()
+    expect(invitation).to_contain_text("Bend the path")
+    tab.ask(c.MovePoint(2, 1.2 * tab.session.editor.points()[2]))
+    expect(invitation).to_be_hidden()
+    kept = "() => localStorage.getItem('viser-user:first_minute')"
+    assert tab.page.evaluate(kept) == str(len(INVITATIONS))
+    assert tab.errors == []
+    tab.page.context.close()
+
+
+def test_the_introduction_can_be_skipped_for_good(browser: Browser, server: LabServer) -> None:
+    tab = visit(browser, server, newcomer=True)
+    tab.button("Skip the introduction").click()
+    expect(tab.page.locator("#op-invitation")).to_be_hidden()
+    tab.reload()
+    time = tab.session.time
+    wait_for(lambda: tab.session.time > time + 1)
+    expect(tab.page.locator("#op-invitation")).to_be_hidden()
+    tab.page.context.close()
+
+
+# Names, headings and what is spoken.
+
+
+def test_axe_finds_nothing_serious_in_the_lab(tab: Tab) -> None:
+    for folder in ("Advanced", "Realism", "Path editor", "Look back", "Keep and share"):
+        tab.open(folder)
+    assert violations(tab) == []
+    tab.press("Language, display")
+    tab.page.get_by_role("dialog").wait_for()
+    assert violations(tab) == []
+    tab.page.keyboard.press("Escape")
+    tab.page.get_by_role("dialog").wait_for(state="hidden")
+
+
+def test_sliders_their_boxes_and_the_scene_have_names(tab: Tab) -> None:
+    page = tab.page
+    expect(page.get_by_role("slider", name="K1 across")).to_have_count(1)
+    expect(page.get_by_role("textbox", name="K1 across")).to_have_count(1)
+    expect(page.get_by_role("img", name="Two robots")).to_have_count(1)
+    expect(page.get_by_role("img", name="distance to the path [mm]")).to_have_count(1)
+    assert page.evaluate("[document.title, document.documentElement.lang]") == ["OnPath", "en"]
+
+
+@pytest.mark.parametrize("key", ["Enter", "Space"])
+def test_a_folder_is_opened_and_closed_by_keys(tab: Tab, key: str) -> None:
+    heading = tab.page.get_by_role("button", name="Export", exact=True)
+    asked = tab.lab.asked
+    for state in ("true", "false"):
+        tab.focus(heading)
+        tab.page.keyboard.press(key)
+        expect(heading).to_have_attribute("aria-expanded", state)
+    assert tab.lab.asked == asked
+
+
+def test_names_come_back_with_what_is_drawn_anew_in_another_language(tab: Tab) -> None:
+    tab.press("Language, display")
+    tab.page.get_by_role("dialog").get_by_label("Language").click()
+    tab.page.get_by_role("option", name="Deutsch").click()
+    expect(tab.page.get_by_role("button", name="Realismus", exact=True)).to_have_count(1)
+    expect(tab.page.locator("html")).to_have_attribute("lang", "de")
+    expect(tab.page.get_by_role("img", name="Zwei Roboter")).to_have_count(1)
+    tab.ask(c.SetLanguage("en"))
+    expect(tab.page.locator("html")).to_have_attribute("lang", "en")
+
+
+def test_what_happens_is_spoken_unless_that_is_switched_off(tab: Tab) -> None:
+    spoken = tab.page.locator("#op-voice")
+    tab.ask(c.Hold(True))
+    expect(spoken).to_contain_text("Held back.")
+    tab.press("Language, display")
+    tab.page.get_by_label("Say what happens").uncheck()
+    tab.page.keyboard.press("Escape")
+    tab.page.get_by_role("dialog").wait_for(state="hidden")
+    tab.ask(c.Hold(False))
+    wait_for(lambda: all(run.distance < 1e-3 for run in tab.session.runs.values()))
+    tab.settle()
+    expect(spoken).to_contain_text("Held back.")
+    tab.press("Language, display")
+    tab.page.get_by_label("Say what happens").check()
+    expect(spoken).to_contain_text("Both on the path.")
+    tab.page.keyboard.press("Escape")
+    tab.page.get_by_role("dialog").wait_for(state="hidden")
+
+
+def test_a_message_is_over_the_scene_and_moves_nothing_in_the_panel(tab: Tab) -> None:
+    button, message = tab.button("Hold both back"), tab.page.locator("#op-message")
+    expect(button).to_be_visible()
+    before, scene = button.bounding_box(), tab.page.locator("canvas[data-engine]").bounding_box()
+    tab.ask(c.ChoosePath("no such path"))
+    expect(message).to_contain_text("no such path")
+    box = message.bounding_box()
+    assert box and scene and before == button.bounding_box()
+    assert box["x"] >= scene["x"] and box["x"] + box["width"] <= scene["x"] + scene["width"]
+    message.get_by_role("button", name="Close").click()
+    expect(message).to_be_hidden()
+
+
+@pytest.mark.parametrize("name", ["Help and keys", "Language, display", "Robot…", "Lessons"])
+@pytest.mark.parametrize("how", ["Escape", "beside it", "×", "Close"])
+def test_a_dialog_closes_in_every_usual_way(tab: Tab, name: str, how: str) -> None:
+    tab.press(name)
+    dialog = tab.page.get_by_role("dialog")
+    dialog.get_by_role("button", name="Close", exact=True).wait_for()
+    asked = tab.lab.asked
+    if how == "Escape":
+        tab.page.keyboard.press(how)
+    elif how == "beside it":
+        tab.page.mouse.click(15, 15)
+    elif how == "×":
+        dialog.locator(".op-cross").click()
+    else:
+        dialog.get_by_role("button", name="Close", exact=True).click()
+    dialog.wait_for(state="hidden")
+    assert tab.lab.asked == asked
+
+
+def test_whoever_asks_for_less_motion_finds_the_robots_at_rest(
+    browser: Browser, server: LabServer
+) -> None:
+    tab = visit(browser, server, reduced_motion="reduce")
+    wait_for(lambda: not tab.session.running)
+    tab.press("Run")
+    wait_for(lambda: tab.session.running)
+    tab.page.context.close()
+
+
+def test_axe_finds_nothing_serious_in_a_lesson(browser: Browser, server: LabServer) -> None:
+    tab = visit(browser, server)
+    tab.ask(c.OpenLesson(LESSON))
+    tab.page.get_by_role("heading", name="Two robots, one circle").wait_for()
+    wait_for(tab.is_built)
+    assert violations(tab) == []
+    tab.page.context.close()
