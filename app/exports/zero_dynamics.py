@@ -24,7 +24,7 @@ class Study:
     """Internal dynamics of the flexible link with the controlled output held still.
 
     Attributes:
-        parameters: plant, rho, frequency, zeta; their alpha and modes are ignored.
+        parameters: plant, rho, frequency, zeta; their alpha, modes and payload are ignored.
         at: (y2, y3) of the straight link's tip, [m].
         unit: sqrt(EI / rho) / l^2, [1/s].
         alphas: shape (a,).
@@ -69,7 +69,7 @@ def study(
     alphas = np.array(TABLE_ALPHAS) if alphas is None else alphas
     rows, critical = list[np.ndarray](), list[float]()
     for modes in range(1, MOST_MODES + 1):
-        own = replace(parameters, modes=modes)
+        own = replace(parameters, modes=modes, payload=0.0)
         robot, zero = robot_for(own), flexible_zero_dynamics(modes, own.plant)
         q, plant = robot.rest(robot.frame.lift(np.array(at))), robot.plant(own)
         rows.append(zero.exponents(q, zero.with_alpha(plant, alphas))[:, 0].real)
@@ -82,6 +82,7 @@ def study(
 
 def critical_alpha(parameters: FlexibleParameters, at: tuple[float, float]) -> float:
     """Alpha from which the internal dynamics are unstable at rest; infinity if they never are."""
+    parameters = replace(parameters, payload=0.0)
     robot = robot_for(parameters)
     zero = flexible_zero_dynamics(parameters.modes, parameters.plant)
     q = robot.rest(robot.frame.lift(np.array(at)))

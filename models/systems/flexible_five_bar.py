@@ -10,12 +10,16 @@ s cos q2 and at w across it, so that
     V = ½ ρ Σ_j ω_j² f_j².
 
 M11 and M22 include the beam's motion in the plane of the linkage, hence the term -r'².
+
+A payload m at the tip y = h(q) adds ½ m |y'|² to T and, as the balance is without it, m g y3 to V.
 """
 
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import casadi as ca
 import numpy as np
@@ -29,7 +33,9 @@ PLANTS = ("lagrangian", "unit_modes")
 FORMER_PLANTS = {"as_printed": "unit_modes"}  # names in existing share codes, labs and lessons
 _NAMES = "M11 M22 J0 J1 l1 l rho omega1 zeta alpha b1 b2 b3"
 NAMES: tuple[str, ...] = tuple(_NAMES.split())
+PAYLOAD = "payload"  # a further name, of a robot with a payload
 HOME = np.array([np.pi / 2, np.pi, 0.0])
+GRAVITY = 9.81  # [m/s²]
 RIGID = 3  # number of joints, the first coordinates of q
 
 
@@ -60,16 +66,18 @@ class FlexibleLinks:
     b2: float
     b3: float
 
-    def lumped(self, alpha: float) -> dict[str, float]:
+    def lumped(self, alpha: float, payload: float = 0.0) -> dict[str, float]:
         """The parameters of the equations of motion by name (SI).
 
         Args:
             alpha: α, share of the deflection in the controlled output: 1 for the tip, 0 for the
                 rigid link.
+            payload: mass at the tip, [kg].
         """
         own = {name: getattr(self, name) for name in NAMES if hasattr(self, name)}
         omega1 = 2 * np.pi * self.frequency
-        return own | {"l1": self.link1, "l": self.beam, "omega1": omega1, "alpha": alpha}
+        lengths = {"l1": self.link1, "l": self.beam}
+        return own | lengths | {"omega1": omega1, "alpha": alpha, "payload": payload}
 
     def changed(self, rho: float, frequency: float, zeta: float) -> FlexibleLinks:
         """The same linkage with another beam: `rho` in [kg/m], `frequency` in [Hz]."""
@@ -161,7 +169,7 @@ class _Dynamics:
 
 
 def _symbols(modes: int, parameters: ca.SX) -> _Symbols:
-    p = dict(zip(NAMES, ca.vertsplit(parameters), strict=True))
+    p = dict(zip((*NAMES, PAYLOAD), ca.vertsplit(parameters), strict=False))
     q, v = ca.SX.sym("q", RIGID + modes), ca.SX.sym("v", RIGID + modes)
     root = ca.sqrt(p["l"])
     first, second = root * p["l1"], root * p["l"]
@@ -177,7 +185,9 @@ def _symbols(modes: int, parameters: ca.SX) -> _Symbols:
     )
 
 
-def flexible_five_bar(modes: int = 3, plant: str = "lagrangian") -> MechanicalSystem:
+def flexible_five_bar(
+    modes: int = 3, plant: str = "lagrangian", loaded: bool = False
+) -> MechanicalSystem:
     """The robot's equations of motion, with parameters named as in `NAMES`.
 
     Args:
@@ -185,6 +195,8 @@ def flexible_five_bar(modes: int = 3, plant: str = "lagrangian") -> MechanicalSy
         plant: "lagrangian", or "unit_modes": (20)-(21), which cancel the Coriolis terms beforehand,
             with shapes normalised to ∫ φ² ds = 1 and no friction in the joints. See
             `_unit_modes`.
+        loaded: whether there is a parameter `payload`, the mass at the tip. Equations without it
+            take less time, and are the same to the last bit as those with a payload of 0.
 
     Raises:
         ValueError: an unknown plant or number of modes.
@@ -193,24 +205,27 @@ def flexible_five_bar(modes: int = 3, plant: str = "lagrangian") -> MechanicalSy
     """
     if plant not in PLANTS:
         raise ValueError(f"plant {plant!r}: expected one of {', '.join(PLANTS)}")
-    parameters = ca.SX.sym("parameters", len(NAMES))
+    names = (*NAMES, PAYLOAD) if loaded else NAMES
+    parameters = ca.SX.sym("parameters", len(names))
     s = _symbols(modes, parameters)
     rho = s.p["rho"]
     parts = _lagrangian(s) if plant == "lagrangian" else _unit_modes(s)
     w = 2 / ca.sqrt(s.p["l"]) * ca.dot((-1.0) ** np.arange(modes), s.f)
+    tip = _end_point(s, w)
+    load = _load(s, tip) if loaded else _no_load(s)
     return mechanical_system(
         name="flexible_five_bar",
         q=s.q,
         v=s.v,
         parameters=parameters,
-        parameter_names=NAMES,
-        mass=_mass(parts, rho),
-        bias=ca.vertcat(parts.bias, rho * parts.modal_bias),
+        parameter_names=names,
+        mass=_mass(parts, rho) + load.inertia,
+        bias=ca.vertcat(parts.bias, rho * parts.modal_bias) + load.bias,
         inputs=RIGID,
-        output=_end_point(s, w),
+        output=tip,
         controlled_output=_end_point(s, s.p["alpha"] * w),
-        potential_energy=rho / 2 * ca.dot(s.stiffness, s.f**2),
-        solve=lambda _, rhs: _solve(parts, rho, rhs),
+        potential_energy=rho / 2 * ca.dot(s.stiffness, s.f**2) + load.mass * GRAVITY * tip[2],
+        solve=lambda _, rhs: load.solve(partial(_solve, parts, rho), rhs),
     )
 
 
@@ -299,6 +314,63 @@ def _solve(parts: _Dynamics, rho: ca.SX, rhs: ca.SX) -> ca.SX:
         third,
         modal - parts.column @ third,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Load:
+    """A mass at the tip, which acts on the robot like the force -m (y'' + g e_3) there.
+
+    Attributes:
+        mass: m, [kg].
+        jacobian: J = dy/dq of the tip, in coordinates that the waist has turned, (3, n).
+        bias: what m adds to c, m Jᵀ (J' v + g e_3), (n, 1).
+        active: whether there is one.
+    """
+
+    mass: ca.SX
+    jacobian: ca.SX
+    bias: ca.SX
+    active: bool = True
+
+    @property
+    def inertia(self) -> ca.SX:
+        """What m adds to M, m Jᵀ J, (n, n)."""
+        return self.mass * self.jacobian.T @ self.jacobian
+
+    def solve(self, unloaded: Callable[[ca.SX], ca.SX], rhs: ca.SX) -> ca.SX:
+        """(M + m Jᵀ J)⁻¹ R = X - Z (I + m J Z)⁻¹ m J X,  X = M⁻¹ R,  Z = M⁻¹ Jᵀ; X for m = 0.
+
+        Args:
+            unloaded: R -> M⁻¹ R.
+
+        Source: the identity of Sherman, Morrison and Woodbury.
+        """
+        if not self.active:
+            return unloaded(rhs)
+        free, ways = unloaded(rhs), unloaded(self.jacobian.T)
+        shares = ca.SX.eye(3) + self.mass * self.jacobian @ ways
+        inverse = ca.adj(shares) / ca.det(shares)
+        return free - ways @ (inverse @ (self.mass * (self.jacobian @ free)))
+
+
+def _load(s: _Symbols, tip: ca.SX) -> _Load:
+    """The payload, from two derivatives of the tip.
+
+    Turning q3 turns y about a fixed axis, so that q3 = 0 after differentiation gives J and J' v in
+    coordinates that have turned with the waist, with many zeros. J^T J and J^T J' v are the same.
+    """
+    rate = ca.jtimes(tip, s.q, s.v)
+    jacobian, turning = (
+        ca.substitute(each, s.q[2], 0)
+        for each in (ca.jacobian(tip, s.q), ca.jtimes(rate, s.q, s.v))
+    )
+    weight = ca.DM([0, 0, GRAVITY])
+    return _Load(s.p[PAYLOAD], jacobian, s.p[PAYLOAD] * jacobian.T @ (turning + weight))
+
+
+def _no_load(s: _Symbols) -> _Load:
+    n = s.q.numel()
+    return _Load(ca.SX(0), ca.SX(3, n), ca.SX(n, 1), active=False)
 
 
 def _over(divisor: ca.SX, value: ca.SX) -> ca.SX:

@@ -12,7 +12,8 @@ from onpath.models.systems.parameters import Parameters
 
 @dataclass(frozen=True, slots=True)
 class FlexibleParameters(Parameters):
-    """Parameters of the flexible five-bar. `modes` and `plant` select the instance of the robot."""
+    """Parameters of the flexible five-bar. `modes`, `plant` and whether there is a
+    payload select the instance of the robot."""
 
     K3: float = number(
         0.0,
@@ -132,6 +133,15 @@ class FlexibleParameters(Parameters):
         group="realism",
         label="Strain gauge noise",
         on=0.0005,
+    )
+    payload: float = number(
+        0.0,
+        "kg",
+        (0, 0.1, 0.005),
+        "mass at the end-point; the controller does not know",
+        group="realism",
+        label="Payload",
+        on=0.02,
     )
     error_M11: float = number(
         0.0,

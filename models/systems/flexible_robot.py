@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import casadi as ca
@@ -72,6 +72,7 @@ class FlexibleFiveBar:
 
     modes: int = 3
     plant_name: str = "lagrangian"
+    loaded: bool = False
     links: FlexibleLinks = field(default_factory=flexible_five_bar.load_links)
     system: MechanicalSystem = field(init=False, repr=False)
     beam: BeamModes = field(init=False, repr=False)
@@ -85,7 +86,7 @@ class FlexibleFiveBar:
     linkage: BalancedLinkage | None = None
 
     def __post_init__(self) -> None:
-        system = flexible_five_bar.flexible_five_bar(self.modes, self.plant_name)
+        system = flexible_five_bar.flexible_five_bar(self.modes, self.plant_name, self.loaded)
         object.__setattr__(self, "system", system)
         beam = beam_modes(self.modes, self.links.beam)
         object.__setattr__(self, "beam", beam)
@@ -112,11 +113,11 @@ class FlexibleFiveBar:
         """See `Robot.plant`."""
         own = own_parameters(FlexibleParameters, parameters)
         links = self.links.changed(own.rho, own.frequency, own.zeta)
-        return self.system.parameter_vector(links.lumped(own.alpha))
+        return self.system.parameter_vector(links.lumped(own.alpha, own.payload))
 
     def model(self, parameters: Parameters) -> Array:
-        """See `Robot.model`: the plant, with the chosen model errors."""
-        own = own_parameters(FlexibleParameters, parameters)
+        """See `Robot.model`: the plant without payload, with the chosen model errors."""
+        own = replace(own_parameters(FlexibleParameters, parameters), payload=0.0)
         values = dict(zip(self.system.parameter_names, self.plant(own).tolist(), strict=True))
         for name in ("M11", "M22", "J0", "rho", "omega1"):
             values[name] *= 1 + getattr(own, f"error_{name}") / 100
@@ -178,10 +179,14 @@ class FlexibleFiveBar:
         return found[0], UNSTABLE
 
     def is_unstable_inside(self, q: Array, parameters: Parameters) -> bool:
-        """Whether the zero dynamics at rest are unstable, at the joint angles in q, shape (n,)."""
+        """Whether the zero dynamics at rest are unstable, at the joint angles in q, shape (n,).
+
+        Without payload, which the controller does not know.
+        """
         straight = np.concatenate([q[:RIGID], np.zeros(self.modes)])
         zero = flexible_zero_dynamics(self.modes, self.plant_name)
-        return bool(zero.exponents(straight, self.plant(parameters))[0, 0].real > 0)
+        plant = flexible_five_bar_robot(self.modes, self.plant_name).plant(parameters)
+        return bool(zero.exponents(straight, plant)[0, 0].real > 0)
 
     def place(self, y: Array) -> Array:
         """See `Robot.place`."""
@@ -228,21 +233,23 @@ class FlexibleFiveBar:
         return ca.vertcat(radius * s + w * c, w * s - radius * c, height)
 
 
-def flexible_five_bar_robot(modes: int = 3, plant: str = "lagrangian") -> FlexibleFiveBar:
-    """The only instance for a number of modes and a plant, so that its kernels are built once.
+def flexible_five_bar_robot(
+    modes: int = 3, plant: str = "lagrangian", loaded: bool = False
+) -> FlexibleFiveBar:
+    """The only instance for its arguments, so that its kernels are built once.
 
     Raises:
         ValueError: an unknown plant or number of modes.
     """
-    return _robot(modes, plant)
+    return _robot(modes, plant, loaded)
 
 
-@lru_cache(maxsize=2 * MOST_MODES)
-def _robot(modes: int, plant: str) -> FlexibleFiveBar:
-    return FlexibleFiveBar(modes, plant)
+@lru_cache(maxsize=4 * MOST_MODES)
+def _robot(modes: int, plant: str, loaded: bool) -> FlexibleFiveBar:
+    return FlexibleFiveBar(modes, plant, loaded)
 
 
-@lru_cache(maxsize=2 * MOST_MODES)
+@lru_cache(maxsize=4 * MOST_MODES)
 def _decoupling(robot: FlexibleFiveBar) -> ca.Function:
     return decoupling_matrix(robot.system)
 
@@ -250,12 +257,13 @@ def _decoupling(robot: FlexibleFiveBar) -> ca.Function:
 def robot_for(parameters: Parameters) -> FlexibleFiveBar:
     """The instance for these parameters."""
     own = own_parameters(FlexibleParameters, parameters)
-    return flexible_five_bar_robot(own.modes, own.plant)
+    return flexible_five_bar_robot(own.modes, own.plant, own.payload > 0)
 
 
 def critical_alpha(parameters: Parameters, joints: Array) -> float:
-    """See `FlexibleLink.critical_alpha`."""
-    robot = robot_for(parameters)
+    """See `FlexibleLink.critical_alpha`: without payload, which the controller does not know."""
+    own = own_parameters(FlexibleParameters, parameters)
+    robot = flexible_five_bar_robot(own.modes, own.plant)
     q = np.concatenate([joints, np.zeros(robot.modes)])
     zero = flexible_zero_dynamics(robot.modes, robot.plant_name)
     return zero.critical_alpha(q, robot.plant(parameters), highest=1.0)
