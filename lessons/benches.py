@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from onpath.lessons.schema import RobotName
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
+from onpath.models.control.laws.own import LABEL, OWN, is_text
 from onpath.models.control.laws.registry import LAWS
 
 ROLES: dict[str, RobotName] = {LEFT: "tracker", RIGHT: "follower"}
@@ -15,12 +16,16 @@ BENCH_OF: dict[RobotName, str] = {role: bench for bench, role in ROLES.items()}
 
 
 def law_label(law: str, words: Words) -> str:
-    """Displayed name of a control law."""
+    """Displayed name of a control law; all typed laws have the same."""
+    if law == OWN or is_text(law):
+        return words.get("law.own.label", LABEL)
     return words.get(f"law.{law}.label", LAWS[law].label)
 
 
 def law_text(law: str, words: Words) -> str:
-    """What a control law does, in a sentence."""
+    """What a control law does, in a sentence; a typed law is its own."""
+    if is_text(law):
+        return law
     return words.get(f"law.{law}.text", LAWS[law].text)
 
 
@@ -31,7 +36,7 @@ def bench_titles(laws: Mapping[str, str | tuple[str, ...]], words: Words) -> dic
         laws: control law of each bench, or several, one after the other.
     """
     labels = {
-        bench: ", ".join(law_label(law, words) for law in dict.fromkeys(_all(own)))
+        bench: ", ".join(dict.fromkeys(law_label(law, words) for law in _all(own)))
         for bench, own in laws.items()
     }
     if len(set(labels.values())) == len(labels):

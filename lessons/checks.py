@@ -25,6 +25,7 @@ from onpath.lessons.schema import (
 )
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.laws.own import short_name
 from onpath.models.systems.parameters import specs
 
 TINY = 1e-9  # smallest divisor of a ratio
@@ -136,7 +137,7 @@ def _(check: Order, record: Record, words: Words) -> Verdict:
 @verdict.register
 def _(check: Setting, record: Record, words: Words) -> Verdict:
     own: dict[str, object] = {"path": record.path, "robot": record.robot}
-    own |= {**DEFAULT_LAWS, **record.laws}
+    own |= {**DEFAULT_LAWS, **{bench: short_name(law) for bench, law in record.laws.items()}}
     value = own.get(check.name, getattr(record.parameters, check.name, None))
     if check.equals is not None:
         spec = specs(record.parameters).get(check.name)

@@ -25,7 +25,8 @@ from onpath.lessons.schema import (
     Value,
 )
 from onpath.models.closed_loop.simulation import check_level_set, raised
-from onpath.models.control.benches import BENCHES, check_laws
+from onpath.models.control.benches import BENCHES, checked_laws
+from onpath.models.control.laws.own import OWN
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import presets
@@ -138,9 +139,9 @@ def _check_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
         for event in check.events:
             yield from _one_of(event.partition(":")[0], EVENTS, "event")
     if isinstance(check, Event) and check.event == "law" and check.name:
-        yield from _one_of(check.name, LAWS, "law")
+        yield from _one_of(check.name, [*LAWS, OWN], "law")
     if isinstance(check, Setting) and check.name in BENCHES and check.equals is not None:
-        yield from _one_of(str(check.equals), LAWS, "law")
+        yield from _one_of(str(check.equals), [*LAWS, OWN], "law")
     if isinstance(check, Event) and check.event == "set" and check.name and entry is not None:
         yield from _one_of(check.name, specs(entry.parameters), "parameter")
 
@@ -161,7 +162,7 @@ def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
 
 def _law_faults(laws: Laws, entry: RobotEntry) -> Iterator[str]:
     try:
-        check_laws(laws.named, entry)
+        checked_laws(laws.named, entry)
     except ValueError as error:
         yield str(error)
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from onpath.app.classroom.moment import Moment, read_moment, take_over
+from onpath.app.classroom.moment import Moment, read_moment, take_over, typed_loops_of
 from onpath.app.common.error_log import log_warning
 from onpath.app.lab.advance_together import Frame, Ticks
 from onpath.app.lab.lab import Lab
@@ -81,10 +81,19 @@ class Mirror(ScheduledLab):
         return self._taken is not None and self._taken.moves
 
     def _take_over_due(self) -> None:
-        while self._coming and self._is_due(self._coming[0]):
+        while self._coming and self._is_due(self._coming[0]) and self._can_run(self._coming[0]):
             new = self._coming.popleft()
             take_over(self.lab, new, self._taken)
             self._taken = new
+
+    def _can_run(self, new: Moment) -> bool:
+        """Whether the loops of its typed laws are made; they are, in the background."""
+        try:
+            return self.session.law_changes.has_loops(typed_loops_of(new))
+        except ValueError as error:
+            log_warning("a student's lab cannot be shown: %s", error)
+            self._coming.popleft()
+            return False
 
     def _step(self) -> float:
         """Simulated time of this frame, [s]; the further behind, the longer."""

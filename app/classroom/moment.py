@@ -17,14 +17,16 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.path_editor import Blend, PathEditor
 from onpath.app.lab.plot_samples import places
 from onpath.app.lab.session import Session
-from onpath.app.lab.setup import EXAGGERATIONS, RATES, Word
+from onpath.app.lab.setup import EXAGGERATIONS, RATES, LawName, Word
+from onpath.app.lab.typed_loops import Key
 from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import log_layout, state_layout
 from onpath.models.closed_loop.obstacles import Wall
-from onpath.models.closed_loop.simulation import Push
-from onpath.models.control.benches import BENCHES, check_laws
-from onpath.models.control.laws.registry import LAWS
+from onpath.models.closed_loop.simulation import Push, kind_of
+from onpath.models.control.benches import BENCHES, checked_laws
+from onpath.models.control.laws.own import is_text
+from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import Fault
 from onpath.models.paths.curves import TERMS, Curve, from_terms, terms_of
@@ -75,7 +77,7 @@ class RobotMoment(msgspec.Struct, frozen=True):
     """One robot.
 
     Attributes:
-        law: name of its control law.
+        law: name of its control law, or a typed law.
         state: see `models.closed_loop.loop_vectors.state_layout`.
         sample: see `app.lab.plot_samples`.
         max_distance: largest distance to the path so far, [m].
@@ -84,7 +86,7 @@ class RobotMoment(msgspec.Struct, frozen=True):
             none. The brake acts along the tangent, and along the normal, too, if there is one.
     """
 
-    law: Word
+    law: LawName
     state: Vector
     sample: Vector
     max_distance: float
@@ -228,9 +230,10 @@ def read_moment(text: str) -> Moment:
             _numbers(line.terms, (3 if in_space else 2) * terms_of(line.closed))
     for numbers in (moment.path.points, moment.path.marks):
         _numbers(numbers, 2 * (len(numbers) // 2))
-    check_laws(laws_of(moment), entry)
+    if checked_laws(laws_of(moment), entry) != laws_of(moment):
+        raise ValueError("a typed law is on one line")
     for each, law in zip(moment.robots, laws_of(moment).values(), strict=True):
-        _numbers(each.state, state_layout(robot.system, LAWS[law].memory).size)
+        _numbers(each.state, state_layout(robot.system, law_named(law).memory).size)
         _numbers(each.sample, len(samples))
         for pull in (each.hand, each.anchor, each.tangent, each.normal):
             _numbers(pull, robot.system.p if pull else 0)
@@ -260,6 +263,18 @@ def wall_of(moment: Moment) -> Wall | None:
         ValueError: it is out of range.
     """
     return Wall(*moment.wall) if moment.wall else None
+
+
+def typed_loops_of(moment: Moment) -> list[Key]:
+    """The loops of typed laws that a lab needs to take it over.
+
+    Raises:
+        ValueError: see `parameters_of`.
+    """
+    parameters, curve = parameters_of(moment), _curve(moment.path.target)
+    robot = ROBOTS[moment.robot].make(parameters)
+    typed = [each.law for each in moment.robots if is_text(each.law)]
+    return [(robot, kind_of(law, parameters, curve)) for law in typed]
 
 
 def parameters_of(moment: Moment) -> Parameters:

@@ -10,17 +10,17 @@ from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.segments import Drive, Input
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loop_vectors import state_layout
 from onpath.models.closed_loop.loops import CompiledLoop, Loop
 from onpath.models.closed_loop.simulation import (
     Push,
-    kernel_of,
     kind_of,
     primed,
     pushed,
     settings_vector,
 )
 from onpath.models.closed_loop.start import ON_PATH, Start, start_state
-from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
@@ -40,6 +40,9 @@ class Diverged:
 class ClosedLoopRun:
     """State and inputs of one closed loop; only the simulation thread touches it.
 
+    Args:
+        store: provides its loops.
+
     Attributes:
         bench: name of the bench.
         law: name of its control law.
@@ -47,6 +50,7 @@ class ClosedLoopRun:
 
     def __init__(
         self,
+        store: LoopCache,
         robot: Robot,
         bench: str,
         law: str,
@@ -54,7 +58,7 @@ class ClosedLoopRun:
         curve: Curve,
         start: Start = ON_PATH,
     ) -> None:
-        self.robot = robot
+        self._store, self.robot = store, robot
         self.bench, self.law = bench, law
         self.diverged: Diverged | None = None
         self.distance = self.max_distance = 0.0
@@ -81,17 +85,16 @@ class ClosedLoopRun:
             self.diverged = None
         self._fill_row(curve)
 
-    def kinds_under(self, law: str) -> tuple[Kind, Kind]:
-        """The kinds of loop that another law would need, now and when something acts on it."""
-        assert self._inputs is not None
-        return kind_of(law, *self._inputs), kind_of(law, *self._inputs[:2])
+    def lacks(self, parameters: Parameters, curve: Curve, push: Push) -> Kind | None:
+        """The kind of loop that these inputs need, if it is another one or not compiled."""
+        kind = kind_of(self.law, parameters, curve, push)
+        return None if kind == self.kind and isinstance(self._loop, CompiledLoop) else kind
 
-    def change_law(self, law: str) -> None:
-        """Change the control law; the robot moves on from where it is."""
-        inputs, state, kind = self._inputs, self.state, self.kind
-        assert inputs is not None
+    def change_law(self, law: str, parameters: Parameters, curve: Curve, push: Push) -> None:
+        """Change the control law; the robot moves on from where it is, with these inputs."""
+        state, kind = self.state, self.kind
         self.law, self._inputs = law, None
-        self.configure(*inputs)
+        self.configure(parameters, curve, push)
         self._go_on_from(state, kind)
         self.row = self.row.copy()  # the session detects a new row by identity
         self.shown()["theta_ref"][:] = self.fields()["theta_ref"]
@@ -107,9 +110,10 @@ class ClosedLoopRun:
 
     def _under_law(self, state: Array, kind: Kind) -> Array:
         """The state of a loop under another law, as the loop of the present one begins with it."""
-        before, layout = kernel_of(self.robot, kind).state, self._kernel.state
+        memory, layout = law_named(kind.controller).memory, self._kernel.state
+        before = state_layout(self.robot.system, memory)
         values = {name: np.zeros(size) for name, size in layout.fields}
-        own = {name for name, _ in LAWS[self.law].memory}
+        own = {name for name, _ in law_named(self.law).memory}
         values |= {n: v for n, v in before.unpack(state).items() if n in values and n not in own}
         values |= {"theta_ref": values["theta"], "integral": np.zeros_like(values["integral"])}
         return layout.pack(values)
@@ -156,10 +160,10 @@ class ClosedLoopRun:
         """The part of the state that the loop changes."""
         return self.state[: self._kernel.changed]
 
-    def loop(self, store: LoopCache) -> Loop:
+    def loop(self) -> Loop:
         """The fastest loop of its kind available now."""
         if not isinstance(self._loop, CompiledLoop):
-            self._loop = store.get(self.robot, self.kind)
+            self._loop = self._store.get(self.robot, self.kind, self._loop)
         return self._loop
 
     def take(self, state: Array, row: Array, distance: float, largest: float) -> None:
@@ -186,20 +190,24 @@ class ClosedLoopRun:
             self.row = rows[good[-1]].copy()
 
     def configure(self, parameters: Parameters, curve: Curve, push: Push) -> None:
-        """Set the inputs; packs a new settings vector if one has changed."""
+        """Set the inputs; packs a new settings vector if one has changed.
+
+        The run keeps its loop as long as it needs one of this kind, whatever the store keeps.
+        """
         before, self._inputs = self._inputs, (parameters, curve, push)
         same = before is not None and before[0] is parameters and before[1] is curve
         if before is not None and same and before[2] is push:
             return
         kind = None if before is None else self.kind
-        self.kind: Kind = kind_of(self.law, parameters, curve, push)
-        self._loop: Loop | None = None
-        self._kernel = kernel = kernel_of(self.robot, self.kind)
-        self.log: Layout = kernel.log
+        if (new := kind_of(self.law, parameters, curve, push)) != kind:
+            self.kind: Kind = new
+            self._loop: Loop | None = None
+            self._kernel = self._store.kernel(self.robot, new)
+            self.log: Layout = self._kernel.log
         if same:
-            self.settings = pushed(kernel, self.settings, push)
+            self.settings = pushed(self._kernel, self.settings, push)
         else:
-            self.settings = settings_vector(self.robot, kernel, parameters, curve, push)
+            self.settings = settings_vector(self.robot, self._kernel, parameters, curve, push)
         if kind is not None:
             self._prime(kind)
 

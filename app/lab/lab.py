@@ -67,6 +67,7 @@ class Lab:
         lessons: the user's progress through the lessons.
         script: player of the running script, or None.
         message, message_level: message to the user, and "info", "warning" or "error".
+        law_refusals: why the law that was last typed for a bench was refused, by bench.
         shared: the last share code made.
         frozen: whether the teacher has stopped this lab.
         asked: number of commands given by the user.
@@ -82,6 +83,7 @@ class Lab:
         self.lessons = LessonRun(course)
         self.script: ScriptPlayer[Command] | None = None
         self.message, self.message_level = "", "info"
+        self.law_refusals: dict[str, str] = {}
         self.shared = ""
         self.frozen, self.asked = False, 0
         self.unsaved = False
@@ -223,8 +225,10 @@ class Lab:
             self.show_message(message)
 
     def show_faults(self) -> None:
-        """Report robots that have just stopped."""
-        faults = self.session.faults
+        """Report robots that have just stopped, and typed laws that could not be used."""
+        faults, refusals = self.session.faults, self.session.law_changes.refusals
+        while refusals:
+            self.show_message(self.words.sentence(refusals.pop(0)), "warning")
         while faults:
             self._show_fault(faults.pop(0))
 

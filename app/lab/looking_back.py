@@ -14,6 +14,7 @@ from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.segments import Segment
 from onpath.app.lab.session import Session
 from onpath.app.lab.timeline import Timeline
+from onpath.models.control.laws.own import short_name
 
 
 def look_back(session: Session, ago: float) -> None:
@@ -38,7 +39,7 @@ def go_on(session: Session) -> tuple[float, float] | None:
         session.note("release")
         for bench, drive in segment.drives.items():
             if (law := session.laws[bench]) != drive.kind.controller:
-                session.note("law", law, (bench,))
+                session.note("law", short_name(law), (bench,))
         session.undo_timeline = left
     session.viewing, session.running = None, True
     return None if left is None else (session.time, left.time - session.time)

@@ -16,6 +16,7 @@ from onpath.app.lab.advance_together import Frame, Ticks, advance_together
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.history import History
+from onpath.app.lab.law_changes import LawChanges
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout, samples_of
@@ -24,7 +25,9 @@ from onpath.app.lab.timeline import LabEvent, Timeline
 from onpath.models.closed_loop.obstacles import ALONG, Wall
 from onpath.models.closed_loop.start import ON_PATH, Start, check_start
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
-from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.laws.own import short_name
+from onpath.models.control.laws.registry import law_named
+from onpath.models.errors import CodedError
 from onpath.models.layout import Layout
 from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
@@ -55,6 +58,7 @@ class Session:
         entry, robot, parameters: catalogue entry, model and parameters of the current robot.
         runs: the two closed loops, by bench.
         editor: the path.
+        law_changes: laws that come as soon as their loops are made.
         start: where and how the next run starts.
         wall: in the way of both end-points, or None; it stays from run to run.
         hold_direction: in which the next brake acts, one of `DIRECTIONS`.
@@ -79,7 +83,7 @@ class Session:
         self.history = History(self._samples)
         self._inputs: Inputs | None = None
         self.runs: dict[str, ClosedLoopRun] = {}
-        self._coming: dict[str, str] = {}  # laws whose loops are being made, by bench
+        self.law_changes = LawChanges(store, self.change_law)
         self.presets: Mapping[str, PathDesign] = presets()
         self.running = True
         self.rate = 1.0
@@ -141,31 +145,33 @@ class Session:
     @property
     def chosen_laws(self) -> dict[str, str]:
         """Control law of each bench as soon as its loop can run."""
-        return self.laws | self._coming
+        return self.laws | self.law_changes.coming
 
     def suits(self, law: str) -> bool:
-        """Whether a law can be used with the current robot."""
-        return LAWS[law].suits(self.robot.system)
+        """Whether a law can be used with the current robot and its controlled output."""
+        own, composite = law_named(law), getattr(self.parameters, "law", "") == "composite"
+        return own.suits(self.robot.system) and (own.commands_acceleration or not composite)
 
     def choose_law(self, bench: str, law: str) -> None:
         """Change the law of a bench as soon as its loop can run; the old law goes on until then."""
-        self._coming[bench] = law
-        self._change_laws()
+        self.law_changes.coming[bench] = law
+        self._follow_laws()
 
     def change_law(self, bench: str, law: str) -> None:
         """Change the law of a bench now; its robot moves on from where it is."""
-        self._coming.pop(bench, None)
+        self.law_changes.coming.pop(bench, None)
         if law != self.runs[bench].law:
-            self.runs[bench].change_law(law)
-            self.note("law", law, (bench,))
+            push = self.grips.pushes[bench]
+            self.runs[bench].change_law(law, self.parameters, self.editor.curve, push)
+            if self.law_changes.stands_still:  # the run begins with this law
+                self.runs[bench].reset(self.editor.curve, self._beginning())
+            else:
+                self.note("law", short_name(law), (bench,))
 
-    def _change_laws(self) -> None:
-        """Change to the laws whose loops can run now."""
-        for bench, law in list(self._coming.items()):
-            now, pushed = self.runs[bench].kinds_under(law)
-            if self._store.is_ready(self.robot, now):
-                self._store.prepare(self.robot, pushed)
-                self.change_law(bench, law)
+    def _follow_laws(self) -> bool:
+        """Change to the laws whose loops can run now; returns whether time can run."""
+        curve, pushes = self.editor.curve, self.grips.pushes
+        return self.law_changes.follow(self.runs, self.parameters, curve, pushes)
 
     def _suitable(self, laws: Mapping[str, str]) -> dict[str, str]:
         """The laws that suit the robot, and the defaults in place of others."""
@@ -180,9 +186,8 @@ class Session:
 
     def frame(self, seconds: float) -> Frame:
         """Simulate `seconds` of simulated time, if running; see `advance_together`."""
-        if self._coming:
-            self._change_laws()
-        if not self.running:
+        can_run = self._follow_laws()
+        if not self.running or not can_run:
             self._owed = 0.0
             if self.viewing is None:
                 self._bend(seconds)
@@ -207,7 +212,7 @@ class Session:
             run.configure(parameters, curve, self.grips.pushes[run.bench])
         states, most = [run.recorded for run in runs], [run.max_distance for run in runs]
         rows, distances = [run.row for run in runs], [run.distance for run in runs]
-        moving = [(run, run.loop(self._store)) for run in runs if run.diverged is None]
+        moving = [(run, run.loop()) for run in runs if run.diverged is None]
         yield Ticks(moving, ticks, self.time, dt, parameters, curve, table)
         for run, _ in moving:
             if run.diverged is not None:
@@ -228,8 +233,14 @@ class Session:
                 run.project(self.editor.curve)
 
     def step_once(self) -> None:
-        """Make one step of a paused lab: the controller's next sample, at least a millisecond."""
+        """Make one step of a paused lab: the controller's next sample, at least a millisecond.
+
+        Raises:
+            ValueError: the loop of a typed law is being made.
+        """
         self.running = False
+        if not self._follow_laws():
+            raise CodedError("error.law_not_ready")
         dt = time_step(self.parameters)
         self.simulate(max(1, round(max(TICK, 1 / self.parameters.control_rate) / dt)))
 
@@ -244,13 +255,15 @@ class Session:
         """
         self.check_start(self.start)
         if laws is not None:
-            self._coming.clear()
+            self.law_changes.coming.clear()
         self._restart(laws)
         self.note("reset")
 
     def _restart(self, laws: Mapping[str, str] | None = None) -> None:
         laws = self._suitable(self.laws if laws is None else laws)
-        self._coming = {b: law for b, law in self._coming.items() if self.suits(law)}
+        changes, curve = self.law_changes, self.editor.curve
+        changes.coming = {b: law for b, law in changes.coming.items() if self.suits(law)}
+        laws = changes.begin(laws, self.robot, self.parameters, curve)
         self.run_number += 1
         self.time = self.across_since = 0.0
         self._owed = 0.0
@@ -259,10 +272,9 @@ class Session:
         self.undo_timeline: Timeline | None = None
         self.history.clear()
         self.faults.clear()
-        curve = self.editor.curve
-        start = self.start if self._can_start() else ON_PATH
+        start, store = self._beginning(), self._store
         self.runs = {
-            bench: ClosedLoopRun(self.robot, bench, law, self.parameters, curve, start)
+            bench: ClosedLoopRun(store, self.robot, bench, law, self.parameters, curve, start)
             for bench, law in laws.items()
         }
         self.grips = ExternalForces(self.robot, self.runs, self.note, self.wall)
@@ -274,12 +286,13 @@ class Session:
         if start != ON_PATH:
             check_start(self.robot, self.editor.curve, self.parameters, start)
 
-    def _can_start(self) -> bool:
+    def _beginning(self) -> Start:
+        """The start, or if it is not possible that of a new lab."""
         try:
             self.check_start(self.start)
         except ValueError:
-            return False
-        return True
+            return ON_PATH
+        return self.start
 
     def set_wall(self, wall: Wall | None) -> None:
         """Place, move or take away the wall."""

@@ -20,7 +20,8 @@ from onpath.app.lab.session import Belongings, Session
 from onpath.models.closed_loop.obstacles import ALONG, Wall, check_direction
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.closed_loop.start import ON_PATH, Start, check_start
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, check_laws
+from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, checked_laws
+from onpath.models.control.laws.expressions import LONGEST
 from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through
@@ -42,6 +43,8 @@ FORMER_DEFAULTS = {"five_bar": {"K3": 0.0}, "two_link_arm": {"K3": 0.0}, "flexib
 """Robots of version 1, and their defaults that have changed. K3 acted in the tracker, too."""
 
 Word = Annotated[str, msgspec.Meta(max_length=40, pattern=r"^[A-Za-z0-9_ -]*$")]
+LawName = Annotated[str, msgspec.Meta(max_length=LONGEST)]
+"""The name of a control law, or a typed law; `checked_laws` reads it."""
 Length = Annotated[int, msgspec.Meta(ge=-1_000_000, le=1_000_000)]
 Lengths = Annotated[tuple[Length, ...], msgspec.Meta(max_length=2 * max(TERMS, MOST_POINTS))]
 
@@ -79,17 +82,19 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A whole lab: the current robot, the set-up of each robot, and the lab's switches.
 
     Attributes:
-        benches: the set-up of each robot, by name.
+        robots: the set-up of each robot, by name; stored as "benches".
         laws: control laws that differ from a new lab's, by bench.
         hold: direction in which brakes act.
     """
 
     robot: Word = FIVE_BAR.name
-    benches: Annotated[dict[Word, RobotSetup], msgspec.Meta(max_length=100)] = {}
+    robots: Annotated[dict[Word, RobotSetup], msgspec.Meta(max_length=100)] = msgspec.field(
+        default_factory=dict[str, RobotSetup], name="benches"
+    )
     rate: float = 1.0
     copy: bool = True
     exaggeration: float = 1.0
-    laws: Annotated[dict[Word, Word], msgspec.Meta(max_length=len(BENCHES))] = {}
+    laws: Annotated[dict[Word, LawName], msgspec.Meta(max_length=len(BENCHES))] = {}
     hold: Word = ALONG
 
 
@@ -118,8 +123,9 @@ def to_data(setup: Setup) -> dict[str, Any]:
 def _plain(value: Any) -> Any:
     if isinstance(value, msgspec.Struct):
         new = type(value)()
-        own = {name: getattr(value, name) for name in value.__struct_fields__}
-        return {n: _plain(v) for n, v in own.items() if v != getattr(new, n)}
+        names = zip(value.__struct_encode_fields__, value.__struct_fields__, strict=True)
+        own = {stored: (getattr(value, name), getattr(new, name)) for stored, name in names}
+        return {stored: _plain(now) for stored, (now, before) in own.items() if now != before}
     if isinstance(value, Mapping):
         return {name: _plain(item) for name, item in value.items()}
     return list(value) if isinstance(value, tuple) else value
@@ -132,33 +138,33 @@ def from_data(data: Any) -> Setup:
         ValueError: it is not a valid set-up.
     """
     stored = msgspec.convert(data, StoredSetup)
-    benches = stored.benches if stored.defaults == DEFAULTS else _brought_up(stored.benches)
+    robots = stored.robots if stored.defaults == DEFAULTS else _brought_up(stored.robots)
     own: dict[str, Any] = {name: getattr(stored, name) for name in Setup.__struct_fields__}
-    setup = Setup(**{**own, "benches": benches})
-    planned(setup, presets())
-    return setup
+    setup = Setup(**{**own, "robots": robots})
+    entry = planned(setup, presets())[setup.robot].entry
+    return msgspec.structs.replace(setup, laws=checked_laws(setup.laws, entry))
 
 
-def _brought_up(benches: Mapping[str, RobotSetup]) -> dict[str, RobotSetup]:
+def _brought_up(robots: Mapping[str, RobotSetup]) -> dict[str, RobotSetup]:
     """The same set-ups of robots, as differences from the present defaults."""
-    found = dict(benches)
-    for robot, former in FORMER_DEFAULTS.items():
-        bench = benches.get(robot, RobotSetup())
-        own = {**former, **bench.parameters}
+    found = dict(robots)
+    for name, former in FORMER_DEFAULTS.items():
+        robot = robots.get(name, RobotSetup())
+        own = {**former, **robot.parameters}
         if own.get("K3", 0.0) != 0.0:
             own["tracker_integral"] = "on"
         if own:
-            found[robot] = msgspec.structs.replace(bench, parameters=own)
+            found[name] = msgspec.structs.replace(robot, parameters=own)
     return found
 
 
 def capture(session: Session) -> Setup:
     """The current set-up of a session; a path being dragged counts only after the drag."""
-    benches = {**session.earlier, session.entry.name: session.belongings()}
-    found = {name: _captured(name, own, session.presets) for name, own in sorted(benches.items())}
+    robots = {**session.earlier, session.entry.name: session.belongings()}
+    found = {name: _captured(name, own, session.presets) for name, own in sorted(robots.items())}
     return Setup(
         robot=session.entry.name,
-        benches={name: bench for name, bench in found.items() if bench != RobotSetup()},
+        robots={name: robot for name, robot in found.items() if robot != RobotSetup()},
         rate=_rounded(session.rate),
         copy=session.copy,
         exaggeration=_rounded(session.exaggeration),
@@ -188,18 +194,18 @@ def with_paths_of_today(setup: Setup) -> tuple[Setup, tuple[Message, ...]]:
     Raises:
         ValueError: the set-up is impossible for another reason.
     """
-    benches, told = dict(setup.benches), tuple[Message, ...]()
+    robots, told = dict(setup.robots), tuple[Message, ...]()
     for name, wanted in planned(setup, presets()).items():
         if reasons := _path_faults(wanted):
-            kept = benches.get(name, RobotSetup())
-            benches[name] = msgspec.structs.replace(kept, path=Path(), start={})
+            kept = robots.get(name, RobotSetup())
+            robots[name] = msgspec.structs.replace(kept, path=Path(), start={})
             told = (*told, *reasons)
         elif wanted.start != ON_PATH:
             try:
                 _check_start(wanted)
             except ValueError:
-                benches[name] = msgspec.structs.replace(benches[name], start={})
-    return msgspec.structs.replace(setup, benches=benches), told
+                robots[name] = msgspec.structs.replace(robots[name], start={})
+    return msgspec.structs.replace(setup, robots=robots), told
 
 
 def _path_faults(wanted: Wanted) -> tuple[Message, ...]:
@@ -225,22 +231,23 @@ def restore(session: Session, setup: Setup) -> None:
     wanted = planned(setup, session.presets)
     for name in (session.entry.name, *session.earlier):
         wanted.setdefault(name, _wanted(name, RobotSetup(), session.presets))
-    for bench in wanted.values():
-        if reasons := _path_faults(bench):
-            raise CodedError("error.cannot_follow", robot=bench.entry.label, reasons=reasons)
-        _check_start(bench)
+    for robot in wanted.values():
+        if reasons := _path_faults(robot):
+            raise CodedError("error.cannot_follow", robot=robot.entry.label, reasons=reasons)
+        _check_start(robot)
+    laws = checked_laws(setup.laws, wanted[setup.robot].entry)
     session.rate, session.copy = setup.rate, setup.copy
     session.exaggeration, session.hold_direction = setup.exaggeration, setup.hold
     for name in sorted(wanted, key=lambda name: name == setup.robot):
-        bench = wanted[name]
-        session.choose_robot(bench.entry)
-        if (rise := rise_of(bench.parameters)) != session.editor.rise:
-            session.editor.raise_to(rise, bench.design)
-        session.set_parameters(bench.parameters)
-        session.editor.commit(bench.design)
+        robot = wanted[name]
+        session.choose_robot(robot.entry)
+        if (rise := rise_of(robot.parameters)) != session.editor.rise:
+            session.editor.raise_to(rise, robot.design)
+        session.set_parameters(robot.parameters)
+        session.editor.commit(robot.design)
         session.editor.advance(BLEND)
-        session.start, session.wall = bench.start, bench.wall
-    session.reset(setup.laws)
+        session.start, session.wall = robot.start, robot.wall
+    session.reset(laws)
 
 
 def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
@@ -256,26 +263,26 @@ def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
     msgspec.convert(to_data(setup), StoredSetup)  # one made in Python has not been validated
     _within("speed", setup.rate, RATES)
     _within("exaggeration", setup.exaggeration, EXAGGERATIONS)
-    names = dict.fromkeys((*setup.benches, setup.robot))
-    wanted = {name: _wanted(name, setup.benches.get(name, RobotSetup()), paths) for name in names}
-    check_laws(setup.laws, wanted[setup.robot].entry)
+    names = dict.fromkeys((*setup.robots, setup.robot))
+    wanted = {name: _wanted(name, setup.robots.get(name, RobotSetup()), paths) for name in names}
+    checked_laws(setup.laws, wanted[setup.robot].entry)
     check_direction(setup.hold)
     return wanted
 
 
-def _wanted(name: str, bench: RobotSetup, paths: Mapping[str, PathDesign]) -> Wanted:
+def _wanted(name: str, robot: RobotSetup, paths: Mapping[str, PathDesign]) -> Wanted:
     if name not in ROBOTS:
         raise unknown_name(name, list(ROBOTS), "robot")
     parameters = ROBOTS[name].lab
-    for field, value in bench.parameters.items():
+    for field, value in robot.parameters.items():
         tiny = isinstance(value, float) and abs(value) <= NOTHING
         parameters = changed(parameters, field, 0.0 if tiny else value)
-    if unknown := set(bench.start) - set(asdict(ON_PATH)):
+    if unknown := set(robot.start) - set(asdict(ON_PATH)):
         raise unknown_name(min(unknown), list(asdict(ON_PATH)), "start")
-    if len(bench.wall) not in (0, 3):
+    if len(robot.wall) not in (0, 3):
         raise CodedError("error.half_a_wall")
-    start, wall = Start(**bench.start), Wall(*bench.wall) if bench.wall else None
-    return Wanted(ROBOTS[name], parameters, _design(bench.path, paths), start, wall)
+    start, wall = Start(**robot.start), Wall(*robot.wall) if robot.wall else None
+    return Wanted(ROBOTS[name], parameters, _design(robot.path, paths), start, wall)
 
 
 def _within(what: str, value: float, bounds: tuple[float, ...]) -> None:

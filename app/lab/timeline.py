@@ -20,7 +20,7 @@ class LabEvent:
         time: simulated time, [s].
         name: "set", "path", "robot", "law", "reset", "hold", "let_go", "pull", "release",
             "identify" or "diverged".
-        detail: the parameter, the path, the robot or the law; or empty.
+        detail: the parameter, the path, the robot, or the `short_name` of the law; or empty.
         benches: the benches concerned.
     """
 

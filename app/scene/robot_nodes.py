@@ -15,7 +15,7 @@ from onpath.app.scene.poses import Poses, difference, trace_segments
 from onpath.app.scene.stage import IDENTITY, ChangingText, Stage, add_copies
 from onpath.app.viser_adapter.frame_channel import NodeGroup, update_node
 from onpath.lessons.words import ENGLISH, Words
-from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.laws.registry import law_named
 
 if TYPE_CHECKING:
     import viser
@@ -71,7 +71,7 @@ def part_looks(
     extras = counts.marks
     dark = palette.OF_BENCH[bench].toward(palette.INK, 0.45)
     discs, inks = DOT, (palette.WHITE, dark)
-    if LAWS[law].aim == "theta_ref":
+    if law_named(law).aim == "theta_ref":
         discs, inks = RING, (dark, palette.WHITE)
     driven = [i in motors for i in range(counts.joints)]
     joints = [palette.MOTOR if motor else palette.STEEL for motor in driven]

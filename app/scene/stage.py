@@ -14,7 +14,7 @@ from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.pointer_projection import Box, DragPlane
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import ENGLISH, Words
-from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.laws.registry import law_named
 
 if TYPE_CHECKING:
     import viser
@@ -251,7 +251,7 @@ class Titles:
         for bench, title in self._titles.items():
             law, below = self._texts[bench]
             law.show(title)
-            below.show(captions[bench] or self._words(f"aim.{LAWS[laws[bench]].aim}"))
+            below.show(captions[bench] or self._words(f"aim.{law_named(laws[bench]).aim}"))
 
     def hide(self, hidden: bool) -> None:
         """Hide the titles, which are drawn on top of everything else, or show them again."""

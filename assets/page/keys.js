@@ -20,6 +20,16 @@
   ];
   const TICKED = 'input[type="checkbox"], input[type="radio"]';
 
+  // In a box of several lines Enter presses the button below it, and with Shift begins a line. viser
+  // passes on the newest message of 50 ms alone: what was typed has to go before the press.
+  const TYPED_GOES = 60;  // [ms]
+
+  function pressBelow(box) {
+    const controls = [...document.querySelectorAll("textarea, button")];
+    const below = controls.slice(controls.indexOf(box) + 1).find((each) => each.matches("button"));
+    if (below !== undefined) setTimeout(() => below.click(), TYPED_GOES);
+  }
+
   function isOwn(control, key) {
     const found = OWN.find(([selector]) => control.matches(selector));
     return found !== undefined && found[1].includes(key);
@@ -36,7 +46,11 @@
   document.documentElement.addEventListener("keydown", (event) => {
     const control = event.target;
     if (!(control instanceof Element)) return;
-    if (isOwn(control, event.key)) event.stopImmediatePropagation();
+    const begins = event.shiftKey || event.isComposing;
+    if (control.matches("textarea") && event.key === "Enter" && !begins) {
+      event.preventDefault();
+      if (!event.repeat) pressBelow(control);
+    } else if (isOwn(control, event.key)) event.stopImmediatePropagation();
     else if (control.matches(TICKED) && event.key !== "Tab") tellAgain(event);
   });
 

@@ -235,20 +235,57 @@ bench-title = { $law }, { $side }
 
 law-trajectory_tracking-label = Folgeregelung
 law-trajectory_tracking-text = Folgt einem Punkt, der nach der Uhr auf der Kurve läuft, was der Roboter auch tut.
+law-trajectory_tracking-good = Sie ist pünktlich: Auch nach einem Hindernis ist sie wieder dort, wo die Uhr sie haben will.
+law-trajectory_tracking-limits = Festgehalten wartet sie nicht: Losgelassen verlässt sie die Kurve, um aufzuholen.
 law-path_following-label = Bahnfolgeregelung
 law-path_following-text = Bleibt auf der Kurve und regelt das Tempo auf ihr; eine Uhr hat sie nicht.
+law-path_following-good = Festgehalten und losgelassen bleibt sie auf der Kurve und geht ohne Hast mit dem gewünschten Tempo weiter.
+law-path_following-limits = Verlorene Zeit bleibt verloren: Nach der Bremse ist sie um so viel zu spät, wie sie festgehalten wurde.
 law-contouring-label = Konturregelung
 law-contouring-text = Folgt der Uhr, aber steif quer zur Kurve und weich längs von ihr.
+law-contouring-good = Sie ist pünktlich und gibt längs der Kurve nach, während sie quer zu ihr steif ist, solange ihr Fehler klein ist.
+law-contouring-limits = Lange festgehalten gerät sie weit ab: Ihre Achsen sind die eines Punktes, der davongelaufen ist.
 law-event_based-label = Ereignisbasiert
 law-event_based-text = Folgt mit der gewünschten Rate dem nächsten Punkt, als wäre er der Punkt einer Uhr.
+law-event_based-good = Sie nimmt das gewünschte Tempo schneller auf als alle anderen ohne Fahrplan.
+law-event_based-limits = Festgehalten behält sie die Drehung eines Tempos bei, das sie nicht hat, und wird von der Kurve gedrückt.
 law-set_point-label = Festwertregelung
 law-set_point-text = Geht geradewegs zum Ziel und weiß nichts von der Kurve dazwischen.
+law-set_point-good = Sie erreicht das Ziel und bleibt dort, wo auch immer sie beginnt.
+law-set_point-limits = Unterwegs verlässt sie die Kurve, weil sie den geraden Weg nimmt.
 law-velocity_field-label = Geschwindigkeitsfeld
 law-velocity_field-text = Eine Strömung längs der Kurve trägt den Roboter und gibt einer Hand nie mehr Energie, als sie vorrätig hat.
+law-velocity_field-good = Von der Kurve gezogen gibt es der Hand weniger Energie als jedes Gesetz mit einem Fahrplan.
+law-velocity_field-limits = Es regelt seine Energie und nicht sein Tempo, sodass es auch ungestört zu früh oder zu spät kommt.
 law-virtual_constraint-label = Virtuelle Zwangsbedingung
 law-virtual_constraint-text = Hält die Spitze auf der Kurve und lässt sie längs von ihr in Ruhe, wie eine Perle auf einem Draht.
+law-virtual_constraint-good = Sie hält die Kurve ein und überlässt das Tempo dem, der sie schiebt.
+law-virtual_constraint-limits = Sie bewegt sich nicht von selbst: In Ruhe bleibt sie, wo sie ist.
 law-waiting_clock-label = Wartende Uhr
 law-waiting_clock-text = Folgt einem Punkt, dessen Uhr langsamer geht, wenn der Roboter zurückbleibt.
+law-waiting_clock-good = Festgehalten und losgelassen bleibt sie der Kurve so nah wie die Bahnfolgeregelung.
+law-waiting_clock-limits = Eine Hand, die sie wegzieht, stört auch ihre Uhr: Danach eilt sie erst, um sie wiederzufinden.
+law-own-label = Eigenes Gesetz
+law-own-xi = Abstand von der Bahn, positiv links von ihr
+law-own-dxi = Änderungsrate von xi
+law-own-theta = Parameter des nächsten Punktes der Bahn
+law-own-dtheta = Änderungsrate von theta: das Tempo längs der Bahn
+law-own-e1 = Fehler: vom Punkt, der nach der Uhr läuft, zur Spitze
+law-own-de1 = Änderungsrate des Fehlers
+law-own-y1 = Lage der Spitze
+law-own-v1 = Geschwindigkeit der Spitze
+law-own-t = Zeit, seit das Gesetz gewählt wurde
+law-own-theta_r = Parameter des Punktes, der nach der Uhr läuft
+law-own-speed = gewünschtes Tempo längs der Bahn
+law-own-int_xi = Integral von xi, das anhält, solange ein Drehmoment an seiner Grenze ist
+law-own-K1 = die eingestellten Verstärkungen
+law-own-xi2 = zweiter Abstand von der Bahn
+law-own-dxi2 = Änderungsrate von xi2
+law-own-int_xi2 = Integral von xi2
+law-own-e3 = dritte Komponente des Fehlers
+law-own-de3 = ihre Änderungsrate
+law-own-y3 = dritte Koordinate der Spitze
+law-own-v3 = dritte Komponente ihrer Geschwindigkeit
 
 aim-theta = zielt auf den nächsten Punkt der Bahn
 aim-theta_ref = zielt auf seinen Bezugspunkt
@@ -305,6 +342,19 @@ robots-this = { $robot } (dieser)
 laws-left = Regelgesetz links
 laws-right = Regelgesetz rechts
 laws-hint = Der Roboter bewegt sich von dort, wo er ist, unter diesem Gesetz weiter
+laws-own = Eigenes Gesetz…
+laws-own_left = Eigenes Gesetz links
+laws-own_right = Eigenes Gesetz rechts
+laws-own_hint = Die Eingabetaste setzt das Gesetz ein; mit der Umschalttaste beginnt sie eine neue Zeile
+laws-use = Dieses Gesetz einsetzen
+laws-about = Über die Regelgesetze
+laws-source = Quelle: { $source }
+laws-own_text = Eine Zeile across = … gibt die Beschleunigung quer zur Bahn in m/s² vor, eine Zeile along = … die längs von ihr in rad/s²; oder u1 = …, u2 = … geben die Drehmomente aller Motoren in N m vor.
+laws-own_space = Bei einem Roboter, der sich im Raum bewegt, ist across2 = … die Beschleunigung längs der zweiten Normalen.
+laws-own_language = Eine Formel hat Zahlen, die Namen unten, + - * /, ** mit einem Exponenten von 0 bis { $most }, { $functions } und a if xi > 0 else b („a, wenn xi > 0, sonst b“); Bedingungen verbindet man mit and, or und not.
+laws-name = Name
+laws-meaning = Bedeutung
+laws-unit = Einheit
 
 run-hold_both = Beide festhalten
 run-hold = Festhalten
@@ -850,6 +900,10 @@ behaviour-damping = Dämpfungsgrad { $damping }
 behaviour-unstable = instabil: Ein Fehler wächst alle { $seconds } s auf das e-fache
 behaviour-not_stable = nicht stabil: Ein Fehler klingt nie ab
 behaviour-swings = nicht stabil: Ein Fehler schwingt ewig
+behaviour-no_poles = für dieses Gesetz werden keine Pole berechnet
+behaviour-not_constant = keine Pole: Das Gesetz hängt vom Ort oder von der Zeit ab oder gibt Drehmomente vor
+behaviour-not_smooth = keine Pole: Auf der Bahn hat das Gesetz einen Knick oder Sprung, oder es bleibt nicht dort
+behaviour-coupled = keine Pole: Die Bewegungen quer und längs zur Bahn wirken aufeinander
 
 ## Why a curve cannot be a path (models/paths/curve_faults.py)
 
@@ -924,6 +978,8 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: sie hat { $s
 
 ## Ablehnungen: ein eingetipptes Regelgesetz (models/control/laws)
 
+error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
+error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
 error-law = Zeile { $line }, Spalte { $column }: { $reason }
 error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $count }
 error-law_too_complex = das Regelgesetz ist zu verwickelt: höchstens { $most } Namen, Zahlen und Operationen, höchstens { $deepest }-fach verschachtelt

@@ -290,6 +290,19 @@ robots-this = { $robot } (this one)
 laws-left = Law, left
 laws-right = Law, right
 laws-hint = The robot moves on from where it is, under this law
+laws-own = Own law…
+laws-own_left = Own law, left
+laws-own_right = Own law, right
+laws-own_hint = Enter uses the law; Shift and Enter begin a new line
+laws-use = Use this law
+laws-about = About the laws
+laws-source = Source: { $source }
+laws-own_text = A line across = … gives the acceleration across the path in m/s², a line along = … that along it in rad/s²; or u1 = …, u2 = … give the torques of all motors in N m.
+laws-own_space = On a robot that moves in space, across2 = … is the acceleration along the second normal.
+laws-own_language = A formula has numbers, the names below, + - * /, ** with an exponent from 0 to { $most }, { $functions }, and a if xi > 0 else b, where a condition may have and, or and not.
+laws-name = Name
+laws-meaning = Meaning
+laws-unit = Unit
 
 run-hold_both = Hold both back
 run-hold = Hold back
@@ -633,6 +646,10 @@ behaviour-damping = damping { $damping }
 behaviour-unstable = unstable: an error grows by a factor of e every { $seconds } s
 behaviour-not_stable = not stable: an error never dies out
 behaviour-swings = not stable: an error swings for ever
+behaviour-no_poles = poles are not computed for this law
+behaviour-not_constant = no poles: the law depends on the place or on the time, or commands torques
+behaviour-not_smooth = no poles: on the path, the law has a kink or a jump, or does not stay
+behaviour-coupled = no poles: the motions across and along the path act on one another
 
 ## Why a curve cannot be a path (models/paths/curve_faults.py)
 
@@ -699,6 +716,8 @@ error-no_step = there is no step { $step } in this lesson: it has { $steps ->
 
 ## Refusals: a law that is typed (models/control/laws)
 
+error-law_cannot_run = a law of one's own is not possible with this robot and these settings
+error-law_not_ready = the law is still being made; try again in a moment
 error-law = line { $line }, column { $column }: { $reason }
 error-law_too_long = a law has at most { $most } characters, not { $count }
 error-law_too_complex = the law is too complicated: at most { $most } names, numbers and operations, nested at most { $deepest } deep

@@ -13,6 +13,7 @@ from onpath.models.closed_loop.kernel import Kernel, build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS
 from onpath.models.control import composite_control
+from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import OWN_GAINS
 from onpath.models.control.speed_limit import NO_SPEED_LIMIT, speed_limit
 from onpath.models.errors import CodedError
@@ -28,6 +29,7 @@ from onpath.models.systems.parameters import (
 )
 from onpath.models.systems.robots import Robot
 
+MOST_TYPED = 16  # kernels of typed laws that are kept here
 NO_LIMIT = 1000.0  # [N m], the limit when there is none: far above any motor, but finite
 
 
@@ -81,12 +83,13 @@ def kind_of(
         controller: name of a law of `models/control/laws`.
         curve: the path. While one path blends into another, which may have no level set, λ is the
             signed distance; elsewhere `check_level_set` refuses such a path.
-        push: what acts from outside. If given and nothing acts, the kind may be a `free` one.
+        push: what acts from outside. If given and nothing acts, the kind may be a `free` one; not
+            under a typed law, which would have to be compiled twice.
     """
     plain = parameters.torque_limit == 0 == parameters.coulomb
     exact = parameters.torque_step == parameters.delay == parameters.stiction == 0
     every_tick = parameters.control_rate * TICK >= 1
-    untouched = push is not None and not push.acts
+    untouched = push is not None and not push.acts and not is_text(controller)
     return Kind(
         controller=controller,
         closed=curve.closed,
@@ -102,10 +105,17 @@ def kind_of(
     )
 
 
-@lru_cache(maxsize=256)
 def kernel_of(robot: Robot, kind: Kind) -> Kernel:
-    """The kernel for a robot and a kind, built once."""
+    """The kernel for a robot and a kind, built once; those of typed laws are not kept for long."""
+    return (_typed_kernel if is_text(kind.controller) else _kernel)(robot, kind)
+
+
+def _built(robot: Robot, kind: Kind) -> Kernel:
     return build_kernel(robot.system, robot.frame, kind, robot.substeps, robot.grip)
+
+
+_kernel, _typed_kernel = lru_cache(maxsize=256)(_built), lru_cache(maxsize=MOST_TYPED)(_built)
+"""Apart, so that no number of typed laws displaces the kernels of the registry's."""
 
 
 def settings_vector(

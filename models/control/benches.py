@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from onpath.models.control.laws.registry import LAWS, NAMES
+from onpath.models.control.laws.registry import NAMES, law_name, law_named
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.robots import RobotEntry
@@ -19,16 +19,17 @@ DEFAULT_LAWS: dict[str, str] = dict(zip(BENCHES, NAMES, strict=True))
 """Bench -> control law of a new lab."""
 
 
-def check_laws(laws: Mapping[str, str], robot: RobotEntry) -> None:
-    """Check the names of benches and of their control laws.
+def checked_laws(laws: Mapping[str, str], robot: RobotEntry) -> dict[str, str]:
+    """Check the names of benches and of their control laws; a typed law is put on one line.
 
     Raises:
-        ValueError: there is no such bench or law, or the law does not suit the robot.
+        ValueError: there is no such bench or law, a typed law cannot be read, or a law does not
+            suit the robot.
     """
-    for bench, law in laws.items():
+    for bench, name in laws.items():
         if bench not in BENCHES:
             raise unknown_name(bench, list(BENCHES), "bench")
-        if law not in LAWS:
-            raise unknown_name(law, list(LAWS), "law")
-        if not LAWS[law].suits(robot.make(robot.lab).system):
-            raise CodedError("error.law_does_not_suit", law=LAWS[law].label)
+        law = law_named(name)
+        if not law.suits(robot.make(robot.lab).system):
+            raise CodedError("error.law_does_not_suit", law=law.label)
+    return {bench: law_name(name) for bench, name in laws.items()}

@@ -87,15 +87,25 @@ def channels(parameters: Parameters) -> tuple[Channel, Channel]:
 
     Source: eqs. (17)-(19).
     """
-    interval = 1 / parameters.control_rate
-    ahead = look_ahead_time(parameters)
     k1, k2, k3 = parameters.K1, parameters.K2, parameters.K3
-    across = (k1, k2, k3), "xvia" if k3 else "xva"
     along = (0.0, parameters.K5, 0.0), "va"
     if parameters.task == "position":
         along = (parameters.K4, parameters.K5, 0.0), "xva"
-    times = interval, ahead, parameters.delay
-    return _channel("across", times, *across), _channel("along", times, *along)
+    across = channel("across", parameters, (k1, k2, k3), "xvia" if k3 else "xva")
+    return across, channel("along", parameters, *along)
+
+
+def channel(
+    name: str, parameters: Parameters, gains: tuple[float, float, float], kept: str
+) -> Channel:
+    """One channel under PID control, with the sampling and the delay of the parameters.
+
+    Args:
+        gains: (k1, k2, k3).
+        kept: the states that the channel has; see `_sampled`.
+    """
+    times = 1 / parameters.control_rate, look_ahead_time(parameters), parameters.delay
+    return _channel(name, times, gains, kept)
 
 
 @lru_cache(maxsize=256)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import pytest
@@ -11,8 +12,11 @@ pytest.importorskip("playwright")
 from playwright.sync_api import Browser, expect
 
 from onpath.app.lab import commands as c
+from onpath.app.lab.setup import Setup
+from onpath.app.lab.share_code import encode
 from onpath.app.server.lab_server import LabServer
 from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
+from onpath.models.control.laws.own import PATH_FOLLOWING, VIEW
 from onpath.models.control.laws.registry import LAWS
 from tests.support.browser import Tab, wait_for
 
@@ -59,3 +63,56 @@ def test_the_menu_follows_the_lab_and_lists_what_suits_the_robot(tab: Tab) -> No
     expect(shown.filter(has_text="Path following")).to_be_visible()
     unsuitable = [law.label for law in LAWS.values() if law.square]
     assert unsuitable and not {*unsuitable} & {*shown.all_inner_texts()}
+
+
+def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
+    page, session = tab.page, tab.session
+    box = page.locator("textarea").filter(visible=True)
+    expect(box).to_have_count(0)
+    tab.choose("Law, right", "Own law…")
+    expect(box).to_have_value(PATH_FOLLOWING.replace("; ", "\n"))
+    assert session.laws == DEFAULT_LAWS  # nothing has been typed yet
+    box.press("Control+A")
+    box.press_sequentially("across = -K1*xii - K2*dxi")
+    box.press("Shift+Enter")
+    box.press_sequentially("along = -K5*(dtheta + speed)")
+    box.press("Enter")
+    said = "line 1, column 14: there is no 'xii': did you mean xi?"
+    expect(page.get_by_role("note").get_by_text(said)).to_be_visible()
+    assert session.laws == DEFAULT_LAWS and session.running
+    box.press("ArrowUp")
+    box.press("Home")
+    for _ in "across = -K1*xi":
+        box.press("ArrowRight")
+    box.press("Delete")
+    time, run = session.time, session.run_number
+    box.press("Enter")
+    law = "across = -K1*xi - K2*dxi; along = -K5*(dtheta + speed)"
+    wait_for(lambda: session.laws[RIGHT] == law)
+    assert session.run_number == run and session.time > time
+    wait_for(lambda: session.runs[RIGHT].shown()["theta_rate"][0] < -0.9 * 2 * math.pi)
+    assert session.runs[RIGHT].max_distance < 1e-3
+    expect(page.get_by_text(said)).to_have_count(0)
+    expect(page.get_by_role("cell", name="Own law")).to_be_visible()
+    expect(page.get_by_text(law)).to_be_visible()
+    tab.press("About the laws")
+    names = page.get_by_role("dialog").locator("td code")
+    names.first.wait_for()
+    assert ", ".join(names.all_inner_texts()).split(", ") == [*VIEW]
+    tab.button("Close").click()
+    tab.choose("Law, right", "Path following")
+    expect(box).to_have_count(0)
+    wait_for(lambda: session.laws == DEFAULT_LAWS)
+
+
+def test_a_law_that_is_typed_elsewhere_is_shown_in_its_box(tab: Tab) -> None:
+    law = "across = -K1*xi - K2*dxi; along = 1 - dtheta"
+    tab.ask(c.UseShared(encode(Setup(laws={LEFT: law}))))
+    box = tab.page.locator("textarea").filter(visible=True)
+    expect(box).to_have_value(law.replace("; ", "\n"))
+    expect(tab.page.get_by_label("Law, left", exact=True).filter(visible=True).first).to_have_value(
+        "Own law…"
+    )
+    tab.press("Use this law")
+    tab.ask()
+    assert tab.session.laws[LEFT] == law and tab.lab.law_refusals == {}

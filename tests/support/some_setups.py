@@ -67,7 +67,7 @@ def setups(draw: st.DrawFn) -> Setup:
     found = {name: draw(benches(name)) for name in sorted(names)}
     return Setup(
         robot=draw(st.sampled_from(list(ROBOTS))),
-        benches={name: bench for name, bench in found.items() if bench != RobotSetup()},
+        robots={name: robot for name, robot in found.items() if robot != RobotSetup()},
         rate=draw(st.sampled_from([0.125, 0.5, 1.0, 4.0])),
         copy=draw(st.booleans()),
         exaggeration=draw(st.sampled_from([1.0, 2.5, 20.0])),

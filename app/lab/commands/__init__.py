@@ -9,7 +9,7 @@ from onpath.app.lab.commands.forces import (
     SetCopy,
     SetHoldDirection,
 )
-from onpath.app.lab.commands.laws import ChooseLaw
+from onpath.app.lab.commands.laws import ChooseLaw, TypeLaw
 from onpath.app.lab.commands.lessons import (
     Act,
     AnswerQuiz,
@@ -114,6 +114,7 @@ __all__ = [
     "SwingWall",
     "TakeSetup",
     "TakeStep",
+    "TypeLaw",
     "Undo",
     "UndoGoOn",
     "UseShared",

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from onpath.app.lab.commands import checks
 from onpath.app.lab.lab import Command, Lab
-from onpath.models.control.benches import check_laws
+from onpath.models.control.benches import checked_laws
+from onpath.models.control.laws.own import own_law
+from onpath.models.control.laws.registry import law_named
+from onpath.models.errors import CodedError
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,7 +18,7 @@ class ChooseLaw(Command):
 
     Attributes:
         bench: one of `models.control.benches.BENCHES`.
-        law: a name in `models.control.laws.registry.LAWS`.
+        law: the name of a law of the registry, or a typed law; see `law_named`.
     """
 
     bench: str
@@ -22,5 +26,33 @@ class ChooseLaw(Command):
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        check_laws({self.bench: self.law}, lab.session.entry)
-        lab.session.choose_law(self.bench, self.law)
+        session = lab.session
+        law = checked_laws({self.bench: self.law}, session.entry)[self.bench]
+        if not session.suits(law):
+            raise CodedError("error.law_does_not_suit", law=law_named(law).label)
+        session.choose_law(self.bench, law)
+        if lab.law_refusals.pop(self.bench, ""):
+            lab.clear_message()
+
+
+@dataclass(frozen=True, slots=True)
+class TypeLaw(Command):
+    """Change to a law that the user has typed; if it is refused, its panel tells why.
+
+    Attributes:
+        bench: see `ChooseLaw`.
+        text: see `models.control.laws.own`.
+    """
+
+    bench: str
+    text: str
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        bench = checks.bench(self.bench)
+        try:
+            own_law(self.text)  # a name of the registry is none
+            ChooseLaw(bench, self.text).apply(lab)
+        except ValueError as error:
+            lab.law_refusals[bench] = lab.words.sentence(error)
+            raise

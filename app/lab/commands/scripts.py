@@ -19,7 +19,7 @@ from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.lessons.benches import BENCH_OF
 from onpath.lessons.schema import Action, Laws, RobotName, Script
-from onpath.models.control.benches import BENCHES, check_laws
+from onpath.models.control.benches import BENCHES, checked_laws
 from onpath.models.errors import CodedError
 
 
@@ -67,8 +67,7 @@ class ScriptLaws(Command):
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        check_laws(self.laws.named, lab.session.entry)
-        for bench, law in self.laws.named.items():
+        for bench, law in checked_laws(self.laws.named, lab.session.entry).items():
             lab.session.change_law(bench, law)
 
 

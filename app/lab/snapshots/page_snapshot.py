@@ -30,6 +30,7 @@ class RunState:
         exaggeration: magnification of the drawn deflection.
         laws: control law of each bench, also while the past is viewed or its loop is being made.
         hold_direction: in which brakes act, one of `models.closed_loop.obstacles.DIRECTIONS`.
+        law_refusals: why the law that was last typed for a bench was refused, by bench.
     """
 
     now: float
@@ -39,6 +40,7 @@ class RunState:
     copy: bool
     exaggeration: float
     laws: dict[str, str]
+    law_refusals: dict[str, str]
     hold_direction: str
 
 

@@ -21,7 +21,7 @@ from onpath.app.lab.snapshots.snapshot import END, Counts, RobotView
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.control.benches import BENCHES
-from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.laws.registry import law_named
 from onpath.models.paths.curves import ORDERS, TERMS, Curve
 from onpath.models.paths.projection import LocalCurve, basis
 from onpath.models.systems.drawing import Drawing
@@ -108,7 +108,7 @@ def _seen(robot: Robot, laws: tuple[str, ...]) -> np.ndarray:
     layout = sample_layout(robot)
     found = list[int]()
     for i, law in enumerate(laws):
-        for field in ("y", "force", LAWS[law].aim):
+        for field in ("y", "force", law_named(law).aim):
             place = layout.slices[field]
             found.extend(range(i * layout.size + place.start, i * layout.size + place.stop))
     return np.array(found)

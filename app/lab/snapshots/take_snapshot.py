@@ -81,6 +81,7 @@ def take_page_snapshot(
             exaggeration=session.exaggeration,
             laws=session.chosen_laws,
             hold_direction=session.hold_direction,
+            law_refusals=dict(lab.law_refusals),
         ),
         edit=_path_edit(session),
         lesson=_lesson(lab),

@@ -7,8 +7,12 @@ import viser
 from onpath.app.lab.commands import Identify, ResetParameters
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues, parameters_of
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, SwitchedParameter, on_press
+from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
-from onpath.models.control.poles import Channel, channels
+from onpath.models.control.law_poles import channels_of
+from onpath.models.control.laws.own import is_text
+from onpath.models.control.poles import Channel
+from onpath.models.errors import Message
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import specs
 
@@ -23,7 +27,7 @@ class GainsPanel:
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         self._words = words
-        self._shown: ParameterValues | None = None
+        self._shown: tuple[ParameterValues, dict[str, str]] | None = None
         self._widgets = [ParameterWidgets(gui, words, post, BASIC, first)]
         self._settling = gui.add_markdown("")
         with gui.add_folder(words("gains.advanced"), expand_by_default=False):
@@ -44,13 +48,13 @@ class GainsPanel:
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's values and the resulting settling behaviour."""
-        if snapshot.parameters == self._shown:
+        now = snapshot.parameters, snapshot.run.laws
+        if now == self._shown:
             return
-        self._shown = snapshot.parameters
+        self._shown = now
         for widgets in self._widgets:
             widgets.follow(snapshot)
-        lines = [_line(channel, self._words) for channel in channels(parameters_of(snapshot))]
-        self._settling.content = "\n\n".join(lines)
+        self._settling.content = "\n\n".join(_lines(snapshot, self._words))
 
 
 def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
@@ -60,7 +64,21 @@ def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
     on_press(button, lambda: post(Identify()))
 
 
-def _line(channel: Channel, words: Words) -> str:
-    name, poles = words(f"gains.{channel.name}"), words("gains.poles", poles=channel.pole_words())
+def _lines(snapshot: PageSnapshot, words: Words) -> list[str]:
+    """What the laws' channels do, those with the same gains once, or why a law has none."""
+    lines, titles = dict[str, None](), bench_titles(snapshot.run.laws, words)
+    for bench, law in snapshot.run.laws.items():
+        found, whose = channels_of(law, parameters_of(snapshot)), titles[bench]
+        if isinstance(found, Message):
+            lines[f"**{whose}:** {words.sentence(found)}"] = None
+            continue
+        for channel in found:
+            lines[_line(channel, words, f"{whose}: " if is_text(law) else "")] = None
+    return list(lines)
+
+
+def _line(channel: Channel, words: Words, whose: str) -> str:
+    name = whose + words(f"gains.{channel.name}")
+    poles = words("gains.poles", poles=channel.pole_words())
     mark = "" if channel.stable else "⚠️ "
     return f"**{name}:** {mark}{words.sentence(channel.behaviour())} <br/>{poles}"

@@ -1,7 +1,8 @@
-"""The control laws of the two benches: a menu for each, and what they do in a sentence."""
+"""The control laws of the two benches: a menu for each, a box for an own law, and a help page."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import viser
@@ -10,26 +11,43 @@ from onpath.app.common.palette import OF_BENCH
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseLaw
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
-from onpath.app.page.panels.widgets import Post, on_user_update
+from onpath.app.page.panels.law_help import law_help
+from onpath.app.page.panels.own_law_box import OwnLawBox
+from onpath.app.page.panels.widgets import (
+    Post,
+    close_once,
+    on_menu_press,
+    on_press,
+    on_user_update,
+)
 from onpath.lessons.benches import law_label, law_text
 from onpath.lessons.words import Words
 from onpath.models.control.benches import BENCHES
+from onpath.models.control.laws.own import OWN, is_text
 from onpath.models.control.laws.registry import LAWS
 
 Menu = viser.GuiDropdownHandle[str]
 
 
 class LawPanel:
-    """Two menus with the laws that suit the robot."""
+    """Two menus with the laws that suit the robot; their last entry opens a box to type one."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
-        self._words, self._post = words, post
+        self._gui, self._words, self._post = gui, words, post
         system = robot_of(first).system
         self._names = {law_label(n, words): n for n, law in LAWS.items() if law.suits(system)}
-        self._laws = first.run.laws
-        self._menus = {bench: self._add(gui, bench) for bench in BENCHES}
+        self._names[words("laws.own")] = OWN
+        self._laws, self._spatial = first.run.laws, system.p == 3
+        self._typing: set[str] = set()  # benches whose box is open before a law has been typed
+        self._menus = dict[str, Menu]()
+        self._boxes = dict[str, OwnLawBox]()
+        for bench in BENCHES:
+            self._menus[bench] = self._add(gui, bench)
+            self._boxes[bench] = OwnLawBox(gui, words, post, bench, self._laws[bench])
         self._just_changed: set[str] = set()
-        self._help = gui.add_html(self._sentences())
+        self._sentences = gui.add_html(self._said())
+        about = gui.add_button(words("laws.about"), color="gray", icon=viser.Icon.HELP)
+        on_menu_press(about, self._open_help)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's laws.
@@ -37,31 +55,48 @@ class LawPanel:
         A snapshot that is shown right after a change may have been taken before it, so it does not
         set the changed menu back; the next one is right.
         """
-        laws, late, self._just_changed = snapshot.run.laws, self._just_changed, set[str]()
+        run, late, self._just_changed = snapshot.run, self._just_changed, set[str]()
         for bench, menu in self._menus.items():
-            label = law_label(laws[bench], self._words)
-            if bench not in late and menu.value != label:
-                menu.value = label
-        if laws != self._laws:
-            self._laws = laws
-            self._help.content = self._sentences()
+            law = run.laws[bench]
+            if law != self._laws[bench]:
+                self._typing.discard(bench)
+            if bench not in late:
+                label = self._label(bench, law)
+                if menu.value != label:
+                    menu.value = label
+                self._boxes[bench].show(is_text(law) or bench in self._typing)
+            self._boxes[bench].follow(law, run.law_refusals.get(bench, ""))
+        if run.laws != self._laws:
+            self._laws = run.laws
+            self._sentences.content = self._said()
+
+    def _label(self, bench: str, law: str) -> str:
+        """The entry of the menu that is shown."""
+        own = is_text(law) or bench in self._typing
+        return self._words("laws.own") if own else law_label(law, self._words)
 
     def _add(self, gui: viser.GuiApi, bench: str) -> Menu:
         words = self._words
         menu = gui.add_dropdown(
             words(f"laws.{bench}"),
             list(self._names),
-            initial_value=law_label(self._laws[bench], words),
+            initial_value=self._label(bench, self._laws[bench]),
             hint=words("laws.hint"),
         )
         on_user_update(menu, partial(self._choose, bench))
         return menu
 
     def _choose(self, bench: str, label: str) -> None:
+        law = self._names[label]
         self._just_changed.add(bench)
-        self._post(ChooseLaw(bench, self._names[label]))
+        self._boxes[bench].show(law == OWN)
+        if law == OWN:
+            self._typing.add(bench)
+        else:
+            self._typing.discard(bench)
+            self._post(ChooseLaw(bench, law))
 
-    def _sentences(self) -> str:
+    def _said(self) -> str:
         """What the laws do, each once, in the colour of its bench."""
         said = {law: OF_BENCH[bench].hex for bench, law in reversed(self._laws.items())}
         laws = [
@@ -69,3 +104,12 @@ class LawPanel:
             for law in dict.fromkeys(self._laws.values())
         ]
         return render("panel/laws.html", laws=laws)
+
+    def _open_help(self) -> Callable[[], None]:
+        laws = [name for name in self._names.values() if name != OWN]
+        typing = bool(self._typing) or any(map(is_text, self._laws.values()))
+        with self._gui.add_modal(self._words("laws.about")) as modal:
+            self._gui.add_html(law_help(laws, self._spatial, typing, self._words))
+            close = self._gui.add_button(self._words("help.close"))
+        on_press(close, partial(close_once, modal))
+        return partial(close_once, modal)

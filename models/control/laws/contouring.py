@@ -136,4 +136,7 @@ LAW = Law(
     reference=clock_ahead,
     by_clock=True,
     gains=("K1", "K2", "K3", "contour_ratio"),
+    good="It is on time and yields along the curve while it is stiff across it, as long as its"
+    " error is small.",
+    limits="Held back for long it goes far off: its axes are those of a point that has run away.",
 )

@@ -31,4 +31,7 @@ LAW = Law(
     text="Tracks the closest point at the wanted rate, as if it were the point of a clock.",
     source="Tarn, Xi and Bejczy, Path-based planning and control, reference [3]",
     command=event_based,
+    good="It takes up the wanted speed sooner than all others that have no timetable.",
+    limits="Held back, it keeps the turning of a speed that it does not have, and is pressed off"
+    " the curve.",
 )

@@ -158,8 +158,10 @@ class Law:
     Attributes:
         name: as on the command line and in files.
         label: as shown, in English.
-        text: one sentence.
+        text: what it does, in a sentence.
         source: where it comes from.
+        good: what it is good at, in a sentence that a run shows.
+        limits: where it fails, in a sentence that a run shows.
         command: the law.
         reference: clock -> parameter θ of a further point at which the law needs the path; None if
             it needs the closest point only.
@@ -193,6 +195,8 @@ class Law:
     motors: int | None = None
     spatial: bool = False
     always_integrates: bool = False
+    good: str = ""
+    limits: str = ""
 
     def suits(self, system: MechanicalSystem) -> bool:
         """Whether the law can be used with a robot."""

@@ -14,6 +14,7 @@ A law's text is its name: every function that takes the name of a law takes a te
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache, reduce
 
 import casadi as ca
@@ -28,19 +29,60 @@ from onpath.models.control.laws.references import (
 )
 from onpath.models.errors import CodedError
 
-MOST_KEPT = 64  # laws of which the formulas are kept
+MOST_KEPT = 256  # laws of which the formulas are kept, two for each lab of a large class
+OWN = "own"  # what a typed law is called where its text does not matter
 LABEL = "Own law"
 PATH_FOLLOWING = "across = -K1*xi - K2*dxi - K3*int_xi; along = -K5*(dtheta - speed)"
 """The law that a user begins with: path following, eqs. (18) and (19), in the speed task."""
 
 TIME = "own_time"
-VIEW = (
-    *("xi", "dxi", "theta", "dtheta", "e1", "e2", "de1", "de2", "y1", "y2", "v1", "v2"),
-    *("t", "theta_r", "speed", "int_xi", "K1", "K2", "K3", "K4", "K5"),
+
+
+@dataclass(frozen=True, slots=True)
+class NamedValue:
+    """What one name in a law means, or the names of several components.
+
+    Attributes:
+        names: with the first of which a language's catalogue names the meaning, `law-own-<name>`.
+        meaning: in English.
+        unit: with the distance across the path in metres; under the level set ξ has its unit.
+    """
+
+    names: tuple[str, ...]
+    meaning: str
+    unit: str
+
+
+MEANINGS = (
+    NamedValue(("xi",), "distance from the path, positive on its left", "m"),
+    NamedValue(("dxi",), "rate of xi", "m/s"),
+    NamedValue(("theta",), "parameter of the closest point of the path", "rad"),
+    NamedValue(("dtheta",), "rate of theta: the speed along the path", "rad/s"),
+    NamedValue(("e1", "e2"), "error: from the point that runs by the clock to the end-point", "m"),
+    NamedValue(("de1", "de2"), "rate of the error", "m/s"),
+    NamedValue(("y1", "y2"), "position of the end-point", "m"),
+    NamedValue(("v1", "v2"), "velocity of the end-point", "m/s"),
+    NamedValue(("t",), "time since the law was chosen", "s"),
+    NamedValue(("theta_r",), "parameter of the point that runs by the clock", "rad"),
+    NamedValue(("speed",), "wanted speed along the path", "rad/s"),
+    NamedValue(("int_xi",), "integral of xi, which stops while a torque is at its limit", "m s"),
+    NamedValue(
+        ("K1", "K2", "K3", "K4", "K5"), "the gains as they are set", "1/s², 1/s, 1/s³, 1/s², 1/s"
+    ),
 )
 """The names of a law, in the order in which a user is shown them."""
-SPACE = ("xi2", "dxi2", "int_xi2", "e3", "de3", "y3", "v3")
+SPACE_MEANINGS = (
+    NamedValue(("xi2",), "second distance from the path", "m"),
+    NamedValue(("dxi2",), "rate of xi2", "m/s"),
+    NamedValue(("int_xi2",), "integral of xi2", "m s"),
+    NamedValue(("e3",), "third component of the error", "m"),
+    NamedValue(("de3",), "its rate", "m/s"),
+    NamedValue(("y3",), "third coordinate of the end-point", "m"),
+    NamedValue(("v3",), "third component of its velocity", "m/s"),
+)
 """The names that there are in space besides."""
+VIEW = tuple(name for value in MEANINGS for name in value.names)
+SPACE = tuple(name for value in SPACE_MEANINGS for name in value.names)
 ERRORS = frozenset(("e1", "e2", "e3", "de1", "de2", "de3"))
 TARGETS = ("across", "along", "across2", "u1", "u2", "u3")
 
@@ -48,6 +90,11 @@ TARGETS = ("across", "along", "across2", "u1", "u2", "u3")
 def is_text(name: str) -> bool:
     """Whether the name of a law is the text of one."""
     return "=" in name
+
+
+def short_name(name: str) -> str:
+    """A law's name, or `OWN` in place of a text."""
+    return OWN if is_text(name) else name
 
 
 def law_title(name: str) -> str:
@@ -62,8 +109,7 @@ def own_law(text: str) -> Law:
     Raises:
         ValueError: the text describes none; see `expressions.read`.
     """
-    formulas = read(text, (*VIEW, *SPACE), TARGETS)
-    _check_targets(formulas.targets)
+    formulas = formulas_of(text)
     names = frozenset(formulas.names)
     motors = sum(target.startswith("u") for target in formulas.targets)
     return Law(
@@ -81,6 +127,18 @@ def own_law(text: str) -> Law:
         commands_acceleration=motors == 0,
         always_integrates="int_xi" in names or "int_xi2" in names,
     )
+
+
+@lru_cache(MOST_KEPT)
+def formulas_of(text: str) -> Formulas:
+    """The formulas of a typed law.
+
+    Raises:
+        ValueError: see `own_law`.
+    """
+    formulas = read(text, (*VIEW, *SPACE), TARGETS)
+    _check_targets(formulas.targets)
+    return formulas
 
 
 def tidy(text: str) -> str:

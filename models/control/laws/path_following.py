@@ -64,4 +64,7 @@ LAW = Law(
     aim="theta",
     gains=("K1", "K2", "K3", "K4", "K5"),
     linear=True,
+    good="Held back and let go, it stays on the curve and goes on at the wanted speed without"
+    " haste.",
+    limits="Time that is lost stays lost: after the brake it is late by as long as it was held.",
 )

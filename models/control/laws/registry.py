@@ -54,8 +54,10 @@ def law_name(text: str) -> str:
     Raises:
         ValueError: there is no such law.
     """
-    law_named(text)
-    return tidy(text) if is_text(text) else text
+    name = law_named(text).name
+    if is_text(name):
+        name = own_law(tidy(name)).name  # which may be longer than the text
+    return name
 
 
 LAWS = found_laws()

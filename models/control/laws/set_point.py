@@ -34,4 +34,6 @@ LAW = Law(
     reference=target,
     travels=False,
     linear=True,
+    good="It reaches the target and stays there, wherever it begins.",
+    limits="It leaves the curve on its way, because it takes the straight one.",
 )

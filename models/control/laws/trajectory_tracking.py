@@ -43,4 +43,6 @@ LAW = Law(
     reference=clock_ahead,
     by_clock=True,
     linear=True,
+    good="It is on time: also after an obstruction it is again where the clock wants it to be.",
+    limits="Held back, it does not wait: let go, it leaves the curve to catch up.",
 )

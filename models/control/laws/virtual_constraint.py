@@ -49,4 +49,6 @@ LAW = Law(
     command=virtual_constraint,
     aim="theta",
     square=True,
+    good="It keeps to the curve and leaves the pace to whoever pushes it along.",
+    limits="It does not travel by itself: at rest it stays where it is.",
 )

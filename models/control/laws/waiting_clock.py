@@ -62,4 +62,7 @@ LAW = Law(
     reference=waiting_ahead,
     gains=("K1", "K2", "K3", "clock_gain"),
     memory=((RATE, 1),),
+    good="Held back and let go, it stays as close to the curve as path following.",
+    limits="A hand that pulls it away disturbs its clock as well: afterwards it first rushes to"
+    " find it again.",
 )

@@ -75,7 +75,7 @@ def test_a_lab_kept_then_is_put_back_and_kept_with_its_version() -> None:
 def test_what_a_teacher_sent_then_is_taken() -> None:
     sent = read_push('{"setup":{"benches":{"five_bar":{"parameters":{"K2":60.0}}}}}')
     assert isinstance(sent, TakeSetup)
-    assert sent.setup.benches["five_bar"] == RobotSetup({"K2": 60.0, "K3": 0.0})
+    assert sent.setup.robots["five_bar"] == RobotSetup({"K2": 60.0, "K3": 0.0})
     assert read_push(push_text(sent)) == sent
 
 
@@ -83,7 +83,7 @@ def test_a_robot_that_there_was_not_then_has_its_own_defaults(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(ROBOTS, "new", ROBOTS["five_bar"])
-    assert from_data({"benches": {"new": {}}}).benches["new"] == RobotSetup()
+    assert from_data({"benches": {"new": {}}}).robots["new"] == RobotSetup()
 
 
 def test_a_new_lab_has_the_integral_and_its_data_say_so() -> None:

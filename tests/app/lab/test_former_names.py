@@ -52,7 +52,7 @@ def test_a_share_code_of_then_opens() -> None:
     lab = new_lab()
     do(lab, c.UseShared(SHARED))
     assert plant(lab) == NEW
-    assert capture(lab.session).benches["flexible"].parameters == {"plant": NEW, "alpha": 1.0}
+    assert capture(lab.session).robots["flexible"].parameters == {"plant": NEW, "alpha": 1.0}
 
 
 def test_a_lab_kept_then_is_put_back_and_kept_under_the_new_name() -> None:

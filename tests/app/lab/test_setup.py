@@ -45,7 +45,7 @@ RIGID, FLEXIBLE = "five_bar", "flexible"
 
 
 def own(**path: Any) -> Setup:
-    return Setup(benches={RIGID: RobotSetup(path=Path(**path))})
+    return Setup(robots={RIGID: RobotSetup(path=Path(**path))})
 
 
 def followable(setup: Setup) -> bool:
@@ -96,7 +96,7 @@ def test_what_is_restored_is_captured_again(setup: Setup) -> None:
         restore(lab.session, setup)
         run(lab, 0.1)
         assert lab.session.time > 0
-        asked = setup.benches.get(setup.robot, RobotSetup()).parameters
+        asked = setup.robots.get(setup.robot, RobotSetup()).parameters
         if asked.get("across") == LEVEL_SET and not has_level_set(lab.session.editor.curve):
             assert lab.session.parameters.across == "distance"
         else:
@@ -106,7 +106,7 @@ def test_what_is_restored_is_captured_again(setup: Setup) -> None:
 def test_what_a_parameter_takes_for_nothing_is_kept_as_nothing() -> None:
     for gain in (NOTHING, NOTHING / 2, 2 * NOTHING):
         lab = new_lab()
-        restore(lab.session, Setup(benches={"five_bar": RobotSetup({"K1": gain})}))
+        restore(lab.session, Setup(robots={"five_bar": RobotSetup({"K1": gain})}))
         value = lab.session.parameters.K1
         assert value == kept(specs(lab.session.parameters)["K1"], gain) == (gain > NOTHING) * gain
 
@@ -153,14 +153,14 @@ def test_every_bench_is_kept_and_those_not_named_are_as_new() -> None:
     do(lab, SetParameter("K3", 100.0), ChooseRobot(FLEXIBLE), SetParameter("alpha", 0.25))
     do(lab, ChoosePath("segment"))
     kept = capture(lab.session)
-    assert kept.robot == FLEXIBLE and set(kept.benches) == {RIGID, FLEXIBLE}
+    assert kept.robot == FLEXIBLE and set(kept.robots) == {RIGID, FLEXIBLE}
     restore(lab.session, Setup())
     assert capture(lab.session) == Setup()
     restore(lab.session, kept)
     assert lab.session.entry.name == FLEXIBLE and lab.session.parameters.K3 == 0.0
     do(lab, ChooseRobot(RIGID))
     assert lab.session.parameters.K3 == 100.0
-    assert capture(lab.session).benches == kept.benches
+    assert capture(lab.session).robots == kept.robots
 
 
 def test_numbers_with_a_tail_are_rounded_within_their_range() -> None:
@@ -168,27 +168,27 @@ def test_numbers_with_a_tail_are_rounded_within_their_range() -> None:
     do(lab, SetParameter("target", math.pi), SetParameter("K1", 0.1 + 0.2))
     do(lab, SetParameter("payload", 1e-300))
     kept = capture(lab.session)
-    assert kept.benches[RIGID].parameters == {"K1": 0.3, "target": 3.14159}
+    assert kept.robots[RIGID].parameters == {"K1": 0.3, "target": 3.14159}
     restore(lab.session, kept)
     assert capture(lab.session) == kept
 
 
 BAD: dict[str, tuple[Setup, str]] = {
     "robot": (Setup(robot="six_bar"), "unknown robot"),
-    "bench": (Setup(benches={"six_bar": RobotSetup()}), "unknown robot"),
-    "parameter": (Setup(benches={RIGID: RobotSetup({"K9": 1.0})}), "unknown parameter"),
+    "bench": (Setup(robots={"six_bar": RobotSetup()}), "unknown robot"),
+    "parameter": (Setup(robots={RIGID: RobotSetup({"K9": 1.0})}), "unknown parameter"),
     "another robot's parameter": (
-        Setup(benches={RIGID: RobotSetup({"alpha": 1.0})}),
+        Setup(robots={RIGID: RobotSetup({"alpha": 1.0})}),
         "unknown param",
     ),
-    "range": (Setup(benches={RIGID: RobotSetup({"K1": 1e9})}), "not between"),
-    "not a number": (Setup(benches={RIGID: RobotSetup({"K1": math.nan})}), "not between"),
-    "infinity": (Setup(benches={RIGID: RobotSetup({"K1": -math.inf})}), "not between"),
-    "huge": (Setup(benches={RIGID: RobotSetup({"K1": 10**400})}), "not a number"),
-    "word": (Setup(benches={RIGID: RobotSetup({"K1": "much"})}), "not a number"),
-    "option": (Setup(benches={RIGID: RobotSetup({"control_rate": 3})}), "not one of"),
-    "script": (Setup(benches={RIGID: RobotSetup({"<script>": 3})}), "matching"),
-    "list": (Setup(benches={RIGID: RobotSetup({"K1": [1.0]})}), "Expected"),  # pyright: ignore[reportArgumentType]
+    "range": (Setup(robots={RIGID: RobotSetup({"K1": 1e9})}), "not between"),
+    "not a number": (Setup(robots={RIGID: RobotSetup({"K1": math.nan})}), "not between"),
+    "infinity": (Setup(robots={RIGID: RobotSetup({"K1": -math.inf})}), "not between"),
+    "huge": (Setup(robots={RIGID: RobotSetup({"K1": 10**400})}), "not a number"),
+    "word": (Setup(robots={RIGID: RobotSetup({"K1": "much"})}), "not a number"),
+    "option": (Setup(robots={RIGID: RobotSetup({"control_rate": 3})}), "not one of"),
+    "script": (Setup(robots={RIGID: RobotSetup({"<script>": 3})}), "matching"),
+    "list": (Setup(robots={RIGID: RobotSetup({"K1": [1.0]})}), "Expected"),  # pyright: ignore[reportArgumentType]
     "rate": (Setup(rate=9.0), "speed: 9"),
     "no rate": (Setup(rate=math.nan), "speed: nan"),
     "exaggeration": (Setup(exaggeration=0.0), "exaggeration: 0"),
@@ -205,7 +205,7 @@ BAD: dict[str, tuple[Setup, str]] = {
     "crossing": (own(name="figure of eight"), "crosses itself"),
     "not reached": (own(name="drawn", closed=False, numbers=(500_000,) * 26), "workspace"),
     "the other robot's path": (
-        Setup(benches={FLEXIBLE: RobotSetup(path=Path("figure of eight"))}),
+        Setup(robots={FLEXIBLE: RobotSetup(path=Path("figure of eight"))}),
         "flexible link cannot follow",
     ),
 }
@@ -214,7 +214,7 @@ BAD: dict[str, tuple[Setup, str]] = {
 @pytest.mark.parametrize("case", BAD)
 def test_a_bad_setup_is_refused_in_words_and_changes_nothing(case: str) -> None:
     setup, words = BAD[case]
-    if setup.benches:  # what else is in it is good, and must not be applied either
+    if setup.robots:  # what else is in it is good, and must not be applied either
         good = {"rate": 2.0, "copy": False, "exaggeration": 3.0, "robot": FLEXIBLE}
         setup = msgspec.structs.replace(setup, **good)
     lab = new_lab(0.2)

@@ -66,7 +66,7 @@ def test_codes_are_short() -> None:
 def test_codes_of_version_1_stay_readable() -> None:
     """They are in people's notes: a change that breaks this one is another version."""
     old = "ONPATH1-VNDISD44OEAPFARBFBKIATVKAUAA-GZ47G5I"
-    bench = decode(old).benches["five_bar"]
+    bench = decode(old).robots["five_bar"]
     assert bench.parameters == {"K3": 100.0, "tracker_integral": "on"}
 
 
@@ -235,7 +235,7 @@ def test_the_fullest_lab_fits() -> None:
         for name, entry in ROBOTS.items()
     }
     code = forged({"benches": full, "robot": "flexible", "rate": 0.25, "copy": False})
-    assert len(decode(code).benches) == len(ROBOTS)
+    assert len(decode(code).robots) == len(ROBOTS)
     assert len(encode(decode(code))) < 3000
 
 

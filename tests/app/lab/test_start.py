@@ -173,7 +173,7 @@ def test_a_start_that_another_path_puts_out_of_reach_is_refused_at_reset() -> No
     for name, state in states(lab.session).items():
         np.testing.assert_array_equal(state, before[name])
     setup = capture(lab.session)  # can be restored: without that start
-    assert setup.benches["five_bar"].start == {}
+    assert setup.robots["five_bar"].start == {}
     restore(new_lab().session, setup)
     do(lab, c.ChooseRobot("two_link_arm"), c.ChooseRobot("five_bar"))
     assert lab.session.runs[FOLLOWER].distance < 1e-9
@@ -199,7 +199,7 @@ def test_a_set_up_with_an_impossible_start_is_refused_as_a_whole(start: dict[str
     lab = new_lab(0.2)
     before = capture(lab.session), states(lab.session)
     with pytest.raises(ValueError):
-        restore(lab.session, Setup(benches={"five_bar": RobotSetup({"K1": 100.0}, start=start)}))
+        restore(lab.session, Setup(robots={"five_bar": RobotSetup({"K1": 100.0}, start=start)}))
     assert capture(lab.session) == before[0]
     for name, state in states(lab.session).items():
         np.testing.assert_array_equal(state, before[1][name])

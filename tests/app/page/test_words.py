@@ -30,6 +30,7 @@ from onpath.lessons.record import PLOTS
 from onpath.lessons.words import ELSEWHERE, ENGLISH, Words
 from onpath.models import systems
 from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.laws.own import MEANINGS, SPACE_MEANINGS
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.poles import channels
 from onpath.models.errors import CodedError, Message, said_by
@@ -250,7 +251,10 @@ def test_what_stands_in_models_is_translated(words: Words) -> None:
     assert [name for name in presets() if f"path.{name}" not in known] == []
     laws = [f"law.{name}" for name in LAWS if f"law.{name}.label" in known]
     assert {f"law.{name}" for name in DEFAULT_LAWS.values()} <= {*laws}
-    assert [law for law in laws if f"{law}.text" not in known] == []
+    parts = ("text", "good", "limits")
+    assert [law for law in laws for part in parts if f"{law}.{part}" not in known] == []
+    own = [f"law.own.{value.names[0]}" for value in (*MEANINGS, *SPACE_MEANINGS)]
+    assert [key for key in ("law.own.label", *own) if key not in known] == []
     told = [entry for entry in ROBOTS.values() if f"machine.{entry.name}.label" in known]
     assert {FIVE_BAR.name, FLEXIBLE.name} <= {entry.name for entry in told}
     for entry in told:
@@ -316,7 +320,9 @@ def test_nothing_is_translated_that_there_is_not(language: str) -> None:
         for name, spec in specs(entry.parameters).items():
             parts = ("label", "help", "unit", *(f"option.{option}" for option in spec.options))
             there_are |= {f"parameter.{name}.{part}" for part in parts}
-    there_are |= {f"law.{name}.{part}" for name in LAWS for part in ("label", "text")}
+    parts = ("label", "text", "good", "limits")
+    there_are |= {f"law.{name}.{part}" for name in LAWS for part in parts} | {"law.own.label"}
+    there_are |= {f"law.own.{value.names[0]}" for value in (*MEANINGS, *SPACE_MEANINGS)}
     only_here = messages(language).keys() - messages("en").keys()
     assert only_here <= {identifier(key) for key in there_are}
 

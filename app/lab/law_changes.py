@@ -1,0 +1,130 @@
+"""Changes of the control laws of one lab, each as soon as the loop that it needs is made.
+
+A law that is chosen comes when its loop can run; the old law goes on until then. A typed law that
+is in force may need another loop, after a change of the robot or of a parameter: then time stands
+still until that is made. Nothing here waits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from onpath.app.lab.closed_loop_run import ClosedLoopRun
+from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.typed_loops import Key
+from onpath.models.closed_loop.simulation import FREE, Push, kind_of
+from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.laws.own import is_text
+from onpath.models.paths.curves import Curve
+from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import Robot
+
+
+class LawChanges:
+    """The laws that are to come, and the loops that are lacking.
+
+    Args:
+        store: provides the loops.
+        change: changes the law of a bench now.
+
+    Attributes:
+        coming: laws whose loops are being made, by bench.
+        stands_still: whether time waits for them, because a run begins with them.
+        refusals: why typed laws could not be used, as far as not reported yet.
+    """
+
+    def __init__(self, store: LoopCache, change: Callable[[str, str], None]) -> None:
+        self._store, self._change = store, change
+        self.coming: dict[str, str] = {}
+        self.stands_still = False
+        self.refusals: list[ValueError] = []
+        self._asked = False  # for loops of typed laws, in the last frame
+
+    def begin(
+        self, laws: Mapping[str, str], robot: Robot, parameters: Parameters, curve: Curve
+    ) -> dict[str, str]:
+        """The laws with which a run can begin now, when these are wanted.
+
+        A typed law whose loop is not made yet is replaced by that of a new lab, and time stands
+        still until it is there.
+        """
+        late, first = dict[str, str](), dict(laws)
+        for bench, law in laws.items():
+            if is_text(law):
+                ready = self._is_ready((robot, kind_of(law, parameters, curve, FREE)))
+                if not ready:
+                    first[bench] = DEFAULT_LAWS[bench]
+                if ready is False:
+                    late[bench] = law
+        self.stands_still = bool(late) or (self.stands_still and bool(self.coming))
+        self.coming = late | self.coming
+        return first
+
+    def follow(
+        self,
+        runs: Mapping[str, ClosedLoopRun],
+        parameters: Parameters,
+        curve: Curve,
+        pushes: Mapping[str, Push],
+    ) -> bool:
+        """Make the changes that can be made now, and ask for the loops that are lacking.
+
+        Args:
+            parameters, curve, pushes: the inputs of the next frame; pushes by bench.
+
+        Returns:
+            Whether time can run: no robot is under a typed law that needs another loop.
+        """
+        typed = [bench for bench, run in runs.items() if is_text(run.law)]
+        if not (typed or self.coming or self._asked):
+            return True
+        found = {b: runs[b].lacks(parameters, curve, pushes[b]) for b in typed}
+        lacking = {b: (runs[b].robot, kind) for b, kind in found.items() if kind is not None}
+        coming = {
+            bench: (runs[bench].robot, kind_of(law, parameters, curve, pushes[bench]))
+            for bench, law in self.coming.items()
+        }
+        self._ask([*lacking.values(), *coming.values()])
+        for bench, (robot, kind) in coming.items():
+            ready = self._is_ready((robot, kind))
+            if ready:
+                self._store.prepare(robot, kind_of(kind.controller, parameters, curve))
+                self._change(bench, self.coming[bench])
+            elif ready is None:
+                del self.coming[bench]
+        self.stands_still = self.stands_still and bool(self.coming)
+        goes_on = [self._goes_on(bench, runs[bench], key) for bench, key in lacking.items()]
+        return all(goes_on) and not self.stands_still
+
+    def has_loops(self, keys: Sequence[Key]) -> bool:
+        """Whether these loops of typed laws are made; if not, they are in the background.
+
+        Raises:
+            ValueError: one of the laws cannot be used with its robot and settings.
+        """
+        self._ask(keys)
+        return all([self._store.is_ready(*key) for key in keys])
+
+    def _goes_on(self, bench: str, run: ClosedLoopRun, key: Key) -> bool:
+        """Whether a typed law can go on; if it never can, the bench gets that of a new lab."""
+        if run.kind == key[1] or run.law != key[1].controller:  # or it has just been changed
+            return True
+        ready = self._is_ready(key)
+        if ready is None:
+            self._change(bench, DEFAULT_LAWS[bench])
+        return ready is not False
+
+    def _ask(self, keys: Sequence[Key]) -> None:
+        """Ask for the loops of typed laws among these; none are made for this lab besides."""
+        typed = [key for key in keys if is_text(key[1].controller)]
+        if typed or self._asked:
+            self._store.want(self, typed)
+        self._asked = bool(typed)
+
+    def _is_ready(self, key: Key) -> bool | None:
+        """Whether a loop is made; None if it cannot be made, which the user is told."""
+        try:
+            return self._store.is_ready(*key)
+        except ValueError as error:
+            self.refusals.append(error)
+            return None

@@ -1,0 +1,53 @@
+"""The box in which a user types a law for one bench, with the button that puts it into force."""
+
+from __future__ import annotations
+
+import viser
+
+from onpath.app.common.templates import render
+from onpath.app.lab.commands import TypeLaw
+from onpath.app.page.panels.widgets import Post, on_press
+from onpath.lessons.words import Words
+from onpath.models.control.laws.own import PATH_FOLLOWING, is_text, tidy
+
+
+class OwnLawBox:
+    """A text box, a button, and why the text was refused; hidden under other laws.
+
+    Enter presses the button, see assets/page/keys.js.
+    """
+
+    def __init__(self, gui: viser.GuiApi, words: Words, post: Post, bench: str, law: str) -> None:
+        shown = is_text(law)
+        self._text = gui.add_text(
+            words(f"laws.own_{bench}"),
+            lines_of(law if shown else PATH_FOLLOWING),
+            multiline=True,
+            visible=shown,
+            hint=words("laws.own_hint"),
+        )
+        self._use = gui.add_button(words("laws.use"), visible=shown, icon=viser.Icon.CHECK)
+        self._why = gui.add_html("", visible=shown)
+        self._law, self._refusal = law, ""
+        on_press(self._use, lambda: post(TypeLaw(bench, self._text.value)))
+
+    def show(self, visible: bool) -> None:
+        """Show or hide everything."""
+        for handle in (self._text, self._use, self._why):
+            if handle.visible != visible:
+                handle.visible = visible
+
+    def follow(self, law: str, refusal: str) -> None:
+        """Show another law that is typed elsewhere, and why the last text was refused."""
+        if law != self._law:
+            self._law = law
+            if is_text(law) and tidy(self._text.value) != law:
+                self._text.value = lines_of(law)
+        if refusal != self._refusal:
+            self._refusal = refusal
+            self._why.content = render("panel/law_refusal.html", said=refusal) if refusal else ""
+
+
+def lines_of(law: str) -> str:
+    """A typed law with each formula on a line of its own."""
+    return law.replace("; ", "\n")

@@ -1,0 +1,99 @@
+"""What the page of help claims of each law: what it is good at and where it fails, in runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+
+import numpy as np
+import pytest
+
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.paths.path_design import presets
+from onpath.models.studies.comparison import Contest, Outcome, compare
+from onpath.models.studies.experiments import experiments, run
+from onpath.models.systems.catalogue import FIVE_BAR
+
+CONTEST = Contest(FIVE_BAR, FIVE_BAR.lab, presets()["circle"].curve)
+HELD = 2.0  # [s], by the brake
+ON_TIME = 0.01  # [s]
+
+
+@cache
+def outcomes(law: str, obstruction: str) -> list[Outcome]:
+    (found,) = compare(CONTEST, [law], [obstruction])
+    return found
+
+
+def off(law: str, obstruction: str) -> float:
+    """Largest distance to the path, over all places, [m]."""
+    return max(each.max_distance_m for each in outcomes(law, obstruction))
+
+
+def delays(law: str, obstruction: str) -> Iterator[float]:
+    return (each.delay_s for each in outcomes(law, obstruction))
+
+
+def test_every_law_has_three_sentences_and_a_source() -> None:
+    for law in LAWS.values():
+        for sentence in (law.text, law.good, law.limits):
+            assert sentence.endswith(".") and sentence.count(". ") == 0
+        assert law.source
+
+
+def test_tracking_is_on_time_and_leaves_the_curve_after_the_brake() -> None:
+    assert all(abs(delay) < ON_TIME for delay in delays("trajectory_tracking", "brake"))
+    assert off("trajectory_tracking", "brake") > 8 * off("path_following", "brake")
+
+
+def test_path_following_stays_and_is_late_by_as_long_as_it_was_held() -> None:
+    assert off("path_following", "brake") < 0.005
+    assert all(HELD < delay < HELD + 0.2 for delay in delays("path_following", "brake"))
+    assert max(each.overspeed for each in outcomes("path_following", "brake")) < 0.01
+
+
+def test_contouring_is_on_time_while_its_error_is_small_and_then_goes_far_off() -> None:
+    for obstruction in ("none", "start_off_at_rest"):
+        assert all(abs(delay) < ON_TIME for delay in delays("contouring", obstruction))
+    assert off("contouring", "brake") > 2 * off("trajectory_tracking", "brake")
+
+
+def test_event_based_is_soonest_at_its_speed_and_is_pressed_off_the_curve() -> None:
+    others = [name for name in CONTEST.laws() if not LAWS[name].by_clock and name != "event_based"]
+    soonest = max(delays("event_based", "start_off_at_rest"))
+    assert all(soonest < min(delays(name, "start_off_at_rest")) for name in others)
+    assert off("event_based", "brake") > 2 * off("path_following", "brake")
+
+
+def test_the_waiting_clock_stays_close_and_rushes_after_a_pull() -> None:
+    assert off("waiting_clock", "brake") < 1.1 * off("path_following", "brake")
+    rush = {
+        law: max(each.overspeed for each in outcomes(law, "push_across"))
+        for law in ("waiting_clock", "path_following")
+    }
+    assert rush["waiting_clock"] > 1 and rush["path_following"] < 0.1
+
+
+def test_the_velocity_field_gives_less_energy_and_is_not_on_time() -> None:
+    given = {
+        name: max(each.energy_given_J for each in outcomes(name, "push_across"))
+        for name in CONTEST.laws()
+        if LAWS[name].by_clock or name == "velocity_field"
+    }
+    own = given.pop("velocity_field")
+    assert len(given) > 1 and all(own < other / 10 for other in given.values())
+    assert all(abs(delay) > 0.1 for delay in delays("velocity_field", "none"))
+
+
+def test_the_virtual_constraint_leaves_the_pace_to_others() -> None:
+    assert off("virtual_constraint", "brake") < 0.005
+    assert max(delays("virtual_constraint", "push_back")) > 1
+    assert all(delay > 4 for delay in delays("virtual_constraint", "start_off_at_rest"))
+
+
+def test_the_set_point_is_reached_across_the_circle() -> None:
+    done = run(experiments()["position"], "set_point")
+    assert float(np.max(done.distance)) > 0.005
+    target = experiments()["position"].parameters.target
+    assert float(done.fields["theta"][-1, 0]) == pytest.approx(target, abs=0.01)
+    assert abs(float(done.fields["theta_rate"][-1, 0])) < 0.01
