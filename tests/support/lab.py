@@ -26,7 +26,7 @@ FOLLOWER, TRACKER = RIGHT, LEFT
 @lru_cache(maxsize=1)
 def store() -> LoopCache:
     """The loops, built once for all tests in this process."""
-    return LoopCache()
+    return LoopCache(at_once=True)
 
 
 def new_lab(seconds: float = 0.0) -> Lab:

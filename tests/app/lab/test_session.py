@@ -20,6 +20,7 @@ from onpath.models.closed_loop.obstacles import DIRECTIONS
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of, settings_vector
 from onpath.models.closed_loop.start import BOUNDS
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
+from onpath.models.control.laws.own import PATH_FOLLOWING
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import presets
@@ -87,6 +88,7 @@ def parameter_values() -> st.SearchStrategy[c.SetParameter]:
     return names.flatmap(lambda name: values(name).map(lambda v: c.SetParameter(name, v)))
 
 
+TYPED = [PATH_FOLLOWING, "across = e1; along = sqrt(1 - t)", "u1 = 0.01*t; u2 = 0", "xi", ""]
 LESSON_COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.OpenLesson: st.builds(c.OpenLesson, st.sampled_from(["", "hexapod"])),
     c.CloseLesson: st.builds(c.CloseLesson),
@@ -125,6 +127,7 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.ChooseLaw: st.builds(
         c.ChooseLaw, SOME_BENCHES, st.sampled_from([*LAWS, "", "no_law", "path following"])
     ),
+    c.TypeLaw: st.builds(c.TypeLaw, SOME_BENCHES, st.sampled_from(TYPED)),
     c.SetCopy: st.builds(c.SetCopy, st.booleans()),
     c.SetHoldDirection: st.builds(c.SetHoldDirection, st.sampled_from([*DIRECTIONS, "", "up"])),
     c.SetWall: st.builds(c.SetWall, st.sampled_from([None, True, True, False])),
