@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import MOST_COMMANDS, Lab
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.storage.lab_state import _now, _state, put_back
 from onpath.lessons.course import Course, read_course
@@ -692,13 +693,13 @@ def test_frozen_robot_shows_the_last_instant_that_is_all_numbers() -> None:
             fields["q"][:, 6:] = np.inf
             return np.stack(states) * np.nan, rows
 
-    class Store:
-        def get(self, *_: object) -> Breaking:
+    class Store(LoopCache):
+        def get(self, *_: object) -> Breaking:  # type: ignore[override]
             return Breaking()
 
-    lab.session._store = Store()  # pyright: ignore[reportAttributeAccessIssue]
+    broken = Store()
     for each in lab.session.runs.values():
-        each._loop = None
+        each._store, each._loop = broken, None
     before = run_.state.copy()
     lab.session.simulate(9)
     assert run_.diverged and run_.diverged.time == pytest.approx(lab.session.time - 9e-3 + 6e-3)
