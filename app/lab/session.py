@@ -122,7 +122,7 @@ class Session:
 
     def belongings(self) -> Belongings:
         """What the present robot keeps while another one is used."""
-        start = self.start if self._can_start() else ON_PATH
+        start = self._beginning()
         return Belongings(self.parameters, self.editor, start, self.wall)
 
     def _set_up(self, entry: RobotEntry) -> None:
