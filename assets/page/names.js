@@ -7,6 +7,7 @@
   "use strict";
 
   const SOON = 150;  // [ms], within which changes of the page are looked at together
+  const FIELD = '[role="slider"], input:not([type="hidden"]), textarea';
   const FOLDER = ".mantine-Paper-root > .mantine-Paper-root:has(> svg)";
   const ROW = ".mantine-Flex-root:has(label)";
   const ICON = "button.mantine-ActionIcon-root:not([aria-label])";
@@ -17,7 +18,7 @@
 
   // A slider's handle, the box beside it and a field to type in are named by the label of their row.
   function nameFields() {
-    for (const field of document.querySelectorAll('[role="slider"], input:not([type="hidden"])')) {
+    for (const field of document.querySelectorAll(FIELD)) {
       if (field.labels?.length) continue;
       set(field, "aria-label", field.closest(ROW)?.querySelector("label").textContent);
     }

@@ -11,15 +11,10 @@ from onpath.app.common.palette import OF_BENCH
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseLaw
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.law_help import law_help
 from onpath.app.page.panels.own_law_box import OwnLawBox
-from onpath.app.page.panels.widgets import (
-    Post,
-    close_once,
-    on_menu_press,
-    on_press,
-    on_user_update,
-)
+from onpath.app.page.panels.widgets import Post, on_menu_press, on_user_update
 from onpath.lessons.benches import law_label, law_text
 from onpath.lessons.words import Words
 from onpath.models.control.benches import BENCHES
@@ -108,8 +103,6 @@ class LawPanel:
     def _open_help(self) -> Callable[[], None]:
         laws = [name for name in self._names.values() if name != OWN]
         typing = bool(self._typing) or any(map(is_text, self._laws.values()))
-        with self._gui.add_modal(self._words("laws.about")) as modal:
+        with dialog(self._gui, self._words, self._words("laws.about")) as close:
             self._gui.add_html(law_help(laws, self._spatial, typing, self._words))
-            close = self._gui.add_button(self._words("help.close"))
-        on_press(close, partial(close_once, modal))
-        return partial(close_once, modal)
+        return close
