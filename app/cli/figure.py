@@ -1,4 +1,4 @@
-"""`onpath figure`, which repeats a figure of the paper with the paper's settings."""
+"""`onpath figure`: a figure of the paper with the paper's settings, or the rank test as a map."""
 
 from __future__ import annotations
 
@@ -9,38 +9,81 @@ from typing import Annotated, Any
 
 import tyro
 
+from onpath.app.cli.experiment import assignments
 from onpath.app.common.atomic_file import check_plot, whole_file
 from onpath.app.exports.summary_text import summary_lines
+
+RANK = "rank"
 
 
 @dataclass(frozen=True)
 class FigureCommand:
     """Run what one of the paper's figures shows; print its settings and the numbers of the runs."""
 
-    number: Annotated[int, tyro.conf.Positional]
-    """2, 3, 5, 6 or 7."""
+    name: Annotated[str, tyro.conf.Positional]
+    """2, 3, 5, 6 or 7; or rank, the rank test (11) over the workspace of a robot."""
+    robot: str = ""
+    """Name of the robot, for rank; by default five_bar."""
+    set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """Set any parameter of the robot, for rank, as name=value; repeat for more."""
     plot: Path | None = None
     """Draw the figure to this .png, .svg or .pdf file."""
     json: bool = False
     """Print settings and numbers as JSON."""
 
     def run(self) -> None:
-        """Simulate, then draw and print."""
+        """Simulate or compute, then draw and print."""
+        check_plot(self.plot)
+        result = self._rank() if self.name == RANK else self._repeated()
+        if self.json:
+            print(json.dumps(result, indent=2, ensure_ascii=False))
+        else:
+            print(_rank_text(result) if self.name == RANK else _text(result))
+
+    def _repeated(self) -> dict[str, Any]:
         from onpath.models.studies.paper_figures import FIGURES, figure_summary
 
-        if self.number not in FIGURES:
-            numbers = ", ".join(map(str, FIGURES))
-            raise ValueError(f"figure {self.number}: expected one of {numbers}")
-        check_plot(self.plot)
-        figure = FIGURES[self.number]
+        known = {str(number): figure for number, figure in FIGURES.items()}
+        if self.name not in known:
+            names = ", ".join([*known, RANK])
+            raise ValueError(f"figure {self.name}: expected one of {names}")
+        if self.robot or self.set:
+            raise ValueError(f"figure {self.name} has the paper's robot and settings")
+        figure = known[self.name]
         runs = figure.runs()
         if self.plot:
             from onpath.app.exports.paper_figures import draw_paper_figure
 
             with whole_file(self.plot) as path:
                 draw_paper_figure(figure, runs, path)
-        result = figure_summary(figure, runs)
-        print(json.dumps(result, indent=2, ensure_ascii=False) if self.json else _text(result))
+        return figure_summary(figure, runs)
+
+    def _rank(self) -> dict[str, Any]:
+        from onpath.app.exports.rank_figure import draw_rank_figure, rank_summary
+        from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
+        from onpath.models.systems.parameter_specs import unknown_name
+        from onpath.models.systems.parameters import changed
+
+        name = self.robot or FIVE_BAR.name
+        if name not in ROBOTS:
+            raise unknown_name(name, list(ROBOTS), what="robot")
+        parameters = ROBOTS[name].parameters()
+        for key, value in assignments(self.set).items():
+            parameters = changed(parameters, key, value)
+        if self.plot:
+            with whole_file(self.plot) as path:
+                draw_rank_figure(ROBOTS[name], parameters, path)
+        return rank_summary(ROBOTS[name], parameters)
+
+
+def _rank_text(result: dict[str, Any]) -> str:
+    lines = [
+        f"Rank test (11): {result['robot']}",
+        f"  smallest singular value of (dh/dq) g_v  [{result['unit']}]",
+        f"    with the end-point at home  {result['home']:g}",
+        f"    largest in the path's plane {result['largest']:g}",
+    ]
+    return "\n".join(lines)
 
 
 def _text(result: dict[str, Any]) -> str:

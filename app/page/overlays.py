@@ -15,7 +15,7 @@ import viser
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.scene.rank_nodes import RankNodes, map_corners
-from onpath.app.scene.robot_labels import RobotLabels
+from onpath.app.scene.robot_labels import LARGE, LETTERS, RobotLabels
 from onpath.app.scene.stage import Stage
 from onpath.app.scene.tube_nodes import TubeNodes, TubeShape, tube_shape
 from onpath.models.control.rank_test import RankGrid, rank_grid
@@ -82,6 +82,7 @@ class Overlays:
         robot: what kind of robot they are.
         switches: what is to be seen; others change it.
         submit: runs something in another thread.
+        is_narrow: whether letters must be larger to be read.
 
     Attributes:
         stage, switches: see above.
@@ -94,7 +95,9 @@ class Overlays:
         robot: Robot,
         switches: Switches,
         submit: Submit,
+        is_narrow: bool = False,
     ) -> None:
+        self._letters = LARGE if is_narrow else LETTERS
         self._scene, self.stage, self._robot = scene, stage, robot
         self.switches = switches
         self._labels: RobotLabels | None = None
@@ -131,7 +134,7 @@ class Overlays:
         wanted = self.switches.labels
         if wanted and self._labels is None:
             parts = self._scene, self.stage, self._robot, snapshot.motion
-            self._labels = RobotLabels(*parts)
+            self._labels = RobotLabels(*parts, self._letters)
         elif not wanted and self._labels is not None:
             self._labels.remove()
             self._labels = None

@@ -141,7 +141,8 @@ class Page:
         self._scene = Scene(self._client, stage_of(robot), _hooks(post, robot), words)
         self._scene.build(first)
         drawn = self._client.scene, self._scene.stage, robot
-        self._overlays = Overlays(*drawn, self._switches, self._rebuilds.submit)
+        how = self._switches, self._rebuilds.submit, self._is_phone
+        self._overlays = Overlays(*drawn, *how)
         self._parts: list[Part] = []
         self._client.gui.add_html(render("panel/page.html", words=words))
         self._build_panels(first, words, post)

@@ -16,8 +16,8 @@ from onpath.models.systems.robots import Robot
 if TYPE_CHECKING:
     import viser
 
-LETTERS = 0.024
-"""Height of the letters [m]."""
+LETTERS, LARGE = 0.024, 0.036
+"""Height of the letters, and on a narrow screen [m]."""
 LINE = 0.0018
 """Thickness of the arcs [m]."""
 PAST = 0.016
@@ -35,10 +35,18 @@ class RobotLabels:
         stage: where the robots stand.
         robot: what kind of robot they are.
         motion: how they stand now.
+        letters: height of the letters, [m].
     """
 
-    def __init__(self, scene: viser.SceneApi, stage: Stage, robot: Robot, motion: Motion) -> None:
-        self._robot, self._stage = robot, stage
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        stage: Stage,
+        robot: Robot,
+        motion: Motion,
+        letters: float = LETTERS,
+    ) -> None:
+        self._robot, self._letters = robot, letters
         self._origins = stage.origins
         self._nodes: list[viser.SceneNodeHandle] = []
         self._names: list[viser.LabelHandle] = []
@@ -48,7 +56,7 @@ class RobotLabels:
         for bench, own in zip(stage.bases, self._labelled(motion), strict=True):
             for name in own.names:
                 at = places[len(self._names)]
-                node = add_text(scene, f"/show/labels/{bench}/{name}", name, at, LETTERS)
+                node = add_text(scene, f"/show/labels/{bench}/{name}", name, at, letters)
                 self._names.append(node)
         if len(lines):
             self._arcs = scene.add_line_segments(
@@ -107,5 +115,5 @@ class RobotLabels:
             number = i % len(axes) + 1
             name = f"/show/axis_names/{i // len(axes)}/{number}"
             self._nodes.append(
-                add_text(scene, name, f"y{SUBSCRIPTS[number]}", end + PAST * way, LETTERS)
+                add_text(scene, name, f"y{SUBSCRIPTS[number]}", end + PAST * way, self._letters)
             )

@@ -24,8 +24,8 @@ WIDEST = 0.06
 """Radius up to which a tube is drawn [m]."""
 LINES = 24
 """Curves of constant θ: one every 15 degrees of a circle."""
-LEAST_OFFSETS = 4
-"""Curves of constant ξ on each side of the path, at least."""
+OFFSETS, LEAST_STEP = 4, 0.005
+"""Curves of constant ξ on each side of the path, or fewer, so that they are so far apart [m]."""
 ALONG = 120
 """Points along the path."""
 AROUND = 16
@@ -63,7 +63,7 @@ def tube_shape(robot: Robot, path: PathView) -> TubeShape:
     curve = drawn_curve(robot, path)
     width = tube_width(curve)
     shown = SPREAD * min(width, WIDEST)
-    step = _round_step(shown / LEAST_OFFSETS)
+    step = max(_round_step(shown / OFFSETS), LEAST_STEP)
     theta = np.linspace(-np.pi, np.pi, ALONG + 1)
     tube = local_tube(curve, theta)
     across = np.arange(1, floor(shown / step + 1e-9) + 1) * step

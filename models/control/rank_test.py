@@ -134,6 +134,25 @@ def rank_grid(
     return RankGrid(low, high, values)
 
 
+def section_map(robot: Robot, parameters: Parameters, y: Array) -> Array:
+    """σ_min with the end-point at rest at points of the output space; NaN out of reach.
+
+    Args:
+        parameters: of the plant.
+        y: shape (..., p), [m].
+
+    Returns:
+        Shape (...,), [(m/s²)/(N m)].
+
+    Source: eq. (11).
+    """
+    far, (inner, outer) = np.linalg.norm(robot.place(y), axis=-1), robot.reach
+    inside = (far > inner + IN_REACH) & (far < outer - IN_REACH)
+    values = np.full(inside.shape, np.nan)
+    values[inside] = least_gain(decoupling_matrices(robot, parameters, robot.rest(y[inside])))
+    return values
+
+
 def cell_centres(low: Array, high: Array, shape: tuple[int, int]) -> Array:
     """Centres of the cells of a rectangle, shape (rows, columns, 2), [m].
 

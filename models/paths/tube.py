@@ -84,7 +84,7 @@ def offset(tube: LocalTube, xi: Array) -> Array:
     Returns:
         Shape (..., n, d), [m].
     """
-    return np.asarray(tube.sigma + (xi[..., None] * tube.normals).sum(-2), dtype=float)
+    return tube.sigma + (xi[..., None] * tube.normals).sum(-2)
 
 
 def _compared(curve: Curve) -> Array:
@@ -105,9 +105,10 @@ def _normals(tangents: Array) -> Array:
     """Unit normals, (n, d) -> (n, d - 1, d); see `LocalTube`."""
     if tangents.shape[-1] == 2:
         return np.stack([-tangents[:, 1], tangents[:, 0]], axis=-1)[:, None]
-    left = np.cross([0.0, 0.0, 1.0], tangents)
-    left /= np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), TINY)
-    return np.stack([left, np.cross(tangents, left)], axis=1)
+    plan = np.stack([-tangents[:, 1], tangents[:, 0], 0 * tangents[:, 0]], axis=-1)
+    left = plan / np.maximum(np.linalg.norm(plan, axis=-1, keepdims=True), TINY)
+    up = np.asarray(np.cross(tangents, left), dtype=float)
+    return np.stack([left, up], axis=1)
 
 
 def _radii(gaps: Array, side: Array) -> Array:

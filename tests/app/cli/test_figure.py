@@ -11,6 +11,7 @@ import pytest
 from onpath.app.cli.main import run_command
 from onpath.app.exports.paper_figures import paper_figure
 from onpath.models.studies.paper_figures import FIGURES
+from onpath.models.systems.catalogue import ROBOTS
 
 
 @pytest.mark.parametrize("number", FIGURES)
@@ -58,6 +59,11 @@ def test_the_obstruction_is_shaded_and_the_reference_drawn() -> None:
         ["figure", "2", "--plot", "x.txt"],
         ["figure", "2", "--plot", "missing/x.png"],
         ["figure", "2", "--json", "yes"],
+        ["figure", "2", "--robot", "five_bar"],
+        ["figure", "rank", "--robot", "five_baz"],
+        ["figure", "rank", "--set", "K1"],
+        ["figure", "rank", "--set", "weight=3"],
+        ["figure", "rank", "--set", "payload=heavy"],
     ],
 )
 def test_errors_are_one_line(
@@ -71,3 +77,28 @@ def test_errors_are_one_line(
     said = capsys.readouterr()
     assert said.out == "" and said.err.startswith("onpath: ") and said.err.count("\n") == 1
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_the_rank_test_is_drawn_for_every_robot(
+    robot: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    outputs = []
+    for number in range(2):
+        file = tmp_path / f"{number}.png"
+        assert run_command(["figure", "rank", "--robot", robot, "--plot", str(file), "--json"]) == 0
+        outputs.append((file.read_bytes(), capsys.readouterr().out))
+    assert outputs[0] == outputs[1] and len(outputs[0][0]) > 20_000
+    result = json.loads(outputs[0][1])
+    assert result["robot"] == robot and 0 < result["home"] <= 1.001 * result["largest"]
+    assert run_command(["figure", "rank", "--robot", robot]) == 0
+    text = capsys.readouterr().out
+    assert result["unit"] in text and f"{result['home']:g}" in text
+
+
+def test_the_rank_test_has_the_parameters_that_are_set(capsys: pytest.CaptureFixture[str]) -> None:
+    homes = []
+    for given in ([], ["--set", "payload=0.2"]):
+        assert run_command(["figure", "rank", *given, "--json"]) == 0
+        homes.append(json.loads(capsys.readouterr().out)["home"])
+    assert homes[1] < homes[0]
