@@ -30,8 +30,9 @@ def rank_figure(entry: RobotEntry, parameters: Parameters) -> Figure:
     """σ_min in the plane of the path and, for three outputs, in the vertical section y2 = 0."""
     robot = entry.make(parameters)
     in_space = robot.system.p == 3
-    figure = ShownFigure(figsize=(13 if in_space else 7, 5.5), layout="constrained")
-    every = figure.subplots(1, 2 if in_space else 1, squeeze=False)[0].tolist()
+    figure = ShownFigure(figsize=(10.5 if in_space else 7, 5), layout="constrained")
+    ratios = {"width_ratios": (2, 1.2)} if in_space else {}
+    every = figure.subplots(1, 1 + in_space, squeeze=False, gridspec_kw=ratios)[0].tolist()
     alpha = getattr(parameters, "alpha", None)
     which = "" if alpha is None else f", α = {alpha:g}, link straight"
     figure.suptitle(f"Rank test (11): {entry.label}{which}")
