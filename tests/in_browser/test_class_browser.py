@@ -146,6 +146,9 @@ def test_the_teacher_watches_a_lab_without_changing_it(tabs: Class) -> None:
     teacher.answer()
     first.ask()
     assert not first.session.grips.held and not teacher.session.grips.held
+    teacher.page.get_by_label("Tube", exact=True).filter(visible=True).click()
+    wait_for(lambda: teacher.client.scene.get_handle_by_name("/show/tube") is not None)
+    assert first.client.scene.get_handle_by_name("/show/tube") is None
 
 
 def test_a_teacher_who_reloads_is_still_the_teacher(tabs: Class) -> None:

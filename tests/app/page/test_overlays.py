@@ -13,18 +13,23 @@ import viser
 from onpath.app.common import palette
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.page.overlays import Background, Overlays, Switches
 from onpath.app.page.panels.show_panel import SWITCHES, rank_legend, tube_numbers
 from onpath.app.scene.rank_nodes import largest, map_corners, map_picture
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tube_nodes import drawn_curve, tube_shape
+from onpath.app.server.lab_server import LabServer
+from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.rank_test import rank_grid
 from onpath.models.paths.curves import saddle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import RobotEntry
 from tests.support.lab import do, run, store
+from tests.support.student import Student
+from tests.support.waiting import wait_for
 
 ENTRIES = pytest.mark.parametrize("entry", ROBOTS.values(), ids=ROBOTS)
 
@@ -208,3 +213,24 @@ def test_a_computation_that_fails_can_be_asked_for_again() -> None:
     found.ask("b", lambda: 2)
     waiting.pop()()
     assert (found.key, found.value) == ("b", 2)
+
+
+@pytest.fixture
+def lessons() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopCache(), read_course([BUILT_IN])[0])
+    yield server
+    server.stop()
+
+
+def test_a_projector_shows_it_in_a_lesson_too(lessons: LabServer) -> None:
+    with Student(f"ws://127.0.0.1:{lessons.server.get_port()}") as student:
+        student.open()
+        student.read(lambda: student.code)
+        lab = wait_for(lambda: lessons.sessions.find(student.code), 30.0).scheduled.lab
+        for command in (c.OpenLesson("01-path-or-timetable"), c.SetPresenting(True)):
+            lab.post(command)
+        student.read(lambda: student.sees("Step 1 of") and not student.has_widget("Undo"))
+        student.read(lambda: student.has_widget("Tube"))
+        student.set("Tube", True)
+        (client,) = lessons.server.get_clients().values()
+        student.read(lambda: client.scene.get_handle_by_name("/show/tube") is not None)
