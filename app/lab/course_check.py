@@ -44,7 +44,7 @@ def lab_at(lesson: Lesson, step: Step, store: LoopCache) -> Lab:
 
 
 def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Verdict]]:
-    """Play a script to its end and yield the verdicts on a task, ten times a second.
+    """Play a script to its end and yield the verdicts on a task, if any, ten times a second.
 
     Raises:
         ValueError: the lab refuses a command of the script; the message says why.
@@ -58,8 +58,7 @@ def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Ve
             lab.advance(session.rate * FRAME)
         if lab.message_level == "warning":
             raise ValueError(lab.message)
-        if task is not None:
-            yield judge(task, record_of(session, begin), words)
+        yield [] if task is None else judge(task, record_of(session, begin), words)
         if lab.script is None:
             return
     raise ValueError(f"the script does not reach its end at {script.until:g} s")

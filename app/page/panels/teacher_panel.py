@@ -11,13 +11,16 @@ from onpath.app.classroom.results import class_csv, distribution, prediction_at,
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.step_truth import computed_truth
 from onpath.app.page.panels.dialog import mark_closing
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.course import Course
+from onpath.lessons.progress import Truth
+from onpath.lessons.schema import Lesson
 from onpath.lessons.words import Words
 
-WIDTH, WIDE = 480, 760  # [px]; wide for a projector
+WIDTH, WIDE = 480, 1280  # [px]; wide for a projector
 REFRESH_INTERVAL = 1.0  # [s], refresh period
 
 Submit = Callable[[Callable[[], None]], None]
@@ -44,6 +47,7 @@ class TeacherPanel:
         self._teaching, self._class, self._chosen = teaching, teaching.classroom, teaching.chosen
         self._course, self._words, self._post = course, words, post
         self._next, self._busy = 0.0, False
+        self._computed: dict[tuple[str, int], Truth | None] = {}
         self._codes: list[viser.GuiHtmlHandle] = []
         self._large = teaching.progress().presenting
         panel = self._gui.add_panel(order=0)
@@ -146,6 +150,8 @@ class TeacherPanel:
         reveal = gui.add_checkbox(words("class.truth"), chosen.revealed)
         large = gui.add_checkbox(words("lesson.presenting"), self._large)
         self._prediction = gui.add_html("")
+        self._below, self._above = self._prediction.order, lesson.order - 0.5
+        self._place_prediction()
         on_user_update(lesson, lambda label: self._choose_lesson(lessons[label]))
         on_user_update(self._step, self._choose_step)
         on_user_update(reveal, self._reveal)
@@ -185,7 +191,12 @@ class TeacherPanel:
         self._large = on
         self._post(c.SetPresenting(on))
         self._panel.set_width(WIDE if on else WIDTH)
+        self._place_prediction()
         self._look_again()
+
+    def _place_prediction(self) -> None:
+        """Below the controls, or for a projector above them."""
+        self._prediction.order = self._above if self._large else self._below
 
     def _look_again(self) -> None:
         self._next = 0.0
@@ -204,12 +215,21 @@ class TeacherPanel:
         at, block = found
         ways = [member.progress for member in self._class.members().values()]
         truth = truth_of(chosen.lesson, at, [*ways, self._teaching.progress()])
+        if truth is None and chosen.revealed:
+            truth = self._truth_at(lesson, at)
         counted = distribution(block, chosen.lesson, at, ways)
         view = page.prediction_view(
             block, counted, truth, chosen.revealed, words, self._large, lesson.laws_shown(at)
         )
         missing = chosen.revealed and not counted.counts and truth is None
         return view + note(words("class.no_truth")) if missing else view
+
+    def _truth_at(self, lesson: Lesson, at: int) -> Truth | None:
+        """What happens, computed once if nobody has run it."""
+        key = lesson.name, at
+        if key not in self._computed:
+            self._computed[key] = computed_truth(lesson, at)
+        return self._computed[key]
 
     # Export and deletion
 

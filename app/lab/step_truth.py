@@ -1,0 +1,39 @@
+"""What really happens in a step that asks for a prediction, computed without a student's lab."""
+
+from __future__ import annotations
+
+from onpath.app.lab.course_check import lab_at, play
+from onpath.app.lab.lesson_record import Beginning, Trace
+from onpath.app.lab.lesson_run import quantity_of
+from onpath.app.lab.loop_cache import LoopCache
+from onpath.lessons.progress import Truth
+from onpath.lessons.schema import Lesson, Step
+
+
+def computed_truth(lesson: Lesson, index: int) -> Truth | None:
+    """Play the demonstration of the prediction that step `index` asks, and record it.
+
+    Returns None if the lesson does not show what was predicted, or cannot.
+    """
+    predictions, shown = lesson.steps[index].predictions(), _shown(lesson, index)
+    if not predictions or shown is None or shown.script is None:
+        return None
+    store = LoopCache()
+    store.close()  # nothing is compiled for one run
+    lab = lab_at(lesson, shown, store)
+    trace = Trace(quantity_of(predictions[0]), Beginning.now(lab.session))
+    try:
+        for _ in play(lab, shown.script):
+            trace.follow(lab.session)
+    except ValueError:
+        return None
+    return trace.truth()
+
+
+def _shown(lesson: Lesson, index: int) -> Step | None:
+    """The step that shows it: that which asks, or the next one if that is a demonstration."""
+    candidates = [lesson.steps[index], *lesson.steps[index + 1 : index + 2]]
+    for step in candidates:
+        if step.script is not None and (step is candidates[0] or step.kind == "run"):
+            return step
+    return None
