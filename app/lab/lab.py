@@ -66,7 +66,8 @@ class Lab:
         session: the simulated lab.
         lessons: the user's progress through the lessons.
         script: player of the running script, or None.
-        message, message_level: message to the user, and "info", "warning" or "error".
+        message, message_level: message to the user, and "info", "warning", "error" or "stop":
+            the teacher has stopped the lab.
         law_refusals: why the law that was last typed for a bench was refused, by bench.
         shared: the last share code made.
         frozen: whether the teacher has stopped this lab.

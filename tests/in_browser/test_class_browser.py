@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, FloatRect, Locator
 
 from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.common.access_codes import shown
@@ -21,6 +21,7 @@ from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import Tab, wait_for
 
+LESSON = "01-path-or-timetable"
 HOSTILE = "<img src=x onerror=1>"
 WINDOWS = ((1100, 600), (800, 400), (800, 400))
 
@@ -49,6 +50,13 @@ def tabs(browser: Browser) -> Iterator[Class]:
     for tab in made:
         tab.page.context.close()
     server.stop()
+
+
+def placed(what: Locator) -> FloatRect:
+    """Where something is on the page, [px]."""
+    box = what.bounding_box()
+    assert box is not None
+    return box
 
 
 def fill(tab: Tab, label: str, text: str) -> None:
@@ -84,6 +92,11 @@ def test_frozen_labs_are_paused_and_say_so(tabs: Class) -> None:
     tabs.teacher.press("Freeze all labs")
     for student in tabs.students:
         wait_for(lambda student=student: "look to the front" in student.said())
+        box = student.page.locator("#op-message")
+        assert box.evaluate("each => parseFloat(getComputedStyle(each).fontSize)") >= 24
+        dimmed = "getComputedStyle(document.body, '::before').backgroundColor"
+        assert student.page.evaluate(dimmed) == "rgba(15, 23, 42, 0.6)"
+        student.page.get_by_text("paused").first.wait_for()
         before = student.session.time
         asked = student.lab.asked
         student.press("Pause")
@@ -110,6 +123,22 @@ def test_a_pushed_step_opens_and_predictions_show_without_names(tabs: Class) -> 
     picture = teacher.page.locator(".op-class")
     wait_for(lambda: picture.locator("polyline").count() == 2)
     assert "2 predicted" in picture.inner_text() and "Ada" not in picture.inner_text()
+    assert all(not student.lab.lessons.progress.notes[LESSON].truths for student in (first, second))
+    teacher.page.get_by_text("Show the truth").click()
+    wait_for(lambda: picture.locator("polyline").count() == 4)  # though nobody has run it
+    teacher.page.get_by_text("Show the truth").click()
+    wait_for(lambda: picture.locator("polyline").count() == 2)
+
+
+def test_on_a_projector_the_prediction_is_large_and_comes_first(tabs: Class) -> None:
+    page = tabs.teacher.page
+    picture, size = page.locator(".op-class"), "each => parseFloat(getComputedStyle(each).fontSize)"
+    page.get_by_text("Presentation: large type").click()
+    wait_for(lambda: picture.evaluate(size) >= 24)
+    wait_for(lambda: placed(picture)["y"] < placed(tabs.teacher.field("Lesson"))["y"])
+    wait_for(lambda: placed(picture)["width"] > 0.6 * WINDOWS[0][0])
+    page.get_by_text("Presentation: large type").click()
+    wait_for(lambda: picture.evaluate(size) < 24)
 
 
 def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None:

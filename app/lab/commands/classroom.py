@@ -79,4 +79,4 @@ class ReportState(Command):
 def _tell(lab: Lab) -> None:
     """Show why the lab is stopped."""
     if lab.frozen:
-        lab.show_message(lab.words("class.frozen"), "warning")
+        lab.show_message(lab.words("class.frozen"), "stop")

@@ -221,7 +221,7 @@ class Snapshot:
         stopped: benches of the robots that have diverged by then and stand still.
         grabbed: bench of the robot whose end-point is being pulled, or None.
         message: message to the user (a divergence, a refusal), plain text, or "".
-        message_level: "info", "warning" or "error".
+        message_level: "info", "warning", "error" or "stop".
         note: remark on the scale of the drawing, or "".
         key: see `PageKey`.
         wall: a point of the wall's surface [m], and two unit vectors: along the wall in the path's

@@ -42,8 +42,9 @@ class Readout:
         ]
         laws = tuple(snapshot.laws.items())
         level = snapshot.message_level if snapshot.message else ""
-        frame = self._frame(laws, level, snapshot.running)
-        time = f"{snapshot.time:.{1 if snapshot.running else 2}f}"
+        running = snapshot.running and level != "stop"
+        frame = self._frame(laws, level, running)
+        time = f"{snapshot.time:.{1 if running else 2}f}"
         speed, message = f"{snapshot.achieved_speed:.2g}", escape(snapshot.message)
         said = escape(self._spoken(snapshot)) if self._speaks() else ""
         content = frame.format(*numbers, time=time, speed=speed, message=message, spoken=said)
