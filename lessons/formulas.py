@@ -62,6 +62,12 @@ def render(markdown: MarkdownIt, tokens: Sequence[Token]) -> Markup:
     return Markup(markdown.renderer.render(tokens, markdown.options, {}))
 
 
+def folded(title: str, content: Markup) -> Markup:
+    """Content that is shown when its title is pressed."""
+    summary = Markup("<summary>{}</summary>").format(title)
+    return Markup("<details>{}{}</details>").format(summary, content)
+
+
 def to_html(text: str) -> Markup:
     """The HTML of a short text such as a question or a hint; a single paragraph loses its <p>.
 

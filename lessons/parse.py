@@ -13,7 +13,7 @@ from markdown_it.token import Token
 from markupsafe import Markup
 
 from onpath.lessons import vocabulary
-from onpath.lessons.formulas import FormulaError, embedded, reader, render, to_html
+from onpath.lessons.formulas import FormulaError, embedded, folded, reader, render, to_html
 from onpath.lessons.links import read_link
 from onpath.lessons.problems import LessonError, Problem
 from onpath.lessons.schema import (
@@ -40,6 +40,7 @@ LARGEST = 1_000_000
 KINDS: tuple[str, ...] = get_args(StepKind)
 FENCES = ("scene", "script", "predict", "task", "quiz")
 HEADING = re.compile(r"(\w+):\s*(.+)")
+FOLD = re.compile(r"fold\b\s*(.*)")
 
 
 @dataclass(slots=True)
@@ -128,6 +129,8 @@ class _Reader:
                 self._complain(line, "before the first step: a step begins with `# kind: Title`")
             elif head.type == "fence" and head.info.strip() in FENCES:
                 self._fence(drafts[-1], head.info.strip(), head.content, line + 1)
+            elif head.type == "fence" and (fold := FOLD.fullmatch(head.info.strip())):
+                self._fold(drafts[-1], fold[1], head.content, line + 1)
             else:
                 self._prose(drafts[-1], tokens, line)
         self._complain_all(1, _missing(drafts))
@@ -177,8 +180,18 @@ class _Reader:
     def _task_faults(self, task: Task) -> Iterator[str]:
         return vocabulary.task_faults(task, self._robot)
 
-    def _prose(self, draft: _Draft, tokens: list[Token], line: int) -> None:
-        """Read a paragraph, list, table or picture; lab links end the text block."""
+    def _fold(self, draft: _Draft, title: str, content: str, line: int) -> None:
+        """Read a fenced block of Markdown that is shown when its title is pressed."""
+        if not title:
+            self._complain(line, "a fold needs a title: ```fold I cannot play: tell me")
+        self._prose(draft, self._markdown.parse(content), line, title)
+
+    def _prose(self, draft: _Draft, tokens: list[Token], line: int, fold: str = "") -> None:
+        """Read a paragraph, list, table or picture; lab links end the text block.
+
+        Args:
+            fold: a title, for a text that is shown when it is pressed.
+        """
         links: list[LabLink] = []
         for token in tokens:
             for child in token.children or ():
@@ -192,6 +205,8 @@ class _Reader:
             return
         if links and not _has_prose(tokens):
             html = Markup()  # the buttons show the same words
+        if fold:
+            html = folded(fold, html)
         last = draft.blocks[-1] if draft.blocks else None
         if isinstance(last, Text) and not last.links:
             draft.blocks[-1] = Text(last.html + html, tuple(links))

@@ -16,7 +16,7 @@
     ['[role="slider"]', MOVE],
     ['[role="tab"]', [...MOVE, ...PRESS]],
     ['input[type="radio"]', [...ARROWS, ...PRESS]],
-    ['button, [role="button"], input[type="checkbox"]', PRESS],
+    ['button, summary, [role="button"], input[type="checkbox"]', PRESS],
   ];
   const TICKED = 'input[type="checkbox"], input[type="radio"]';
 

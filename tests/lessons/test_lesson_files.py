@@ -88,6 +88,24 @@ def test_what_is_wrong_is_named_with_its_line(
     assert 0 <= line_of(first, text) - found[0][0] <= 4, found  # its line, or its block's first
 
 
+def test_a_fold_shows_its_title_and_keeps_the_rest(tmp_path: Path) -> None:
+    own = (
+        "```fold If *you* <b>cannot</b>\n$x^2$ and *more*, and [K3](lab:K3=1)\n```\n\n# predict: B"
+    )
+    text = read_lesson(write_lesson(tmp_path, LESSON.replace("# predict: B", own, 1))).steps[0]
+    *_, fold = text.blocks
+    assert isinstance(fold, Text) and "<em>more</em>" in fold.html and "<math" in fold.html
+    assert "<details><summary>If *you* &lt;b&gt;cannot&lt;/b&gt;</summary><p>" in fold.html
+    assert fold.links[0].actions == (Action(set={"K3": 1.0}),)
+    assert "<details" not in str(text.blocks[0])
+    (found,) = problems(
+        write_lesson(
+            tmp_path, LESSON.replace("# predict: B", own.replace(" If *you* <b>cannot</b>", ""), 1)
+        )
+    )
+    assert "needs a title" in found[1]
+
+
 @pytest.mark.parametrize("kind", ["play", "predict", "run", "explain", "task"])
 def test_a_lesson_without_one_of_its_parts_is_refused(tmp_path: Path, kind: str) -> None:
     text = LESSON.replace(f"# {kind}: ", "# quiz: ")
