@@ -52,7 +52,7 @@ def test_spoiler_shows_across_and_along(spoiler: str) -> None:
 
 def test_look_ahead_of_half_an_interval_makes_late_control_as_fast_as_it_should_be() -> None:
     follower = play(6.0, [], **PD, control_rate=100, look_ahead="half_interval")["follower"]
-    rate, off = said("06", "at 100 Hz blue then turns at # rad/s, and stays within # mm")
+    rate, off = said("06", "at 100 Hz the follower then turns at # rad/s, and stays within # mm")
     assert_stated([rate], [float(follower.rate[1000:].mean())])
     assert 0.9 * value(off) < follower.largest(1, 6) < value(off)
 
@@ -62,7 +62,7 @@ def test_late_control_is_fast_control() -> None:
         play(6.0, [], **PD, **SPOILERS[name])["follower"].rate[1000:].mean()
         for name in ("control at 100 Hz, not 1000", "encoders with 2000 steps a turn")
     ]
-    stated = said("06", "At 100 Hz blue is # % too fast, with the encoders # %")
+    stated = said("06", "At 100 Hz the follower is # % too fast, with the encoders # %")
     assert_stated(stated, [100 * (float(rate) / TURN - 1) for rate in rates])
 
 
@@ -78,12 +78,12 @@ def test_wrong_model_costs_some_millimetres() -> None:
 def test_more_gain_until_it_is_fatal() -> None:
     follower = shown("06", "More is better")["follower"]
     stated = said(
-        "06", "In the last second of each step blue is # mm off on average, then #, then #:"
+        "06", "In the last second of each step the follower is # mm off on average, then #, then #:"
     )
     assert_stated(
         stated, [float(follower.distance[a : a + 1000].mean()) for a in (1000, 3000, 5000)]
     )
-    low, high = said("06", "In the first step, from 1 s on, blue is # to # mm off")
+    low, high = said("06", "In the first step, from 1 s on, the follower is # to # mm off")
     off = follower.distance[1000:2000]
     assert_stated([low, high], [float(off.min()), float(off.max())])
     do = [Action(at=2.0, set={"K1": 2500, "K2": 150})]
@@ -115,7 +115,7 @@ def test_largest_damping_is_where_the_poles_say() -> None:
         late = 1e-3 if look_ahead == "half_tick" else 1 / rate  # "as if T were 1 ms longer"
         assert stated == pytest.approx(2 / (1 / rate + late), abs=1.5)
     with_it = play(3.0, [], K1=2500, K2=200, control_rate=100, **PD)["follower"]
-    assert 1.0 <= with_it.t[-1] < 1.1  # "stops the blue robot after one second"
+    assert 1.0 <= with_it.t[-1] < 1.1  # "stops the follower after one second"
 
 
 def test_the_integral_learns_and_what_it_learns() -> None:
@@ -130,7 +130,7 @@ def test_the_integral_learns_and_what_it_learns() -> None:
         assert_stated(stated, off)
     hand = [Action(at=1.0, pull=(30.0, 0.0)), Action(at=3.0, release=True)]
     without, learnt = (play(4.0, hand, speed=0.0, K3=gain)["follower"] for gain in (0, 4000))
-    assert_stated(said("06", "without K3 blue comes # mm off and stays"), [without.at(2.9)])
+    assert_stated(said("06", "without K3 the follower comes # mm off and stays"), [without.at(2.9)])
     assert learnt.largest(2, 3) < 0.1  # "back on the circle after a second"
     assert_stated(said("06", "it shoots # mm to the other side"), [float(learnt.across.max())])
 

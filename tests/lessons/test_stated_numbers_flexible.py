@@ -160,7 +160,7 @@ def test_holding_the_tip() -> None:
             assert 0 < (held(law, begin, "redefined").stopped or 9.0) - begin < 1
     begins = np.arange(2.0, 5.1, 0.4)
     energies = [largest(held(FOLLOWER, t, "composite").energy, t, t + 2.2) for t in begins]
-    (most,) = said(LESSON, "so that the blue link never holds more than # mJ")
+    (most,) = said(LESSON, "so that the follower's link never holds more than # mJ")
     assert max(energies) < value(most)
 
 
@@ -183,17 +183,17 @@ def test_turning_round() -> None:
     texts = said(
         LESSON,
         "With K5 = 5 the tip goes # to # mm off in the turn, depending on where it turns."
-        " The orange one: # to # mm, whatever K5 is.",
+        " The tracker: # to # mm, whatever K5 is.",
     )
     off = (follower[:, 0], tracker[:, 0])
     assert_stated(texts, [float(f(x)) for x in off for f in (np.min, np.max)])
     texts = said(
         LESSON,
-        "bends the orange link by # to # mm and, with K5 = 1, the blue one by less than # mm.",
+        "bends the tracker's link by # to # mm and, with K5 = 1, the follower by less than # mm.",
     )
     assert_stated(texts[:2], [tracker[:, 1].min(), tracker[:, 1].max()])
     assert gently[:, 1].max() < value(texts[2])
-    (far,) = said(LESSON, "with the blue tip never further than # mm from the path")
+    (far,) = said(LESSON, "with the follower's tip never further than # mm from the path")
     assert gently[:, 0].max() < value(far)
 
 

@@ -59,15 +59,15 @@ def test_reversals() -> None:
     tracker = [largest(reversed_at_2_s(TRACKER, v).distance, 2, 4) for v in (FAST, 12.0)]
     texts = said(
         LESSON,
-        "a reversal at full speed throws the orange robot # mm off the circle."
-        " From # to # rad/s it is # mm. The blue robot is at most # mm off in both.",
+        "A reversal at full speed throws the tracker # mm off the circle."
+        " From # to # rad/s it is # mm. The follower is at most # mm off in both.",
     )
     assert_stated(texts, [tracker[0], 12, -12, tracker[1], max(follower)])
 
 
 def test_four_jumps() -> None:
     start, *tracker = jumps(TRACKER)
-    assert_stated(said(LESSON, "with the orange robot: #, #, # and # mm."), tracker)
+    assert_stated(said(LESSON, "with the tracker: #, #, # and # mm."), tracker)
     texts = said(LESSON, "at every jump: by # mm at 2 s, # mm at 4 s, # mm at 6 s and # mm at 8 s.")
     assert_stated(texts, tracker)
     assert_stated(said(LESSON, "even at the very start, by # mm"), [start])
@@ -80,7 +80,7 @@ def test_a_reversal_takes_half_a_second_and_a_harder_k5_takes_nothing_off_the_pa
     assert 0.4 < 1e-3 * int(np.argmax(rate < -0.98 * FAST)) - 2 < 0.6
     k5, within = said(
         LESSON,
-        "with K5 = #, ten times as hard, a full reversal still leaves the blue robot within # mm.",
+        "with K5 = #, ten times as hard, a full reversal still leaves the follower within # mm.",
     )
     robot = reversed_at_2_s(FOLLOWER, FAST, value(k5))
     assert_stated([within], [robot.distance.max()])
@@ -141,14 +141,19 @@ def test_the_paper_s_first_experiment() -> None:
         logs[law] = robot.let_go().set(target=1.57).run(7.0)
     (inside,) = said(LESSON, "first brings both end-points # mm into the circle")
     assert_stated([inside], [at(logs[FOLLOWER].distance, 3.999)])
-    texts = said(LESSON, "It first goes to the circle: # mm off after 0.2 s, # mm after 0.4 s.")
+    texts = said(LESSON, "It is # mm off after 0.2 s, # mm after 0.4 s, and by then")
     assert_stated(texts, [at(logs[FOLLOWER].distance, t) for t in (4.2, 4.4)])
+    stated = said(LESSON, "after 0.4 s, when it was # mm off, more than half of the way along")
+    assert stated == texts[1:]
+    assert said(LESSON, "it is the quicker one: after 0.2 s it was # mm off") == texts[:1]
+    (near,) = said(LESSON, "Across it was within # mm after 0.2 s, whatever it did along")
+    assert at(logs[FOLLOWER].distance, 4.2) < value(near)
     place = logs[FOLLOWER].log("theta")[:, 0]
     assert at(place, 4.4) - at(place, 4.0) > (1.57 - at(place, 4.0)) / 2
     top = np.array([0.0, 0.05])
     sentences = (
         (FOLLOWER, "slower and slower, and is there after about # s."),
-        (TRACKER, "Orange gets to the top as well, after # s"),
+        (TRACKER, "The tracker gets to the top as well, after # s"),
     )
     for law, sentence in sentences:
         away = np.linalg.norm(logs[law].log("y") - top, axis=1)
@@ -259,13 +264,16 @@ def test_the_integral_brings_it_back_to_the_path_against_the_brake() -> None:
     """Each place within the stated number, and the worst one not far below it."""
     told = said(
         LESSON,
-        "Half a second after the catch blue is at most # mm off, after two seconds # mm",
-    ) + said(LESSON, "That takes blue up to # mm off, and at most # mm are left after one second")
+        "Half a second after the catch the follower is at most # mm off, after two seconds # mm",
+    ) + said(
+        LESSON, "That takes the follower up to # mm off, and at most # mm are left after one second"
+    )
     worst = [max(each) for each in zip(*map(let_go_again, range(0, 360, 6)), strict=True)]
     for text, measured in zip(told, worst, strict=True):
         assert value(text) / 2 < measured <= value(text)
     within = said("06", "is then back within # mm of the circle")[0]
-    assert [within, *said("06", "blue gets up to # mm off, and within # mm after")] == told[1:]
+    later = said("06", "the follower gets up to # mm off, and within # mm after")
+    assert [within, *later] == told[1:]
     assert said("01", "after two seconds of holding it is within # mm of the circle") == [within]
     readme = "the follower ends within # mm of the circle,"
     assert stated_in_readme(readme) == [within]
@@ -312,7 +320,7 @@ def test_what_the_hint_says_of_k5_and_k1(degrees: int) -> None:
 
 def test_a_softer_k5_costs_time_afterwards() -> None:
     slow, quick, percent = said(
-        LESSON, "and blue then needs # s instead of # s to # % of its speed."
+        LESSON, "and the follower then needs # s instead of # s to # % of its speed."
     )
     for k5, stated in ((2.0, slow), (10.0, quick)):
         robot = Driven(speed=FAST, K5=k5).run(3.0).hold().run(5.2).let_go().run(8.2)

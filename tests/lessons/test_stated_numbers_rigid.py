@@ -285,6 +285,18 @@ def test_swing_is_the_same_with_and_without_the_trip() -> None:
     assert np.abs(alone.across[2000:] - follower.across[2000:]).max() < 0.01
 
 
+def test_any_function_that_is_zero_on_the_path_keeps_it_and_returns_in_its_own_way() -> None:
+    """Zero on the same set, so the same path is kept; off it, the way back is another one."""
+    jumps = [Action(at=at, set={"speed": speed}) for at, speed in ((1.0, -TURN), (2.0, 9))]
+    pull = [Action(at=1.0, pull=(30.0, 0.0)), Action(at=2.0, release=True)]
+    left = []
+    for across in ("distance", "level_set"):
+        assert play(3.0, jumps, across=across, **PD)["follower"].distance.max() < 0.01
+        back = play(2.2, pull, speed=0.0, across=across, **PD)["follower"]
+        left.append(back.at(2.1) / back.at(2.0))
+    assert abs(left[0] - left[1]) > 0.01
+
+
 def test_lab_shows_the_poles_of_the_table() -> None:
     for gains, names in ((("400", "40"), ("K1", "K2")), (("25", "10"), ("K4", "K5"))):
         table = said("04", f"| {names[0]} = {gains[0]}, {names[1]} = {gains[1]} | #, # |")
@@ -299,18 +311,22 @@ def test_lab_shows_the_poles_of_the_table() -> None:
 
 
 def test_gain_and_coarse_encoders() -> None:
-    both = shown("04", "More gain is better")
-    stated = said("04", "blue is off by up to #, #, #, # mm; orange by #, #, #, #. (At # s, when")
+    both = shown("04", "How much gain?")
+    stated = said(
+        "04", "the follower is off by up to #, #, #, # mm; the tracker by #, #, #, #. (At # s, when"
+    )
     off = [both[name].largest(a + 0.5, a + 4) for name in ("follower", "tracker") for a in STAGES]
     assert_stated(stated[:8], off)
     first, *later = off[:4]
-    still = said("04", "when the second stage begins, blue is still # mm off from the first")
+    still = said(
+        "04", "when the second stage begins, the follower is still # mm off from the first"
+    )
     assert_stated(still, [both["follower"].largest(4.0, 4.5)])
-    assert_stated(said("04", "In the first stage blue is up to # mm off"), [first])
+    assert_stated(said("04", "In the first stage the follower is up to # mm off"), [first])
     assert_stated(said("04", "with K1 = 100 it was # mm off"), [first])
     assert_stated(said("04", "For one stage: # mm. Then # mm and # mm."), later)
-    assert_stated(said("04", "Yes: #, then #, # and # mm. In between"), [first, *later])
-    assert_stated(said("04", "Blue was #, # and # mm off."), later)
+    assert_stated(said("04", "Yes: #, then #, # and # mm. Between"), [first, *later])
+    assert_stated(said("04", "The follower was #, # and # mm off."), later)
 
 
 def test_what_a_step_of_the_encoder_looks_like() -> None:
