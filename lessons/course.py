@@ -11,7 +11,7 @@ import msgspec
 
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem
-from onpath.lessons.schema import Lesson, Reference, Step
+from onpath.lessons.schema import Lesson, Reference, Sketch, Step, Task, Text
 from onpath.lessons.vocabulary import script_faults
 from onpath.lessons.words import DEFAULT
 
@@ -121,10 +121,14 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
     for own, theirs in zip(first.steps, other.steps, strict=False):
         if _structure(own) != _structure(theirs):
             text = f"step {theirs.title!r} is not as in {first.language}.md, line {own.line}"
-            yield Problem(str(file), theirs.line, f"{text}: same kind, scene, script and tasks")
+            yield Problem(
+                str(file), theirs.line, f"{text}: same kind, scene, script, tasks and questions"
+            )
 
 
 def _structure(step: Step) -> tuple[object, ...]:
     """The parts of a step that are the same in all languages."""
     tasks = [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()]
-    return step.kind, step.scene, step.script, tasks, [type(block) for block in step.predictions()]
+    blocks = [block for block in step.blocks if not isinstance(block, Text | Task)]
+    right = [[o.right for o in block.options] for block in blocks if not isinstance(block, Sketch)]
+    return step.kind, step.scene, step.script, tasks, [type(block) for block in blocks], right

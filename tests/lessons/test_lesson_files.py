@@ -203,6 +203,16 @@ def test_a_translation_that_does_something_else_is_named(tmp_path: Path) -> None
     assert found.path.endswith("de.md") and found.line == line_of("# task", LESSON)
 
 
+def test_a_translation_with_the_options_in_another_order_is_named(tmp_path: Path) -> None:
+    """What a student has chosen is kept as a number."""
+    turned = LESSON.replace('answer = "A", right = true', 'answer = "A"')
+    turned = turned.replace('answer = "B"', 'answer = "B", right = true')
+    file = write_lesson(tmp_path)
+    (file.parent / "de.md").write_text(turned)
+    (found,) = read_course([tmp_path])[1]
+    assert found.path.endswith("de.md") and found.line == line_of("# quiz", LESSON)
+
+
 def test_the_command_line_lists_and_checks(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

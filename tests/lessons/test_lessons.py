@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 
 import pytest
+from markupsafe import Markup
 
 from onpath.app.cli.main import run_command
 from onpath.app.lab.course_check import lab_at, play, play_course, solved
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
-from onpath.lessons.schema import Lesson, Step, Task
+from onpath.lessons.schema import Choice, Lesson, Quiz, Step, Task
 from tests.support.lab import store
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.lesson_texts import REFERENCE as EXAMPLE
@@ -32,6 +34,25 @@ def label(value: object) -> str:
 def test_every_lesson_is_all_right() -> None:
     assert PROBLEMS == []
     assert len(ENGLISH) >= 8 and "de" in COURSE.languages()
+
+
+def test_no_rule_of_thumb_finds_the_right_options() -> None:
+    """Neither the first, the second…, nor the longest, nor the shortest one is mostly right."""
+    asked = [
+        block.options
+        for lesson in ENGLISH
+        for step in lesson.steps
+        for block in step.blocks
+        if isinstance(block, Choice | Quiz)
+    ]
+    found: Counter[object] = Counter()
+    for options in asked:
+        sizes = [len(Markup(option.text).striptags()) for option in options]
+        for place, option in enumerate(options):
+            rules = (place, *(most for most in (max, min) if sizes[place] == most(sizes)))
+            found.update(rules if option.right else ())
+    assert len(asked) > 20
+    assert max(found.values()) <= 0.45 * len(asked), found
 
 
 @pytest.mark.parametrize(("lesson", "step", "task"), TASKS, ids=label)

@@ -76,7 +76,7 @@ def test_wrong_model_costs_some_millimetres() -> None:
 
 
 def test_more_gain_until_it_is_fatal() -> None:
-    follower = shown("06", "More is better")["follower"]
+    follower = shown("06", "Turn it up")["follower"]
     stated = said(
         "06", "In the last second of each step the follower is # mm off on average, then #, then #:"
     )
@@ -146,7 +146,7 @@ def bulge(index: int, right: float, up: float, *more: Action, **settings: Any) -
 def test_bulge_costs_what_its_bend_needs() -> None:
     right, slow = bulge(4, 15, 0), bulge(4, 15, 0, speed=TURN / 2)
     costs = [float(run.torque[4000:].max()) for run in (right, bulge(6, 0, 15), slow)]
-    assert_stated(said("08", "the bulge to the right costs # N m, twice"), costs[:1])
+    assert_stated(said("08", "The bulge to the right costs # N m, twice"), costs[:1])
     assert_stated(said("08", "The same bulge at the top costs #. And"), costs[1:2])
     assert_stated(said("08", "the right one costs #: not half"), costs[2:])
     assert_stated(said("08", "The plot said #; out there"), costs[:1])

@@ -189,7 +189,7 @@ def test_turning_round() -> None:
     assert_stated(texts, [float(f(x)) for x in off for f in (np.min, np.max)])
     texts = said(
         LESSON,
-        "bends the tracker's link by # to # mm and, with K5 = 1, the follower by less than # mm.",
+        "bends the tracker's link by # to # mm and, with K5 = 1, the follower's by less than # mm.",
     )
     assert_stated(texts[:2], [tracker[:, 1].min(), tracker[:, 1].max()])
     assert gently[:, 1].max() < value(texts[2])
