@@ -68,7 +68,7 @@ def test_solution_passes_and_failure_does_not(lesson: Lesson, step: Step, task: 
 def test_what_a_step_shows_by_itself_is_let_happen(lesson: Lesson, step: Step) -> None:
     assert step.script is not None
     lab = lab_at(lesson, step, store())
-    assert list(play(lab, step.script)) == []
+    assert not any(play(lab, step.script))  # there is no task to judge
     assert lab.session.time > 0
 
 
