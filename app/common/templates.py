@@ -1,5 +1,8 @@
 """HTML from the templates in assets/templates: every value is escaped unless it is `Markup`.
 
+Colours are those of the palette, but for where a page in the dark has others: see
+assets/page/style.css.
+
 `Markup` is only made in `phrase` and, from a lesson's markdown, in `lessons.formulas.render`.
 """
 
@@ -29,8 +32,9 @@ def environment() -> Environment:
         auto_reload=False,
         cache_size=-1,
     )
-    colours = {n: c.hex for n, c in vars(palette).items() if isinstance(c, palette.Colour)}
-    made.globals = {"palette": SimpleNamespace(**colours), "phrase": phrase}
+    colours = {n: c for n, c in vars(palette).items() if isinstance(c, palette.Colour)}
+    shown = {n: f"var(--op-{n.lower()}, {c.hex})" for n, c in colours.items()}
+    made.globals = {"palette": SimpleNamespace(**shown), "phrase": phrase}
     return made
 
 

@@ -128,6 +128,9 @@ class PanelFactory:
         robot = robot_of(first)
 
         def draw() -> None:
+            if self._scene.is_drawing:  # pressed again
+                self._scene.end_freehand()
+                return
             self._scene.begin_freehand(
                 lambda stroke: self._post(c.DrawPath(plane_coordinates(robot, stroke)))
             )

@@ -14,10 +14,13 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
-from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.benches import DEFAULT_LAWS, LEFT
 from onpath.models.layout import Layout
 from onpath.models.systems.parameters import LEVEL_SET
 
+PLOT_WINDOW = 10.0  # [s], of the axis of an empty plot
+PADDING = (10, 12, 0, 0)
+"""Above, to the right, below and to the left of a plot, for the halves of its outermost numbers."""
 XI = ("xi", "xi_rate")  # fields in another unit with a level set
 LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and third line
 
@@ -109,7 +112,8 @@ class LivePlot:
         series = self._series()
         begin = Layout(fields).slices[plot.field].start
         self._lines = slice(begin, begin + min(len(self._names), len(LINES)))
-        self._empty = tuple(np.zeros(2) for _ in series)
+        nothing = np.full(2, np.nan)
+        self._empty = (np.array([0.0, PLOT_WINDOW]), *[nothing for _ in series[1:]])
         self._handle = gui.add_uplot(
             self._empty,
             series,
@@ -117,6 +121,7 @@ class LivePlot:
             scales={"x": uplot.Scale(time=False), "y": _at_least(least)},
             legend=uplot.Legend(live=False),
             height=height,
+            padding=PADDING,
         )
 
     def _series(self) -> tuple[uplot.Series, ...]:
@@ -125,7 +130,8 @@ class LivePlot:
         for bench, title in bench_titles(self._laws, self._words).items():
             for name, dash in zip(self._names, LINES, strict=False):
                 label = f"{title} {name}".rstrip()
-                line = uplot.Series(label=label, stroke=OF_BENCH[bench].hex, width=2)
+                width = 4 if bench == LEFT else 2  # so that one is seen under the other
+                line = uplot.Series(label=label, stroke=OF_BENCH[bench].hex, width=width)
                 if dash is not None:
                     line["dash"] = dash
                 series.append(line)

@@ -12,6 +12,8 @@ from onpath.models.control.laws.registry import law_named
 
 OFF = 0.005
 """Distance from which on a robot counts as off the path [m]."""
+STILL, NEAR = 2e-3, 3e-3
+"""Speed below which a robot rests [m/s], and distance from an end at which it is there [m]."""
 PULLED = 0.05
 """Force from which on a robot counts as pulled [N]."""
 
@@ -38,6 +40,8 @@ class Captions:
         if not is_held:
             self._before.pop(bench, None)
         kind = "stopped" if bench in snapshot.stopped else _kind(view, is_held, distance)
+        if not kind and is_at_end(view, snapshot.path.points):
+            kind = "at_end"
         return self._words(f"caption.{kind}", mm=f"{1e3 * distance:.0f}") if kind else ""
 
     def _largest_held(self, bench: str, view: RobotView) -> float:
@@ -50,6 +54,14 @@ class Captions:
         grown = view.max_distance if view.max_distance > self._before[bench] else 0.0
         self._largest[bench] = max(self._largest[bench], view.distance, grown)
         return self._largest[bench]
+
+
+def is_at_end(view: RobotView, path: np.ndarray) -> bool:
+    """Whether a robot rests at an end of an open path; `path` are samples of it, shape (n, 3)."""
+    ends = path[[0, -1]]
+    if np.array_equal(*ends) or abs(view.speed) > STILL:
+        return False
+    return bool(np.linalg.norm(ends - view.end, axis=1).min() < NEAR)
 
 
 def _kind(view: RobotView, is_held: bool, distance: float) -> str:

@@ -172,10 +172,11 @@ class Scene:
         self._machine.update_laws(snapshot.laws)
         self._machine.update_traces([snapshot.robots[bench] for bench in self._benches])
         freehand = self._freehand  # another thread may end the stroke
+        drawing = self.is_drawing
         if freehand is not None:
             freehand.draw()
         for note in self._notes:
-            note.show(snapshot.note)
+            note.show(self._words("scene.draw") if drawing else snapshot.note)
 
     def show_singular_zone(self, visible: bool = True) -> None:
         """Shades the neighbourhood of the singular circles about the base pivot."""
@@ -215,6 +216,12 @@ class Scene:
         """Lets the user draw one stroke on a robot's plane; calls back with (n, 3), [m]."""
         self.end_freehand()
         self._freehand = Freehand(self._client.scene, self._stage, on_stroke)
+
+    @property
+    def is_drawing(self) -> bool:
+        """Whether the user may draw a stroke now."""
+        freehand = self._freehand  # another thread may end the stroke
+        return freehand is not None and freehand.active
 
     def end_freehand(self) -> None:
         """Cancels drawing; without effect when no stroke is active."""

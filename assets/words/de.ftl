@@ -320,6 +320,7 @@ caption-pulled = gezogen: { $mm } mm
 caption-chases = eilt seinem Punkt nach: { $mm } mm
 caption-off = neben der Bahn: { $mm } mm
 caption-stopped = angehalten
+caption-at_end = am Ende: Zurücksetzen drücken
 caption-spoken = { $robot }: { $caption }.
 
 invite-hold = Zwei gleiche Roboter folgen einer Bahn. Was geschieht, wenn ihnen etwas im Weg steht?
@@ -330,6 +331,7 @@ invite-pull = Fasse einen Roboter an der Spitze und ziehe: mit der Maus, dem Fin
 invite-bend = Verbiege die Bahn: Ziehe an einem ihrer grauen Punkte.
 invite-skip = Einführung überspringen
 
+scene-draw = Zeichne die Bahn in einem Zug
 scene-force = Kraft { $force } N
 scene-true_scale = maßstäblich
 scene-larger = Durchbiegung { $factor }× gezeichnet
@@ -412,9 +414,10 @@ start-default = Auf der Bahn
 
 design-path = Bahn
 design-path_hint = Beide Roboter folgen ihr. Ziehe an ihren Punkten im Bild, um sie zu verbiegen.
-design-own = (eigene)
+design-own = eine eigene Bahn
+design-refused = { $path } (wird abgelehnt)
 design-draw = Freihändig zeichnen
-design-draw_hint = Zeichne dann mit der Maus einen Strich um einen der Roboter.
+design-draw_hint = Zeichne dann mit der Maus oder dem Finger einen Strich um einen der Roboter. Endet er nahe an seinem Anfang, ist die Bahn geschlossen. Noch einmal drücken beendet das Zeichnen.
 design-edit = Ändern
 design-undo = Rückgängig
 design-redo = Wiederholen

@@ -268,6 +268,7 @@ caption-pulled = pulled: { $mm } mm
 caption-chases = chases its point: { $mm } mm
 caption-off = off the path: { $mm } mm
 caption-stopped = stopped
+caption-at_end = at the end: press Reset
 caption-spoken = { $robot }: { $caption }.
 
 invite-hold = Two equal robots follow one path. What if something stands in their way?
@@ -278,6 +279,7 @@ invite-pull = Take a robot by its tip and pull: with the mouse, a finger, or the
 invite-bend = Bend the path: drag one of its grey points.
 invite-skip = Skip the introduction
 
+scene-draw = Draw the path in one stroke
 scene-force = force { $force } N
 scene-true_scale = true scale
 scene-larger = deflection drawn { $factor }×
@@ -360,9 +362,10 @@ start-default = On the path
 
 design-path = Path
 design-path_hint = Both robots follow it. Drag its points in the scene to bend it.
-design-own = (own)
+design-own = a path of your own
+design-refused = { $path } (is refused)
 design-draw = Draw freehand
-design-draw_hint = Then draw one stroke around a robot with the mouse.
+design-draw_hint = Then draw one stroke around a robot, with the mouse or a finger. If it ends near its beginning, the path is closed. Press again to leave it.
 design-edit = Edit
 design-undo = Undo
 design-redo = Redo

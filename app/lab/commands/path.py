@@ -189,8 +189,12 @@ def commit(lab: Lab, design: PathDesign) -> None:
 
 
 def finish(lab: Lab) -> None:
-    """End the drag of a control point; if it went less far than wanted, show why."""
+    """End the drag of a control point; if it went less far than wanted, show why.
+
+    The marks of what is beyond are for the hand that drags: they go with it.
+    """
     _end(lab, "say.no_further")
+    lab.session.editor.clear_faults()
 
 
 def _end(lab: Lab, told: str) -> None:

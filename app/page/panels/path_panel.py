@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 import viser
@@ -12,8 +13,10 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, 
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press, on_user_update
 from onpath.lessons.words import Words
 from onpath.models.control.rank_test import rank_map
+from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.paths.path_design import presets
+from onpath.models.systems.robots import Robot
 
 
 class PathChoice:
@@ -22,10 +25,12 @@ class PathChoice:
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         self._shown = {name: words.get(f"path.{name}", name) for name in presets()}
         self._own = words("design.own")
+        for name in refused_presets(robot_of(first)):
+            self._shown[name] = words("design.refused", path=self._shown[name])
         names = {shown: name for name, shown in self._shown.items()}
         self._choice = gui.add_dropdown(
             words("design.path"),
-            [*names, self._own],
+            self._options(first),
             initial_value=self._shown.get(first.edit.name, self._own),
             hint=words("design.path_hint"),
         )
@@ -40,7 +45,20 @@ class PathChoice:
         self._rise.follow(snapshot)
         shown = self._shown.get(snapshot.edit.name, self._own)
         if self._choice.value != shown:
+            self._choice.options = self._options(snapshot)
             self._choice.value = shown
+
+    def _options(self, snapshot: PageSnapshot) -> list[str]:
+        """The presets, and a name for a path of one's own while there is one."""
+        own = snapshot.edit.name not in self._shown
+        return [*self._shown.values(), *([self._own] if own else [])]
+
+
+@lru_cache(maxsize=64)
+def refused_presets(robot: Robot) -> frozenset[str]:
+    """Names of the presets that are refused, such as one that crosses itself."""
+    designs = presets().items()
+    return frozenset(name for name, design in designs if curve_faults(robot.margin, design.curve))
 
 
 class PathPanel:

@@ -30,4 +30,6 @@ def test_a_reset_empties_the_plot(monkeypatch: pytest.MonkeyPatch) -> None:
     do(lab, c.Reset())
     plot.follow(take_page_snapshot(lab, 1.0))
     for data, empty in zip(shown[-1], shown[0], strict=True):
-        assert np.array_equal(data, empty)
+        assert np.array_equal(data, empty, equal_nan=True)
+    times, *lines = shown[-1]
+    assert times[0] < times[-1] and np.isnan(lines).all()  # the axis of time is there, no curve

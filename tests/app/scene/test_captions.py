@@ -92,3 +92,11 @@ def test_a_pull_is_said_and_ends(bench: str) -> None:
     assert said[bench].startswith("pulled: ")
     do(lab, c.Release())
     assert not seen(lab, captions, 3.0)[bench]
+
+
+def test_the_end_of_an_open_path_is_said_and_not_that_of_a_closed_one() -> None:
+    lab, captions = new_lab(1.0), Captions(ENGLISH)
+    do(lab, c.ChoosePath("segment"))
+    assert all("at the end" in said for said in seen(lab, captions, 6.0).values())
+    do(lab, c.ChoosePath("circle"), c.SetParameter("speed", 0.0))
+    assert seen(lab, captions, 6.0) == {TRACKER: "", FOLLOWER: ""}

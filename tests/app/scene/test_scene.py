@@ -296,3 +296,14 @@ def test_benches_differ_in_lightness_or_blue_for_every_eye():
     tracker, follower = (np.array(palette.OF_BENCH[bench].rgb) for bench in BENCHES)
     assert abs(int(tracker[2]) - int(follower[2])) > 120
     assert palette.OF_BENCH[LEFT].hex == "#d55e00"
+
+
+def test_who_may_draw_is_told_so_until_the_end(lab):
+    notes = [lab.api.get_handle_by_name(f"/notes/{bench}") for bench in BENCHES]
+    lab.scene.begin_freehand(lambda stroke: None)
+    lab.scene.update_traces(snapshot())
+    assert lab.scene.is_drawing
+    assert all(note.visible and "one stroke" in note.text for note in notes)
+    lab.scene.end_freehand()
+    lab.scene.update_traces(snapshot())
+    assert not lab.scene.is_drawing and not any(note.visible for note in notes)

@@ -1,0 +1,35 @@
+"""Paths that are refused: said before where that is known, marked as long as a hand drags."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.page.panels.path_panel import refused_presets
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
+from tests.support.lab import do, new_lab
+
+
+def test_the_marks_of_a_drag_that_goes_no_further_go_with_the_hand() -> None:
+    lab = new_lab(0.5)
+    editor = lab.session.editor
+    far = editor.points()[0] + [0.1, 0.1]
+    do(lab, c.MovePoint(0, far, finished=False))
+    assert editor.faults
+    do(lab, c.EndMove())
+    assert editor.faults == [] and "goes no further" in lab.message
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_exactly_the_presets_that_are_offered_without_a_warning_can_be_chosen(name: str) -> None:
+    lab = new_lab()
+    do(lab, c.ChooseRobot(name))
+    refused = refused_presets(lab.session.robot)
+    assert refused < set(presets())
+    for path in presets():
+        do(lab, c.ChoosePath("circle"), c.ChoosePath(path))
+        assert (lab.session.editor.design.name == path) is (path not in refused)
+        assert ("is refused" in lab.message) is (path in refused)
+    assert np.isfinite(lab.session.editor.table).all()
