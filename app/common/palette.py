@@ -83,8 +83,6 @@ SEEN = AZURE.toward(WHITE, 0.6)
 """Colour of the steps of a lesson that have been opened."""
 
 OF_BENCH: dict[str, Colour] = {LEFT: VERMILLION, RIGHT: AZURE}
-TEXT_OF_BENCH = {bench: colour.toward(INK, 0.25) for bench, colour in OF_BENCH.items()}
-"""The benches' colours for text on a page: their contrast on white is at least 4.5."""
 OTHERS = (
     *(Colour(0, 158, 115), Colour(204, 121, 167), Colour(230, 159, 0), Colour(86, 180, 233)),
     *(INK, GREY),

@@ -186,6 +186,27 @@ def test_a_dialog_closes_in_every_usual_way(tab: Tab, name: str, how: str) -> No
     assert tab.lab.asked == asked
 
 
+def test_a_share_code_is_copied(tab: Tab) -> None:
+    tab.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    tab.open("Keep and share")
+    tab.press("Share this set-up")
+    code = tab.page.locator("code", has_text="ONPATH")
+    code.locator("xpath=following-sibling::button").click()
+    expect(tab.button("Copied")).to_be_visible()
+    copied = tab.page.evaluate("navigator.clipboard.readText()")
+    assert copied == code.inner_text() == tab.lab.shared
+
+
+def test_a_refused_preset_says_so_before_and_why_after(tab: Tab) -> None:
+    tab.choose("Path", "figure of eight (is refused)")
+    expect(tab.page.locator("#op-message")).to_contain_text("crosses itself")
+    assert tab.session.editor.design.name == "circle"
+    tab.choose("Path", "clover")
+    expect(tab.page.locator("#op-message")).to_be_hidden()
+    tab.choose("Path", "circle")
+    wait_for(lambda: tab.session.editor.design.name == "circle")
+
+
 def test_whoever_asks_for_less_motion_finds_the_robots_at_rest(
     browser: Browser, server: LabServer
 ) -> None:

@@ -8,7 +8,7 @@ from functools import lru_cache, partial
 import viser
 from markupsafe import escape
 
-from onpath.app.common.palette import TEXT_OF_BENCH
+from onpath.app.common.palette import OF_BENCH
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.scene.captions import Captions, spoken
@@ -72,7 +72,7 @@ def _frame(words: Words, laws: tuple[tuple[str, str], ...], level: str, running:
     titles = bench_titles(dict(laws), words)
     table = render(
         "panel/readout.html",
-        rows=[(TEXT_OF_BENCH[bench].hex, title) for bench, title in titles.items()],
+        rows=[(OF_BENCH[bench].hex, title) for bench, title in titles.items()],
         level=level,
         running=running,
         words=words,
