@@ -114,7 +114,7 @@ def nickname(text: str) -> str:
 
 def quiz(text: str) -> str:
     asked = Quiz(text, (Option(text, text), Option(text, text, right=True)))
-    return lesson_html.question(asked, 0, True, ENGLISH)
+    return lesson_html.question(asked, tuple(range(len(asked.options))), 0, True, ENGLISH)
 
 
 def choices(text: str) -> str:
@@ -137,7 +137,12 @@ def message(text: str) -> str:
 def shown(words: Words, text: str) -> str:
     """The readout with a message, as a browser is given it."""
     view = SimpleNamespace(
-        law=DEFAULT_LAWS[LEFT], force=np.zeros(3), distance=0.001, max_distance=float("nan")
+        law=DEFAULT_LAWS[LEFT],
+        force=np.zeros(3),
+        end=np.zeros(3),
+        speed=0.1,
+        distance=0.001,
+        max_distance=float("nan"),
     )
     robots = {LEFT: view, RIGHT: view}
     snapshot = SimpleNamespace(
@@ -151,6 +156,7 @@ def shown(words: Words, text: str) -> str:
         held=False,
         held_back=(),
         stopped=(),
+        path=SimpleNamespace(points=np.zeros((2, 3))),
     )
     sent: list[str] = []
     gui: Any = SimpleNamespace(add_html=lambda content: None)
@@ -248,7 +254,9 @@ def pieces(run: LessonRun, words: Words) -> Iterator[str]:
             yield lesson_html.asked(block)
         else:
             for chosen in (None, *range(len(block.options))):
-                yield lesson_html.question(block, chosen, True, words)
+                yield lesson_html.question(
+                    block, tuple(range(len(block.options))), chosen, True, words
+                )
         if isinstance(block, Choice | Sketch):
             sketch = Answer(times=(0.0, 1.0), values=(0.0, 1.0))
             ways = [Progress(notes={lesson.name: Notes(answers={str(run.index): sketch})})]
