@@ -39,16 +39,17 @@ class IdentifyCommand:
         robot = entry.make(entry.parameters())
         linear_model(robot.system)  # refuse an unsuitable robot before reading
         records = read_records(self.file, robot)
-        if self.law and self.law not in records:
-            raise unknown_name(self.law, list(records), "law")
-        used = {law: each for law, each in records.items() if self.law in ("", law)}
+        laws = list(dict.fromkeys(law for law, _ in records if self.law in ("", law)))
+        if not laws:
+            raise unknown_name(self.law, list({law: None for law, _ in records}), "law")
+        used = [each for law, each in records if law in laws]
         geometry = robot.plant(entry.parameters())
-        result = estimate(robot.system, list(used.values()), geometry)
-        seconds = sum(len(each.q) * each.dt for each in used.values())
+        result = estimate(robot.system, used, geometry)
+        seconds = sum(len(each.q) * each.dt for each in used)
         if self.json:
-            print(json.dumps(_data(self.robot, list(used), seconds, result), indent=2))
+            print(json.dumps(_data(self.robot, laws, seconds, result), indent=2))
         else:
-            print(_table(self.robot, list(used), seconds, result))
+            print(_table(self.robot, laws, seconds, result))
 
 
 def _data(robot: str, laws: list[str], seconds: float, result: Estimate) -> dict[str, Any]:

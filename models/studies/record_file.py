@@ -5,6 +5,8 @@ The files are untrusted: what is not a table of finite numbers at even times is 
 
 from __future__ import annotations
 
+import csv
+from itertools import groupby
 from math import isfinite
 from pathlib import Path
 
@@ -17,11 +19,11 @@ from onpath.models.systems.robots import Robot
 
 LONGEST_LINE = 10_000  # characters
 MOST_ROWS = 1_000_000
-LAWS = ("law", "controller")  # name of the second column, now and in earlier versions
+LAWS = ("law", "controller")  # name of the column of the law, now and in earlier versions
 
 
-def read_records(path: Path, robot: Robot) -> dict[str, MotionRecord]:
-    """The record of each law in the file.
+def read_records(path: Path, robot: Robot) -> list[tuple[str, MotionRecord]]:
+    """The law and the record of each part of the file: rows of one bench and law, one by one.
 
     Raises:
         ValueError: not such a file, or not of this robot; the message says what is wrong.
@@ -29,24 +31,30 @@ def read_records(path: Path, robot: Robot) -> dict[str, MotionRecord]:
     """
     with path.open(encoding="utf-8", errors="replace", newline="") as file:
         names = _cells(file.readline(LONGEST_LINE), 1)
-        wanted = _columns(names, robot)
-        laws: dict[str, list[list[float]]] = {}
+        law, wanted = _law_column(names), _columns(names, robot)
+        rows = list[tuple[tuple[str, ...], list[float]]]()
         for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), ""), start=2):
             if number > MOST_ROWS:
                 raise ValueError(f"{path}: more than {MOST_ROWS} lines")
             cells = _cells(line, number)
             if len(cells) != len(names):
                 raise ValueError(f"line {number}: expected {len(names)} cells, got {len(cells)}")
-            laws.setdefault(cells[1], []).append([_number(cells[j], number) for j in wanted])
-    if not laws:
+            numbers = [_number(cells[j], number) for j in wanted]
+            rows.append((tuple(cells[1 : law + 1]), numbers))
+    if not rows:
         raise ValueError(f"{path}: there are no rows")
-    return {law: _record(law, np.array(rows), robot) for law, rows in laws.items()}
+    parts = groupby(rows, lambda row: row[0])
+    records = [(key[-1], np.array([numbers for _, numbers in part])) for key, part in parts]
+    return [(name, _record(name, part, robot)) for name, part in records]
 
 
 def _cells(line: str, number: int) -> list[str]:
     if len(line) >= LONGEST_LINE:
         raise ValueError(f"line {number} is longer than {LONGEST_LINE} characters")
-    return line.rstrip("\r\n").split(",")
+    try:
+        return next(csv.reader([line.rstrip("\r\n")]), [])
+    except csv.Error:
+        raise ValueError(f"line {number} is not a row of a table") from None
 
 
 def _number(cell: str, line: int) -> float:
@@ -61,8 +69,6 @@ def _number(cell: str, line: int) -> float:
 
 def _columns(names: list[str], robot: Robot) -> list[int]:
     """Places of t, q, v, u and the force."""
-    if len(names) < 2 or names[0] != "t_s" or names[1] not in LAWS:
-        raise ValueError("line 1: expected a header that begins with t_s, law")
     system, known = robot.system, header(robot)
     rates = known[2 + system.n : 2 + 2 * system.n]
     efforts = [n for n in known if n.startswith(("tau", "force"))]
@@ -71,6 +77,14 @@ def _columns(names: list[str], robot: Robot) -> list[int]:
     if missing:
         raise ValueError(f"not a file of the robot {robot.name}: there is no column {missing[0]}")
     return [names.index(name) for name in wanted]
+
+
+def _law_column(names: list[str]) -> int:
+    """Place of the law: the second column, or in a file of the lab the one after the bench."""
+    at = 2 if names[1:2] == ["bench"] else 1
+    if names[:1] != ["t_s"] or names[at : at + 1] not in ([name] for name in LAWS):
+        raise ValueError("line 1: expected a header that begins with t_s, law")
+    return at
 
 
 def _record(law: str, rows: Array, robot: Robot) -> MotionRecord:

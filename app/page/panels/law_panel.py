@@ -9,7 +9,7 @@ import viser
 
 from onpath.app.common.palette import OF_BENCH
 from onpath.app.common.templates import render
-from onpath.app.lab.commands import ChooseLaw
+from onpath.app.lab.commands import ChooseLaw, Command, TypeLaw
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.law_help import law_help
@@ -18,9 +18,10 @@ from onpath.app.page.panels.widgets import Post, on_menu_press, on_user_update
 from onpath.lessons.benches import law_label, law_text
 from onpath.lessons.words import Words
 from onpath.models.control.benches import BENCHES
-from onpath.models.control.laws.own import OWN, is_text
+from onpath.models.control.laws.own import OWN, is_text, tidy
 from onpath.models.control.laws.registry import LAWS
 
+MOST_ASKED = 8  # laws that were asked for and are remembered until they come
 Menu = viser.GuiDropdownHandle[str]
 
 
@@ -34,11 +35,13 @@ class LawPanel:
         self._names[words("laws.own")] = OWN
         self._laws, self._spatial = first.run.laws, system.p == 3
         self._typing: set[str] = set()  # benches whose box is open before a law has been typed
+        self._asked: dict[str, list[str]] = {bench: [] for bench in BENCHES}  # laws still to come
         self._menus = dict[str, Menu]()
         self._boxes = dict[str, OwnLawBox]()
         for bench in BENCHES:
             self._menus[bench] = self._add(gui, bench)
-            self._boxes[bench] = OwnLawBox(gui, words, post, bench, self._laws[bench])
+            use = partial(self._use, bench)
+            self._boxes[bench] = OwnLawBox(gui, words, bench, self._laws[bench], use)
         self._just_changed: set[str] = set()
         self._sentences = gui.add_html(self._said())
         about = gui.add_button(words("laws.about"), color="gray", icon=viser.Icon.HELP)
@@ -48,19 +51,22 @@ class LawPanel:
         """Show the lab's laws.
 
         A snapshot that is shown right after a change may have been taken before it, so it does not
-        set the changed menu back; the next one is right.
+        set the changed menu back; the next one is right. A law that was asked for here may come
+        while the user goes on typing; only one that comes from elsewhere changes the box.
         """
         run, late, self._just_changed = snapshot.run, self._just_changed, set[str]()
         for bench, menu in self._menus.items():
             law = run.laws[bench]
-            if law != self._laws[bench]:
+            if law != self._laws[bench] and not self._was_asked(bench, law):
                 self._typing.discard(bench)
+                if is_text(law):
+                    self._boxes[bench].take(law)
             if bench not in late:
                 label = self._label(bench, law)
                 if menu.value != label:
                     menu.value = label
                 self._boxes[bench].show(is_text(law) or bench in self._typing)
-            self._boxes[bench].follow(law, run.law_refusals.get(bench, ""))
+            self._boxes[bench].follow(run.law_refusals.get(bench, ""))
         if run.laws != self._laws:
             self._laws = run.laws
             self._sentences.content = self._said()
@@ -89,7 +95,23 @@ class LawPanel:
             self._typing.add(bench)
         else:
             self._typing.discard(bench)
-            self._post(ChooseLaw(bench, law))
+            self._ask(bench, law, ChooseLaw(bench, law))
+
+    def _use(self, bench: str, text: str) -> None:
+        self._ask(bench, tidy(text), TypeLaw(bench, text))
+
+    def _ask(self, bench: str, law: str, command: Command) -> None:
+        if law != self._laws[bench]:
+            self._asked[bench] = [*self._asked[bench][-MOST_ASKED:], law]
+        self._post(command)
+
+    def _was_asked(self, bench: str, law: str) -> bool:
+        """Whether a law that has come was asked for here; it and those before it are forgotten."""
+        asked = self._asked[bench]
+        if law not in asked:
+            return False
+        self._asked[bench] = asked[asked.index(law) + 1 :]
+        return True
 
     def _said(self) -> str:
         """What the laws do, each once, in the colour of its bench."""

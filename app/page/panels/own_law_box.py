@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import viser
 
 from onpath.app.common.templates import render
-from onpath.app.lab.commands import TypeLaw
-from onpath.app.page.panels.widgets import Post, on_press
+from onpath.app.page.panels.widgets import on_press
 from onpath.lessons.words import Words
 from onpath.models.control.laws.own import PATH_FOLLOWING, is_text, tidy
 
@@ -15,9 +16,14 @@ class OwnLawBox:
     """A text box, a button, and why the text was refused; hidden under other laws.
 
     Enter presses the button, see assets/page/keys.js.
+
+    Args:
+        use: called with the text when the button is pressed.
     """
 
-    def __init__(self, gui: viser.GuiApi, words: Words, post: Post, bench: str, law: str) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, words: Words, bench: str, law: str, use: Callable[[str], None]
+    ) -> None:
         shown = is_text(law)
         self._text = gui.add_text(
             words(f"laws.own_{bench}"),
@@ -28,8 +34,8 @@ class OwnLawBox:
         )
         self._use = gui.add_button(words("laws.use"), visible=shown, icon=viser.Icon.CHECK)
         self._why = gui.add_html("", visible=shown)
-        self._law, self._refusal = law, ""
-        on_press(self._use, lambda: post(TypeLaw(bench, self._text.value)))
+        self._refusal = ""
+        on_press(self._use, lambda: use(self._text.value))
 
     def show(self, visible: bool) -> None:
         """Show or hide everything."""
@@ -37,12 +43,13 @@ class OwnLawBox:
             if handle.visible != visible:
                 handle.visible = visible
 
-    def follow(self, law: str, refusal: str) -> None:
-        """Show another law that is typed elsewhere, and why the last text was refused."""
-        if law != self._law:
-            self._law = law
-            if is_text(law) and tidy(self._text.value) != law:
-                self._text.value = lines_of(law)
+    def take(self, law: str) -> None:
+        """Show a law that was typed elsewhere."""
+        if tidy(self._text.value) != law:
+            self._text.value = lines_of(law)
+
+    def follow(self, refusal: str) -> None:
+        """Show why the last text was refused."""
         if refusal != self._refusal:
             self._refusal = refusal
             self._why.content = render("panel/law_refusal.html", said=refusal) if refusal else ""

@@ -34,6 +34,7 @@ from onpath.lessons.benches import bench_titles, law_label, law_text, robot_name
 from onpath.lessons.schema import Laws, StepSetup
 from onpath.lessons.vocabulary import scene_faults
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.start import Start
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.control.laws.expressions import LONGEST
 from onpath.models.control.laws.own import MEANINGS, PATH_FOLLOWING, SPACE_MEANINGS
@@ -300,6 +301,29 @@ def test_a_set_up_begins_with_it_even_if_its_loop_has_to_be_made() -> None:
     ticks = min(lab.session.time, other.session.time)
     assert ticks == pytest.approx(0.5, abs=2 * FRAME)
     store.close()
+
+
+def test_a_start_with_a_lead_of_the_clock_is_that_of_the_law() -> None:
+    store, start = LoopCache(), Start(theta=1.0, beside=0.01, along=0.1, clock_offset=0.4)
+    wanted = "across = -K1*e1 - 42*dxi; along = -9*(theta - theta_r)"
+    lab, known = Lab(store), Lab(STORE)
+    for each in (lab, known):
+        each.session.start = start
+        each.session.reset({LEFT: wanted})
+    while lab.session.laws[LEFT] != wanted:
+        run(lab, FRAME)
+        assert lab.session.time == 0 or lab.session.laws[LEFT] == wanted
+    known.session.simulate(round(1e3 * lab.session.time))
+    assert np.array_equal(lab.session.runs[LEFT].state, known.session.runs[LEFT].state)
+    assert known.session.runs[LEFT].fields()["theta_ref"][0] > 1.39
+    store.close()
+
+
+def test_a_teacher_sends_it() -> None:
+    lab, setup = Lab(STORE), Setup(laws={RIGHT: CHASING})
+    do(lab, c.TakeSetup(from_data(to_data(setup))))
+    assert lab.session.laws == {**DEFAULT_LAWS, RIGHT: CHASING}
+    assert capture(lab.session) == setup
 
 
 def test_every_name_is_explained() -> None:

@@ -198,6 +198,31 @@ def test_a_lab_keeps_the_loop_that_it_uses() -> None:
     store.close()
 
 
+def test_a_lab_that_types_without_end_does_not_hold_up_another_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    store, made = LoopCache(clock=lambda: 0.0), list[Key]()  # no time passes: no rest is over
+    make = store._typed.make
+    monkeypatch.setattr(store._typed, "make", lambda wanted: (made.append(wanted), make(wanted)))
+    greedy, other = Lab(store), Lab(store)
+    for number in range(300):
+        do(
+            greedy,
+            *[c.TypeLaw(bench, law(number + each / 4)) for each, bench in enumerate(BENCHES)],
+        )
+        run(greedy, FRAME)
+        if number == 150:
+            do(other, c.ChooseLaw(LEFT, "waiting_clock"), c.TypeLaw(RIGHT, law(-1)))
+    wanted = {LEFT: "waiting_clock", RIGHT: law(-1)}
+    wait_for(lambda: (run(other, FRAME), other.session.laws == wanted)[1], PATIENCE)
+    assert len(made) <= MOST_MADE + 2 * len(BENCHES) + 1
+    assert greedy.session.chosen_laws == {LEFT: law(299), RIGHT: law(299.25)}
+    for each in (greedy, other):
+        run(each, 0.1)
+        assert_sound(each)
+    store.close()
+
+
 def test_a_lab_that_needs_another_loop_stands_still_until_it_is_made(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

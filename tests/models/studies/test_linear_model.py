@@ -12,11 +12,18 @@ import numpy as np
 import pytest
 
 from onpath.app.cli.main import run_command
+from onpath.app.exports.files import csv_bytes
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.loop_cache import LoopCache
 from onpath.models.closed_loop.trajectory import write_csv
+from onpath.models.control.benches import LEFT, RIGHT
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.studies.linear_model import MotionRecord, estimate, linear_model
 from onpath.models.studies.record_file import LONGEST_LINE, read_records
 from onpath.models.systems.catalogue import ROBOTS
+from tests.support.lab import do
+from tests.support.lab import run as run_lab
 
 RIGID = [name for name, entry in ROBOTS.items() if entry.flexible_link is None]
 
@@ -34,7 +41,7 @@ def record(robot: str, folder: Path, **values: float) -> MotionRecord:
     path = folder / "motion.csv"
     path.write_text(text_of(robot, **values))
     entry = ROBOTS[robot]
-    return read_records(path, entry.make(entry.parameters()))["path_following"]
+    return dict(read_records(path, entry.make(entry.parameters())))["path_following"]
 
 
 def found(robot: str, motion: MotionRecord):
@@ -122,6 +129,28 @@ def test_the_command_prints_a_table_and_json(
     data = json.loads(capsys.readouterr().out)
     values = {each["name"]: each["value"] for each in data["parameters"]}
     assert values["M11"] == pytest.approx(0.0246, rel=1e-3) and data["not_excited"] == []
+
+
+def test_the_file_of_a_lab_is_read_with_its_benches_and_typed_laws(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    typed = "across = -K1*min(xi, 1) - K2*dxi; along = -9*(theta - theta_r) - 6*(dtheta - speed)"
+    lab, path = Lab(LoopCache(at_once=True)), tmp_path / "lab.csv"
+    do(lab, c.SetParameter("speed", 9.0), c.ChoosePath("clover"))
+    run_lab(lab, 3.0)
+    do(lab, c.TypeLaw(LEFT, typed), c.TypeLaw(RIGHT, typed), c.Hold(on=True))
+    run_lab(lab, 1.0)
+    do(lab, c.Hold(on=False))
+    run_lab(lab, 2.0)
+    path.write_bytes(csv_bytes(lab.session.robot, lab.session.history.all()))
+    laws = [law for law, _ in read_records(path, lab.session.robot)]
+    assert laws == ["trajectory_tracking", typed, "path_following", typed]
+    for more, seconds in ([], 12), (["--law", typed], 6):
+        assert run_command(["identify", str(path), "--json", *more]) == 0
+        told = json.loads(capsys.readouterr().out)
+        assert typed in told["laws"] and told["seconds"] == pytest.approx(seconds, abs=0.1)
+        values = {each["name"]: each["value"] for each in told["parameters"]}
+        assert values["b2"] == pytest.approx(0.03, rel=1e-3)  # of the five-bar robot
 
 
 def damaged(text: str) -> dict[str, str]:
