@@ -312,9 +312,12 @@ def take_over(lab: Lab, new: Moment, old: Moment | None) -> None:
     session = lab.session
     entry: RobotEntry = ROBOTS[new.robot]
     session.choose_robot(entry)
+    other_path = old is None or (new.robot, new.path) != (old.robot, old.path)
     if old is None or (new.robot, new.parameters) != (old.robot, old.parameters):
+        if other_path:  # the path of before may be out of reach in another plane
+            _take_path(session.editor, new.path)
         session.set_parameters(parameters_of(new))
-    if old is None or (new.robot, new.path) != (old.robot, old.path):
+    if other_path:
         _take_path(session.editor, new.path)
     if old is None or new.run != old.run or new.time < session.time - INSTANT:
         session.history.clear()

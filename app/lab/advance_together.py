@@ -89,12 +89,12 @@ def _resumed(
 
 def _simulate(wanted: Iterable[Ticks]) -> dict[int, Exception]:
     """Simulate the ticks; returns errors by the `id` of the ticks concerned."""
-    kinds: dict[tuple[Loop, int], list[Row]] = {}
+    kinds: dict[tuple[Loop, Robot, int], list[Row]] = {}
     for ticks in wanted:
         for run, loop in ticks.runs:
-            kinds.setdefault((loop, ticks.count), []).append((run, ticks))
+            kinds.setdefault((loop, run.robot, ticks.count), []).append((run, ticks))
     errors: dict[int, Exception] = {}
-    for (loop, _), rows in kinds.items():
+    for (loop, _, _), rows in kinds.items():
         try:
             _advance(loop, rows)
         except Exception:  # of one row: find out which
@@ -107,7 +107,7 @@ def _simulate(wanted: Iterable[Ticks]) -> dict[int, Exception]:
 
 
 def _advance(loop: Loop, members: Sequence[Row]) -> None:
-    """Advance closed loops of one kind by equally many ticks; on an error none has changed."""
+    """Advance closed loops of one robot and kind by equally many ticks, all or none."""
     (first, ticks), log = members[0], loop.kernel.log
     states, rows = loop.run_many(
         [run.state for run, _ in members],

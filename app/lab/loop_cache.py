@@ -45,7 +45,7 @@ class LoopCache:
         Args:
             known: one that the caller has, which may not be kept here any more.
         """
-        key = (robot, kind)
+        key = (robot.core, kind)
         if is_text(kind.controller):
             return self._typed.find(key) or known or InterpretedLoop(kernel_of(robot, kind))
         ready = self._compiled.get(key)
@@ -58,7 +58,7 @@ class LoopCache:
 
     def kernel(self, robot: Robot, kind: Kind) -> Kernel:
         """The kernel of a loop; built now if that of a typed law is not ready."""
-        made = self._typed.find((robot, kind)) if is_text(kind.controller) else None
+        made = self._typed.find((robot.core, kind)) if is_text(kind.controller) else None
         return kernel_of(robot, kind) if made is None else made.kernel
 
     def is_ready(self, robot: Robot, kind: Kind) -> bool:
@@ -69,7 +69,7 @@ class LoopCache:
         Raises:
             ValueError: a typed law cannot be used with this robot and these settings.
         """
-        key = (robot, kind)
+        key = (robot.core, kind)
         if is_text(kind.controller):
             if self._typed.find(key) is None and (self._at_once or self._pool is None):
                 self._typed.make(key)
@@ -83,11 +83,11 @@ class LoopCache:
     def want(self, lab: object, keys: Collection[Key]) -> None:
         """Make these loops of typed laws in the background, and no others for this lab."""
         if not self._at_once and self._pool is not None:
-            self._typed.want(lab, keys)
+            self._typed.want(lab, [(robot.core, kind) for robot, kind in keys])
 
     def prepare(self, robot: Robot, kind: Kind) -> None:
         """Compile a loop of a registry's law in the background, unless requested before."""
-        key = (robot, kind)
+        key = (robot.core, kind)
         with self._lock:
             if self._pool is not None and key not in self._wanted and not is_text(kind.controller):
                 self._wanted[key] = self._pool.submit(self._compile, key)

@@ -241,11 +241,12 @@ def restore(session: Session, setup: Setup) -> None:
     for name in sorted(wanted, key=lambda name: name == setup.robot):
         robot = wanted[name]
         session.choose_robot(robot.entry)
+        session.editor.robot = robot.entry.make(robot.parameters)
         if (rise := rise_of(robot.parameters)) != session.editor.rise:
             session.editor.raise_to(rise, robot.design)
-        session.set_parameters(robot.parameters)
         session.editor.commit(robot.design)
         session.editor.advance(BLEND)
+        session.set_parameters(robot.parameters)
         session.start, session.wall = robot.start, robot.wall
     session.reset(laws)
 

@@ -113,14 +113,13 @@ def simulate(
     entry = _entry(robot)
     law = _law(law)
     curve = _curve(path)
-    first = start_point(entry.make(entry.parameters()), curve, start)
     chosen = Experiment(
         name="simulate",
         title=entry.label,
         make=entry.make,
         parameters=entry.parameters(),
         schedule=Schedule(),
-        start=lambda _: first,
+        start=lambda robot, _: start_point(robot, curve, start),
         path=curve,
     ).with_values(
         {"duration": duration, "reverse_at": reverse_at, "clock_offset": clock_offset}

@@ -35,7 +35,7 @@ class TeacherView(Page):
 
     def _key(self, snapshot: PageSnapshot | Motion) -> tuple[object, ...]:
         key = snapshot.key
-        return key.student, key.robot, key.fields
+        return key.student, key.robot, key.fields, key.plane
 
     def _post_for(self, snapshot: PageSnapshot) -> Post:
         return _ignore if snapshot.key.student else self._desk.post

@@ -428,7 +428,8 @@ design-selected = Ausgewählt
 design-selected_hint = Nummer des Kontrollpunkts; 0: keiner
 design-coordinate = { $name } [mm]
 design-arrows = Pfeiltasten schieben den ausgewählten Punkt um 1 mm; N wählt den nächsten. Wo die Spitze ihn verdeckt, fasst die Maus den ausgewählten Punkt.
-design-slanted = Die Bahn liegt in der Ebene y₁ = { $b } y₂ + { $d } m von (23). Der *Kreis* ist einer von (y₂, y₃): Im Raum ist er die Ellipse des Artikels. Ihre Mitte hat y₃ = 0; die des Artikels, y₃ = ℓ₁, liegt außer Reichweite dieses Arms.
+design-slanted = Die Bahn liegt in der Ebene y₁ = b y₂ + d von (23). Was in (y₂, y₃) ein Kreis ist, ist im Raum eine Ellipse, wie im Artikel. Ihre Mitte liegt bei y₂ = 0 und der Höhe unten; die des Artikels, y₃ = ℓ₁, liegt außer Reichweite dieses Arms. Mit einer anderen Ebene beginnt der Lauf neu.
+design-slanted_circle = Ellipse von (23)
 design-rank = Rangtest (11) längs der Bahn: mindestens **{ $number }** von 1.
 design-zone = Singuläre Zone zeigen
 design-zone_hint = Wo der Arm gestreckt oder gefaltet ist, Gl. (14)
@@ -813,6 +814,12 @@ parameter-error_b2-help = um so viel liegt b2 im Modell des Reglers daneben
 parameter-counterweights_removed-label = Gegengewichte ab
 parameter-counterweights_removed-help = abgenommene Gegengewichte; der Regler weiß nichts davon
 
+parameter-b-label = b
+parameter-b-help = Steigung der Ebene y1 = b y2 + d der Bahn, Gl. (23)
+parameter-d-label = d
+parameter-d-help = Abstand dieser Ebene von der Hüfte, bei y2 = 0
+parameter-centre-label = Mitte y3
+parameter-centre-help = Höhe y3 der Mitte der Bahn
 parameter-payload-label = Last
 parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon
 

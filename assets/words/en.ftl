@@ -376,7 +376,8 @@ design-selected = Selected
 design-selected_hint = Number of the control point; 0: none
 design-coordinate = { $name } [mm]
 design-arrows = The arrow keys move the selected point by 1 mm; N selects the next one. To drag a point that the end-point covers, select it first.
-design-slanted = The path lies in the plane y₁ = { $b } y₂ + { $d } m of (23). The *circle* is one of (y₂, y₃): in space it is the paper's ellipse. Its centre has y₃ = 0; the paper's, y₃ = ℓ₁, is out of this arm's reach.
+design-slanted = The path lies in the plane y₁ = b y₂ + d of (23). What is a circle of (y₂, y₃) is an ellipse in space, as in the paper. Its centre is at y₂ = 0 and the height below; the paper's, y₃ = ℓ₁, is out of this arm's reach. With another plane the run begins anew.
+design-slanted_circle = ellipse of (23)
 design-rank = Rank test (11) along the path: at least **{ $number }** of 1.
 design-zone = Show singular zone
 design-zone_hint = Where the arm is stretched or folded, eq. (14)

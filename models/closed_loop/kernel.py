@@ -169,6 +169,7 @@ def _advance(
     """
     state_symbol, state = kept_layout(system, kind, law.memory).symbols("state")
     settings_symbol, settings = settings_layout(system).symbols("settings")
+    frame = frame.at(settings["plane"])
     values = ca.SX.sym("values", kind.table_shape[0], 1 if law.reference is None else 2)
     measured_q, measured_v, reading = measure(system, kind, state, settings)
     measured, h = (measured_q, measured_v), settings["look_ahead"]

@@ -66,6 +66,7 @@ def settings_layout(system: MechanicalSystem) -> Layout:
     return Layout(
         (
             *((name, 1) for name in (*scalars, *OWN_GAINS, *flexible)),
+            ("plane", 3),  # see `Frame.numbers`
             ("level_centre", 2),
             ("level_weights", 3),
             ("level_constant", 1),

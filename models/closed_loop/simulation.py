@@ -106,8 +106,11 @@ def kind_of(
 
 
 def kernel_of(robot: Robot, kind: Kind) -> Kernel:
-    """The kernel for a robot and a kind, built once; those of typed laws are not kept for long."""
-    return (_typed_kernel if is_text(kind.controller) else _kernel)(robot, kind)
+    """The kernel for a robot and a kind, built once for all robots with the same `core`.
+
+    Those of typed laws are not kept for long.
+    """
+    return (_typed_kernel if is_text(kind.controller) else _kernel)(robot.core, kind)
 
 
 def _built(robot: Robot, kind: Kind) -> Kernel:
@@ -142,6 +145,7 @@ def settings_vector(
             "speed": parameters.speed,
             "ramp": parameters.ramp,
             "speed_limit": _speed_limit(robot, parameters, curve),
+            "plane": robot.frame.numbers,
             "level_centre": centre,
             "level_weights": weights,
             "level_constant": constant,

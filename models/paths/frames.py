@@ -7,7 +7,7 @@ d. A space curve (z(θ), ζ(θ)) rises above the plane by ζ; z(θ) is its plan 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import casadi as ca
@@ -51,6 +51,15 @@ class Frame(Protocol):
         ...
 
     @property
+    def numbers(self) -> tuple[float, float, float]:
+        """Where the plane is, if that is a choice of the user: b, d and the centre; else zeros."""
+        ...
+
+    def at(self, numbers: ca.SX) -> Frame:
+        """The same kind of frame with other numbers, symbols (3, 1), for `split` and `join`."""
+        ...
+
+    @property
     def axes(self) -> tuple[int, int]:
         """Numbers of the output coordinates that z shows, counted from 1."""
         ...
@@ -87,6 +96,15 @@ class Plane:
         return z
 
     @property
+    def numbers(self) -> tuple[float, float, float]:
+        """See `Frame.numbers`: there are none."""
+        return 0.0, 0.0, 0.0
+
+    def at(self, numbers: ca.SX) -> Frame:
+        """See `Frame.at`."""
+        return self
+
+    @property
     def axes(self) -> tuple[int, int]:
         """See `Frame.axes`."""
         return 1, 2
@@ -118,6 +136,15 @@ class LevelPlane:
     def lift(self, z: Array) -> Array:
         """See `Frame.lift`."""
         return z if z.shape[-1] == 3 else np.concatenate([z, np.zeros_like(z[..., :1])], axis=-1)
+
+    @property
+    def numbers(self) -> tuple[float, float, float]:
+        """See `Frame.numbers`: there are none."""
+        return 0.0, 0.0, 0.0
+
+    def at(self, numbers: ca.SX) -> Frame:
+        """See `Frame.at`."""
+        return self
 
     @property
     def axes(self) -> tuple[int, int]:
@@ -153,6 +180,15 @@ class Space:
         return LevelPlane().lift(z)
 
     @property
+    def numbers(self) -> tuple[float, float, float]:
+        """See `Frame.numbers`: there are none."""
+        return 0.0, 0.0, 0.0
+
+    def at(self, numbers: ca.SX) -> Frame:
+        """See `Frame.at`."""
+        return self
+
+    @property
     def axes(self) -> tuple[int, int]:
         """See `Frame.axes`: those of the plan view."""
         return 1, 2
@@ -168,35 +204,49 @@ _SPACE = Space()  # shared, because kernels are kept by it
 
 @dataclass(frozen=True, slots=True)
 class SlantedPlane:
-    """The plane y1 = b y2 + d in R³, with z = (y2, y3) and ζ = y1 - b y2 - d.
+    """The plane y1 = b y2 + d in R³, with z = (y2, y3 - c) and ζ = y1 - b y2 - d.
+
+    A circle of z is an ellipse in space, longer along y2 by sqrt(1 + b²).
 
     Attributes:
         b: slope.
         d: offset, [m].
+        centre: c, the height y3 of z = 0, [m].
         p: dimension of the output space.
 
-    Source: eq. (23), with the paper's b and d.
+    Source: eq. (23), with the paper's b and d; its c is ℓ1, in other coordinates than here.
     """
 
     b: float = 0.1
     d: float = 0.5
+    centre: float = 0.0
     p: int = 3
 
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
         """See `Frame.split`."""
-        return y[1:], y[0] - self.b * y[1] - (0.0 if rate else self.d)
+        return self.at(ca.SX(ca.DM(list(self.numbers)))).split(y, rate)
 
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
         """See `Frame.join`."""
-        return ca.vertcat(zeta + self.b * z[0] + (0.0 if rate else self.d), z)
+        return self.at(ca.SX(ca.DM(list(self.numbers)))).join(z, zeta, rate)
 
     def planar(self, y: Array) -> Array:
         """See `Frame.planar`."""
-        return y[..., 1:]
+        return y[..., 1:] - np.array([0.0, self.centre])
 
     def lift(self, z: Array) -> Array:
         """See `Frame.lift`."""
-        return np.concatenate([self.b * z[..., :1] + self.d, z], axis=-1)
+        lifted = np.concatenate([self.b * z[..., :1] + self.d, z], axis=-1)
+        return lifted + np.array([0.0, 0.0, self.centre])
+
+    @property
+    def numbers(self) -> tuple[float, float, float]:
+        """See `Frame.numbers`."""
+        return self.b, self.d, self.centre
+
+    def at(self, numbers: ca.SX) -> Frame:
+        """See `Frame.at`."""
+        return _PlaneOfSymbols(symbols=numbers)
 
     @property
     def axes(self) -> tuple[int, int]:
@@ -207,3 +257,24 @@ class SlantedPlane:
     def space(self) -> None:
         """See `Frame.space`: none, because ζ is not measured at right angles to the plane."""
         return
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _PlaneOfSymbols(SlantedPlane):
+    """A slanted plane whose b, d and centre are symbols; it has `split` and `join` only."""
+
+    symbols: ca.SX = field(default_factory=lambda: ca.SX(3, 1))
+
+    def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
+        """See `Frame.split`."""
+        b, d, centre = ca.vertsplit(self.symbols)
+        if rate:
+            return y[1:], y[0] - b * y[1]
+        return ca.vertcat(y[1], y[2] - centre), y[0] - b * y[1] - d
+
+    def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
+        """See `Frame.join`."""
+        b, d, centre = ca.vertsplit(self.symbols)
+        if rate:
+            return ca.vertcat(zeta + b * z[0], z)
+        return ca.vertcat(zeta + b * z[0] + d, z[0], z[1] + centre)

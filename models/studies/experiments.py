@@ -60,7 +60,7 @@ class Experiment:
     make: Callable[[Parameters], Robot]
     parameters: Parameters
     schedule: Schedule
-    start: Callable[[float], Array]
+    start: Callable[[Robot, float], Array]
     path: Curve | None = None
 
     def robot(self) -> Robot:
@@ -73,7 +73,7 @@ class Experiment:
 
     def begin(self) -> Array:
         """The end-point at the start, at the height of the path there, shape (p,), [m]."""
-        y, curve = self.start(self.schedule.r), self.curve()
+        y, curve = self.start(self.robot(), self.schedule.r), self.curve()
         if self.path is not None or curve.dimension == 2:
             return y
         frame = self.robot().frame
@@ -90,7 +90,7 @@ class Experiment:
         """
         check_path(self.robot(), path)
         robot = self.robot()
-        first = robot.frame.planar(self.start(self.schedule.r))
+        first = robot.frame.planar(self.start(robot, self.schedule.r))
         if self.curve().plan.nearest(first[None])[1][0] >= NEAR:
             return dataclasses.replace(self, path=path)
         on_path = robot.frame.lift(path.at(np.array(0.0)))
@@ -132,7 +132,7 @@ def check_path(robot: Robot, path: Curve) -> None:
         raise ValueError("; ".join(str(fault.reason) for fault in faults))
 
 
-def _always(point: Array, _: float) -> Array:
+def _always(point: Array, _robot: Robot, _r: float) -> Array:
     return point
 
 
@@ -165,7 +165,7 @@ def _position(entry: RobotEntry) -> Experiment:
         make=entry.make,
         parameters=entry.parameters(task="position"),
         schedule=Schedule(duration=4.0),
-        start=lambda r: _lifted(entry, 0.6 * r * off),
+        start=lambda robot, r: robot.frame.lift(0.6 * r * off),
     )
 
 
@@ -176,7 +176,7 @@ def _obstruction(entry: RobotEntry) -> Experiment:
         make=entry.make,
         parameters=entry.parameters(),
         schedule=Schedule(duration=8.0, hold_from=3.0, hold_to=5.0),
-        start=lambda r: _lifted(entry, np.array([r, 0.0])),
+        start=lambda robot, r: robot.frame.lift(np.array([r, 0.0])),
     )
 
 
@@ -197,18 +197,21 @@ def _there_and_back() -> Experiment:
         make=FLEXIBLE.make,
         parameters=FlexibleParameters(),
         schedule=Schedule(duration=6.0, reverse_at=3.0),
-        start=lambda _: _off_the_ellipse(),
+        start=lambda robot, _: _off_the_ellipse(robot),
     )
 
 
-def _lifted(entry: RobotEntry, z: Array) -> Array:
-    """A point of the path's plane in the output space, (p,), [m]."""
-    return entry.make(entry.parameters()).frame.lift(z)
+def _off_the_ellipse(robot: Robot) -> Array:
+    """Where the flexible robot starts: with the default plane 10 mm off its path, [m].
 
-
-def _off_the_ellipse() -> Array:
-    robot = flexible_five_bar_robot()
-    return robot.endpoint(robot.start)
+    With another plane, it is as far off that, at the same planar coordinates.
+    """
+    usual = flexible_five_bar_robot()
+    y = usual.endpoint(usual.start)
+    if robot.frame == usual.frame:
+        return y
+    z = usual.frame.planar(y)
+    return robot.frame.lift(z) + y - usual.frame.lift(z)
 
 
 def run(experiment: Experiment, controller: str) -> Trajectory:

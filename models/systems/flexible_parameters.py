@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from onpath.models.paths.frames import SlantedPlane
 from onpath.models.systems.beam import MOST_MODES
 from onpath.models.systems.flexible_five_bar import FORMER_PLANTS, PLANTS
 from onpath.models.systems.parameter_specs import choice, number
 from onpath.models.systems.parameters import Parameters
 
+PLANE = SlantedPlane()  # of the default path
+
 
 @dataclass(frozen=True, slots=True)
 class FlexibleParameters(Parameters):
-    """Parameters of the flexible five-bar. `modes`, `plant` and whether there is a
-    payload select the instance of the robot."""
+    """Parameters of the flexible five-bar. `modes`, `plant`, the path's plane and
+    whether there is a payload select the instance of the robot."""
 
     K3: float = number(
         0.0,
@@ -85,6 +88,30 @@ class FlexibleParameters(Parameters):
         "how much progress gives way to a tip held back",
         group="gains",
         label="Yielding",
+    )
+    b: float = number(
+        PLANE.b,
+        "",
+        (-0.5, 0.5, 0.05),
+        "slope of the plane y1 = b y2 + d of the path, eq. (23)",
+        group="path",
+        label="b",
+    )
+    d: float = number(
+        PLANE.d,
+        "m",
+        (0.3, 0.7, 0.01),
+        "distance of that plane from the waist, at y2 = 0",
+        group="path",
+        label="d",
+    )
+    centre: float = number(
+        PLANE.centre,
+        "m",
+        (-0.2, 0.2, 0.01),
+        "height y3 of the path's centre",
+        group="path",
+        label="Centre y3",
     )
     plant: str = choice(
         "lagrangian",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from weakref import WeakValueDictionary
 
 import casadi as ca
 import numpy as np
@@ -25,7 +26,7 @@ from onpath.models.systems.drawing import (
 )
 from onpath.models.systems.five_bar_robot import ANGLES, LENGTHS, collapse
 from onpath.models.systems.flexible_five_bar import RIGID, FlexibleLinks
-from onpath.models.systems.flexible_parameters import FlexibleParameters
+from onpath.models.systems.flexible_parameters import PLANE, FlexibleParameters
 from onpath.models.systems.forces import Grip, SpringLimits
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import BalancedLinkage, FlexibleLink, RobotEntry, first_fault
@@ -61,7 +62,7 @@ DRAWING = Drawing(
 )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class FlexibleFiveBar:
     """The five-bar on a waist with a flexible last link, of section IV of the paper.
 
@@ -77,7 +78,7 @@ class FlexibleFiveBar:
     system: MechanicalSystem = field(init=False, repr=False)
     beam: BeamModes = field(init=False, repr=False)
     shapes: Array = field(init=False, repr=False)  # at the ends of the pieces, (PIECES + 1, N)
-    frame: Frame = field(default_factory=SlantedPlane)
+    frame: Frame = PLANE
     name: str = "flexible"
     label: str = "Five-bar with a flexible link"
     substeps: int = 2
@@ -91,6 +92,11 @@ class FlexibleFiveBar:
         beam = beam_modes(self.modes, self.links.beam)
         object.__setattr__(self, "beam", beam)
         object.__setattr__(self, "shapes", beam.shapes(beam.length * _SHARES))
+
+    @property
+    def core(self) -> FlexibleFiveBar:
+        """See `Robot.core`: with the default plane."""
+        return flexible_five_bar_robot(self.modes, self.plant_name, self.loaded)
 
     @property
     def start(self) -> Array:
@@ -152,7 +158,7 @@ class FlexibleFiveBar:
     def margin(self, z: Array) -> Array:
         """See `Robot.margin`: the rank number (11), beam straight, relative to that at home."""
         l1, beam = self.links.link1, self.links.beam
-        y = self.frame.lift(np.vstack([z, np.zeros((1, 2))]))
+        y = np.vstack([self.frame.lift(z), PLANE.lift(np.zeros((1, 2)))])
         reach = np.linalg.norm(y + np.array([0.0, 0.0, l1]), axis=-1)
         inside = (abs(l1 - beam) < reach) & (reach < l1 + beam)
         numbers = np.zeros(len(y))
@@ -161,7 +167,7 @@ class FlexibleFiveBar:
 
     def _decoupling(self, q: Array) -> Array:
         """The decoupling matrix with default parameters, shape (k, n) -> (k, 3, 3)."""
-        columns = _decoupling(self)(q.T, self.plant(FlexibleParameters())).full()
+        columns = _decoupling(self.core)(q.T, self.plant(FlexibleParameters())).full()
         return columns.reshape(RIGID, len(q), RIGID).transpose(1, 0, 2)
 
     def is_calm(self, q: Array, v: Array) -> bool:
@@ -249,6 +255,12 @@ def _robot(modes: int, plant: str, loaded: bool) -> FlexibleFiveBar:
     return FlexibleFiveBar(modes, plant, loaded)
 
 
+_elsewhere: WeakValueDictionary[tuple[int, str, bool, SlantedPlane], FlexibleFiveBar] = (
+    WeakValueDictionary()
+)
+"""The robots with paths in other planes, as long as they are used."""
+
+
 @lru_cache(maxsize=4 * MOST_MODES)
 def _decoupling(robot: FlexibleFiveBar) -> ca.Function:
     return decoupling_matrix(robot.system)
@@ -257,7 +269,11 @@ def _decoupling(robot: FlexibleFiveBar) -> ca.Function:
 def robot_for(parameters: Parameters) -> FlexibleFiveBar:
     """The instance for these parameters."""
     own = own_parameters(FlexibleParameters, parameters)
-    return flexible_five_bar_robot(own.modes, own.plant, own.payload > 0)
+    core, frame = (own.modes, own.plant, own.payload > 0), SlantedPlane(own.b, own.d, own.centre)
+    if frame == PLANE:
+        return flexible_five_bar_robot(*core)
+    made = _elsewhere.get((*core, frame))
+    return _elsewhere.setdefault((*core, frame), made or FlexibleFiveBar(*core, frame=frame))
 
 
 def critical_alpha(parameters: Parameters, joints: Array) -> float:

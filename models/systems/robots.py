@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from operator import itemgetter
-from typing import Protocol
+from typing import Protocol, Self
 
 import casadi as ca
 import numpy as np
@@ -85,6 +85,11 @@ class Robot(Protocol):
     @property
     def frame(self) -> Frame:
         """How the plane of the path lies in the output space."""
+        ...
+
+    @property
+    def core(self) -> Robot:
+        """The robot that differs from it at most in where its path lies, and shares its loops."""
         ...
 
     @property
@@ -203,6 +208,11 @@ class RigidRobot:
     """Common parts of robots with rigid links."""
 
     __slots__ = ()
+
+    @property
+    def core(self) -> Self:
+        """See `Robot.core`: itself."""
+        return self
 
     @property
     def substeps(self) -> int:

@@ -7,11 +7,14 @@ from typing import Any
 
 from onpath.app.lab.identify import identify_model
 from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.session import Session
 from onpath.lessons.benches import law_label
 from onpath.models.closed_loop.simulation import check_level_set, raised
+from onpath.models.errors import CodedError
+from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.parameters import changed
+from onpath.models.systems.parameters import Parameters, changed
 
 PATH_MATTERS = ("across", "rise")  # parameters that not every path can have together
 
@@ -34,9 +37,25 @@ class SetParameter(Command):
         wanted = changed(before, self.name, self.value)
         if self.name in PATH_MATTERS:
             check_level_set(wanted, raised(session.editor.blend.target.plan, wanted))
+        _check_plane(session, wanted)
         session.set_parameters(wanted)
         if session.parameters != before:
             session.note("set", self.name)
+
+
+def _check_plane(session: Session, wanted: Parameters) -> None:
+    """Refuse another plane of the path if the path would be out of the robot's reach there.
+
+    Raises:
+        CodedError: it would.
+    """
+    robot, editor = session.entry.make(wanted), session.editor
+    if robot.frame == session.robot.frame:
+        return
+    for curve in (editor.blend.target, editor.curve):
+        if faults := curve_faults(robot.margin, curve):
+            reasons = tuple(fault.reason for fault in faults)
+            raise CodedError("error.cannot_follow", robot=robot.label, reasons=reasons)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +64,7 @@ class ResetParameters(Command):
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
+        _check_plane(lab.session, lab.session.entry.lab)
         lab.session.set_parameters(lab.session.entry.lab)
 
 

@@ -171,6 +171,7 @@ class PageKey:
         presenting: whether large type for a projector is on.
         student: number in the class of the student whose lab a teacher follows; 0 for the user's
             own lab.
+        plane: where the path's plane is; see `models.paths.frames.Frame.numbers`.
     """
 
     robot: str = "five_bar"
@@ -179,6 +180,7 @@ class PageKey:
     in_lesson: bool = False
     presenting: bool = False
     student: int = 0
+    plane: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -152,7 +152,8 @@ def page_key(lab: Lab, student: int = 0) -> PageKey:
 @lru_cache(maxsize=256)
 def _page_key(name: str, robot: Robot, *others: Any) -> PageKey:
     """The key; the same object for the same page."""
-    return PageKey(name, sample_layout(robot).fields, *others)
+    fields = sample_layout(robot).fields
+    return PageKey(name, fields, *others, plane=robot.frame.numbers)
 
 
 def scale_note(session: Session, words: Words) -> str:

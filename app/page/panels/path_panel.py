@@ -10,12 +10,21 @@ import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
-from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press, on_user_update
+from onpath.app.page.panels.widgets import (
+    ParameterWidgets,
+    Post,
+    help_of,
+    label_of,
+    on_press,
+    on_user_update,
+)
 from onpath.lessons.words import Words
 from onpath.models.control.rank_test import rank_map
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import specs
 from onpath.models.systems.robots import Robot
 
 
@@ -24,6 +33,8 @@ class PathChoice:
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         self._shown = {name: words.get(f"path.{name}", name) for name in presets()}
+        if isinstance(robot_of(first).frame, SlantedPlane):
+            self._shown["circle"] = words("design.slanted_circle")
         self._own = words("design.own")
         for name in refused_presets(robot_of(first)):
             self._shown[name] = words("design.refused", path=self._shown[name])
@@ -74,11 +85,11 @@ class PathPanel:
         show_zone: Callable[[bool], None],
     ) -> None:
         self._version, self._words = -1, words
+        self._plane: dict[str, viser.GuiInputHandle[float]] = {}
         frame = robot_of(first).frame
         planar = frame.p == 2
         if isinstance(frame, SlantedPlane):
-            plane = words("design.slanted", b=f"{frame.b:g}", d=f"{frame.d:g}")
-            gui.add_markdown(plane)
+            self._add_plane(gui, post, first)
         drawing = gui.add_button(
             words("design.draw"), icon=viser.Icon.PENCIL, hint=words("design.draw_hint")
         )
@@ -98,6 +109,23 @@ class PathPanel:
         zone.visible = planar  # the zone is drawn about the base pivot in the robot's plane
         on_user_update(zone, show_zone)
 
+    def _add_plane(self, gui: viser.GuiApi, post: Post, first: PageSnapshot) -> None:
+        """Add number inputs for the plane of eq. (23); another plane builds the page anew."""
+        own, words = specs(ROBOTS[first.key.robot].parameters), self._words
+        gui.add_markdown(words("design.slanted"))
+        for name in ("b", "d", "centre"):
+            spec = own[name]
+            box = gui.add_number(
+                label_of(words, name, spec) + (f" [{spec.unit}]" if spec.unit else ""),
+                float(first.parameters[name]),
+                min=spec.low,
+                max=spec.high,
+                step=spec.step,
+                hint=help_of(words, name, spec),
+            )
+            on_user_update(box, lambda value, name=name: post(c.SetParameter(name, value)))
+            self._plane[name] = box
+
     def _add_coordinates(self, gui: viser.GuiApi, post: Post, names: tuple[str, str]) -> None:
         """Add number inputs for the selected point's coordinates."""
         words = self._words
@@ -116,6 +144,8 @@ class PathPanel:
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the selected point's coordinates."""
+        for name, box in self._plane.items():  # one that was refused goes back
+            self._set(box, float(snapshot.parameters[name]))
         edit = snapshot.edit
         if edit.version == self._version:
             return

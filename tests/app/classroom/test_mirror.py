@@ -265,3 +265,14 @@ def test_what_comes_is_a_lab_or_is_left_out(text: str) -> None:
         assert isinstance(read_moment(text), Moment)
     except ValueError:
         assert mirror.is_seen is False
+
+
+def test_another_plane_of_the_path_is_followed() -> None:
+    both = Followed()
+    do(both.lab, c.ChooseRobot("flexible"))
+    both.run(0.8)
+    do(both.lab, c.SetParameter("d", 0.45), c.SetParameter("b", -0.3))
+    both.ways.clear()
+    both.run(1.5)
+    assert both.mirror.session.robot is both.session.robot
+    assert both.distance() < SAME

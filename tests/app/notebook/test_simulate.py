@@ -60,7 +60,7 @@ def test_bytes_are_those_of_the_command_line(name: str, tmp_path: Path) -> None:
     expected, file = tmp_path / "expected.csv", tmp_path / "run.csv"
     assert run_command(["experiment", name, *told, "--csv", str(expected)]) == 0
     values = {**ARGUMENTS[name], "push": (0.1, 0.2, (0.06, 0.01)), "K1": 500, "control_rate": 500}
-    start = experiments()[name].start(0.05)
+    start = experiments()[name].begin()
     first, *others = [onpath.simulate(law=law, start=start, **values) for law in LAWS]
     first.to_csv(file, *others)
     assert file.read_bytes() == expected.read_bytes()

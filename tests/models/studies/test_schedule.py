@@ -121,7 +121,7 @@ def test_an_experiment_on_another_path_starts_on_it_if_it_did_before() -> None:
     assert trajectory.fields["y"][0] == pytest.approx([0.06, 0.0])
     assert trajectory.distance.max() < 1e-5
     position = experiments()["position"].along(path)
-    assert np.array_equal(position.start(0.05), experiments()["position"].start(0.05))
+    assert np.array_equal(position.begin(), experiments()["position"].begin())
 
 
 # Speed profile ------------------------------------------------------------------------------------
