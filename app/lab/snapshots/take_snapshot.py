@@ -177,7 +177,9 @@ def _path_view(
     editor, robot = session.editor, session.robot
     is_present = curve is editor.curve
     version = editor.version if is_present else curve.series.tobytes()
-    if before is not None and before.key.robot == key.robot and before.path.version == version:
+    place = key.robot, key.plane
+    there = before and (before.key.robot, before.key.plane)
+    if before is not None and there == place and before.path.version == version:
         return before.path
 
     def placed(z: Array) -> Array:
