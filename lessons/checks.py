@@ -9,7 +9,8 @@ from functools import singledispatch
 import msgspec
 import numpy as np
 
-from onpath.lessons.benches import law_label, robot_names
+from onpath.lessons.benches import robot_names
+from onpath.lessons.labels import event_label, setting_label, value_label
 from onpath.lessons.record import QUANTITIES, Mask, Record
 from onpath.lessons.schema import (
     Bound,
@@ -114,7 +115,7 @@ def _(check: Event, record: Record, words: Words) -> Verdict:
     have = sum(_matches(event.name, event.detail, check) for event in record.happenings)
     said = words(
         "check.event",
-        event=_event_words(check, words),
+        event=_event_words(check, record, words),
         have=min(have, check.times),
         need=check.times,
     )
@@ -129,7 +130,8 @@ def _(check: Order, record: Record, words: Words) -> Verdict:
         if found < len(wanted) and _matches(event.name, event.detail, wanted[found]):
             found += 1
     marked = [
-        ("✓ " if i < found else "") + _event_words(event, words) for i, event in enumerate(wanted)
+        ("✓ " if i < found else "") + _event_words(event, record, words)
+        for i, event in enumerate(wanted)
     ]
     return Verdict(found == len(wanted), words("check.order", events=" → ".join(marked)))
 
@@ -142,12 +144,14 @@ def _(check: Setting, record: Record, words: Words) -> Verdict:
     if check.equals is not None:
         spec = specs(record.parameters).get(check.name)
         equals = check.equals if spec is None else spec.present(check.equals)
-        passed, wanted = _same(value, equals), words("check.equals", value=equals)
+        said = value_label(check.name, equals, words)
+        passed, wanted = _same(value, equals), words("check.equals", value=said)
     else:
         passed = isinstance(value, int | float) and _within(value, check.below, check.above)
         wanted = _range_words(check.below, check.above, "", words)
-    shown = f"{value:.4g}" if isinstance(value, float) else value
-    return Verdict(passed, words("check.setting", name=check.name, value=shown, wanted=wanted))
+    name = setting_label(check.name, record.parameters, words)
+    shown = value_label(check.name, value, words)
+    return Verdict(passed, words("check.setting", name=name, value=shown, wanted=wanted))
 
 
 def statistic(
@@ -175,9 +179,11 @@ def _rounded(value: float, below: float | None, above: float | None) -> str:
     """The number with as few digits as keep it on its side of the bounds.
 
     Three digits, and at most two decimals, unless rounding would turn a missed bound into a met one
-    or the reverse.
+    or the reverse, or there is a bound so small that two decimals would hide the distance to it.
     """
-    short = f"{round(value, 2) + 0.0:.2f}" if abs(value) < 1 else f"{value:.3g}"
+    least = min((abs(bound) for bound in (below, above) if bound), default=1.0)
+    decimals = max(2, 2 - math.floor(math.log10(least)))
+    short = f"{round(value, decimals) + 0.0:.{decimals}f}" if abs(value) < 1 else f"{value:.3g}"
     holds = _within(value, below, above)
     for shown in (short, *(f"{value:.{digits}g}" for digits in range(3, 17))):
         if _within(float(shown), below, above) == holds:
@@ -234,10 +240,8 @@ def _range_words(below: float | None, above: float | None, unit: str, words: Wor
     return limits[0] if len(limits) == 1 else words("check.and", first=limits[0], second=limits[1])
 
 
-def _event_words(check: Event, words: Words) -> str:
+def _event_words(check: Event, record: Record, words: Words) -> str:
     key = f"event.{check.event}"
-    if check.event == "law" and check.name:
-        return words(key, detail=law_label(check.name, words))
     if check.name:
-        return words(key, detail=check.name)
+        return words(key, detail=event_label(check.event, check.name, record.parameters, words))
     return words.get(f"{key}_any", "") or words(key)

@@ -42,6 +42,8 @@ check-event = { $event }: { $have } von { $need }
 check-order = in dieser Reihenfolge: { $events }
 check-setting = { $name } ist { $value }; verlangt: { $wanted }
 check-equals = { $value }
+check-path = Bahn
+check-robot = Roboter
 check-stopped = { $robot } steht still: zurücksetzen und noch einmal versuchen
 
 event-hold = festhalten

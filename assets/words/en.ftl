@@ -44,6 +44,8 @@ check-event = { $event }: { $have } of { $need }
 check-order = in this order: { $events }
 check-setting = { $name } is { $value }; wanted: { $wanted }
 check-equals = { $value }
+check-path = path
+check-robot = robot
 check-stopped = { $robot } has stopped: press Reset and try again
 
 event-hold = hold back

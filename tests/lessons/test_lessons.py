@@ -10,8 +10,12 @@ from markupsafe import Markup
 
 from onpath.app.cli.main import run_command
 from onpath.app.lab.course_check import lab_at, play, play_course, solved
+from onpath.app.lab.lesson_record import Beginning, record_of
+from onpath.lessons.checks import judge
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
-from onpath.lessons.schema import Choice, Lesson, Quiz, Step, Task
+from onpath.lessons.labels import setting_label
+from onpath.lessons.schema import Choice, Lesson, Order, Quiz, Setting, Step, Task
+from onpath.lessons.words import Words, languages
 from tests.support.lab import store
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.lesson_texts import REFERENCE as EXAMPLE
@@ -70,6 +74,27 @@ def test_what_a_step_shows_by_itself_is_let_happen(lesson: Lesson, step: Step) -
     lab = lab_at(lesson, step, store())
     assert not any(play(lab, step.script))  # there is no task to judge
     assert lab.session.time > 0
+
+
+@pytest.mark.parametrize("language", languages())
+def test_checks_speak_of_parameters_by_their_labels(language: str) -> None:
+    """A line such as "encoder_counts is 500" names nothing that the page shows."""
+    words, seen = Words(language), Counter[str]()
+    for lesson, step, task in TASKS:
+        lab = lab_at(lesson, step, store())
+        record = record_of(lab.session, Beginning.now(lab.session))
+        for check, verdict in zip(task.check, judge(task, record, words), strict=True):
+            if isinstance(check, Setting):
+                names = [check.name]
+            elif isinstance(check, Order):
+                names = [event.partition(":")[2] for event in check.events]
+            else:
+                continue
+            for name in filter(None, names):
+                label = setting_label(name, record.parameters, words)
+                assert label in verdict.words and "_" not in verdict.words, verdict.words
+                seen[label] += 1
+    assert len(seen) > 8
 
 
 def test_references_are_where_the_lessons_are() -> None:
