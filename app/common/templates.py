@@ -3,7 +3,7 @@
 Colours are those of the palette, but for where a page in the dark has others: see
 assets/page/style.css.
 
-`Markup` is only made in `phrase` and, from a lesson's markdown, in `lessons.formulas.render`.
+`Markup` is only made in `phrase` and, from a lesson's markdown, in `lessons.formulas`.
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@ import viser
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.dialog import dialog
+from onpath.app.page.panels.glossary import glossary_html
 from onpath.app.page.panels.keys import help_text
 from onpath.app.page.panels.widgets import Post, on_menu_press, on_user_update
 from onpath.lessons.words import Words, languages
@@ -67,4 +68,5 @@ class PageMenus:
         words = self._words
         with dialog(self._gui, words, words("help.title")) as close:
             self._gui.add_markdown(help_text(words))
+            self._gui.add_html(glossary_html(words))
         return close

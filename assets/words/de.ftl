@@ -622,6 +622,9 @@ keyname-Ctrl = Strg
 keyname-Shift = Umschalt
 
 help-title = Wie das Labor zu bedienen ist
+glossary-to_terms = Glossar: von den Wörtern der Lektionen zu den Fachwörtern
+glossary-to_words = Glossar: von den Fachwörtern zu den Wörtern der Lektionen
+glossary-lesson = (Lektion { $number })
 help-close = Schließen
 help-text =
     Drücke **Beide festhalten** und sieh zu: Den linken Roboter (orange) reißt es mit der

@@ -568,6 +568,9 @@ keyname-Ctrl = Ctrl
 keyname-Shift = Shift
 
 help-title = How to use the lab
+glossary-to_terms = Glossary: from the lessons' words to the field's terms
+glossary-to_words = Glossary: from the field's terms to the lessons' words
+glossary-lesson = (Lesson { $number })
 help-close = Close
 help-text = **Hold both back** and watch: under trajectory tracking, the left robot (orange) is torn
     off its path, because its point runs on by the clock. Under path following, the right one (blue)

@@ -1,0 +1,45 @@
+"""The glossary: the lessons' plain words, and the terms under which a textbook has them."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from typing import Annotated
+
+import msgspec
+
+from onpath.assets import asset_path
+from onpath.lessons.schema import Data
+from onpath.lessons.words import DEFAULT
+
+Said = Annotated[str, msgspec.Meta(min_length=1)]
+
+
+class Entry(Data, frozen=True):
+    """One idea.
+
+    Attributes:
+        plain: the lessons' words.
+        term: the field's.
+        means: a sentence that says what it is.
+        lesson: number of the lesson that explains it.
+    """
+
+    plain: Said
+    term: Said
+    means: Said
+    lesson: Annotated[int, msgspec.Meta(ge=1)]
+
+
+@cache
+def glossary(language: str) -> tuple[Entry, ...]:
+    """All entries in the order of the lessons; in English if the language has none.
+
+    Raises:
+        ValueError: the file assets/glossary/<language>.toml is wrong.
+    """
+    folder = asset_path("glossary")
+    file = folder / f"{language}.toml"
+    file = file if file in folder.glob("*.toml") else folder / f"{DEFAULT}.toml"
+    read = tomllib.loads(file.read_text("utf-8"))
+    return tuple(msgspec.convert(read["entry"], list[Entry]))
