@@ -5,14 +5,13 @@
 
   const KEPT_AS = "viser-user:first_minute";
 
-  const box = document.createElement("div");
+  const box = document.createElement("aside");
   const text = document.createElement("div");
   const act = document.createElement("button");
   const skip = document.createElement("button");
   box.id = "op-invitation";
   box.className = "op-over-scene";
   box.hidden = true;
-  box.setAttribute("role", "note");
   act.className = "op-act";
   act.type = skip.type = "button";
   skip.className = "op-quiet";
@@ -48,7 +47,7 @@
     act.dataset.key = words.key;
     act.hidden = words.key === "";
     skip.textContent = words.skip;
-    dispatchEvent(new Event("resize"));
+    dispatchEvent(new Event("op-shown"));  // saying.js places it
   }
 
   new MutationObserver(look).observe(document, { childList: true, subtree: true });

@@ -13,7 +13,7 @@
   const ICON = "button.mantine-ActionIcon-root:not([aria-label])";
 
   function set(element, name, value) {
-    if (value && element.getAttribute(name) !== value) element.setAttribute(name, value);
+    if (element && value && element.getAttribute(name) !== value) element.setAttribute(name, value);
   }
 
   // A slider's handle, the box beside it and a field to type in are named by the label of their row.
@@ -37,6 +37,7 @@
     const words = document.querySelector("[data-page]")?.dataset;
     if (words === undefined) return;
     set(document.documentElement, "lang", words.language);
+    set(document.getElementById("root"), "role", "main");
     for (const icon of document.querySelectorAll(ICON)) {
       set(icon, "aria-label", icon.querySelector(".tabler-icon-list-search") ? words.keys : words.viewer);
     }

@@ -72,6 +72,7 @@
     if (!document.body.contains(box)) document.body.append(box, region);
     cross.setAttribute("aria-label", close);
     show(said, level);
+    if (document.querySelector(".op-over-scene:not([hidden])")) place();
     clearTimeout(waiting);
     wanted = next;
     if (wanted !== "") speak();
@@ -79,4 +80,5 @@
 
   new MutationObserver(look).observe(document, { childList: true, subtree: true });
   addEventListener("resize", place);
+  addEventListener("op-shown", place);
 })();

@@ -289,7 +289,7 @@ law-own-de3 = ihre Änderungsrate
 law-own-y3 = dritte Koordinate der Spitze
 law-own-v3 = dritte Komponente ihrer Geschwindigkeit
 
-aim-theta = zielt auf den nächsten Punkt der Bahn
+aim-theta = zielt auf den nächsten Bahnpunkt
 aim-theta_ref = zielt auf seinen Bezugspunkt
 
 ## Die Seite: was immer da ist

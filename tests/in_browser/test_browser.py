@@ -255,7 +255,7 @@ def test_a_number_beyond_the_limits_is_clamped(tab: Tab) -> None:
 
 
 def test_a_refused_path_is_explained_and_the_old_one_kept(tab: Tab) -> None:
-    tab.choose("Path", "figure of eight")
+    tab.choose("Path", "figure of eight (is refused)")
     tab.page.get_by_role("status").filter(has_text="refused").wait_for()
     assert "crosses itself" in tab.said()
     wait_for(lambda: tab.page.get_by_label("Path", exact=True).input_value() == "circle")

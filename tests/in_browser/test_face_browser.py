@@ -197,16 +197,6 @@ def test_a_share_code_is_copied(tab: Tab) -> None:
     assert copied == code.inner_text() == tab.lab.shared
 
 
-def test_a_refused_preset_says_so_before_and_why_after(tab: Tab) -> None:
-    tab.choose("Path", "figure of eight (is refused)")
-    expect(tab.page.locator("#op-message")).to_contain_text("crosses itself")
-    assert tab.session.editor.design.name == "circle"
-    tab.choose("Path", "clover")
-    expect(tab.page.locator("#op-message")).to_be_hidden()
-    tab.choose("Path", "circle")
-    wait_for(lambda: tab.session.editor.design.name == "circle")
-
-
 def test_whoever_asks_for_less_motion_finds_the_robots_at_rest(
     browser: Browser, server: LabServer
 ) -> None:
