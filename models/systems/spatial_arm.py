@@ -61,7 +61,7 @@ DRAWING = Drawing(
     sheet=((0.02, 0.34), (-0.14, 0.32), -0.16),
     angles=(Angle("q₂", bar=0), Angle("q₃", bar=1, after=0, near=-math.pi / 2)),
     waist=Waist("q₁"),
-    lengths=(Length("ℓ₂", 0, 1, at=0.6), Length("ℓ₃", 2, 3, at=0.65)),
+    lengths=(Length("ℓ₂", 0, 1, at=0.6), Length("ℓ₃", 2, 3, right=True)),
 )
 
 

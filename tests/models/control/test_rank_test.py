@@ -149,6 +149,8 @@ def test_a_flexible_link_loses_rank_inside_the_workspace(
     y = y[(far > robot.reach[0] + 1e-4) & (far < robot.reach[1] - 1e-4)]
     signs = np.linalg.det(decoupling_matrices(robot, parameters, robot.rest(y))) < 0
     assert least < signs.mean() < most
+    if alpha < 1:  # below the robot, near the axis of the waist
+        assert y[signs][:, 0].max() < 0.1 and y[signs][:, 2].max() < -0.45
     one, other = y[signs][0], y[~signs][len(y) // 4]
     along = one + np.linspace(0.0, 1.0, 2001)[:, None] * (other - one)
     far = np.linalg.norm(robot.place(along), axis=1)
