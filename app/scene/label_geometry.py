@@ -1,48 +1,54 @@
 """Where the labels of a robot stand: arcs of its joint angles, its lengths, and the axes of y.
 
-Everything is computed from what is drawn, in the robot's own frame: x right, y away, z up, [m].
+Everything follows from what is drawn, in the robot's own frame: x right, y away, z up, [m]. Labels
+move with the robots, so that this is a CasADi function, made once for each robot.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from math import atan2, cos, pi, remainder, sin
+from functools import lru_cache
 
+import casadi as ca
 import numpy as np
 
-from onpath.models.systems.drawing import Angle, Waist
+from onpath.models.systems.drawing import Angle, Length
 from onpath.models.systems.robots import Robot
 
-UP = np.array([0.0, 0.0, 1.0])
+UP = ca.DM([0, 0, 1])
 ARC, STEP = 0.058, 0.02
 """Radius of the first arc, and how much larger each further one is [m]."""
 BEYOND = 0.016
 """How far outside its arc the name of an angle stands, and a reference line ends [m]."""
 BESIDE = 0.026
-"""How far from the middle of a length its name stands [m]."""
+"""How far from its line the name of a length stands [m]."""
 BEFORE = 0.016
 """How far in front of the links' plane arcs are drawn [m]."""
 WAIST_RADIUS, WAIST_HEIGHT = 0.09, -0.028
-"""The arc of the waist: on the turntable's plate [m]."""
+"""The arc of the waist: around the turntable's plate [m]."""
 AXIS = 0.075
 """Length of an axis [m]."""
 SIDES = 16
 """Straight pieces of an arc."""
+LEAST = 1e-9
+"""Shorter vectors have no direction [m]."""
+_PIECES = [i for piece in range(SIDES) for i in (piece, piece + 1)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Labelled:
-    """What is labelled of one robot.
+class Mark:
+    """One label.
 
     Attributes:
-        names: of angles and lengths, k of them.
-        places: where these names stand, shape (k, 3), [m].
-        lines: arcs and their reference lines, shape (n, 2, 3), [m].
+        name: as shown.
+        place: where the name stands, (3, 1), [m].
+        lines: begin and end of lines as columns, (3, 2 n), [m].
     """
 
-    names: list[str]
-    places: np.ndarray
-    lines: np.ndarray
+    name: str
+    place: ca.SX
+    lines: ca.SX
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,43 +56,48 @@ class LinksPlane:
     """The plane of the links.
 
     Attributes:
-        ahead: the horizontal direction in it from which angles are measured, of unit length.
-        near: its unit normal towards the viewer.
-        start: the direction from which the waist's angle is measured.
+        ahead: the horizontal direction in it from which angles are measured, (3, 1).
+        near: its unit normal towards the viewer, (3, 1).
+        start: the direction from which the waist's angle is measured, (3, 1).
     """
 
-    ahead: np.ndarray
-    near: np.ndarray
-    start: np.ndarray
+    ahead: ca.SX
+    near: ca.SX
+    start: ca.DM
+
+    def angle(self, vector: ca.SX) -> ca.SX:
+        """Angle of a vector in the plane from the horizontal, [rad]."""
+        return ca.atan2(vector[2], ca.dot(vector, self.ahead))
+
+    def left_of(self, vector: ca.SX) -> ca.SX:
+        """The unit vector in the plane to the left of a direction, as angles are measured."""
+        along, up = ca.dot(vector, self.ahead), vector[2]
+        return (along * UP - up * self.ahead) / ca.fmax(ca.hypot(along, up), LEAST)
 
 
-def labelled(robot: Robot, ends: np.ndarray, tip: np.ndarray) -> Labelled:
-    """Arcs of the joint angles, and places of all names.
+@dataclass(frozen=True, slots=True, eq=False)
+class LabelFunction:
+    """Labels of one kind of robot.
 
-    Args:
-        ends: begin and end of every bar as drawn, shape (2 n, 3), [m].
-        tip: the end-point, shape (3,), [m].
+    Attributes:
+        names: of angles and lengths, k of them.
+        function: ends of all bars (3, 2 n) and the end-point (3, 1) -> places of the names, (3, k),
+            then begin and end of all lines as columns, (3, 2 m); together (3, k + 2 m), [m].
     """
-    drawing = robot.drawing
-    plane = _plane(robot, ends, tip)
-    names, places, lines = list[str](), list[np.ndarray](), list[np.ndarray]()
-    for number, angle in enumerate(drawing.angles):
-        arc, place = _arc(angle, ARC + number * STEP, plane, ends)
-        names.append(angle.name)
-        places.append(place)
-        lines.append(arc)
-    if drawing.waist is not None:
-        arc, place = _waist_arc(plane)
-        names.append(drawing.waist.name)
-        places.append(place)
-        lines.append(arc)
-    for length in drawing.lengths:
-        begin, end = ends[length.begin], ends[length.end]
-        names.append(length.name)
-        aside = (-BESIDE if length.right else BESIDE) * _left_of(end - begin, plane)
-        places.append(begin + length.at * (end - begin) + aside)
-    drawn = np.concatenate(lines) if lines else np.zeros((0, 2, 3))
-    return Labelled(names, np.array(places).reshape(-1, 3), drawn)
+
+    names: list[str]
+    function: ca.Function
+
+
+@lru_cache(maxsize=64)
+def label_function(robot: Robot, bars: int) -> LabelFunction:
+    """The labels of a robot with so many bars."""
+    ends, tip = ca.SX.sym("ends", 3, 2 * bars), ca.SX.sym("tip", 3)
+    marks = list(_marks(robot, ends, tip))
+    parts = [*(mark.place for mark in marks), *(mark.lines for mark in marks)]
+    flat = ca.densify(ca.horzcat(ca.SX(3, 0), *parts))
+    function = ca.Function("labels", [ends, tip], ca.cse([flat]))
+    return LabelFunction([mark.name for mark in marks], function)
 
 
 def axes_of(robot: Robot) -> np.ndarray:
@@ -95,74 +106,58 @@ def axes_of(robot: Robot) -> np.ndarray:
     return np.array([(origin, origin + AXIS * (end - origin)) for end in ends])
 
 
-def _plane(robot: Robot, ends: np.ndarray, tip: np.ndarray) -> LinksPlane:
-    waist, drawing = robot.drawing.waist, robot.drawing
-    start = np.array([1.0, 0.0, 0.0])
-    ahead = start
+def _marks(robot: Robot, ends: ca.SX, tip: ca.SX) -> Iterator[Mark]:
+    drawing, plane = robot.drawing, _plane(robot, ends, tip)
+    for number, angle in enumerate(drawing.angles):
+        yield _angle(angle, ARC + number * STEP, plane, ends)
+    if drawing.waist is not None:
+        across = ca.cross(UP, plane.start)
+        turn = ca.atan2(ca.dot(plane.ahead, across), ca.dot(plane.ahead, plane.start))
+        arc = ca.SX(WAIST_HEIGHT * UP), WAIST_RADIUS, (ca.SX(0), turn)
+        yield _arc(drawing.waist.name, *arc, (ca.SX(plane.start), ca.SX(across)), 0.5, both=True)
+    for length in drawing.lengths:
+        yield _length(length, plane, ends)
+
+
+def _plane(robot: Robot, ends: ca.SX, tip: ca.SX) -> LinksPlane:
+    drawing, waist = robot.drawing, robot.drawing.waist
+    start, ahead = ca.DM([1, 0, 0]), ca.SX([1, 0, 0])
     if waist is not None:
         origin, first = robot.place(np.eye(2, robot.system.p, -1))
-        start = _level(first - origin, start)
-        ahead = _level(_forward(waist, ends, tip), start)
-    normal = np.cross(ahead, UP)
+        start = ca.DM((first - origin) * [1.0, 1.0, 0.0])
+        start /= ca.norm_2(start)
+        forward = tip if waist.bar is None else _along(ends, waist.bar)
+        flat = ca.vertcat(forward[:2], 0)
+        length = ca.norm_2(flat)
+        ahead = ca.if_else(length > LEAST, flat / ca.fmax(length, LEAST), start)
+    normal = ca.cross(ahead, UP)
     away = normal[0] * drawing.away[0] + normal[1] * drawing.away[1]
-    return LinksPlane(ahead, -normal if away > 0 else normal, start)
+    return LinksPlane(ahead, ca.if_else(away > 0, -normal, normal), start)
 
 
-def _forward(waist: Waist, ends: np.ndarray, tip: np.ndarray) -> np.ndarray:
-    return tip if waist.bar is None else _along(ends, waist.bar)
+def _along(ends: ca.SX, bar: int) -> ca.SX:
+    return ends[:, 2 * bar + 1] - ends[:, 2 * bar]
 
 
-def _along(ends: np.ndarray, bar: int) -> np.ndarray:
-    return ends[2 * bar + 1] - ends[2 * bar]
-
-
-def _level(vector: np.ndarray, otherwise: np.ndarray) -> np.ndarray:
-    """The horizontal part of a vector, of unit length; another one where there is none."""
-    flat = vector * [1.0, 1.0, 0.0]
-    length = float(np.linalg.norm(flat))
-    return flat / length if length > 1e-9 else otherwise
-
-
-def _left_of(vector: np.ndarray, plane: LinksPlane) -> np.ndarray:
-    """The unit vector in the links' plane to the left of a direction, as angles are measured."""
-    along, up = float(vector @ plane.ahead), float(vector @ UP)
-    length = max(float(np.hypot(along, up)), 1e-9)
-    return (along * UP - up * plane.ahead) / length
+def _angle(angle: Angle, radius: float, plane: LinksPlane, ends: ca.SX) -> Mark:
+    begin = ca.SX(0) if angle.after is None else plane.angle(_along(ends, angle.after))
+    apart = plane.angle(_along(ends, angle.bar)) - begin - angle.near
+    turn = angle.near + ca.atan2(ca.sin(apart), ca.cos(apart))  # apart, within ±π
+    centre = ends[:, 2 * angle.bar] + BEFORE * plane.near
+    basis = plane.ahead, ca.SX(UP)
+    return _arc(angle.name, centre, radius, (begin, turn), basis, angle.at)
 
 
 def _arc(
-    angle: Angle, radius: float, plane: LinksPlane, ends: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Arc and reference line of an angle, (n, 2, 3), and the place of its name, (3,)."""
-    begin = 0.0 if angle.after is None else _direction(_along(ends, angle.after), plane)
-    end = _direction(_along(ends, angle.bar), plane)
-    turn = angle.near + remainder(end - begin - angle.near, 2 * pi)
-    centre = ends[2 * angle.bar] + BEFORE * plane.near
-    return _drawn(centre, radius, (begin, turn), (plane.ahead, UP), angle.at)
-
-
-def _direction(vector: np.ndarray, plane: LinksPlane) -> float:
-    """Angle of a vector in the links' plane from the horizontal, [rad]."""
-    return atan2(float(vector @ UP), float(vector @ plane.ahead))
-
-
-def _waist_arc(plane: LinksPlane) -> tuple[np.ndarray, np.ndarray]:
-    """Arc and lines of the waist's angle, and the place of its name."""
-    across = np.cross(UP, plane.start)
-    turn = atan2(float(plane.ahead @ across), float(plane.ahead @ plane.start))
-    centre = WAIST_HEIGHT * UP
-    return _drawn(centre, WAIST_RADIUS, (0.0, turn), (plane.start, across), 0.5, both=True)
-
-
-def _drawn(
-    centre: np.ndarray,
+    name: str,
+    centre: ca.SX,
     radius: float,
-    angles: tuple[float, float],
-    basis: tuple[np.ndarray, np.ndarray],
+    angles: tuple[ca.SX, ca.SX],
+    basis: tuple[ca.SX, ca.SX],
     at: float,
     both: bool = False,
-) -> tuple[np.ndarray, np.ndarray]:
-    """An arc with the line from which it is measured, and outside it a place for a name.
+) -> Mark:
+    """An arc with the line from which it is measured, and outside it its name.
 
     Args:
         angles: where it begins, and how far it turns, [rad].
@@ -172,10 +167,20 @@ def _drawn(
     """
     begin, turn = angles
     u, v = basis
-    turned = begin + np.linspace(0.0, turn, SIDES + 1)[:, None]
-    line = centre + radius * (np.cos(turned) * u + np.sin(turned) * v)
-    rays = [centre + (radius + BEYOND) * (cos(a) * u + sin(a) * v) for a in (begin, begin + turn)]
-    arms = [(centre, ray) for ray in (rays if both else rays[:1])]
-    middle = begin + at * turn
-    place = centre + (radius + BEYOND) * (cos(middle) * u + sin(middle) * v)
-    return np.concatenate([np.stack([line[:-1], line[1:]], axis=1), np.array(arms)]), place
+
+    def points(far: float, turned: ca.SX) -> ca.SX:
+        ray = u @ ca.cos(turned) + v @ ca.sin(turned)
+        return ca.repmat(centre, 1, turned.shape[1]) + far * ray
+
+    arc = points(radius, begin + turn @ ca.DM(np.linspace(0.0, 1.0, SIDES + 1)).T)
+    ends = [begin, begin + turn] if both else [begin]
+    arms = [part for end in ends for part in (centre, points(radius + BEYOND, end))]
+    place = points(radius + BEYOND, begin + at * turn)
+    return Mark(name, place, ca.horzcat(arc[:, _PIECES], *arms))
+
+
+def _length(length: Length, plane: LinksPlane, ends: ca.SX) -> Mark:
+    count = ends.shape[1]
+    begin, end = ends[:, length.begin % count], ends[:, length.end % count]
+    aside = (-BESIDE if length.right else BESIDE) * plane.left_of(end - begin)
+    return Mark(length.name, begin + length.at * (end - begin) + aside, ca.SX(3, 0))

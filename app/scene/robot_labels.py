@@ -8,9 +8,10 @@ import numpy as np
 
 from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import END, Motion
-from onpath.app.scene.label_geometry import Labelled, axes_of, labelled
+from onpath.app.scene.label_geometry import axes_of, label_function
 from onpath.app.scene.stage import Stage, add_text
 from onpath.app.viser_adapter.frame_channel import move_node, update_node
+from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.systems.robots import Robot
 
 if TYPE_CHECKING:
@@ -48,16 +49,17 @@ class RobotLabels:
     ) -> None:
         self._robot, self._letters = robot, letters
         self._origins = stage.origins
+        labels = label_function(robot, motion.counts.bars)
+        self._names, self._function = labels.names, Buffered(labels.function)
         self._nodes: list[viser.SceneNodeHandle] = []
-        self._names: list[viser.LabelHandle] = []
+        self._texts: list[viser.LabelHandle] = []
         self._arcs: viser.LineSegmentsHandle | None = None
         places, lines = self._drawn(motion)
         self._places, self._lines = places, lines
-        for bench, own in zip(stage.bases, self._labelled(motion), strict=True):
-            for name in own.names:
-                at = places[len(self._names)]
-                node = add_text(scene, f"/show/labels/{bench}/{name}", name, at, letters)
-                self._names.append(node)
+        names = [f"{bench}/{name}" for bench in stage.bases for name in labels.names]
+        for name, at in zip(names, places, strict=True):
+            text = name.rpartition("/")[2]
+            self._texts.append(add_text(scene, f"/show/labels/{name}", text, at, letters))
         if len(lines):
             self._arcs = scene.add_line_segments(
                 "/show/arcs", lines, palette.SLATE.rgb, thickness=LINE
@@ -73,30 +75,25 @@ class RobotLabels:
         moved = np.abs(places - self._places).max(axis=1, initial=0.0) > MOVED
         for i in np.flatnonzero(moved).tolist():
             self._places[i] = places[i]
-            move_node(self._names[i], places[i])
+            move_node(self._texts[i], places[i])
         if self._arcs is not None and np.abs(lines - self._lines).max() > MOVED:
             self._lines = lines
             update_node(self._arcs, points=lines)
 
     def remove(self) -> None:
         """Remove all nodes."""
-        for node in (*self._names, *self._nodes):
+        for node in (*self._texts, *self._nodes):
             node.remove()
-
-    def _labelled(self, motion: Motion) -> list[Labelled]:
-        """What is labelled of each robot, in its own frame."""
-        bars, points = 2 * motion.counts.bars, 3 * motion.counts.points
-        found = list[Labelled]()
-        for i, drawn in enumerate(motion.drawn):
-            ends = drawn[:points].reshape(-1, 3)[:bars]
-            found.append(labelled(self._robot, ends, motion.point(i, END)))
-        return found
 
     def _drawn(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
         """Places of all names, (k, 3), and all lines, (n, 2, 3), in the world."""
-        each = list(zip(self._labelled(motion), self._origins, strict=True))
-        places = np.concatenate([own.places + origin for own, origin in each])
-        return places, np.concatenate([own.lines + origin for own, origin in each])
+        own, count = 6 * motion.counts.bars, len(self._names)
+        each = [
+            self._function(drawn[:own], motion.point(i, END))[0].reshape(-1, 3) + origin
+            for i, (drawn, origin) in enumerate(zip(motion.drawn, self._origins, strict=True))
+        ]
+        places = np.concatenate([points[:count] for points in each])
+        return places, np.concatenate([points[count:].reshape(-1, 2, 3) for points in each])
 
     def _add_axes(self, scene: viser.SceneApi) -> None:
         axes = axes_of(self._robot)

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from onpath.app.scene.label_geometry import SIDES, Labelled, axes_of, labelled
+from onpath.app.scene.label_geometry import SIDES, axes_of, label_function
 from onpath.models.arrays import Array
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import Robot, RobotEntry
@@ -22,10 +22,12 @@ def poses(robot: Robot, count: int = 12) -> Array:
     return robot.rest(robot.frame.lift(z))
 
 
-def labels(robot: Robot, q: Array) -> tuple[Labelled, Array]:
-    """The labels in a configuration, and the ends of the bars."""
+def labels(robot: Robot, q: Array) -> tuple[Array, Array]:
+    """The lines in a configuration, (n, 2, 3), and the ends of the bars."""
     ends = drawn(robot.skeleton, q, 1.0)[0].reshape(-1, 3)
-    return labelled(robot, ends, robot.place(robot.endpoint(q))), ends
+    found = label_function(robot, len(ends) // 2)
+    points = np.array(found.function(ends.T, robot.place(robot.endpoint(q)))).T
+    return points[len(found.names) :].reshape(-1, 2, 3), ends
 
 
 def turned(line: Array, centre: Array) -> float:
@@ -40,14 +42,14 @@ def test_arcs_turn_by_the_joint_angles_that_they_name(entry: RobotEntry) -> None
     robot = entry.make(entry.lab)
     count = len(robot.drawing.angles)
     for q in poses(robot):
-        found, _ = labels(robot, q)
+        lines, _ = labels(robot, q)
         begin = 0
         for number, name in enumerate(coordinates(robot)):
-            arc, centre = found.lines[begin : begin + SIDES], found.lines[begin + SIDES, 0]
+            arc, centre = lines[begin : begin + SIDES], lines[begin + SIDES, 0]
             joint = "₁₂₃".index(name[1])
             assert turned(arc, centre) == pytest.approx(abs(q[joint]), abs=1e-6)
             begin += SIDES + (1 if number < count else 2)  # a waist has a line at either end
-        assert begin == len(found.lines)
+        assert begin == len(lines)
 
 
 def coordinates(robot: Robot) -> list[str]:
@@ -61,10 +63,10 @@ def coordinates(robot: Robot) -> list[str]:
 def test_an_arc_ends_at_its_bar(entry: RobotEntry) -> None:
     robot = entry.make(entry.lab)
     for q in poses(robot):
-        found, ends = labels(robot, q)
+        lines, ends = labels(robot, q)
         for number, angle in enumerate(robot.drawing.angles):
             begin = number * (SIDES + 1)
-            centre, end = found.lines[begin + SIDES, 0], found.lines[begin + SIDES - 1, 1]
+            centre, end = lines[begin + SIDES, 0], lines[begin + SIDES - 1, 1]
             along = ends[2 * angle.bar + 1] - ends[2 * angle.bar]
             ray = (end - centre) / np.linalg.norm(end - centre)
             assert ray @ along / np.linalg.norm(along) == pytest.approx(1.0, abs=1e-6)
