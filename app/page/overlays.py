@@ -14,11 +14,11 @@ import viser
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.lab.snapshots.snapshot import Motion
-from onpath.app.scene.rank_nodes import RankNodes, map_corners
+from onpath.app.scene.rank_nodes import RankNodes, RankPicture, rank_picture
 from onpath.app.scene.robot_labels import LARGE, LETTERS, RobotLabels
 from onpath.app.scene.stage import Stage
 from onpath.app.scene.tube_nodes import TubeNodes, TubeShape, tube_shape
-from onpath.models.control.rank_test import RankGrid, rank_grid
+from onpath.models.control.rank_test import RankGrid
 from onpath.models.systems.robots import Robot
 
 Submit = Callable[[Callable[[], None]], None]
@@ -104,10 +104,9 @@ class Overlays:
         self._tube: TubeNodes | None = None
         self._rank: RankNodes | None = None
         self._shape: Background[TubeShape] = Background(submit)
-        self._map: Background[RankGrid] = Background(submit)
+        self._map: Background[RankPicture] = Background(submit)
         self._drawn_tube: Hashable = None
         self._drawn_map: Hashable = None
-        self._corners = map_corners(stage, robot)
 
     @property
     def shape(self) -> TubeShape | None:
@@ -117,7 +116,8 @@ class Overlays:
     @property
     def rank_map(self) -> RankGrid | None:
         """The map that is drawn, or None."""
-        return self._map.value if self._rank is not None else None
+        picture = self._map.value if self._rank is not None else None
+        return None if picture is None else picture.grid
 
     def update(self, motion: Motion) -> None:
         """Move what moves with the robots."""
@@ -158,14 +158,14 @@ class Overlays:
         if self.switches.rank:
             parameters = parameters_of(snapshot)
             key = self._robot.plant(parameters).tobytes()
-            self._map.ask(key, lambda: rank_grid(self._robot, parameters, *self._corners))
-        grid = self._map.value if self.switches.rank else None
-        wanted = None if grid is None else self._map.key
+            self._map.ask(key, lambda: rank_picture(self.stage, self._robot, parameters))
+        picture = self._map.value if self.switches.rank else None
+        wanted = None if picture is None else self._map.key
         if wanted == self._drawn_map:
             return
         self._drawn_map = wanted
         if self._rank is not None:
             self._rank.remove()
             self._rank = None
-        if grid is not None:
-            self._rank = RankNodes(self._scene, self.stage, self._robot, grid)
+        if picture is not None:
+            self._rank = RankNodes(self._scene, self.stage, self._robot, picture)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +11,9 @@ from viser.transforms import SO3
 from onpath.app.common import palette
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.stage import Stage
-from onpath.models.control.rank_test import RankGrid, cell_centres
+from onpath.app.viser_adapter.images import add_png, png_of
+from onpath.models.control.rank_test import RankGrid, cell_centres, rank_grid
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 if TYPE_CHECKING:
@@ -93,6 +96,25 @@ def largest(values: np.ndarray) -> float:
     return most if most > 0 else 1.0
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class RankPicture:
+    """A map that is ready to be shown.
+
+    Attributes:
+        grid: its numbers.
+        png: the picture.
+    """
+
+    grid: RankGrid
+    png: bytes
+
+
+def rank_picture(stage: Stage, robot: Robot, parameters: Parameters) -> RankPicture:
+    """The map of a robot with these parameters; takes some tens of milliseconds."""
+    grid = rank_grid(robot, parameters, *map_corners(stage, robot))
+    return RankPicture(grid, png_of(map_picture(robot, grid, map_opacity(stage))))
+
+
 class RankNodes:
     """One image for each robot.
 
@@ -100,30 +122,23 @@ class RankNodes:
         scene: the client's scene.
         stage: where the robots stand.
         robot: what kind of robot they are.
-        grid: the map.
+        picture: the map.
     """
 
-    def __init__(self, scene: viser.SceneApi, stage: Stage, robot: Robot, grid: RankGrid) -> None:
+    def __init__(
+        self, scene: viser.SceneApi, stage: Stage, robot: Robot, picture: RankPicture
+    ) -> None:
         origin, right, up = _axes(robot)
-        depth, opacity = BEHIND_LINKS if _contains_base(stage) else BEHIND_PATH
-        first, second = (grid.low + grid.high) / 2
+        low, high = picture.grid.low, picture.grid.high
+        depth, _ = BEHIND_LINKS if _contains_base(stage) else BEHIND_PATH
+        first, second = (low + high) / 2
         middle = origin + first * right + second * up + depth * stage.away
-        picture = map_picture(robot, grid, opacity)
-        width, height = (grid.high - grid.low) * [np.linalg.norm(right), np.linalg.norm(up)]
+        width, height = (high - low) * [np.linalg.norm(right), np.linalg.norm(up)]
         x, y = right / np.linalg.norm(right), -up / np.linalg.norm(up)  # an image's y is downward
         turned = SO3.from_matrix(np.column_stack([x, y, np.cross(x, y)])).wxyz
+        size = float(width), float(height)
         self._nodes = [
-            scene.add_image(
-                f"/show/rank/{bench}",
-                picture,
-                float(width),
-                float(height),
-                format="png",
-                cast_shadow=False,
-                receive_shadow=False,
-                wxyz=turned,
-                position=base + middle,
-            )
+            add_png(scene, f"/show/rank/{bench}", picture.png, size, base + middle, turned)
             for bench, base in stage.bases.items()
         ]
 

@@ -18,15 +18,19 @@ from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapsh
 from onpath.app.page.overlays import Background, Overlays, Switches
 from onpath.app.page.panels.show_panel import SWITCHES, rank_legend, tube_numbers
 from onpath.app.scene.rank_nodes import largest, map_corners, map_picture
+from onpath.app.scene.robot_labels import RobotLabels
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tube_nodes import drawn_curve, tube_shape
 from onpath.app.server.lab_server import LabServer
+from onpath.app.viser_adapter.images import add_png, png_of
 from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.rank_test import rank_grid
 from onpath.models.paths.curves import saddle
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import RobotEntry
+from onpath.models.systems.two_link_arm import TwoLinkArm
 from tests.support.lab import do, run, store
 from tests.support.student import Student
 from tests.support.waiting import wait_for
@@ -187,6 +191,40 @@ def test_the_colour_scale_is_viridis() -> None:
     shares = np.linspace(0.0, 1.0, 101)
     viridis = 255 * matplotlib.colormaps["viridis"](shares)[:, :3]
     assert np.abs(palette.on_scale(shares) - viridis).max() < 12
+
+
+def test_a_picture_that_is_encoded_beforehand_is_sent_as_viser_sends_one(
+    server: viser.ViserServer,
+) -> None:
+    picture = np.random.default_rng(1).integers(0, 255, (8, 5, 4), dtype=np.uint8)
+    position, turn = np.array([1.0, 2.0, 3.0]), np.array([0.0, 1.0, 0.0, 0.0])
+    own = add_png(server.scene, "/own", png_of(picture), (0.5, 0.8), position, turn)
+    still = {"cast_shadow": False, "receive_shadow": False}
+    place: Any = {"position": position, "wxyz": turn}
+    theirs = server.scene.add_image("/theirs", picture, 0.5, 0.8, format="png", **still, **place)
+    assert own._impl.props == theirs._impl.props
+    assert (own.position == theirs.position).all() and (own.wxyz == theirs.wxyz).all()
+
+
+class Nameless(TwoLinkArm):
+    """An arm that says nothing of its angles and lengths."""
+
+    __slots__ = ()
+
+    @property
+    def drawing(self) -> Drawing:
+        return Drawing()
+
+
+def test_a_robot_without_names_has_axes_alone(server: viser.ViserServer) -> None:
+    entry = ROBOTS["two_link_arm"]
+    motion = take_motion(Lab(store(), entry))
+    labels = RobotLabels(server.scene, stage_of(entry.make(entry.lab)), Nameless(), motion)
+    labels.update(motion)
+    assert server.scene.get_handle_by_name("/show/arcs") is None
+    assert server.scene.get_handle_by_name("/show/axes") is not None
+    labels.remove()
+    assert server.scene.get_handle_by_name("/show/axes") is None
 
 
 def test_numbers_stand_beside_the_colours_and_the_lines() -> None:
