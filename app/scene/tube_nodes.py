@@ -14,7 +14,7 @@ from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.stage import Stage, add_copies
 from onpath.models.paths.curve_fit import through_samples
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.tube import LocalTube, local_tube, offset, tube_width
+from onpath.models.paths.tube import CurveFrames, curve_frames, offset, tube_width
 from onpath.models.systems.robots import Robot
 
 if TYPE_CHECKING:
@@ -65,10 +65,10 @@ def tube_shape(robot: Robot, path: PathView) -> TubeShape:
     shown = SPREAD * min(width, WIDEST)
     step = max(_round_step(shown / OFFSETS), LEAST_STEP)
     theta = np.linspace(-np.pi, np.pi, ALONG + 1)
-    tube = local_tube(curve, theta)
+    frames = curve_frames(curve, theta)
     across = np.arange(1, floor(shown / step + 1e-9) + 1) * step
     in_space = curve.dimension == 3
-    at = local_tube(curve, theta[:: ALONG // LINES])
+    at = curve_frames(curve, theta[:: ALONG // LINES])
 
     def placed(points: np.ndarray) -> np.ndarray:
         return robot.place(robot.frame.lift(points))
@@ -77,9 +77,9 @@ def tube_shape(robot: Robot, path: PathView) -> TubeShape:
         width=width,
         step=step,
         degrees=360 / LINES,
-        fill=_skin(placed(_rim(tube, shown) if in_space else _edges(tube, shown))),
+        fill=_skin(placed(_rim(frames, shown) if in_space else _edges(frames, shown))),
         normals=placed(_spokes(at, shown) if in_space else _edges(at, shown)),
-        offsets=placed(_offsets(tube, np.concatenate([-across[::-1], across]))),
+        offsets=placed(_offsets(frames, np.concatenate([-across[::-1], across]))),
     )
 
 
@@ -105,33 +105,33 @@ def _polyline(points: np.ndarray) -> np.ndarray:
     return pieces.reshape(-1, 2, points.shape[-1])
 
 
-def _edges(tube: LocalTube, width: float) -> np.ndarray:
+def _edges(frames: CurveFrames, width: float) -> np.ndarray:
     """Points on both sides of a planar curve, shape (n, 2, 2)."""
-    return np.stack([offset(tube, np.array([s * width])) for s in (-1, 1)], axis=1)
+    return np.stack([offset(frames, np.array([s * width])) for s in (-1, 1)], axis=1)
 
 
-def _rim(tube: LocalTube, width: float) -> np.ndarray:
+def _rim(frames: CurveFrames, width: float) -> np.ndarray:
     """Circles around a space curve, shape (n, AROUND + 1, 3)."""
     turn = np.linspace(0, 2 * np.pi, AROUND + 1)
     xi = width * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-    return offset(tube, xi[:, None]).transpose(1, 0, 2)
+    return offset(frames, xi[:, None]).transpose(1, 0, 2)
 
 
-def _spokes(tube: LocalTube, width: float) -> np.ndarray:
+def _spokes(frames: CurveFrames, width: float) -> np.ndarray:
     """Both normals of a space curve on both sides, and the circle through their ends, at every θ.
 
     Returns:
         Shape (k, 2, 3).
     """
     axes = width * np.eye(2)
-    normals = [np.stack([offset(tube, -axis), offset(tube, axis)], axis=1) for axis in axes]
-    return np.concatenate([*normals, _polyline(_rim(tube, width))])
+    normals = [np.stack([offset(frames, -axis), offset(frames, axis)], axis=1) for axis in axes]
+    return np.concatenate([*normals, _polyline(_rim(frames, width))])
 
 
-def _offsets(tube: LocalTube, across: np.ndarray) -> np.ndarray:
+def _offsets(frames: CurveFrames, across: np.ndarray) -> np.ndarray:
     """Curves at these distances along each normal, shape (k, 2, d)."""
-    axes = np.eye(tube.normals.shape[1])
-    return np.concatenate([_polyline(offset(tube, across[:, None, None] * a)) for a in axes])
+    axes = np.eye(frames.normals.shape[1])
+    return np.concatenate([_polyline(offset(frames, across[:, None, None] * a)) for a in axes])
 
 
 def _skin(rows: np.ndarray) -> Mesh:

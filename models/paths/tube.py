@@ -32,50 +32,54 @@ TINY = 1e-12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LocalTube:
-    """Frames and widths along a curve.
+class CurveFrames:
+    """Points of a curve and the normals there.
 
     Attributes:
         theta: shape (n,), [rad].
         sigma: σ(θ), shape (n, d), [m].
         normals: unit normals, shape (n, d - 1, d): to the left; in space, to the left in the plan
             view and up, as for ξ (see models/control/space_output.py).
-        left, right: local widths along the first normal and against it, shape (n,), [m]; infinite
-            where nothing is on that side.
     """
 
     theta: Array
     sigma: Array
     normals: Array
-    left: Array
-    right: Array
 
 
 def tube_width(curve: Curve) -> float:
     """W, the radius of the largest tube with a unique closest point, [m]; infinite for a line."""
     theta = _compared(curve)
-    gaps, tangents = _gaps(curve, theta, theta)
+    points, tangents = curve.at(theta), _tangents(curve, theta)
+    gaps = points - points[:, None]
     across = gaps - (gaps * tangents[:, None]).sum(-1, keepdims=True) * tangents[:, None]
     radius = _radii(gaps, np.linalg.norm(across, axis=-1))
     curvature = np.abs(curve.curvature(theta)).max()
     return float(min(radius.min(), 1 / curvature if curvature > TINY else np.inf))
 
 
-def local_tube(curve: Curve, theta: Array) -> LocalTube:
-    """Frames and local widths of a curve at θ, shape (n,)."""
-    others = _compared(curve)
-    gaps, tangents = _gaps(curve, theta, others)
-    normals = _normals(tangents)
-    side = (gaps * normals[:, None, 0]).sum(-1)
-    second, squared = curve.at(theta, 2), (curve.at(theta, 1) ** 2).sum(-1)
-    bend = (second * normals[:, 0]).sum(-1) / squared
+def curve_frames(curve: Curve, theta: Array) -> CurveFrames:
+    """Points and normals of a curve at θ, shape (n,)."""
+    return CurveFrames(theta, curve.at(theta), _normals(_tangents(curve, theta)))
+
+
+def local_widths(curve: Curve, frames: CurveFrames) -> tuple[Array, Array]:
+    """Local widths along the first normal and against it, shape (n,) each, [m].
+
+    They are infinite where nothing is on that side.
+    """
+    gaps = curve.at(_compared(curve)) - frames.sigma[:, None]
+    normal = frames.normals[:, 0]
+    side = (gaps * normal[:, None]).sum(-1)
+    second, squared = curve.at(frames.theta, 2), (curve.at(frames.theta, 1) ** 2).sum(-1)
+    bend = (second * normal).sum(-1) / squared
     left, right = (
         np.minimum(_radii(gaps, s * side).min(axis=1), _radius_of(s * bend)) for s in (1, -1)
     )
-    return LocalTube(theta, curve.at(theta), normals, left, right)
+    return left, right
 
 
-def offset(tube: LocalTube, xi: Array) -> Array:
+def offset(frames: CurveFrames, xi: Array) -> Array:
     """The points with these coordinates across the curve: σ(θ) + Σ ξ_i N_i.
 
     Args:
@@ -84,7 +88,7 @@ def offset(tube: LocalTube, xi: Array) -> Array:
     Returns:
         Shape (..., n, d), [m].
     """
-    return tube.sigma + (xi[..., None] * tube.normals).sum(-2)
+    return frames.sigma + (xi[..., None] * frames.normals).sum(-2)
 
 
 def _compared(curve: Curve) -> Array:
@@ -94,15 +98,14 @@ def _compared(curve: Curve) -> Array:
     return np.linspace(-(1 + BEYOND) * np.pi, (1 + BEYOND) * np.pi, SAMPLES)
 
 
-def _gaps(curve: Curve, theta: Array, others: Array) -> tuple[Array, Array]:
-    """σ(b) - σ(a), (n, k, d), and the unit tangents T(a), (n, d)."""
+def _tangents(curve: Curve, theta: Array) -> Array:
+    """Unit tangents, (n,) -> (n, d)."""
     first = curve.at(theta, 1)
-    tangents = first / np.maximum(np.linalg.norm(first, axis=-1, keepdims=True), TINY)
-    return curve.at(others) - curve.at(theta)[:, None], tangents
+    return first / np.maximum(np.linalg.norm(first, axis=-1, keepdims=True), TINY)
 
 
 def _normals(tangents: Array) -> Array:
-    """Unit normals, (n, d) -> (n, d - 1, d); see `LocalTube`."""
+    """Unit normals, (n, d) -> (n, d - 1, d); see `CurveFrames`."""
     if tangents.shape[-1] == 2:
         return np.stack([-tangents[:, 1], tangents[:, 0]], axis=-1)[:, None]
     plan = np.stack([-tangents[:, 1], tangents[:, 0], 0 * tangents[:, 0]], axis=-1)

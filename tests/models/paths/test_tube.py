@@ -9,7 +9,7 @@ from onpath.models.arrays import Array
 from onpath.models.paths.curve_faults import TUBE, curve_faults
 from onpath.models.paths.curves import Curve, circle, ellipse, nearest, saddle, segment
 from onpath.models.paths.path_design import presets
-from onpath.models.paths.tube import local_tube, offset, tube_width
+from onpath.models.paths.tube import curve_frames, local_widths, offset, tube_width
 
 CURVES = {name: design.curve for name, design in presets().items()}
 FAULTS = {name: curve_faults(lambda z: np.ones(len(z)), each) for name, each in CURVES.items()}
@@ -26,8 +26,9 @@ def nearest_in(curve: Curve, points: Array) -> tuple[Array, Array]:
 def test_of_a_circle_it_is_the_radius_and_of_a_line_nothing_bounds_it() -> None:
     assert tube_width(circle(0.05)) == pytest.approx(0.05, rel=1e-12)
     assert tube_width(segment((0.0, 0.0), (0.1, 0.05))) == np.inf
-    around = local_tube(circle(0.05), np.linspace(-3, 3, 7))
-    assert np.allclose(around.left, 0.05) and np.isinf(around.right).all()
+    around = curve_frames(circle(0.05), np.linspace(-3, 3, 7))
+    left, right = local_widths(circle(0.05), around)
+    assert np.allclose(left, 0.05) and np.isinf(right).all()
 
 
 def test_of_an_ellipse_it_is_the_radius_at_its_sharper_ends() -> None:
@@ -38,12 +39,12 @@ def test_of_an_ellipse_it_is_the_radius_at_its_sharper_ends() -> None:
 def test_within_it_the_closest_point_is_where_one_came_from(curve: Curve) -> None:
     width = min(tube_width(curve), 0.1)
     inner = np.linspace(-0.9, 0.9, 61) * np.pi
-    tube, rng = local_tube(curve, inner), np.random.default_rng(3)
+    frames, rng = curve_frames(curve, inner), np.random.default_rng(3)
     turn = rng.uniform(-np.pi, np.pi, len(inner))
     way = np.column_stack([np.cos(turn), np.sin(turn)]) if curve.dimension == 3 else turn[:, None]
     for share in (0.5, 0.97):
         xi = share * width * (way if curve.dimension == 3 else np.sign(way))
-        theta, distance = nearest_in(curve, offset(tube, xi))
+        theta, distance = nearest_in(curve, offset(frames, xi))
         assert np.allclose(distance, share * width, atol=1e-9)
         assert np.abs((theta - inner + np.pi) % (2 * np.pi) - np.pi).max() < 1e-3
 
@@ -53,14 +54,15 @@ def test_along_a_normal_the_closest_point_stays_up_to_the_local_width_and_no_fur
     curve: Curve,
 ) -> None:
     inner = np.linspace(-0.9, 0.9, 37) * np.pi
-    tube = local_tube(curve, inner)
-    for sign, widths in ((1, tube.left), (-1, tube.right)):
+    frames = curve_frames(curve, inner)
+    left, right = local_widths(curve, frames)
+    for sign, widths in ((1, left), (-1, right)):
         bounded = widths < 0.2
         for share, stays in ((0.97, True), (1.03, False)):
             far = np.where(bounded, share * widths, 0.01)
-            _, distance = nearest_in(curve, offset(tube, sign * far[:, None]))
+            _, distance = nearest_in(curve, offset(frames, sign * far[:, None]))
             assert ((np.abs(distance - far) < 1e-7) == (stays | ~bounded)).all()
-    assert min(tube.left.min(), tube.right.min()) >= tube_width(curve) * (1 - 1e-3)
+    assert min(left.min(), right.min()) >= tube_width(curve) * (1 - 1e-3)
 
 
 def test_an_admitted_path_has_the_tube_that_its_check_asks_for() -> None:
