@@ -16,7 +16,7 @@ import numpy as np
 from onpath.models.systems.drawing import Angle, Length
 from onpath.models.systems.robots import Robot
 
-UP = ca.DM([0, 0, 1])
+UP = ca.SX(ca.DM([0, 0, 1]))
 ARC, STEP = 0.058, 0.02
 """Radius of the first arc, and how much larger each further one is [m]."""
 BEYOND = 0.016
@@ -33,7 +33,6 @@ SIDES = 16
 """Straight pieces of an arc."""
 LEAST = 1e-9
 """Shorter vectors have no direction [m]."""
-_PIECES = [i for piece in range(SIDES) for i in (piece, piece + 1)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,7 +62,7 @@ class LinksPlane:
 
     ahead: ca.SX
     near: ca.SX
-    start: ca.DM
+    start: ca.SX
 
     def angle(self, vector: ca.SX) -> ca.SX:
         """Angle of a vector in the plane from the horizontal, [rad]."""
@@ -113,22 +112,22 @@ def _marks(robot: Robot, ends: ca.SX, tip: ca.SX) -> Iterator[Mark]:
     if drawing.waist is not None:
         across = ca.cross(UP, plane.start)
         turn = ca.atan2(ca.dot(plane.ahead, across), ca.dot(plane.ahead, plane.start))
-        arc = ca.SX(WAIST_HEIGHT * UP), WAIST_RADIUS, (ca.SX(0), turn)
-        yield _arc(drawing.waist.name, *arc, (ca.SX(plane.start), ca.SX(across)), 0.5, both=True)
+        arc = WAIST_HEIGHT * UP, WAIST_RADIUS, (ca.SX(0), turn)
+        yield _arc(drawing.waist.name, *arc, (plane.start, across), 0.5, both=True)
     for length in drawing.lengths:
         yield _length(length, plane, ends)
 
 
 def _plane(robot: Robot, ends: ca.SX, tip: ca.SX) -> LinksPlane:
     drawing, waist = robot.drawing, robot.drawing.waist
-    start, ahead = ca.DM([1, 0, 0]), ca.SX([1, 0, 0])
+    start = ahead = ca.SX(ca.DM([1, 0, 0]))
     if waist is not None:
         origin, first = robot.place(np.eye(2, robot.system.p, -1))
-        start = ca.DM((first - origin) * [1.0, 1.0, 0.0])
-        start /= ca.norm_2(start)
+        level = (first - origin) * [1.0, 1.0, 0.0]
+        start = ca.SX(ca.DM(level / np.linalg.norm(level)))
         forward = tip if waist.bar is None else _along(ends, waist.bar)
         flat = ca.vertcat(forward[:2], 0)
-        length = ca.norm_2(flat)
+        length = ca.hypot(flat[0], flat[1])
         ahead = ca.if_else(length > LEAST, flat / ca.fmax(length, LEAST), start)
     normal = ca.cross(ahead, UP)
     away = normal[0] * drawing.away[0] + normal[1] * drawing.away[1]
@@ -144,8 +143,7 @@ def _angle(angle: Angle, radius: float, plane: LinksPlane, ends: ca.SX) -> Mark:
     apart = plane.angle(_along(ends, angle.bar)) - begin - angle.near
     turn = angle.near + ca.atan2(ca.sin(apart), ca.cos(apart))  # apart, within ±π
     centre = ends[:, 2 * angle.bar] + BEFORE * plane.near
-    basis = plane.ahead, ca.SX(UP)
-    return _arc(angle.name, centre, radius, (begin, turn), basis, angle.at)
+    return _arc(angle.name, centre, radius, (begin, turn), (plane.ahead, UP), angle.at)
 
 
 def _arc(
@@ -170,13 +168,14 @@ def _arc(
 
     def points(far: float, turned: ca.SX) -> ca.SX:
         ray = u @ ca.cos(turned) + v @ ca.sin(turned)
-        return ca.repmat(centre, 1, turned.shape[1]) + far * ray
+        return centre @ ca.DM.ones(1, turned.shape[1]) + far * ray
 
     arc = points(radius, begin + turn @ ca.DM(np.linspace(0.0, 1.0, SIDES + 1)).T)
     ends = [begin, begin + turn] if both else [begin]
     arms = [part for end in ends for part in (centre, points(radius + BEYOND, end))]
+    pieces = ca.reshape(ca.vertcat(arc[:, :-1], arc[:, 1:]), 3, 2 * SIDES)
     place = points(radius + BEYOND, begin + at * turn)
-    return Mark(name, place, ca.horzcat(arc[:, _PIECES], *arms))
+    return Mark(name, place, ca.horzcat(pieces, *arms))
 
 
 def _length(length: Length, plane: LinksPlane, ends: ca.SX) -> Mark:
