@@ -99,9 +99,21 @@ class ExternalForces:
             self.grabbed = bench
             self._offsets = {name: self._runs[name].shown()["y"] - own for name in together}
             self._note("pull", benches=tuple(self._offsets))
+        self.pull({name: target + offset for name, offset in self._offsets.items()})
+
+    def pull(self, targets: Mapping[str, Array]) -> None:
+        """Pull end-points, each towards a target of its own, until `release`.
+
+        Args:
+            targets: by bench, each (p,), [m].
+        """
+        if self.grabbed is None:
+            self.grabbed = next(iter(targets))
+            self._offsets = {}
+            self._note("pull", benches=tuple(targets))
         home, reach = self._robot.frame.lift(np.zeros(2)), self._robot.reach[1]
-        for name, offset in self._offsets.items():
-            self.hands[name] = (target + offset).clip(home - reach, home + reach)
+        for name, target in targets.items():
+            self.hands[name] = target.clip(home - reach, home + reach)
             self.pushes[name] = replace(self.pushes[name], hand=self.hands[name])
 
     def release(self) -> None:

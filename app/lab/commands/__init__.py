@@ -38,6 +38,7 @@ from onpath.app.lab.commands.path import (
     SelectPoint,
     Undo,
 )
+from onpath.app.lab.commands.pulse import Pulse
 from onpath.app.lab.commands.sharing import Share, UseShared
 from onpath.app.lab.commands.start import MoveStart, SetStart, StartOnPath
 from onpath.app.lab.commands.time import (
@@ -89,6 +90,7 @@ __all__ = [
     "PlaceWall",
     "PlayStep",
     "Predict",
+    "Pulse",
     "Redo",
     "Release",
     "RemovePoint",

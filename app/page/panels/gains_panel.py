@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import viser
 
-from onpath.app.lab.commands import Identify, ResetParameters
+from onpath.app.lab.commands import Identify, Pulse, ResetParameters
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues, parameters_of
+from onpath.app.page.panels.pole_picture import pole_picture
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, SwitchedParameter, on_press
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
@@ -30,6 +33,14 @@ class GainsPanel:
         self._shown: tuple[ParameterValues, dict[str, str]] | None = None
         self._widgets = [ParameterWidgets(gui, words, post, BASIC, first)]
         self._settling = gui.add_markdown("")
+        self._picture = gui.add_html("")
+        pulse = gui.add_button(  # what a gain changes is seen when something disturbs the robots
+            words("gains.pulse"),
+            icon=viser.Icon.WAVE_SINE,
+            color="gray",
+            hint=words("gains.pulse_hint"),
+        )
+        on_press(pulse, lambda: post(Pulse()))
         with gui.add_folder(words("gains.advanced"), expand_by_default=False):
             self._widgets.append(ParameterWidgets(gui, words, post, ADVANCED, first))
             reset = gui.add_button(words("gains.defaults"), icon=viser.Icon.RESTORE)
@@ -54,7 +65,9 @@ class GainsPanel:
         self._shown = now
         for widgets in self._widgets:
             widgets.follow(snapshot)
-        self._settling.content = "\n\n".join(_lines(snapshot, self._words))
+        found = _channels(snapshot, self._words)
+        self._settling.content = "\n\n".join(_lines(found, self._words))
+        self._picture.content = pole_picture(found, self._words)
 
 
 def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
@@ -64,17 +77,28 @@ def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
     on_press(button, lambda: post(Identify()))
 
 
-def _lines(snapshot: PageSnapshot, words: Words) -> list[str]:
-    """What the laws' channels do, those with the same gains once, or why a law has none."""
-    lines, titles = dict[str, None](), bench_titles(snapshot.run.laws, words)
+def _channels(snapshot: PageSnapshot, words: Words) -> dict[str, tuple[Channel, ...] | Message]:
+    """What the laws' channels do by whose they are, those with the same gains once."""
+    found, titles = (
+        dict[str, tuple[Channel, ...] | Message](),
+        bench_titles(snapshot.run.laws, words),
+    )
     for bench, law in snapshot.run.laws.items():
-        found, whose = channels_of(law, parameters_of(snapshot)), titles[bench]
-        if isinstance(found, Message):
-            lines[f"**{whose}:** {words.sentence(found)}"] = None
+        channels = channels_of(law, parameters_of(snapshot))
+        own = is_text(law) or isinstance(channels, Message)
+        found[titles[bench] if own else ""] = channels
+    return found
+
+
+def _lines(found: Mapping[str, tuple[Channel, ...] | Message], words: Words) -> list[str]:
+    """A line for each channel, or why a law has none."""
+    lines = list[str]()
+    for whose, channels in found.items():
+        if isinstance(channels, Message):
+            lines.append(f"**{whose}:** {words.sentence(channels)}")
             continue
-        for channel in found:
-            lines[_line(channel, words, f"{whose}: " if is_text(law) else "")] = None
-    return list(lines)
+        lines += [_line(channel, words, f"{whose}: " if whose else "") for channel in channels]
+    return lines
 
 
 def _line(channel: Channel, words: Words, whose: str) -> str:

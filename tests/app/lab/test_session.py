@@ -124,6 +124,7 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     ),
     c.Grab: st.builds(c.Grab, SOME_BENCHES, points(1)),
     c.Release: st.builds(c.Release, st.one_of(st.none(), SOME_BENCHES)),
+    c.Pulse: st.builds(c.Pulse),
     c.MoveHand: st.builds(c.MoveHand, WILD, WILD),
     c.ChooseLaw: st.builds(
         c.ChooseLaw, SOME_BENCHES, st.sampled_from([*LAWS, "", "no_law", "path following"])

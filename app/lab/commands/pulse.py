@@ -1,0 +1,53 @@
+"""A test pulse: a short pull across the path, which shows what the gains do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from onpath.app.lab.commands.forces import Release
+from onpath.app.lab.external_forces import displaced
+from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.script_player import ScriptPlayer
+from onpath.app.lab.session import Session
+from onpath.models.arrays import Array
+
+ASIDE = 0.008  # [m], from the end-point to the hand, which pulls with 2.4 N on the rigid robots
+FRAMES, FRAME = 8, 1 / 60  # the hand moves along with the end-point [s]
+
+
+@dataclass(frozen=True, slots=True)
+class _PullAcross(Command):
+    """Pull both end-points outwards, each across the path at its own place."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        session = lab.session
+        rows = {name: run.shown() for name, run in session.runs.items()}
+        session.grips.pull({name: self._hand(session, row) for name, row in rows.items()})
+
+    @staticmethod
+    def _hand(session: Session, row: dict[str, Array]) -> Array:
+        right, up = session.editor.curve.at(row["theta"][0], 1)
+        outwards = np.array([up, -right]) / np.hypot(right, up)  # of a path that turns to the left
+        return displaced(session.robot.frame, row["y"], ASIDE * outwards)
+
+
+@dataclass(frozen=True, slots=True)
+class Pulse(Command):
+    """Pull both end-points across the path for 0.13 s; nothing while a script or a hand acts."""
+
+    lets_time_run: ClassVar[bool] = True
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.return_to_present()
+        session = lab.session
+        if lab.script is not None or session.grips.grabbed is not None:
+            return
+        session.running = True
+        begin, end = session.time, session.time + FRAMES * FRAME
+        pulls = [(begin + i * FRAME, _PullAcross()) for i in range(FRAMES)]
+        lab.script = ScriptPlayer[Command]([*pulls, (end, Release())], end, stop=False)
