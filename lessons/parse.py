@@ -289,7 +289,8 @@ def _rendered(block: Choice | Sketch | Task | Quiz) -> Choice | Sketch | Task | 
     if isinstance(block, Sketch):
         return replace(block, question=to_html(block.question))
     if isinstance(block, Task):
-        return replace(block, text=to_html(block.text), hints=tuple(map(to_html, block.hints)))
+        text, hints, passed = to_html(block.text), map(to_html, block.hints), to_html(block.passed)
+        return replace(block, text=text, hints=tuple(hints), passed=passed)
     options = tuple(
         Option(to_html(option.text), to_html(option.answer), option.right)
         for option in block.options

@@ -263,6 +263,7 @@ class Task(Data, frozen=True):
         check: all of them must be satisfied at the same time.
         hints: shown one at a time.
         best: a quantity of the follower to minimise; the student's best value is kept.
+        passed: why it worked, shown once the task is passed.
     """
 
     id: str
@@ -270,6 +271,7 @@ class Task(Data, frozen=True):
     check: tuple[Check, ...]
     hints: tuple[str, ...] = ()
     best: str = ""
+    passed: str = ""
 
 
 class Quiz(Data, frozen=True):

@@ -75,11 +75,14 @@ def task(block: Task, verdicts: list[Verdict], run: LessonState) -> str:
         said = words("lesson.passed_best", best=f"{best:.2f}", unit=unit) if block.best else ""
         passed = said or words("lesson.passed")
     hints = block.hints[: run.notes.hints.get(block.id, 0)]
-    return _task(block.text, tuple(verdicts), hints, passed)
+    why = block.passed if passed else ""
+    return _task(block.text, tuple(verdicts), hints, passed, why)
 
 
 @lru_cache(maxsize=256)  # called by every page at 10 Hz
-def _task(title: str, verdicts: tuple[Verdict, ...], hints: tuple[str, ...], passed: str) -> str:
+def _task(
+    title: str, verdicts: tuple[Verdict, ...], hints: tuple[str, ...], passed: str, why: str
+) -> str:
     return render(
         "lesson/task.html",
         title=title,
@@ -87,6 +90,7 @@ def _task(title: str, verdicts: tuple[Verdict, ...], hints: tuple[str, ...], pas
         verdicts=verdicts,
         hints=hints,
         passed=passed,
+        why=why,
     )
 
 

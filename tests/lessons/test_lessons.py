@@ -11,9 +11,12 @@ from markupsafe import Markup
 from onpath.app.cli.main import run_command
 from onpath.app.lab.course_check import lab_at, play, play_course, solved
 from onpath.app.lab.lesson_record import Beginning, record_of
+from onpath.app.lab.lesson_state import LessonState
+from onpath.app.page.lesson_html import task as task_html
 from onpath.lessons.checks import judge
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.labels import setting_label
+from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import Choice, Lesson, Order, Quiz, Setting, Step, Task
 from onpath.lessons.words import Words, languages
 from tests.support.lab import store
@@ -95,6 +98,14 @@ def test_checks_speak_of_parameters_by_their_labels(language: str) -> None:
                 assert label in verdict.words and "_" not in verdict.words, verdict.words
                 seen[label] += 1
     assert len(seen) > 8
+
+
+def test_every_task_says_why_it_worked_and_only_then() -> None:
+    for lesson, _, task in TASKS:
+        for done in (False, True):
+            notes = Notes(tasks={task.id: 0.0} if done else {})
+            run = LessonState(COURSE, Progress(lesson.name, notes={lesson.name: notes}))
+            assert task.passed and (task.passed in task_html(task, [], run)) == done
 
 
 def test_references_are_where_the_lessons_are() -> None:
