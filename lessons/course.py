@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ from onpath.lessons.words import DEFAULT
 
 BUILT_IN = Path(__file__).parent / "course"
 REFERENCE = "reference.toml"
+SIDE_ROAD = re.compile(r"\d+([a-z])-")  # folder of a lesson that may be left out, such as 01b-...
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +39,19 @@ class Course:
         """
         versions = self.lessons[name]
         return versions.get(language) or versions.get(DEFAULT) or next(iter(versions.values()))
+
+    def numbers(self) -> dict[str, str]:
+        """Lesson -> its displayed number: "1", "2", ...
+
+        A side road, in a folder such as `01b-name`, has the number of the lesson before it and its
+        letter, so that all others keep the numbers by which texts refer to them.
+        """
+        numbers, count = dict[str, str](), 0
+        for name in self.lessons:
+            side = SIDE_ROAD.match(name) if count else None
+            count += side is None
+            numbers[name] = f"{count}{side[1]}" if side else str(count)
+        return numbers
 
     def languages(self) -> list[str]:
         """The languages of all lessons, sorted."""

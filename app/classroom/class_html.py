@@ -73,7 +73,7 @@ def _place(way: Progress, course: Course, words: Words) -> tuple[str, str, str]:
     lesson = course.lesson(way.lesson, words.language)
     index = min(way.notes[way.lesson].step if way.lesson in way.notes else 0, len(lesson.steps) - 1)
     done, wanted = tasks_passed(way, lesson)
-    number = list(course.lessons).index(way.lesson) + 1
+    number = course.numbers()[way.lesson]
     return (
         f"{number}. {lesson.front.title}",
         f"{index + 1}/{len(lesson.steps)} {lesson.steps[index].title}",

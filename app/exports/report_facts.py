@@ -19,13 +19,13 @@ class Chapter:
     """One lesson and the student's work on it.
 
     Attributes:
-        number: position in the course, from 1.
+        number: in the course, as displayed.
         notes: entries that match the lesson.
         opened: whether the student has opened it.
         strange: number of entries that do not match it.
     """
 
-    number: int
+    number: str
     lesson: Lesson
     notes: Notes
     opened: bool
@@ -50,7 +50,7 @@ class Chapter:
 def chapters(run: LessonState) -> list[Chapter]:
     """All lessons of the course, in the student's language where available."""
     progress, found = run.progress, list[Chapter]()
-    for number, name in enumerate(run.course.lessons, start=1):
+    for name, number in run.course.numbers().items():
         lesson = run.course.lesson(name, progress.language)
         notes, strange = fitting(lesson, progress.notes.get(name, Notes()))
         found.append(Chapter(number, lesson, notes, name in progress.notes, strange))

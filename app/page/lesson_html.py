@@ -94,7 +94,7 @@ def _task(
     )
 
 
-def entry(lesson: Lesson, run: LessonState, number: int) -> str:
+def entry(lesson: Lesson, run: LessonState, number: str) -> str:
     """One line of the lesson overview."""
     notes = run.progress.notes.get(lesson.name)
     tasks = lesson.tasks()

@@ -34,7 +34,7 @@ class LessonMenu:
     def _open(self) -> Callable[[], None]:
         run, gui = self._run, self._gui
         with dialog(gui, self._words, run.words("lesson.choose")) as close:
-            for number, name in enumerate(run.course.lessons, start=1):
+            for name, number in run.course.numbers().items():
                 lesson = run.course.lesson(name, run.words.language)
                 gui.add_html(page.entry(lesson, run, number))
                 begun = name in run.progress.notes

@@ -50,6 +50,14 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
         "thirty-times": (Enter("K1", 1600), Enter("K2", 80), HOLD, Wait(3), LET_GO),
         "push-across": (Key("d", 6), Wait(1), Key("x"), Wait(2)),
     },
+    "01b-let-the-clock-wait": {
+        "wait-in-time": (Enter("Clock waits", 80), Key("h"), Wait(3), Key("h")),
+        "throw-it-off": (Enter("Speed", 10), Wait(2), Enter("Speed", -10), Wait(2)),
+        "keep-it-on": (
+            *(Enter("Speed", 6.3), Enter("Speed ramp", 20), RESET),
+            *(Wait(2), Enter("Speed", -6.3), Wait(2)),
+        ),
+    },
     "02-what-is-the-error": {
         "half-a-round-late": (RESET, Wait(1), HOLD, Wait(1.3), LET_GO, Wait(2)),
         "the-other-side": (Pull(-70, 0, seconds=1), Wait(2)),

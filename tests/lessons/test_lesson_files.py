@@ -243,3 +243,14 @@ def test_every_language_says_everything() -> None:
 
 def test_a_language_that_there_is_not_is_answered_in_english() -> None:
     assert Words("xx").language == "en" and Words("../en")("kind.play") == Words()("kind.play")
+
+
+def test_a_side_road_leaves_the_numbers_of_the_other_lessons_as_they_are(tmp_path: Path) -> None:
+    for name in ("02-second", "01b-side", "01-first", "10-last", "10c-end"):
+        write_lesson(tmp_path, name=name)
+    course, found = read_course([tmp_path])
+    assert found == []
+    assert list(course.numbers().items()) == [
+        *[("01-first", "1"), ("01b-side", "1b"), ("02-second", "2")],
+        *[("10-last", "3"), ("10c-end", "3c")],
+    ]

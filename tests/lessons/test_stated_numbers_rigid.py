@@ -87,7 +87,7 @@ def test_slower_clock_runs_on_and_no_clock_takes_any_speed() -> None:
     jumps = [
         Action(at=at, set={"speed": speed}) for at, speed in ((1.0, -TURN), (2.0, 0), (3.0, 9))
     ]
-    free = play(4.0, jumps, **PD)  # "no error, whatever speed you ask of it"
+    free = play(4.0, jumps, **PD)  # "The follower has no clock at all."
     assert free["follower"].distance.max() < 0.01
     assert free["tracker"].distance.max() > 1
 

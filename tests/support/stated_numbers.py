@@ -77,6 +77,7 @@ class Motion:
     distance: Array
     across: Array
     place: Array
+    reference: Array
     rate: Array
     speed: Array
     torque: Array
@@ -100,11 +101,11 @@ Run = dict[RobotName, Motion]
 WORST = 3 + 25 / 36  # [s], the brake then catches the follower at 214 degrees
 
 
-def play(until: float, do: list[Action], path: str = "", **settings: Value) -> Run:
-    """Simulate both robots with the lab's defaults except for some settings."""
+def play(until: float, do: list[Action], path: str = "", left: str = "", **settings: Value) -> Run:
+    """Simulate both robots with the lab's defaults except for some settings, and a law."""
     lab = Lab(store())
     own = RobotSetup(settings, Path(path or Path().name))
-    lab.set_up(Setup("five_bar", {"five_bar": own}))
+    lab.set_up(Setup("five_bar", {"five_bar": own}, laws={"left": left} if left else {}))
     return _played(lab, Script(tuple(do), until))
 
 
@@ -145,6 +146,7 @@ def _motion(run: Trajectory) -> Motion:
         distance=run.distance * 1e3,
         across=fields["xi"][:, 0] * 1e3,
         place=fields["theta"][:, 0],
+        reference=fields["theta_ref"][:, 0],
         rate=fields["theta_rate"][:, 0],
         speed=run.speed * 1e3,
         torque=np.abs(fields["u"]).max(axis=1),

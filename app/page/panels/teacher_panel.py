@@ -163,7 +163,7 @@ class TeacherPanel:
         course, language = self._course, self._words.language
         return {
             f"{number}. {course.lesson(name, language).front.title}": name
-            for number, name in enumerate(course.lessons, start=1)
+            for name, number in course.numbers().items()
         }
 
     def _steps(self) -> list[str]:
