@@ -216,7 +216,7 @@ def test_relatives() -> None:
     long = play(5.0, [Action(at=3.0, hold=True)], left="contouring", **PD)["tracker"]
     assert_stated(said(LESSON, "after # s the lab stops it"), [float(long.t[-1]) - 3])
     gently = turned("contouring", ramp=20.0)["tracker"]
-    assert_within(*said(LESSON, "it stays within # mm. *In the"), gently.largest(3, 8))
+    assert_within(*said(LESSON, "at 20 rad/s², it stays within # mm."), gently.largest(3, 8))
 
     field = shown(LESSON, "Side road: a velocity field")["tracker"]
     stated = said(LESSON, "Held, it waits # mm beside the circle and leans on the brake with # N.")
