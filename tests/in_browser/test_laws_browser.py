@@ -40,11 +40,11 @@ def test_a_law_is_chosen_while_the_robot_moves(tab: Tab) -> None:
     wait_for(lambda: session.laws == {**DEFAULT_LAWS, LEFT: "waiting_clock"})
     assert session.run_number == run and session.time > 0.5 and session.running
     expect(page.get_by_text(LAWS["waiting_clock"].text)).to_be_visible()
-    expect(page.get_by_role("cell", name="Waiting clock")).to_be_visible()
+    expect(page.get_by_role("rowheader", name="Waiting clock")).to_be_visible()
     expect(page.locator(".u-legend").first).to_contain_text("Waiting clock")
     tab.choose("Law, right", "Waiting clock")
     wait_for(lambda: session.laws == {LEFT: "waiting_clock", RIGHT: "waiting_clock"})
-    expect(page.get_by_role("cell", name="Waiting clock, right")).to_be_visible()
+    expect(page.get_by_role("rowheader", name="Waiting clock, right")).to_be_visible()
     expect(page.locator(".u-legend").first).to_contain_text("Waiting clock, left")
     tab.ask(c.Reset())
     assert session.laws == {LEFT: "waiting_clock", RIGHT: "waiting_clock"}
@@ -67,7 +67,7 @@ def test_the_menu_follows_the_lab_and_lists_what_suits_the_robot(tab: Tab) -> No
 
 def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
     page, session = tab.page, tab.session
-    box = page.locator("textarea").filter(visible=True)
+    box = page.get_by_label("Own law, right", exact=True).filter(visible=True)
     expect(box).to_have_count(0)
     tab.choose("Law, right", "Own law…")
     expect(box).to_have_value(PATH_FOLLOWING.replace("; ", "\n"))
@@ -93,7 +93,7 @@ def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
     wait_for(lambda: session.runs[RIGHT].shown()["theta_rate"][0] < -0.9 * 2 * math.pi)
     assert session.runs[RIGHT].max_distance < 1e-3
     expect(page.get_by_text(said)).to_have_count(0)
-    expect(page.get_by_role("cell", name="Own law")).to_be_visible()
+    expect(page.get_by_role("rowheader", name="Own law")).to_be_visible()
     expect(page.get_by_text(law)).to_be_visible()
     tab.press("About the laws")
     names = page.get_by_role("dialog").locator("td code")
