@@ -29,6 +29,8 @@ SAMPLES = 240
 BEYOND = 0.5
 """How far the continuation of an open curve is looked at, in parts of its parameter's range."""
 TINY = 1e-12
+STRAIGHT = 1e3
+"""Radius beyond which a curve counts as straight [m]: numbers are rounded."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +57,8 @@ def tube_width(curve: Curve) -> float:
     across = gaps - (gaps * tangents[:, None]).sum(-1, keepdims=True) * tangents[:, None]
     radius = _radii(gaps, np.linalg.norm(across, axis=-1))
     curvature = np.abs(curve.curvature(theta)).max()
-    return float(min(radius.min(), 1 / curvature if curvature > TINY else np.inf))
+    width = min(float(radius.min()), 1 / max(float(curvature), TINY))
+    return width if width < STRAIGHT else np.inf
 
 
 def curve_frames(curve: Curve, theta: Array) -> CurveFrames:

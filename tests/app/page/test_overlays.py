@@ -27,6 +27,7 @@ from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.rank_test import rank_grid
 from onpath.models.paths.curves import saddle
+from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import RobotEntry
@@ -148,6 +149,19 @@ def test_the_tube_is_that_of_the_path_that_is_drawn(entry: RobotEntry) -> None:
     steps = distance / shape.step
     assert np.abs(steps - np.round(steps)).max() < 1e-6 and steps.max() >= 2.9
     assert distance.max() < shape.width
+
+
+@pytest.mark.parametrize("name", presets())
+def test_every_preset_has_a_tube_that_can_be_drawn(name: str) -> None:
+    lab = Lab(store())
+    do(lab, c.SetRunning(False), c.ChoosePath(name))
+    lab.session.editor.advance(10.0)
+    shape = tube_shape(lab.session.robot, take_page_snapshot(lab, 1.0).path)
+    for points in (shape.fill.vertices, shape.normals, shape.offsets):
+        assert len(points) and np.isfinite(points).all()
+    is_straight = lab.session.editor.design.name == "segment"
+    assert np.isinf(shape.width) == is_straight
+    assert ("straight" in tube_numbers(shape, True, ENGLISH)) == is_straight
 
 
 def test_the_tube_of_a_rising_path_lies_around_it_in_space() -> None:
