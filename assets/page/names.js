@@ -41,6 +41,9 @@
     for (const icon of document.querySelectorAll(ICON)) {
       set(icon, "aria-label", icon.querySelector(".tabler-icon-list-search") ? words.keys : words.viewer);
     }
+    for (const cross of document.querySelectorAll(".mantine-Notification-closeButton")) {
+      set(cross, "aria-label", words.close);
+    }
     const scene = document.querySelector("canvas[data-engine]");
     if (scene !== null) {
       set(scene, "role", "img");

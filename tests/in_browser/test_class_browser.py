@@ -19,6 +19,7 @@ from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
+from tests.support.axe import violations
 from tests.support.browser import Tab, wait_for
 
 LESSON = "01-path-or-timetable"
@@ -184,3 +185,8 @@ def test_a_teacher_who_reloads_is_still_the_teacher(tabs: Class) -> None:
     tabs.teacher.page.reload(wait_until="commit")
     tabs.teacher.page.get_by_text("2 in the class").first.wait_for()
     assert [member.name for member in tabs.room.members().values()] == ["Ada", HOSTILE]
+
+
+def test_axe_finds_nothing_serious_on_the_teachers_page(tabs: Class) -> None:
+    tabs.teacher.page.get_by_role("tab", name="Predictions").wait_for()
+    assert violations(tabs.teacher) == []

@@ -15,13 +15,9 @@ from playwright.sync_api import Browser, expect
 from onpath.app.lab import commands as c
 from onpath.app.page.first_minute import INVITATIONS
 from onpath.app.server.lab_server import LabServer
+from tests.support.axe import violations
 from tests.support.browser import WAIT, Tab, wait_for
-from tests.support.checkout import ROOT
 
-AXE = ROOT / "tests" / "vendor" / "axe-core" / "axe.min.js"
-RULES = """async () => (await axe.run({ resultTypes: ["violations"] })).violations
-    .filter(each => ["serious", "critical"].includes(each.impact))
-    .map(each => [each.id, ...each.nodes.map(node => node.html)])"""
 WINDOW = {"width": 1280, "height": 800}
 LESSON = "01-path-or-timetable"
 expect.set_options(timeout=WAIT * 1e3)
@@ -38,14 +34,6 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     yield tab
     assert tab.errors == []
     tab.page.context.close()
-
-
-def violations(tab: Tab) -> list[list[str]]:
-    """What axe-core finds that is serious or critical."""
-    tab.settle()
-    if not tab.page.evaluate("'axe' in window"):
-        tab.page.add_script_tag(path=AXE)
-    return tab.page.evaluate(RULES)
 
 
 # The first minute.

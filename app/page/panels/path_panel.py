@@ -156,6 +156,9 @@ class PathPanel:
             self._rank.content = self._words("design.rank", number=f"{float(np.min(ranks)):.2f}")
         selected = edit.selected
         self._set(self._which, 0 if selected is None else selected + 1)
+        for coordinate in (self._first, self._second):
+            if coordinate.disabled is not (selected is None):
+                coordinate.disabled = selected is None
         if selected is not None and selected < len(edit.points):
             z = edit.points[selected] * 1e3
             self._set(self._first, round(float(z[0]), 1))

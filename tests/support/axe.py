@@ -1,0 +1,23 @@
+"""What axe-core, https://github.com/dequelabs/axe-core, finds on a page."""
+
+from __future__ import annotations
+
+from tests.support.browser import Tab
+from tests.support.checkout import ROOT
+
+SCRIPT = ROOT / "tests" / "vendor" / "axe-core" / "axe.min.js"
+RUN = """async () => (await axe.run({ resultTypes: ["violations"] })).violations
+    .filter(each => ["serious", "critical"].includes(each.impact))
+    .map(each => [each.id, ...each.nodes.map(node => node.html)])"""
+
+NAMED = """() => [...document.querySelectorAll("[role=slider]")]
+    .every(each => each.getAttribute("aria-label"))"""
+"""Whether assets/page/names.js has seen what is on the page."""
+
+
+def violations(tab: Tab) -> list[list[str]]:
+    """Serious and critical violations: the rule, and the elements that violate it."""
+    tab.page.wait_for_function(NAMED)
+    if not tab.page.evaluate("'axe' in window"):
+        tab.page.add_script_tag(path=SCRIPT)
+    return tab.page.evaluate(RUN)
