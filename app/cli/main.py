@@ -66,7 +66,7 @@ class Lessons:
         from onpath.app.lab.course_check import play_course
         from onpath.app.lab.loop_cache import LoopCache
 
-        problems = list(play_course(course, folder, LoopCache()))
+        problems = list(play_course(course, folder, LoopCache(at_once=True)))
         if not problems:
             lessons = list(course.lessons.values())
             tasks = sum(len(next(iter(versions.values())).tasks()) for versions in lessons)

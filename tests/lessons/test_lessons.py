@@ -134,6 +134,20 @@ def test_a_solution_that_is_none_is_found(
     assert said.startswith(f"{file}:{line}: hold.") and words in said
 
 
+def test_a_lesson_may_have_typed_laws(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """In its scenes and in its scripts; its reference solution is played under them."""
+    law = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"
+    change = f'{{ at = 0.2, laws = {{ right = "{law}" }} }}'
+    own = LESSON.replace("{ at = 0.5, hold", f"{change}, {{ at = 0.5, hold")
+    own = own.replace('path = "ellipse"', f'path = "ellipse"\nlaws = {{ right = "{law}" }}')
+    write_lesson(tmp_path, own)
+    assert run_command(["lessons", "check", str(tmp_path)]) == 0
+    write_lesson(tmp_path, own.replace("K1*xi", "K1*xii"))
+    capsys.readouterr()
+    assert run_command(["lessons", "check", str(tmp_path)]) == 1
+    assert capsys.readouterr().err.count("did you mean xi?") == 2
+
+
 def test_a_script_that_the_lab_refuses_is_found(tmp_path: Path) -> None:
     own = LESSON.replace("{ at = 0.5, hold = true }", '{ at = 0.5, path = "figure of eight" }')
     file = write_lesson(tmp_path, own)
