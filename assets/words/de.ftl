@@ -390,7 +390,7 @@ controls-help = Hilfe und Tasten
 
 wall-title = Wand
 wall-switch = Eine Wand im Weg
-wall-hint = Beide Roboter haben sie am selben Ort bei sich. Sie drückt und zieht nie; die schraffierte Seite ist fest. Zieh sie in der Szene; zieh an einem gelben Ende, um sie zu drehen. Tasten: M, I J K L, T
+wall-hint = Beide Roboter haben sie am selben Ort bei sich. Sie drückt und zieht nie; die schraffierte Seite ist fest. Zieh sie in der Szene; zieh an einem gelben Ende, um sie zu drehen. Tasten: M, I J K L, T, V
 wall-place = Wand { $name } [mm]
 wall-angle = Normale [°]
 wall-angle_hint = Richtung der freien Seite, gegen den Uhrzeigersinn von rechts aus: 90 ist oben
@@ -624,7 +624,6 @@ keyname-Ins = Einfg
 keyname-Del = Entf
 keyname-Home = Pos1
 keyname-Ctrl = Strg
-keyname-Shift = Umschalt
 
 help-title = Wie das Labor zu bedienen ist
 glossary-to_terms = Glossar: von den Wörtern der Lektionen zu den Fachwörtern

@@ -338,7 +338,7 @@ controls-help = Help and keys
 
 wall-title = Wall
 wall-switch = A wall in the way
-wall-hint = Both robots get it at the same place of their own. It pushes and never pulls; its hatched side is solid. Drag it in the scene; drag a yellow end to turn it. Keys: M, I J K L, T
+wall-hint = Both robots get it at the same place of their own. It pushes and never pulls; its hatched side is solid. Drag it in the scene; drag a yellow end to turn it. Keys: M, I J K L, T, V
 wall-place = Wall { $name } [mm]
 wall-angle = Normal [°]
 wall-angle_hint = Direction of the free side, counter-clockwise from the right: 90 is up
@@ -570,7 +570,6 @@ keyname-Ins = Ins
 keyname-Del = Del
 keyname-Home = Home
 keyname-Ctrl = Ctrl
-keyname-Shift = Shift
 
 help-title = How to use the lab
 glossary-to_terms = Glossary: from the lessons' words to the field's terms

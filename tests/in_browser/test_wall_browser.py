@@ -61,7 +61,7 @@ def test_a_wall_is_placed_moved_turned_and_taken_away(tab: Tab) -> None:
         keyboard.press(key)
         wait_for(lambda before=before: session.wall is not before)
         assert wall_of(tab).place - before.place == pytest.approx(moved, abs=1e-9)
-    for key, turn in (("t", c.TURN), ("Shift+T", -c.TURN)):
+    for key, turn in (("t", c.TURN), ("v", -c.TURN)):
         before = wall_of(tab)
         keyboard.press(key)
         wait_for(lambda before=before: session.wall is not before)

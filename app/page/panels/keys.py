@@ -68,7 +68,7 @@ KEYS = (
     Key("wall_up", "I", "I", c.NudgeWall(up=SHIFT)),
     Key("wall_down", "K", "K", c.NudgeWall(up=-SHIFT)),
     Key("wall_turn", "T", "T", c.NudgeWall(turn=c.TURN)),
-    Key("wall_turn_back", "T", "Shift T", c.NudgeWall(turn=-c.TURN), "shift"),
+    Key("wall_turn_back", "V", "V", c.NudgeWall(turn=-c.TURN)),
     Key("back", "B", "B", c.LookBack(1.0)),
     Key("forward", "F", "F", c.LookBack(-1.0)),
     Key("go_on", "G", "G", c.GoOn()),
