@@ -87,3 +87,20 @@ def test_what_happens_can_be_seen_without_a_prediction(tab: Tab) -> None:
     assert tab.lab.lessons.index == 2
     tab.press("Let it happen")
     wait_for(lambda: tab.lab.lessons.playing)
+
+
+def test_a_fold_is_opened_by_mouse_and_by_keys_and_the_lab_does_not_hear_them(tab: Tab) -> None:
+    tab.ask(TakeStep(LONG, 0))
+    wait_for(lambda: is_seen(tab, 0))
+    title = tab.page.locator("summary").first
+    inside = tab.page.get_by_text("Towards the upper right")
+    assert not inside.is_visible()
+    title.click()
+    inside.wait_for()
+    running = tab.session.running
+    for key, opens in (("Enter", False), (" ", True)):
+        title.focus()
+        tab.page.keyboard.press(key)
+        inside.wait_for(state="visible" if opens else "hidden")
+    tab.settle()
+    assert tab.session.running == running
