@@ -143,6 +143,12 @@ def test_pull_across_moves_both_alike() -> None:
     assert_stated(stated, [both["follower"].at(2.9), both["tracker"].at(2.9)])
 
 
+def test_a_path_alone_asks_for_no_speed() -> None:
+    (gain,) = said("05", "With K5 = #, for example, the follower stays where it starts, exactly on")
+    alone = play(3.0, [], K5=value(gain))["follower"]
+    assert np.abs(alone.rate).max() < 1e-6 and alone.distance.max() < 1e-6
+
+
 # Lesson 2
 
 
