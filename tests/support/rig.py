@@ -94,6 +94,7 @@ class Rig:
     def settings(self, kind: Kind, **changes: Any) -> Array:
         values = {"plant": self.balanced, "model": self.balanced, **DEFAULTS, **changes}
         values.setdefault("look_ahead", values["dt"] / 2)
+        values.setdefault("plane", Plane().numbers)
         return self.kernel(kind).settings.pack(values)
 
     def state(self, kind: Kind, y: Array, y_rate: Array | None = None, **changes: Any) -> Array:
