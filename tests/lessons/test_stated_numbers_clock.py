@@ -138,6 +138,9 @@ def test_turning_round_takes_only_the_waiting_clock_off() -> None:
     )
     assert_stated([turn, turn, stop], [clock.largest(a, a + 2) for a in (3, 5, 7)])
     assert follower.largest(1, 9) < value(never)
+    assert_stated(said(LESSON, "in a narrow loop # mm outside"), [clock.largest(3, 5)])
+    radii = np.linalg.norm(clock.y[clock.during(3, 5)], axis=1)
+    assert radii.max() - 1e3 * RADIUS == pytest.approx(clock.largest(3, 5))  # not inside
     (both_within,) = said(LESSON, "From 1 s on both go round within # mm of the circle.")
     assert max(run.largest(1, 3) for run in both.values()) < value(both_within)
     instants = [int(np.argmax(run.rate[3000:] < 0)) / 1e3 for run in (follower, clock)]
