@@ -219,7 +219,7 @@ def test_relatives() -> None:
     long = play(5.0, [Action(at=3.0, hold=True)], left="contouring", **PD)["tracker"]
     assert_stated(said(LESSON, "after # s the lab stops it"), [float(long.t[-1]) - 3])
     gently = turned("contouring", ramp=20.0)["tracker"]
-    assert_within(*said(LESSON, "at 20 rad/s², it stays within # mm."), gently.largest(3, 8))
+    assert_within(said(LESSON, "at 20 rad/s², it stays within # mm.")[0], gently.largest(3, 8))
 
     field = shown(LESSON, "Side road: a velocity field")["tracker"]
     stated = said(LESSON, "Held, it waits # mm beside the circle and leans on the brake with # N.")
@@ -230,7 +230,7 @@ def test_relatives() -> None:
 
 def test_virtual_constraint_is_invariant_and_goes_nowhere() -> None:
     wire = shown(LESSON, "Side road: a virtual constraint")["tracker"]
-    assert_within(*said(LESSON, "It stays on the circle, within # mm, so"), wire.largest(2, 5))
+    assert_within(said(LESSON, "It stays on the circle, within # mm, so")[0], wire.largest(2, 5))
     low, high = said(LESSON, "Its speed goes up and down between # and # mm/s")
     speeds = np.abs(wire.speed[2100:5000])
     assert_stated([low, high], [float(speeds.min()), float(speeds.max())])
