@@ -160,10 +160,10 @@ def cell_centres(low: Array, high: Array, shape: tuple[int, int]) -> Array:
         low, high: opposite corners, shape (2,), [m].
         shape: numbers of columns and rows.
     """
-    first, second = (
+    sides: list[Array] = [
         low[i] + (high[i] - low[i]) * (np.arange(shape[i]) + 0.5) / shape[i] for i in range(2)
-    )
-    return np.stack(np.meshgrid(first, second), axis=-1)
+    ]
+    return np.stack(np.meshgrid(*sides), axis=-1)
 
 
 def _in_reach(robot: Robot, parameters: Parameters, z: Array) -> tuple[NDArray[np.bool_], Array]:

@@ -52,7 +52,7 @@ def _cells(line: str, number: int) -> list[str]:
     if len(line) >= LONGEST_LINE:
         raise ValueError(f"line {number} is longer than {LONGEST_LINE} characters")
     try:
-        return next(csv.reader([line.rstrip("\r\n")]), [])
+        return next(csv.reader([line.rstrip("\r\n")]), list[str]())
     except csv.Error:
         raise ValueError(f"line {number} is not a row of a table") from None
 

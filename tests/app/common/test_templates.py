@@ -99,7 +99,7 @@ def heading(text: str) -> str:
 
 def entry(text: str) -> str:
     lesson, run = titled(text)
-    return lesson_html.entry(lesson, run, 1)
+    return lesson_html.entry(lesson, run, "1")
 
 
 def place(text: str) -> str:
@@ -233,7 +233,7 @@ def test_no_catalogue_changes_what_a_page_is_made_of() -> None:
         yield alpha_bar(0.5, 0.2, True, words)
         yield class_html.table([Member(1, "Ada")], COURSE, 0.0, words)
         yield class_html.class_code("a", 1, words)
-        yield lesson_html.entry(lesson, run, 1)
+        yield lesson_html.entry(lesson, run, "1")
 
     ours, theirs = pages(ENGLISH), pages(HostileWords())
     for plain, hostile in zip(ours, theirs, strict=True):

@@ -112,13 +112,13 @@ def test_who_did_not_answer_is_told_the_answer_and_not_that_it_was_right(languag
     words = Words(language)
     options = (Option("this", "no"), Option("that", "of course", right=True))
     for block in (Choice("Which?", options), Quiz("Which?", options)):
-        skipped = html.question(block, None, True, words)
+        skipped = html.question(block, (0, 1), None, True, words)
         assert words("lesson.the_answer", answer="of course") in skipped
         for key in ("right", "not_quite"):
             assert words(f"lesson.{key}") not in skipped
-        assert words("lesson.right") in html.question(block, 1, True, words)
-        assert words("lesson.not_quite") in html.question(block, 0, True, words)
-        assert "of course" not in html.question(block, 0, False, words)
+        assert words("lesson.right") in html.question(block, (0, 1), 1, True, words)
+        assert words("lesson.not_quite") in html.question(block, (0, 1), 0, True, words)
+        assert "of course" not in html.question(block, (0, 1), 0, False, words)
 
 
 def test_prediction_and_truth_are_kept_side_by_side(lab: Lab) -> None:
