@@ -11,6 +11,7 @@ from viser import uplot
 
 from onpath.app.common.palette import OF_BENCH
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.viser_adapter.containers import beside
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
@@ -100,7 +101,7 @@ class LivePlot:
         height: int,
         level_set: bool = False,
     ) -> None:
-        self._words, self._has_xi = words, plot.field in XI
+        self._gui, self._words, self._has_xi = gui, words, plot.field in XI
         in_level_set = level_set and self._has_xi
         self._shown = -1.0
         # what else ξ contains is in mm
@@ -109,20 +110,38 @@ class LivePlot:
         if in_level_set and least is not None:  # s is 100 mm² at 1 mm beside a circle of 50 mm
             least = (100 * least[0], 100 * least[1])
         self._scale = plot.scale**2 if in_level_set else plot.scale
-        series = self._series()
         begin = Layout(fields).slices[plot.field].start
         self._lines = slice(begin, begin + min(len(self._names), len(LINES)))
         nothing = np.full(2, np.nan)
-        self._empty = (np.array([0.0, PLOT_WINDOW]), *[nothing for _ in series[1:]])
-        self._handle = gui.add_uplot(
+        lines = len(self._series()) - 1
+        self._empty = (np.array([0.0, PLOT_WINDOW]), *[nothing] * lines)
+        self._title = words(f"axis.{plot.name}{'-level_set' if in_level_set else ''}")
+        self._height, self._least = height, least
+        self._handle = self._chart(None)
+
+    def _chart(self, order: float | None) -> viser.GuiUplotHandle:
+        """An empty chart."""
+        return self._gui.add_uplot(
             self._empty,
-            series,
-            title=words(f"axis.{plot.name}{'-level_set' if in_level_set else ''}"),
-            scales={"x": uplot.Scale(time=False), "y": _at_least(least)},
+            self._series(),
+            title=self._title,
+            scales={"x": uplot.Scale(time=False), "y": _at_least(self._least)},
             legend=uplot.Legend(live=False),
-            height=height,
+            height=self._height,
             padding=PADDING,
+            order=order,
         )
+
+    def _rename(self) -> None:
+        """Put a new chart in the place of this one.
+
+        viser's chart keeps its range as a share of that of the data, and loses it if names and data
+        change at once: the time axis would then reach far beyond the data.
+        """
+        former = self._handle
+        with beside(self._gui, former):
+            self._handle = self._chart(former.order)
+        former.remove()
 
     def _series(self) -> tuple[uplot.Series, ...]:
         """Time and the lines of each bench, named after its law."""
@@ -141,7 +160,8 @@ class LivePlot:
         """Plot the last seconds up to the displayed time."""
         if snapshot.laws != self._laws:
             self._laws = snapshot.laws
-            self._handle.series = self._series()
+            self._rename()
+            self._shown = -1.0
         if snapshot.time == self._shown:
             return
         self._shown, times = snapshot.time, snapshot.plots.times
