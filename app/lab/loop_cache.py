@@ -15,6 +15,7 @@ from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws.own import is_text
+from onpath.models.control.speed_limit import prepare_speed_limit
 from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
@@ -113,6 +114,7 @@ class LoopCache:
             if key not in self._interpreted:
                 self._interpreted.setdefault(key, InterpretedLoop(kernel))
             self._compiled[key] = translate_loop(kernel)
+            prepare_speed_limit(key[0])
         except Exception as error:  # the lab continues with interpreted loops
             log.warning("cannot compile a loop, the interpreted one goes on: %s", error)
             self.close()  # further compilations would fail, too

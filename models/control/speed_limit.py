@@ -11,6 +11,7 @@ from onpath.models.arrays import Array
 from onpath.models.control.linearization import linearization
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.robots import Robot
+from onpath.models.systems.system import MechanicalSystem
 
 POINTS = 64  # of the path
 SHARE = 0.75  # of the torque limit that the motion may take; the rest is for the laws
@@ -36,8 +37,7 @@ def speed_limit(
         0 if the robot cannot even rest on the whole path; `NO_SPEED_LIMIT` if nothing bounds the
         speed, or the robot has more coordinates than motors and outputs.
     """
-    system = robot.system
-    if not system.n == system.m == system.p:
+    if not _is_square(robot.system):
         return NO_SPEED_LIMIT
     sign = -1.0 if backwards else 1.0
     ahead, resting, back = (_torques(robot, model, curve, w) for w in (sign, 0.0, -sign))
@@ -49,6 +49,17 @@ def speed_limit(
     return float(min(NO_SPEED_LIMIT, *(root.min() for root in roots)))
 
 
+def prepare_speed_limit(robot: Robot) -> None:
+    """Make what the first call of `speed_limit` would take tens of milliseconds to make."""
+    if _is_square(robot.system):
+        _on_path(robot.system)
+
+
+def _is_square(system: MechanicalSystem) -> bool:
+    """Whether there are as many coordinates as motors and outputs."""
+    return system.n == system.m == system.p
+
+
 def _torques(robot: Robot, model: tuple[float, ...], curve: Curve, speed: float) -> Array:
     """Torques on the path at a constant speed [rad/s], shape (m, POINTS), [N m]."""
     theta = np.linspace(-np.pi, np.pi, POINTS, endpoint=not curve.closed)
@@ -57,13 +68,12 @@ def _torques(robot: Robot, model: tuple[float, ...], curve: Curve, speed: float)
     rates = frame.lift(speed * curve.at(theta, 1)) - origin
     second = frame.lift(speed**2 * curve.at(theta, 2)) - origin
     repeated = np.repeat(np.array(model)[:, None], POINTS, axis=1)
-    return np.array(_on_path(robot)(q.T, rates.T, second.T, repeated))
+    return np.array(_on_path(robot.system)(q.T, rates.T, second.T, repeated))
 
 
 @lru_cache(maxsize=8)
-def _on_path(robot: Robot) -> ca.Function:
+def _on_path(system: MechanicalSystem) -> ca.Function:
     """(q, y', y'', model) -> torques, for POINTS places."""
-    system = robot.system
     rate, second = ca.SX.sym("rate", system.p), ca.SX.sym("second", system.p)
     jacobian = ca.jacobian(system.controlled_output, system.q)
     v = ca.inv_minor(jacobian) @ rate

@@ -21,6 +21,7 @@ from onpath.app.server.lazy_imports import LATER, warm_up
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
+from onpath.models.control import speed_limit
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support.lab import FRAME, do, states
@@ -138,3 +139,16 @@ def test_a_first_lab_finds_its_loops_compiled(store: LoopCache) -> None:
         lab.advance(FRAME)
         assert all(isinstance(loop, CompiledLoop) for loop in loops(lab, store))
     assert len(store._wanted) == 2 * len(BENCHES)
+
+
+def test_what_a_speed_limit_needs_is_made_in_the_background(store: LoopCache) -> None:
+    """`slow_down` builds nothing on the simulation thread."""
+    speed_limit._on_path.cache_clear()
+    lab = Lab(store)
+    lab.advance(FRAME)
+    finish(store)
+    assert speed_limit._on_path.cache_info().misses == 1
+    do(lab, c.SetParameter("torque_limit", 0.5), c.SetParameter("at_limit", "slow_down"))
+    lab.advance(FRAME)
+    found = speed_limit._on_path.cache_info()
+    assert found.misses == 1 and found.hits > 0
