@@ -15,7 +15,7 @@ from onpath.models.systems.zero_dynamics import HIGHEST_ALPHA, flexible_zero_dyn
 
 TABLE_ALPHAS = (-1.0, 0.0, 0.5, 0.7, 0.8, 0.9, 1.0)
 REACH = 0.1  # [m], half-width of the map of critical alpha
-SETTABLE = ("plant", "rho", "frequency", "zeta")
+SETTABLE = ("plant", "rho", "frequency", "zeta", "b", "d", "centre")
 """Parameters of the internal dynamics; the table is over alpha and modes."""
 
 

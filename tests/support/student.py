@@ -130,6 +130,10 @@ class Student:
         """Whether the page has a widget whose label or option begins with `label`."""
         return any(text.startswith(label) for text in self._labels())
 
+    def count(self, label: str) -> int:
+        """Number of widgets with this label."""
+        return sum(widget.get("label") == label for widget in self.widgets.values())
+
     def sees(self, text: str) -> bool:
         """Whether the page shows a text."""
         parts = ("content", "_markdown")

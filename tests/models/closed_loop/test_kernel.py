@@ -425,7 +425,8 @@ def test_unknown_controller_is_refused(rig: Rig) -> None:
 
 def test_settings_are_checked_by_name_and_size(rig: Rig) -> None:
     layout, plant = rig.kernel(FOLLOWING).settings, rig.balanced
-    good = {**DEFAULTS, "look_ahead": 5e-4, "plant": plant, "model": plant}
+    missing = {"look_ahead": 5e-4, "plane": Plane().numbers}  # which the rig computes
+    good = {**DEFAULTS, **missing, "plant": plant, "model": plant}
     assert layout.unpack(layout.pack(good))["hold_tangent"] == pytest.approx([0, 1])
     assert np.isnan(layout.pack({**good, "speed": np.nan})).sum() == 1  # checked where it came in
     for bad, message in (
