@@ -236,6 +236,7 @@ def test_gains_by_number_and_by_slider(tab: Tab) -> None:
     tab.enter("K3", "8000")  # more than K1 K2
     wait_for(lambda: lab.session.parameters.K3 == 8000.0)
     tab.page.get_by_text("⚠").wait_for()
+    tab.slider("K1").scroll_into_view_if_needed()
     handle = tab.slider("K1").bounding_box()
     assert handle is not None
     start = (handle["x"] + handle["width"] / 2, handle["y"] + handle["height"] / 2)
