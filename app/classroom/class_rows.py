@@ -11,7 +11,8 @@ from onpath.app.classroom.admission import cleaned
 from onpath.app.classroom.classroom import NOTHING_DONE, Member, Push
 from onpath.app.common.error_log import log_warning
 from onpath.app.lab.commands import TakeSetup, TakeStep
-from onpath.app.lab.setup import from_data, to_data
+from onpath.app.lab.setups.setup import to_data
+from onpath.app.lab.setups.stored import from_data
 from onpath.lessons.progress import Progress, read_progress
 
 Count = Annotated[int, msgspec.Meta(ge=0)]

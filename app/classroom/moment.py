@@ -17,7 +17,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.path_editor import Blend, PathEditor
 from onpath.app.lab.plot_samples import places
 from onpath.app.lab.session import Session
-from onpath.app.lab.setup import EXAGGERATIONS, RATES, LawName, Word
+from onpath.app.lab.setups.setup import EXAGGERATIONS, RATES, LawName, Word
 from onpath.app.lab.typed_loops import Key
 from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.models.arrays import Array

@@ -17,7 +17,8 @@ from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
-from onpath.app.lab.setup import Setup, restore
+from onpath.app.lab.setups.restore import restore
+from onpath.app.lab.setups.setup import Setup
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.words import Words

@@ -15,9 +15,16 @@ from onpath.app.lab.typed_loops import Key
 from onpath.models.closed_loop.simulation import FREE, Push, kind_of
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import is_text
+from onpath.models.control.laws.registry import law_named
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
+
+
+def suits(law: str, robot: Robot, parameters: Parameters) -> bool:
+    """Whether a law can be used with a robot and its controlled output."""
+    own, composite = law_named(law), getattr(parameters, "law", "") == "composite"
+    return own.suits(robot.system) and (own.commands_acceleration or not composite)
 
 
 class LawChanges:
@@ -45,11 +52,17 @@ class LawChanges:
     ) -> dict[str, str]:
         """The laws with which a run can begin now, when these are wanted.
 
-        A typed law whose loop is not made yet is replaced by that of a new lab, and time stands
-        still until it is there.
+        A law that does not suit the robot is replaced by that of a new lab. So is a typed law whose
+        loop is not made yet, and time stands still until it is there.
         """
-        late, first = dict[str, str](), dict(laws)
-        for bench, law in laws.items():
+        both = {**DEFAULT_LAWS, **laws}
+        first = {
+            bench: law if suits(law, robot, parameters) else DEFAULT_LAWS[bench]
+            for bench, law in both.items()
+        }
+        self.coming = {b: law for b, law in self.coming.items() if suits(law, robot, parameters)}
+        late = dict[str, str]()
+        for bench, law in list(first.items()):
             if is_text(law):
                 ready = self._is_ready((robot, kind_of(law, parameters, curve, FREE)))
                 if not ready:

@@ -13,7 +13,8 @@ from onpath.app.lab.lesson_record import Beginning, Trace, record_of
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
-from onpath.app.lab.setup import Path, RobotSetup, Setup, capture
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
 from onpath.app.lab.sketches import sketched
 from onpath.lessons.checks import Verdict, judge, statistic
 from onpath.lessons.course import Course

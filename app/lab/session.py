@@ -7,26 +7,25 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping, Sequence
-from operator import is_
-from typing import NamedTuple
 
 import numpy as np
 
 from onpath.app.lab.advance_together import Frame, Ticks, advance_together
+from onpath.app.lab.belongings import Belongings
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
+from onpath.app.lab.current_instant import CurrentInstant, sample_of, samples_of_frames
 from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.history import History
-from onpath.app.lab.law_changes import LawChanges
+from onpath.app.lab.law_changes import LawChanges, suits
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
-from onpath.app.lab.plot_samples import sample_layout, samples_of
+from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import HistoryFrame, Inputs, Instant
 from onpath.app.lab.timeline import LabEvent, Timeline
 from onpath.models.closed_loop.obstacles import ALONG, Wall
 from onpath.models.closed_loop.start import ON_PATH, Start, check_start
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
+from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import short_name
-from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import CodedError
 from onpath.models.layout import Layout
 from onpath.models.paths.path_design import PathDesign, presets
@@ -36,15 +35,6 @@ from onpath.models.systems.robots import Robot
 
 MOST_TICKS = 200  # per frame
 MOST_EVENTS = 1500  # 0.2 MB
-
-
-class Belongings(NamedTuple):
-    """What a robot keeps while another one is used; see `Session`."""
-
-    parameters: Parameters
-    editor: PathEditor | None = None
-    start: Start = ON_PATH
-    wall: Wall | None = None
 
 
 class Session:
@@ -81,6 +71,7 @@ class Session:
         self._store = store
         self.earlier: dict[str, Belongings] = {}
         self.history = History(self._samples)
+        self._now = CurrentInstant()
         self._inputs: Inputs | None = None
         self.runs: dict[str, ClosedLoopRun] = {}
         self.law_changes = LawChanges(store, self.change_law)
@@ -149,8 +140,7 @@ class Session:
 
     def suits(self, law: str) -> bool:
         """Whether a law can be used with the current robot and its controlled output."""
-        own, composite = law_named(law), getattr(self.parameters, "law", "") == "composite"
-        return own.suits(self.robot.system) and (own.commands_acceleration or not composite)
+        return suits(law, self.robot, self.parameters)
 
     def choose_law(self, bench: str, law: str) -> None:
         """Change the law of a bench as soon as its loop can run; the old law goes on until then."""
@@ -172,11 +162,6 @@ class Session:
         """Change to the laws whose loops can run now; returns whether time can run."""
         curve, pushes = self.editor.curve, self.grips.pushes
         return self.law_changes.follow(self.runs, self.parameters, curve, pushes)
-
-    def _suitable(self, laws: Mapping[str, str]) -> dict[str, str]:
-        """The laws that suit the robot, and the defaults in place of others."""
-        both = {**DEFAULT_LAWS, **laws}
-        return {b: law if self.suits(law) else DEFAULT_LAWS[b] for b, law in both.items()}
 
     def note(self, name: str, detail: str = "", benches: tuple[str, ...] = BENCHES) -> None:
         """Record an event."""
@@ -260,14 +245,11 @@ class Session:
         self.note("reset")
 
     def _restart(self, laws: Mapping[str, str] | None = None) -> None:
-        laws = self._suitable(self.laws if laws is None else laws)
-        changes, curve = self.law_changes, self.editor.curve
-        changes.coming = {b: law for b, law in changes.coming.items() if self.suits(law)}
-        laws = changes.begin(laws, self.robot, self.parameters, curve)
+        laws, curve = self.laws if laws is None else laws, self.editor.curve
+        laws = self.law_changes.begin(laws, self.robot, self.parameters, curve)
         self.run_number += 1
         self.time = self.across_since = 0.0
         self._owed = 0.0
-        self._now: Instant | None = None
         self.viewing: float | None = None
         self.undo_timeline: Timeline | None = None
         self.history.clear()
@@ -313,24 +295,13 @@ class Session:
 
     def instant(self) -> Instant:
         """The current instant; the same object until something changes."""
-        runs, now = self.runs.values(), self._now
-        made_of = [self.editor.curve, self.parameters, *[run.row for run in runs]]
-        if now is None or now.time != self.time or not all(map(is_, made_of, self._made_of)):
-            laws = tuple(run.law for run in runs)
-            states, most = [run.state for run in runs], [run.max_distance for run in runs]
-            now = self._now = Instant(self.time, laws, states, most, self.sample())
-            self._made_of = made_of
-        return now
+        runs = list(self.runs.values())
+        return self._now.of(self.time, self.robot, self.parameters, self.editor.curve, runs)
 
     def sample(self) -> np.ndarray:
         """The current sample, shape (robots, sample_layout.size)."""
-        runs = self.runs.values()
-        rows, distances = [run.row for run in runs], [run.distance for run in runs]
-        return samples_of(self.robot, self.parameters, rows, distances)
+        return sample_of(self.robot, self.parameters, self.runs.values())
 
     def _samples(self, frames: Sequence[HistoryFrame]) -> np.ndarray:
         """Plotted values of some frames, shape (frames, robots, sample_layout.size)."""
-        rows = [row for frame in frames for row in frame.rows]
-        distances = [distance for frame in frames for distance in frame.distances]
-        samples = samples_of(self.robot, self.parameters, rows, distances)
-        return samples.reshape(len(frames), len(self.runs), -1)
+        return samples_of_frames(self.robot, self.parameters, frames)

@@ -14,7 +14,7 @@ from onpath.app.classroom.shared_classroom import SharedClassroom
 from onpath.app.classroom.watches import Watches
 from onpath.app.lab.commands import CloseLesson, ReportState, TakeSetup
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setup import capture
+from onpath.app.lab.setups.capture import capture
 from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
 from onpath.app.server.followed_lab import FollowedLab

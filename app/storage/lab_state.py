@@ -8,7 +8,9 @@ from typing import Any, Protocol
 import msgspec
 
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setup import Setup, capture, from_data, to_data, with_paths_of_today
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.setup import Setup, to_data
+from onpath.app.lab.setups.stored import from_data, with_paths_of_today
 from onpath.lessons.progress import Progress, read_progress
 
 SAVE_INTERVAL = 60  # frames between checks for changes

@@ -12,8 +12,8 @@ pytest.importorskip("playwright")
 from playwright.sync_api import Browser, expect
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.setup import Setup
-from onpath.app.lab.share_code import encode
+from onpath.app.lab.setups.setup import Setup
+from onpath.app.lab.setups.share_code import encode
 from onpath.app.server.lab_server import LabServer
 from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.control.laws.own import PATH_FOLLOWING, VIEW

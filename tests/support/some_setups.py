@@ -8,7 +8,8 @@ import numpy as np
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
-from onpath.app.lab.setup import RobotSetup, Setup, capture_path, kept
+from onpath.app.lab.setups.capture import capture_path, kept
+from onpath.app.lab.setups.setup import RobotSetup, Setup
 from onpath.models.paths.path_design import PathDesign, drawn, presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec

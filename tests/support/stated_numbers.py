@@ -16,7 +16,7 @@ import numpy as np
 from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_run import setup_of
-from onpath.app.lab.setup import Path, RobotSetup, Setup
+from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
 from onpath.lessons.benches import ROLES
 from onpath.lessons.course import BUILT_IN
 from onpath.lessons.parse import read_lesson

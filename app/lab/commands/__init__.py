@@ -54,7 +54,7 @@ from onpath.app.lab.commands.time import (
 )
 from onpath.app.lab.commands.wall import TURN, MoveWall, NudgeWall, PlaceWall, SetWall, SwingWall
 from onpath.app.lab.lab import Command as Command
-from onpath.app.lab.setup import EXAGGERATIONS, RATES
+from onpath.app.lab.setups.setup import EXAGGERATIONS, RATES
 
 __all__ = [
     "EXAGGERATIONS",

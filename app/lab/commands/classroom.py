@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from onpath.app.lab.commands.path import finish
 from onpath.app.lab.lab import Command, Lab
-from onpath.app.lab.setup import Setup
+from onpath.app.lab.setups.setup import Setup
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from onpath.app.lab.lab import Command, Lab
-from onpath.app.lab.setup import capture
-from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.share_code import decode, encode
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from typing import ClassVar
 from onpath.app.lab.commands.checks import finite, within
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.looking_back import go_on, look_back, undo_going_on
-from onpath.app.lab.setup import EXAGGERATIONS, RATES
+from onpath.app.lab.setups.setup import EXAGGERATIONS, RATES
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import viser
 
 from onpath.app.lab.commands import TakeSetup
-from onpath.app.lab.share_code import decode
+from onpath.app.lab.setups.share_code import decode
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.widgets import note, on_press
 from onpath.app.page.teacher_context import TeacherContext

@@ -26,7 +26,8 @@ from onpath.app.common.throttle import TRIES, WITHIN, Throttle
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import Freeze, TakeSetup, TakeStep
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setup import Setup, capture
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.setup import Setup
 from onpath.app.storage.forget import forget
 from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import Records, file_url

@@ -26,7 +26,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import advance_together
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setup import capture
+from onpath.app.lab.setups.capture import capture
 from onpath.app.page.teacher_context import TeacherChoices
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.simulation.simulation_thread import ScheduledLab, SimulationThread

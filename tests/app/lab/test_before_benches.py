@@ -21,8 +21,9 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_state import LessonState
-from onpath.app.lab.setup import capture, to_data
-from onpath.app.lab.share_code import decode
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.setup import to_data
+from onpath.app.lab.setups.share_code import decode
 from onpath.app.storage.lab_state import put_back
 from onpath.app.storage.records import Records, file_url
 from onpath.lessons.course import BUILT_IN, read_course

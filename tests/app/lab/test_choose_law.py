@@ -15,8 +15,8 @@ from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.setup import capture
-from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.snapshots.snapshot import MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.closed_loop.loop_kind import Kind

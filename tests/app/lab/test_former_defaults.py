@@ -10,7 +10,9 @@ from onpath.app.classroom.class_rows import push_text, read_push
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setup import RobotSetup, Setup, capture, from_data, to_data
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.setup import RobotSetup, Setup, to_data
+from onpath.app.lab.setups.stored import from_data
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import do, new_lab

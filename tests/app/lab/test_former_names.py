@@ -17,7 +17,8 @@ from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.setup import capture, from_data
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.stored import from_data
 from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.lessons.checks import judge

@@ -14,7 +14,8 @@ from msgspec.structs import replace
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setup import Setup, capture
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.setup import Setup
 from onpath.app.storage.lab_state import LabState, keep, put_back
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.models.closed_loop.simulation import FREE

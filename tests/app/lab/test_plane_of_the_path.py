@@ -11,8 +11,10 @@ import pytest
 from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import advance_together
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setup import Setup, capture, restore
-from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.restore import restore
+from onpath.app.lab.setups.setup import Setup
+from onpath.app.lab.setups.share_code import decode, encode
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.simulation import kernel_of

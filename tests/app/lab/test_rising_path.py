@@ -8,8 +8,9 @@ import pytest
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
-from onpath.app.lab.setup import capture, restore
-from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.restore import restore
+from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.models.paths.curves import saddle
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS

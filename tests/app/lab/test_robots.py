@@ -20,8 +20,9 @@ from onpath.app.exports.files import csv_bytes, picture_file
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
-from onpath.app.lab.setup import capture, restore
-from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.restore import restore
+from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.snapshots.robot_geometry import geometry_function, robot_views
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.page import panel_factory

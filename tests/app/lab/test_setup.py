@@ -19,19 +19,11 @@ from onpath.app.lab.commands import (
     Undo,
 )
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setup import (
-    DEFAULTS,
-    DRAWN_POINTS,
-    Path,
-    RobotSetup,
-    Setup,
-    capture,
-    capture_path,
-    from_data,
-    kept,
-    restore,
-    to_data,
-)
+from onpath.app.lab.setups.capture import capture, capture_path, kept
+from onpath.app.lab.setups.plan import DRAWN_POINTS
+from onpath.app.lab.setups.restore import restore
+from onpath.app.lab.setups.setup import DEFAULTS, Path, RobotSetup, Setup, to_data
+from onpath.app.lab.setups.stored import from_data
 from onpath.models.closed_loop.simulation import has_level_set
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import PathDesign

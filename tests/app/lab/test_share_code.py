@@ -15,10 +15,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.common.access_codes import ALPHABET, new_code, normalised, shown
-from onpath.app.lab import share_code
 from onpath.app.lab.commands import DrawPath, SetParameter
-from onpath.app.lab.setup import Setup, capture, capture_path
-from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.setups import share_code
+from onpath.app.lab.setups.capture import capture, capture_path
+from onpath.app.lab.setups.setup import Setup
+from onpath.app.lab.setups.share_code import decode, encode
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import specs
 from tests.support.lab import do, new_lab

@@ -11,8 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.setup import RobotSetup, Setup, capture, from_data, restore
-from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.restore import restore
+from onpath.app.lab.setups.setup import RobotSetup, Setup
+from onpath.app.lab.setups.share_code import decode, encode
+from onpath.app.lab.setups.stored import from_data
 from onpath.models.closed_loop.start import BOUNDS, ON_PATH, Start, nearest_start
 from onpath.models.control.benches import BENCHES
 from onpath.models.paths.path_design import presets

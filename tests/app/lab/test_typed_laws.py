@@ -23,8 +23,10 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands.scripts import ScriptLaws
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.setup import Setup, capture, from_data, to_data
-from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.setup import Setup, to_data
+from onpath.app.lab.setups.share_code import decode, encode
+from onpath.app.lab.setups.stored import from_data
 from onpath.app.lab.snapshots.snapshot import MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.simulation.simulation_thread import ScheduledLab

@@ -14,8 +14,11 @@ from hypothesis import strategies as st
 from onpath.app.exports.files import csv_bytes
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setup import Setup, capture, from_data, restore
-from onpath.app.lab.share_code import decode, encode
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.restore import restore
+from onpath.app.lab.setups.setup import Setup
+from onpath.app.lab.setups.share_code import decode, encode
+from onpath.app.lab.setups.stored import from_data
 from onpath.app.lab.snapshots.obstacles import wall_then
 from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
 from onpath.models.closed_loop.obstacles import DIRECTIONS, FARTHEST, Wall

@@ -24,7 +24,10 @@ import sqlalchemy as sa
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onpath.app.lab.setup import capture, from_data, restore, to_data
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.restore import restore
+from onpath.app.lab.setups.setup import to_data
+from onpath.app.lab.setups.stored import from_data
 from onpath.app.storage import records as database
 from onpath.app.storage.records import LARGEST, NotKept, Records, default_file, file_url
 from onpath.app.storage.schema import labs, metadata

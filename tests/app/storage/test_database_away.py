@@ -18,7 +18,8 @@ from sqlalchemy import event, exc
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.setup import capture, from_data
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.stored import from_data
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.lab_server import LabServer

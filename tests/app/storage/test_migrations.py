@@ -13,7 +13,8 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 
-from onpath.app.lab.setup import from_data, restore
+from onpath.app.lab.setups.restore import restore
+from onpath.app.lab.setups.stored import from_data
 from onpath.app.storage import migrations
 from onpath.app.storage.migrations import HEAD
 from onpath.app.storage.records import Records, file_url

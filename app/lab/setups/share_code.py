@@ -12,7 +12,8 @@ import zlib
 
 import msgspec
 
-from onpath.app.lab.setup import Setup, from_data, to_data
+from onpath.app.lab.setups.setup import Setup, to_data
+from onpath.app.lab.setups.stored import from_data
 from onpath.models.errors import CodedError, said_by
 
 VERSION = 1

@@ -1,0 +1,79 @@
+"""The set-up that a session has, as data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from onpath.app.lab.belongings import Belongings
+from onpath.app.lab.session import Session
+from onpath.app.lab.setups.setup import DRAWN, EDITED, UNIT, Path, RobotSetup, Setup
+from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.paths.path_design import PathDesign
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameter_specs import NOTHING, Spec
+from onpath.models.systems.parameters import Parameters, specs
+
+DIGITS = 6
+
+
+def capture(session: Session) -> Setup:
+    """The current set-up of a session; a path being dragged counts only after the drag."""
+    robots = {**session.earlier, session.entry.name: session.belongings()}
+    found = {name: _captured(name, own, session.presets) for name, own in sorted(robots.items())}
+    return Setup(
+        robot=session.entry.name,
+        robots={name: robot for name, robot in found.items() if robot != RobotSetup()},
+        rate=_rounded(session.rate),
+        copy=session.copy,
+        exaggeration=_rounded(session.exaggeration),
+        laws={b: law for b, law in session.chosen_laws.items() if law != DEFAULT_LAWS[b]},
+        hold=session.hold_direction,
+    )
+
+
+def _captured(name: str, own: Belongings, paths: Mapping[str, PathDesign]) -> RobotSetup:
+    """The set-up of one robot."""
+    start = {n: _rounded(value) for n, value in asdict(own.start).items()}
+    wall = own.wall
+    return RobotSetup(
+        _differences(ROBOTS[name].lab, own.parameters),
+        capture_path(own.editor.design, paths) if own.editor else Path(),
+        {n: value for n, value in start.items() if value},
+        () if wall is None else (_rounded(wall.z1), _rounded(wall.z2), _rounded(wall.angle)),
+    )
+
+
+def _differences(lab: Parameters, own: Parameters) -> dict[str, int | float | str]:
+    found: dict[str, int | float | str] = {}
+    for name, spec in specs(own).items():
+        value, default = getattr(own, name), getattr(lab, name)
+        if value != default and kept(spec, value) != default:
+            found[name] = kept(spec, value)
+    return found
+
+
+def kept(spec: Spec, value: Any) -> int | float | str:
+    """A parameter's value in the form stored in a set-up."""
+    return value if spec.options else min(max(_rounded(value), spec.low), spec.high)
+
+
+def _rounded(value: float) -> float:
+    return 0.0 if abs(value) <= NOTHING else float(f"{value:.{DIGITS}g}")
+
+
+def capture_path(design: PathDesign, paths: Mapping[str, PathDesign]) -> Path:
+    """Convert a path to data, given the presets."""
+    if design.name in paths:
+        return Path(design.name)
+    closed = design.curve.closed
+    if design.name == EDITED:
+        return Path(EDITED, closed, _lengths(design.points))
+    return Path(DRAWN, closed, _lengths(design.curve.terms()))
+
+
+def _lengths(z: np.ndarray) -> tuple[int, ...]:
+    return tuple(int(n) for n in np.rint(z / UNIT).ravel())

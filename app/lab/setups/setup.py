@@ -1,0 +1,105 @@
+"""A lab's set-up as plain data, to be stored, shared and restored.
+
+It holds the differences from a new lab, so a new lab is `Setup()`. Its data name the version of the
+defaults that they differ from, so that data of an earlier version keep their meaning. Lengths of a
+path are whole micrometres and numbers have six digits, so that capturing a restored set-up gives
+the same one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+import msgspec
+
+from onpath.models.closed_loop.obstacles import ALONG
+from onpath.models.control.benches import BENCHES
+from onpath.models.control.laws.expressions import LONGEST
+from onpath.models.paths.curves import TERMS
+from onpath.models.paths.path_design import MOST_POINTS
+from onpath.models.systems.catalogue import FIVE_BAR
+
+EXAGGERATIONS = (1.0, 20.0)  # minimum and maximum
+RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)  # simulated seconds per second
+UNIT = 1e-6  # [m]
+EDITED, DRAWN = "edited", "drawn"  # names of paths that are not presets
+
+DEFAULTS = 2  # version of a new lab's parameters; data that name none are of version 1
+
+Word = Annotated[str, msgspec.Meta(max_length=40, pattern=r"^[A-Za-z0-9_ -]*$")]
+LawName = Annotated[str, msgspec.Meta(max_length=LONGEST)]
+"""The name of a control law, or a typed law; `checked_laws` reads it."""
+Length = Annotated[int, msgspec.Meta(ge=-1_000_000, le=1_000_000)]
+Lengths = Annotated[tuple[Length, ...], msgspec.Meta(max_length=2 * max(TERMS, MOST_POINTS))]
+
+
+class Path(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Path of a set-up.
+
+    Attributes:
+        name: of a preset, or "edited" or "drawn".
+        closed: whether an edited or drawn path is closed.
+        numbers: alternating x and y, [UNIT]: control points of an edited path, coefficients of a
+            drawn path in the order of `Curve.series`; empty for a preset.
+    """
+
+    name: Word = "circle"
+    closed: bool = True
+    numbers: Lengths = ()
+
+
+class RobotSetup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One robot's path, and its parameters where they differ from the initial ones.
+
+    Attributes:
+        start: where and how its runs start: the numbers of `Start` that are not 0, by name.
+        wall: z1, z2 and angle of a wall in its way; empty if there is none.
+    """
+
+    parameters: Annotated[dict[Word, int | float | Word], msgspec.Meta(max_length=100)] = {}
+    path: Path = Path()
+    start: Annotated[dict[Word, float], msgspec.Meta(max_length=10)] = {}
+    wall: Annotated[tuple[float, ...], msgspec.Meta(max_length=3)] = ()
+
+
+class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A whole lab: the current robot, the set-up of each robot, and the lab's switches.
+
+    Attributes:
+        robots: the set-up of each robot, by name; stored as "benches".
+        laws: control laws that differ from a new lab's, by bench.
+        hold: direction in which brakes act.
+    """
+
+    robot: Word = FIVE_BAR.name
+    robots: Annotated[dict[Word, RobotSetup], msgspec.Meta(max_length=100)] = msgspec.field(
+        default_factory=dict[str, RobotSetup], name="benches"
+    )
+    rate: float = 1.0
+    copy: bool = True
+    exaggeration: float = 1.0
+    laws: Annotated[dict[Word, LawName], msgspec.Meta(max_length=len(BENCHES))] = {}
+    hold: Word = ALONG
+
+
+class StoredSetup(Setup, frozen=True, forbid_unknown_fields=True):
+    """A set-up as data: `defaults` is the version of the defaults that it differs from."""
+
+    defaults: Annotated[int, msgspec.Meta(ge=1, le=DEFAULTS)] = 1
+
+
+def to_data(setup: Setup) -> dict[str, Any]:
+    """Convert a set-up to JSON data, without default values."""
+    return {"defaults": DEFAULTS, **_plain(setup)}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, msgspec.Struct):
+        new = type(value)()
+        names = zip(value.__struct_encode_fields__, value.__struct_fields__, strict=True)
+        own = {stored: (getattr(value, name), getattr(new, name)) for stored, name in names}
+        return {stored: _plain(now) for stored, (now, before) in own.items() if now != before}
+    if isinstance(value, Mapping):
+        return {name: _plain(item) for name, item in value.items()}
+    return list(value) if isinstance(value, tuple) else value

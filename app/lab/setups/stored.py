@@ -1,0 +1,68 @@
+"""Stored set-ups, brought up to the present: former defaults, and paths that are refused today."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import msgspec
+
+from onpath.app.lab.setups.plan import planned
+from onpath.app.lab.setups.setup import DEFAULTS, Path, RobotSetup, Setup, StoredSetup
+from onpath.models.closed_loop.start import ON_PATH
+from onpath.models.control.benches import checked_laws
+from onpath.models.errors import Message
+from onpath.models.paths.path_design import presets
+
+FORMER_DEFAULTS = {"five_bar": {"K3": 0.0}, "two_link_arm": {"K3": 0.0}, "flexible": {}}
+"""Robots of version 1, and their defaults that have changed. K3 acted in the tracker, too."""
+
+
+def from_data(data: Any) -> Setup:
+    """Inverse of `to_data`, for untrusted data.
+
+    Raises:
+        ValueError: it is not a valid set-up.
+    """
+    stored = msgspec.convert(data, StoredSetup)
+    robots = stored.robots if stored.defaults == DEFAULTS else _brought_up(stored.robots)
+    own: dict[str, Any] = {name: getattr(stored, name) for name in Setup.__struct_fields__}
+    setup = Setup(**{**own, "robots": robots})
+    entry = planned(setup, presets())[setup.robot].entry
+    return msgspec.structs.replace(setup, laws=checked_laws(setup.laws, entry))
+
+
+def _brought_up(robots: Mapping[str, RobotSetup]) -> dict[str, RobotSetup]:
+    """The same set-ups of robots, as differences from the present defaults."""
+    found = dict(robots)
+    for name, former in FORMER_DEFAULTS.items():
+        robot = robots.get(name, RobotSetup())
+        own = {**former, **robot.parameters}
+        if own.get("K3", 0.0) != 0.0:
+            own["tracker_integral"] = "on"
+        if own:
+            found[name] = msgspec.structs.replace(robot, parameters=own)
+    return found
+
+
+def with_paths_of_today(setup: Setup) -> tuple[Setup, tuple[Message, ...]]:
+    """A kept set-up with the circle in place of every path that is refused today, and why it is.
+
+    A path that was accepted when it was kept may be refused now. A start that is not possible, too,
+    is replaced by that of a new lab.
+
+    Raises:
+        ValueError: the set-up is impossible for another reason.
+    """
+    robots, told = dict(setup.robots), tuple[Message, ...]()
+    for name, wanted in planned(setup, presets()).items():
+        if reasons := wanted.path_faults:
+            kept = robots.get(name, RobotSetup())
+            robots[name] = msgspec.structs.replace(kept, path=Path(), start={})
+            told = (*told, *reasons)
+        elif wanted.start != ON_PATH:
+            try:
+                wanted.check_start()
+            except ValueError:
+                robots[name] = msgspec.structs.replace(robots[name], start={})
+    return msgspec.structs.replace(setup, robots=robots), told
