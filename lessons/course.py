@@ -136,9 +136,8 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
     for own, theirs in zip(first.steps, other.steps, strict=False):
         if _structure(own) != _structure(theirs):
             text = f"step {theirs.title!r} is not as in {first.language}.md, line {own.line}"
-            yield Problem(
-                str(file), theirs.line, f"{text}: same kind, scene, script, tasks and questions"
-            )
+            same = "same kind, scene, script, tasks, predictions, questions and links"
+            yield Problem(str(file), theirs.line, f"{text}: {same}")
 
 
 def _structure(step: Step) -> tuple[object, ...]:
@@ -146,4 +145,8 @@ def _structure(step: Step) -> tuple[object, ...]:
     tasks = [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()]
     blocks = [block for block in step.blocks if not isinstance(block, Text | Task)]
     right = [[o.right for o in block.options] for block in blocks if not isinstance(block, Sketch)]
-    return step.kind, step.scene, step.script, tasks, [type(block) for block in blocks], right
+    drawn = [msgspec.structs.replace(b, question="") for b in blocks if isinstance(b, Sketch)]
+    texts = [block for block in step.blocks if isinstance(block, Text)]
+    links = [link.actions for text in texts for link in text.links]
+    kinds = [type(block) for block in blocks]
+    return step.kind, step.scene, step.script, tasks, kinds, right, drawn, links

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
@@ -21,6 +22,8 @@ MIME = {
     ".jpeg": "image/jpeg",
     ".webp": "image/webp",
 }
+COMMA = re.compile(r"<mn>(\d+)</mn><mrow><mo>&#x0002C;</mo></mrow><mn>(\d+)</mn>")
+"""A decimal comma, 0{,}5 in LaTeX, as the converter writes it: an operator with space around it."""
 LARGEST = 400_000
 """Largest size of a picture, [B]."""
 
@@ -41,7 +44,7 @@ def mathml(latex: str, options: dict[str, Any]) -> str:
     """
     display = "block" if options.get("display_mode") else "inline"
     try:
-        return convert(latex, display=display)
+        return COMMA.sub(r"<mn>\1,\2</mn>", convert(latex, display=display))
     except Exception as error:  # the library raises many kinds
         raise FormulaError(f"formula {latex!r}: {error or type(error).__name__}") from None
 

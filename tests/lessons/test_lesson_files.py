@@ -128,6 +128,12 @@ def test_no_link_runs_anything(address: str) -> None:
         read_link(address)
 
 
+def test_a_decimal_comma_is_part_of_its_number() -> None:
+    """Without spaces around it, and unlike the comma between two numbers."""
+    assert "<mn>30,95</mn>" in to_html(r"$x = 30{,}95\ \mathrm{mm}$")
+    assert "<mn>2</mn><mo>&#x0002C;</mo><mn>3</mn>" in to_html("$(2, 3)$")
+
+
 @given(st.text(max_size=400))
 @settings(max_examples=150, deadline=None)
 def test_whatever_is_typed_gives_a_lesson_or_problems(text: str) -> None:
@@ -201,6 +207,19 @@ def test_a_translation_that_does_something_else_is_named(tmp_path: Path) -> None
     (file.parent / "de.md").write_text(LESSON.replace("below = 5.0", "below = 4.0"))
     (found,) = read_course([tmp_path])[1]
     assert found.path.endswith("de.md") and found.line == line_of("# task", LESSON)
+
+
+@pytest.mark.parametrize(
+    ("own", "theirs", "step"),
+    [("top = 60.0", "top = 50.0", "# predict"), ("lab:K3=100", "lab:K3=10", "# play")],
+)
+def test_a_translation_with_other_axes_or_links_is_named(
+    tmp_path: Path, own: str, theirs: str, step: str
+) -> None:
+    file = write_lesson(tmp_path)
+    (file.parent / "de.md").write_text(LESSON.replace(own, theirs))
+    (found,) = read_course([tmp_path])[1]
+    assert found.path.endswith("de.md") and found.line == line_of(step, LESSON)
 
 
 def test_a_translation_with_the_options_in_another_order_is_named(tmp_path: Path) -> None:

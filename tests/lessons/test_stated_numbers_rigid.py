@@ -20,11 +20,9 @@ from tests.support.stated_numbers import (
     WORST,
     assert_stated,
     held,
-    numbers,
     play,
     said,
     shown,
-    text,
     value,
 )
 
@@ -47,14 +45,6 @@ def turning_points(across: np.ndarray) -> list[float]:
 
 
 # Lesson 1
-
-
-def test_german_tells_the_same_numbers() -> None:
-    english, german = (
-        [sorted(numbers(step)) for step in text("01", language).split("\n# ")]
-        for language in ("en", "de")
-    )
-    assert english == german
 
 
 def test_tracker_draws_four_arches_of_one_height() -> None:
