@@ -82,6 +82,8 @@ class CompareCommand:
             parameters = changed(parameters, name, value)
         if parameters.speed == 0 or parameters.task != "speed":
             raise ValueError("a comparison needs a speed along the path other than 0")
+        if parameters.speed_profile != "constant":
+            raise ValueError("speed_profile: a comparison is at a constant speed")
         return Contest(entry, parameters, circle(self.radius))
 
     def _results(self, contest: Contest) -> Results:

@@ -15,10 +15,12 @@ from onpath.models.closed_loop.loops import CompiledLoop, Loop
 from onpath.models.closed_loop.simulation import (
     Push,
     kind_of,
+    paced,
     primed,
     pushed,
     settings_vector,
 )
+from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.closed_loop.start import ON_PATH, Start, start_state
 from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
@@ -63,6 +65,7 @@ class ClosedLoopRun:
         self.diverged: Diverged | None = None
         self.distance = self.max_distance = 0.0
         self._inputs: tuple[Parameters, Curve, Push] | None = None
+        self._leg: Leg | None = None
         self.configure(parameters, curve, Push())
         self._input = self._made_input(frozen=False)
         self.reset(curve, start)
@@ -189,17 +192,47 @@ class ClosedLoopRun:
         if good.size:
             self.row = rows[good[-1]].copy()
 
-    def configure(self, parameters: Parameters, curve: Curve, push: Push) -> None:
+    def configure(
+        self,
+        parameters: Parameters,
+        curve: Curve,
+        push: Push,
+        leg: Leg | None = None,
+        tick: int = 0,
+    ) -> None:
         """Set the inputs; packs a new settings vector if one has changed.
 
         The run keeps its loop as long as it needs one of this kind, whatever the store keeps.
+
+        Args:
+            leg: a part of a speed profile, which replaces speed and ramp of the parameters.
+            tick: of the lab, in this part.
         """
         before, self._inputs = self._inputs, (parameters, curve, push)
+        ended, self._leg = self._leg, leg
         same = before is not None and before[0] is parameters and before[1] is curve
-        if before is not None and same and before[2] is push:
+        same = same and (ended is None or leg is not None)
+        if before is None or not same or before[2] is not push:
+            self._pack(self._inputs, None if before is None else self.kind, same)
+        elif leg == ended:
             return
-        kind = None if before is None else self.kind
-        if (new := kind_of(self.law, parameters, curve, push)) != kind:
+        if leg is not None:
+            self.settings = paced(self._kernel, self.settings, leg)
+        if leg is not None and leg != ended:
+            self.state = self.state.copy()  # the history may share it
+            self.fields()["speed_ref"][:] = leg.at(tick)
+
+    def _pack(
+        self, inputs: tuple[Parameters, Curve, Push], before: Kind | None, same: bool
+    ) -> None:
+        """Take the kind of loop that these inputs need, and pack its settings.
+
+        Args:
+            before: kind until now, or None at first.
+            same: whether only the push has changed.
+        """
+        parameters, curve, push = inputs
+        if (new := kind_of(self.law, parameters, curve, push)) != before:
             self.kind: Kind = new
             self._loop: Loop | None = None
             self._kernel = self._store.kernel(self.robot, new)
@@ -208,8 +241,8 @@ class ClosedLoopRun:
             self.settings = pushed(self._kernel, self.settings, push)
         else:
             self.settings = settings_vector(self.robot, self._kernel, parameters, curve, push)
-        if kind is not None:
-            self._prime(kind)
+        if before is not None:
+            self._prime(before)
 
     def _prime(self, before: Kind) -> None:
         """Fill the queue of delayed torques if the loop of this kind did not keep it."""

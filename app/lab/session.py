@@ -23,6 +23,8 @@ from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import HistoryFrame, Inputs, Instant
 from onpath.app.lab.timeline import LabEvent, Timeline
 from onpath.models.closed_loop.obstacles import ALONG, Wall
+from onpath.models.closed_loop.profile_shapes import profile_of
+from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.closed_loop.start import ON_PATH, Start, check_start
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import short_name
@@ -189,12 +191,26 @@ class Session:
         advance_together([self.frame_of(ticks)])
 
     def frame_of(self, ticks: int) -> Frame:
-        """Simulate both robots for some ticks, with the same path, settings and external forces."""
-        dt, parameters = time_step(self.parameters), self.parameters
+        """Simulate both robots for some ticks, with the same path, settings and external forces.
+
+        The parts of a speed profile are simulated one after the other.
+        """
+        dt, profile = time_step(self.parameters), profile_of(self.parameters)
         self._bend(ticks * dt)
+        while ticks > 0:
+            now = round(self.time / dt)
+            leg = None if profile is None else profile.leg(now, dt)
+            count = ticks if leg is None or leg.end is None else min(ticks, leg.end - now)
+            yield from self._part_of_frame(count, leg)
+            ticks -= count
+
+    def _part_of_frame(self, ticks: int, leg: Leg | None) -> Frame:
+        """Some ticks of a frame, within one part of the speed profile if there is one."""
+        dt, parameters = time_step(self.parameters), self.parameters
         curve, table, runs = self.editor.curve, self.editor.table, list(self.runs.values())
         for run in runs:
-            run.configure(parameters, curve, self.grips.pushes[run.bench])
+            push = self.grips.pushes[run.bench]
+            run.configure(parameters, curve, push, leg, round(self.time / dt))
         states, most = [run.recorded for run in runs], [run.max_distance for run in runs]
         rows, distances = [run.row for run in runs], [run.distance for run in runs]
         moving = [(run, run.loop()) for run in runs if run.diverged is None]

@@ -554,7 +554,7 @@ export-nothing = Es gibt noch nichts mitzunehmen: Lass es erst laufen.
 ## Der Vergleich der Regelungen
 
 compare-title = Regelungen vergleichen
-compare-text = Für alle derselbe Roboter, dieselbe Bahn, dasselbe Tempo und dieselben Verstärkungen, und ein Hindernis. Gerechnet wird im Hintergrund, mit den jetzigen Einstellungen dieses Labors; es läuft weiter.
+compare-text = Für alle derselbe Roboter, dieselbe Bahn, dasselbe Tempo und dieselben Verstärkungen, und ein Hindernis. Das gewünschte Tempo bleibt gleich. Gerechnet wird im Hintergrund, mit den jetzigen Einstellungen dieses Labors; es läuft weiter.
 compare-obstruction = Hindernis
 compare-run = Vergleichen
 compare-count = Bitte ein bis { $most } Regelungen auswählen.
@@ -655,6 +655,7 @@ say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurück
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
+say-ramps_at_start = Angefahren wird vom Beginn eines Laufs an: Zurücksetzen zeigt es.
 say-nothing_to_undo = es gibt nichts rückgängig zu machen
 say-nothing_to_redo = es gibt nichts zu wiederholen
 say-select_first = wähle erst einen Kontrollpunkt: klicke einen an, oder drücke N für den nächsten
@@ -720,10 +721,20 @@ parameter-task-option-speed = Tempo
 parameter-task-option-position = Ort
 
 parameter-speed-label = Tempo
-parameter-speed-help = gewünschte Geschwindigkeit längs der Bahn; negativ: rückwärts
+parameter-speed-help = gewünschte Geschwindigkeit längs der Bahn; negativ: rückwärts; mit einem Tempo-Verlauf: der Mittelwert des Sinus, sonst das größte Tempo
 
 parameter-ramp-label = Tempo-Rampe
 parameter-ramp-help = wie schnell sich das gewünschte Tempo ändert; 0: sofort
+
+parameter-speed_profile-label = Tempo-Verlauf
+parameter-speed_profile-help = wie sich das gewünschte Tempo vom Beginn eines Laufs an ändert: aus der Ruhe hinauf, als Sinus um das Tempo, oder Halt und Fahrt; er wird nach (19) vorgesteuert und ersetzt die Rampe
+parameter-speed_profile-option-constant = gleichbleibend
+parameter-speed_profile-option-ramp_up = Anfahren
+parameter-speed_profile-option-sine = Sinus
+parameter-speed_profile-option-stop_and_go = Halt und Fahrt
+
+parameter-profile_period-label = Dauer des Verlaufs
+parameter-profile_period-help = Periode des Sinus und von Halt und Fahrt; beim Anfahren die Zeit, bis das Tempo erreicht ist
 
 parameter-target-label = Ziel
 parameter-target-help = wo er stehen bleiben soll, beim Auftrag Ort

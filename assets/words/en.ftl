@@ -502,7 +502,7 @@ export-nothing = There is nothing to export yet: let it run first.
 ## The comparison of laws
 
 compare-title = Compare laws
-compare-text = The same robot, path, speed and gains for all, and one obstruction. The robots are simulated in the background, with the parameters that this lab has now; your lab goes on.
+compare-text = The same robot, path, speed and gains for all, and one obstruction. The wanted speed is constant. The robots are simulated in the background, with the parameters that this lab has now; your lab goes on.
 compare-obstruction = Obstruction
 compare-run = Compare
 compare-count = Choose one to { $most } laws.
@@ -600,6 +600,7 @@ say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset brings it ba
 say-refused = This path is refused: { $reasons }. The previous one is kept.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.
+say-ramps_at_start = The speed ramps up from the start of a run: press Reset to see it.
 say-nothing_to_undo = nothing to undo
 say-nothing_to_redo = nothing to redo
 say-select_first = select a control point first: click one, or press N for the next

@@ -12,6 +12,7 @@ from onpath.models.closed_loop.delay import LONGEST
 from onpath.models.closed_loop.kernel import Kernel, build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS
+from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.control import composite_control
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import OWN_GAINS
@@ -184,6 +185,13 @@ def pushed(kernel: Kernel, settings: Array, push: Push) -> Array:
     result, slices = settings.copy(), kernel.settings.slices
     for name, value in _push_fields(push, result[slices["hand_target"]].size).items():
         result[slices[name]] = value
+    return result
+
+
+def paced(kernel: Kernel, settings: Array, leg: Leg) -> Array:
+    """The same settings with the wanted speed of a part of a speed profile."""
+    result, slices = settings.copy(), kernel.settings.slices
+    result[slices["speed"]], result[slices["ramp"]] = leg.last, leg.rate
     return result
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from onpath.models.closed_loop.obstacles import DIRECTIONS, FARTHEST, Wall
-from onpath.models.studies.speed_profile import SpeedProfile, profile_from
+from onpath.models.closed_loop.speed_profile import SpeedProfile, profile_from
 
 _TIMES = ("hold", "push", "wall")
 

@@ -11,12 +11,14 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.obstacles import brake_in
+from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.simulation import (
     Push,
     first_state,
     settings_vector,
     time_step,
 )
+from onpath.models.closed_loop.speed_profile import SpeedProfile
 from onpath.models.closed_loop.start import lead, velocity_at
 from onpath.models.paths.curves import PERIOD, Curve
 from onpath.models.studies.schedule import Schedule
@@ -56,6 +58,7 @@ class ScheduledRun:
         self._loop, self._dt = InterpretedLoop(kernel), time_step(parameters)
         self._hold = schedule.ticks("hold", self._dt)
         self._waits = schedule.hold_at is not None and len(self._hold) > 0
+        self._profile: SpeedProfile | None = None
         self._brake: tuple[tuple[Array, Array], Array | None] | None = None
         self._tick, self._state = 0, self._first(start)
 
@@ -86,8 +89,8 @@ class ScheduledRun:
         windows = [self._hold, schedule.ticks("push", dt), schedule.ticks("wall", dt)]
         times = [tick for window in windows for tick in (window.start, window.stop)]
         times.append(round(schedule.reverse_at / dt))
-        if schedule.profile is not None:
-            times += [tick for tick, _ in schedule.profile.on_grid(dt)]
+        if self._profile is not None:
+            times.append(self._profile.leg(self._tick, dt).end or 0)
         return min((tick for tick in times if tick > self._tick), default=self._tick + CHUNK)
 
     def _passage(self, rows: Array) -> int:
@@ -104,12 +107,13 @@ class ScheduledRun:
         """The inputs of the loop from now on; a profile also sets the speed reference now."""
         schedule, dt, tick = self._schedule, self._dt, self._tick
         wanted = self._parameters
-        if schedule.profile is not None:
-            now, speed, rate = schedule.profile.after(tick, dt)
-            wanted = dataclasses.replace(wanted, speed=speed, ramp=rate)
-            self._fields()["speed_ref"][:] = now
-        elif 0 < round(schedule.reverse_at / dt) <= tick:
+        if 0 < round(schedule.reverse_at / dt) <= tick:
             wanted = dataclasses.replace(wanted, speed=-wanted.speed)
+        self._profile = schedule.profile or profile_of(wanted)
+        if self._profile is not None:
+            leg = self._profile.leg(tick, dt)
+            wanted = dataclasses.replace(wanted, speed=leg.last, ramp=leg.rate)
+            self._fields()["speed_ref"][:] = leg.at(tick)
         return settings_vector(self._robot, self._kernel, wanted, self._curve, self._push())
 
     def _push(self) -> Push:

@@ -38,7 +38,8 @@ class FlexibleParameters(Parameters):
         2.0,
         "rad/s",
         (-10, 10, 0.1),
-        "wanted speed along the path; negative: backwards",
+        "wanted speed along the path; negative: backwards; with a speed profile, the mean of the"
+        " sine, and otherwise the largest speed",
         group="task",
         label="Speed",
     )

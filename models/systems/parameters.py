@@ -83,7 +83,8 @@ class Parameters:
         2 * math.pi,
         "rad/s",
         (-20, 20, 0.1),
-        "wanted speed along the path; negative: backwards",
+        "wanted speed along the path; negative: backwards; with a speed profile, the mean of the"
+        " sine, and otherwise the largest speed",
         group="task",
         label="Speed",
     )
@@ -94,6 +95,22 @@ class Parameters:
         "how quickly the wanted speed changes; 0: at once",
         group="task",
         label="Speed ramp",
+    )
+    speed_profile: str = choice(
+        "constant",
+        ("constant", "ramp_up", "sine", "stop_and_go"),
+        "how the wanted speed varies from the start of a run: up from rest, as a sine about the"
+        " speed, or stop and go at the speed; it is fed forward as in (19), instead of the ramp",
+        group="task",
+        label="Speed profile",
+    )
+    profile_period: float = number(
+        2.0,
+        "s",
+        (0.5, 20, 0.1),
+        "period of the sine and of stop and go; of ramp up, the time until the speed is reached",
+        group="task",
+        label="Profile period",
     )
     target: float = number(
         math.pi / 2,

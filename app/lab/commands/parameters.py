@@ -9,6 +9,7 @@ from onpath.app.lab.identify import identify_model
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.session import Session
 from onpath.lessons.benches import law_label
+from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.simulation import check_level_set, raised
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import curve_faults
@@ -41,6 +42,14 @@ class SetParameter(Command):
         session.set_parameters(wanted)
         if session.parameters != before:
             session.note("set", self.name)
+            if self.name == "speed_profile" and self._begins_later(session):
+                lab.remark(lab.words("say.ramps_at_start"))
+
+    @staticmethod
+    def _begins_later(session: Session) -> bool:
+        """Whether the wanted speed varies at the start of a run only, and that is over."""
+        profile = profile_of(session.parameters)
+        return profile is not None and not profile.period and session.time >= profile.times[-1]
 
 
 def _check_plane(session: Session, wanted: Parameters) -> None:

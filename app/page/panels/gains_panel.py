@@ -20,7 +20,8 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import specs
 
 BASIC = ["speed", "K1", "K2", "K5"]
-ADVANCED = ["task", "target", "ramp", "K3", "tracker_integral", "K4", "across"]
+ADVANCED = ["speed_profile", "profile_period", "ramp", "task", "target"]
+ADVANCED += ["K3", "tracker_integral", "K4", "across"]
 
 LAST_OF_MODEL = "error_b2"
 

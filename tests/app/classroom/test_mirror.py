@@ -122,6 +122,16 @@ def test_what_is_done_to_the_lab_is_seen_within_a_millimetre() -> None:
     assert both.mirror.session.editor.design.name == "clover"
 
 
+def test_a_speed_profile_is_seen_with_its_phase() -> None:
+    both = Followed()
+    do(both.lab, c.SetParameter("speed_profile", "stop_and_go"))
+    both.run(0.5)
+    for _ in range(10):
+        both.run(0.3)
+        assert both.distance() < SAME
+    assert both.mirror.session.parameters.speed_profile == "stop_and_go"
+
+
 def test_a_path_that_is_dragged_and_let_go_is_the_same_path() -> None:
     both = Followed()
     index, (x, up) = 2, both.session.editor.design.points[2]

@@ -7,10 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from onpath.models.closed_loop.profile_shapes import profile_of
+from onpath.models.closed_loop.speed_profile import SpeedProfile, profile_from
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.paths.curves import ellipse
 from onpath.models.studies.experiments import experiments, run
-from onpath.models.studies.speed_profile import SpeedProfile, profile_from
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
 
 FOLLOWING, TRACKING = "path_following", "trajectory_tracking"
 BOTH = pytest.mark.parametrize("law", [FOLLOWING, TRACKING])
@@ -176,3 +178,68 @@ def test_a_ramp_removes_the_start_up_error_as_the_readme_says() -> None:
     at_once, ramped = (ran(TRACKING, duration=4.0, ramp=ramp, **FREE) for ramp in (0, 10))
     assert at_once.distance.max() == pytest.approx(2.4e-3, abs=5e-5)
     assert ramped.distance.max() < 1e-6
+
+
+# Shapes of the parameters -------------------------------------------------------------------------
+
+
+def wanted_at(shape: str, t: np.ndarray, speed: float, period: float) -> np.ndarray:
+    """The speed that the help promises, written independently."""
+    share = t / period
+    if shape == "ramp_up":
+        return speed * np.minimum(share, 1.0)
+    if shape == "sine":
+        return speed * (1 + np.sin(2 * np.pi * share) / 2)
+    return speed * np.interp(share % 1, [0, 0.1, 0.5, 0.6, 1], [0, 1, 1, 0, 0])
+
+
+@BOTH
+@pytest.mark.parametrize("shape", ["ramp_up", "sine", "stop_and_go"])
+def test_the_speed_follows_the_shape_that_a_parameter_chooses(law: str, shape: str) -> None:
+    values: dict[str, Any] = {"speed": 5.0, "speed_profile": shape, "profile_period": 1.3}
+    trajectory = ran(law, duration=4.0, **FREE, **values)
+    wanted = wanted_at(shape, trajectory.t, 5.0, 1.3)
+    inside = 0.5 * 5.0 * 0.005  # of the straight pieces of the sine
+    assert trajectory.fields["speed_ref"][:, 0] == pytest.approx(wanted, abs=inside)
+    late = trajectory.t > 1.5  # the sine begins at its mean, the robot at rest
+    rates = trajectory.fields["theta_rate"][:, 0]
+    assert rates[late] == pytest.approx(wanted[late], abs=0.05)
+    assert off_circle(trajectory)[late].max() < 1e-4
+
+
+def test_a_shape_is_fed_forward() -> None:
+    """With the feedforward of (19), the speed along the path is right however small K5 is."""
+    values: dict[str, Any] = {"speed_profile": "stop_and_go", "profile_period": 1.0, "K5": 0.5}
+    trajectory = ran(FOLLOWING, duration=3.0, speed=4.0, **FREE, **values)
+    wanted = wanted_at("stop_and_go", trajectory.t, 4.0, 1.0)
+    assert trajectory.fields["theta_rate"][:, 0] == pytest.approx(wanted, abs=0.05)
+
+
+def test_a_profile_in_points_takes_the_place_of_a_shape() -> None:
+    points = {"profile": "0:3", "duration": 0.5, **FREE}
+    plain, shaped = ran(**points), ran(speed_profile="sine", **points)
+    assert np.array_equal(plain.fields["q"], shaped.fields["q"])
+
+
+def test_the_sign_of_the_speed_turns_a_shape_round() -> None:
+    forth, back = (
+        ran(duration=2.0, speed=speed, speed_profile="stop_and_go", **FREE) for speed in (4.0, -4.0)
+    )
+    assert forth.fields["speed_ref"] == pytest.approx(-back.fields["speed_ref"], abs=1e-12)
+
+
+@pytest.mark.parametrize("period", [0.5, 1.234567, 2.0, 20.0])
+@pytest.mark.parametrize("dt", [1e-3, 5e-4])
+def test_the_parts_of_a_shape_follow_each_other_without_a_gap(period: float, dt: float) -> None:
+    for shape in ("ramp_up", "sine", "stop_and_go"):
+        chosen = FiveBarParameters(speed_profile=shape, profile_period=period)
+        profile, tick, speed = profile_of(chosen), 0, None
+        assert profile is not None
+        while tick < 45 / dt:
+            leg = profile.leg(tick, dt)
+            assert leg.begin == tick
+            assert speed is None or leg.first == pytest.approx(speed, abs=1e-9)
+            if leg.end is None:
+                break
+            assert leg.end > tick and profile.leg(leg.end - 1, dt) == leg
+            tick, speed = leg.end, leg.last
