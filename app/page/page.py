@@ -25,8 +25,9 @@ from onpath.app.page.panels.widgets import Post
 from onpath.app.page.plots import DISTANCE, LivePlot
 from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.page.step_controls import StepControls
+from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.pointer_projection import plane_coordinates
-from onpath.app.scene.scene import Scene, SceneCallbacks
+from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.viser_adapter.frame_channel import FrameChannel

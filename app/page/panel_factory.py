@@ -81,7 +81,7 @@ class PanelFactory:
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         """Build the run panel and the controls listed by a lesson's step."""
-        self._scene.path_first = "editor" in scene.controls
+        self._scene.mouse.path_first = "editor" in scene.controls
         parts = list(self._add("hold", first))
         known = first.parameters
         parameters = [name for name in scene.controls if name in known]
@@ -147,7 +147,7 @@ class PanelFactory:
             return None
 
         def choose(name: str) -> None:
-            self._scene.pull = name
+            self._scene.mouse.pull = name
 
         pulls = list(self._scene.stage.pulls)
         return FlexiblePanel(

@@ -1,4 +1,4 @@
-"""The 3D scene of one client: display of a lab, and callbacks for the mouse.
+"""The 3D scene of one client: display of a lab. What the mouse does in it: mouse.py.
 
 Cost depends on the number of property assignments, not their size, so robots share their nodes
 (robot_nodes.py, path_nodes.py).
@@ -7,18 +7,18 @@ Cost depends on the number of property assignments, not their size, so robots sh
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshots.snapshot import END, TIP, Motion, PathView, Snapshot
+from onpath.app.lab.snapshots.snapshot import Motion, PathView, Snapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.captions import Captions
 from onpath.app.scene.freehand import Freehand
+from onpath.app.scene.mouse import Mouse, SceneCallbacks
 from onpath.app.scene.path_nodes import PathNodes
-from onpath.app.scene.pointer_projection import DragPlane, pointer_on_plane
+from onpath.app.scene.pointer import Pointer
 from onpath.app.scene.poses import poses_of
 from onpath.app.scene.robot_nodes import RobotNodes
 from onpath.app.scene.stage import (
@@ -39,47 +39,12 @@ from onpath.lessons.words import ENGLISH, Words
 if TYPE_CHECKING:
     import viser
 
-    DragEvent = viser.SceneNodeDragEvent[viser.BatchedMeshHandle]
-    ClickEvent = viser.SceneNodePointerEvent[viser.BatchedMeshHandle]
-
 ZONE_DEPTH = 0.052
 """y of the shading of singular places [m]: behind the links."""
 ZONE_WIDTH = 0.02
 """Width of the shading at a singular circle [m]."""
 UP = np.array([0.0, 0.0, 1.0])
 """Direction that is upwards in the picture."""
-WITHIN = 0.01
-"""Picking radius of a control point that the end-point covers [m]."""
-
-
-def _ignore(*_: object) -> None:
-    """Default callback; does nothing."""
-
-
-@dataclass(frozen=True, slots=True)
-class SceneCallbacks:
-    """Callbacks of the scene. They run on viser's event loop, so they must only enqueue.
-
-    Attributes:
-        on_grab: the end-point on the named bench is pulled to a target, shape (3,), in the robot's
-            frame [m]; called again whenever the target moves.
-        on_release: the robot on the named bench is released.
-        on_point_dragged: a control point has a new position, shape (3,), in the robot's frame [m].
-        on_point_drag_end: the control point is released.
-        on_point_selected: a control point was clicked or grabbed.
-        on_wall_moved: the wall's middle has a new place, shape (3,), in the robot's frame [m].
-        on_wall_turned: an end of the wall, 1 or -1, must point at a place, shape (3,), [m].
-        on_start_moved: the start of the next run has a new place, shape (3,), [m].
-    """
-
-    on_grab: Callable[[str, np.ndarray], None] = _ignore
-    on_release: Callable[[str], None] = _ignore
-    on_point_dragged: Callable[[int, np.ndarray], None] = _ignore
-    on_point_drag_end: Callable[[int], None] = _ignore
-    on_point_selected: Callable[[int], None] = _ignore
-    on_wall_moved: Callable[[np.ndarray], None] = _ignore
-    on_wall_turned: Callable[[int, np.ndarray], None] = _ignore
-    on_start_moved: Callable[[np.ndarray], None] = _ignore
 
 
 class Scene:
@@ -92,9 +57,7 @@ class Scene:
         words: message catalogue for the labels.
 
     Attributes:
-        pull: name of the plane in which an end-point is pulled, one of the stage's.
-        path_first: whether a press where an end-point covers a control point takes the latter; the
-            selected one is always taken.
+        mouse: what the mouse does on end-points and control points.
     """
 
     def __init__(
@@ -108,25 +71,14 @@ class Scene:
         self._stage, self._words = stage, words
         self._benches = list(stage.bases)
         self._origins = stage.origins
-        self._hooks = hooks or SceneCallbacks()
-        self.pull = next(iter(stage.pulls))
-        self.path_first = False
-        self._motion: Motion | None = None
-        self._grip: tuple[DragPlane, np.ndarray] | None = None
+        hooks, pointer = hooks or SceneCallbacks(), Pointer(stage)
+        self.mouse = Mouse(stage, pointer, hooks)
         self._path: PathView | None = None
-        self._path_nodes = PathNodes(client.scene, self._origins, self._connect_points)
+        self._path_nodes = PathNodes(client.scene, self._origins, self.mouse.connect_points)
         self._wall = WallNodes(
-            client.scene,
-            self._origins,
-            self._at_robot,
-            self._hooks.on_wall_moved,
-            self._hooks.on_wall_turned,
+            client.scene, self._origins, pointer, hooks.on_wall_moved, hooks.on_wall_turned
         )
-        self._start = StartNodes(
-            client.scene, self._origins, self._at_robot, self._hooks.on_start_moved
-        )
-        self._point_offset = np.zeros(3)
-        self._covered: int | None = None
+        self._start = StartNodes(client.scene, self._origins, pointer, hooks.on_start_moved)
         self._freehand: Freehand | None = None
         self._captions = Captions(words)
         self._zone: viser.BatchedMeshHandle | None = None
@@ -145,7 +97,7 @@ class Scene:
         self._machine = RobotNodes(
             self._client.scene, self._stage, motion.counts, snapshot.laws, poses, self._words
         )
-        self._machine.grips.on_drag("left")(self._tip_dragged)
+        self.mouse.connect_grips(self._machine.grips)
         self._notes = [
             ChangingText(self._client.scene, f"/notes/{name}", base + self._stage.note)
             for name, base in self._stage.bases.items()
@@ -158,7 +110,7 @@ class Scene:
 
         Non-finite poses are not drawn.
         """
-        self._motion = motion
+        self.mouse.motion = motion
         self._machine.update(poses_of(self._stage, motion))
         if self._path is None or motion.path.version != self._path.version:
             self._path = motion.path
@@ -228,96 +180,3 @@ class Scene:
         if self._freehand is not None:
             self._freehand.cancel()
             self._freehand = None
-
-    # Mouse callbacks. Coroutines without await, because viser runs those in order.
-
-    async def _tip_dragged(self, event: DragEvent) -> None:
-        index = event.instance_index
-        if index is None or index >= len(self._benches):  # a browser may send any
-            return
-        bench = self._benches[index]
-        if event.phase == "start":
-            self._covered = self._covered_point(event, bench)
-        if self._covered is not None:
-            self._drag_point(event, bench, self._covered)
-            return
-        if event.phase == "end":
-            self._hooks.on_release(bench)
-            return
-        if event.phase == "start" or self._grip is None:
-            self._grip = self._grip_of(bench)
-        plane, offset = self._grip
-        target = self._on_plane(event, event.end_position, bench, plane)
-        if target is not None:
-            self._hooks.on_grab(bench, target + offset)
-
-    def _grip_of(self, bench: str) -> tuple[DragPlane, np.ndarray]:
-        """Plane of a new pull, and offset from the drawn end-point to the actual one, [m]."""
-        assert self._motion is not None
-        robot, normal = self._benches.index(bench), self._stage.pulls[self.pull].normal
-        tip, end = self._motion.point(robot, TIP), self._motion.point(robot, END)
-        return DragPlane(tip, normal), end - tip
-
-    def _covered_point(self, event: DragEvent, bench: str) -> int | None:
-        """The control point to select when an end-point that covers it is pressed, if any."""
-        path, pressed = self._path, self._on_plane(event, event.start_position, bench)
-        if path is None or pressed is None or not len(path.control_points):
-            return None
-        distances = np.linalg.norm(path.control_points - pressed, axis=1)
-        nearest = int(distances.argmin())
-        meant = self.path_first or nearest == path.selected
-        return nearest if meant and distances[nearest] < WITHIN else None
-
-    def _connect_points(self, points: viser.BatchedMeshHandle) -> None:
-        points.on_drag("left")(self._point_dragged)
-        points.on_click()(self._point_clicked)
-
-    async def _point_dragged(self, event: DragEvent) -> None:
-        if (found := self._robot_and_point(event.instance_index)) is not None:
-            self._drag_point(event, *found)
-
-    def _drag_point(self, event: DragEvent, bench: str, index: int) -> None:
-        if event.phase == "start":  # keep the press's offset from the centre, so no jump
-            assert self._path is not None
-            pressed = self._on_plane(event, event.start_position, bench)
-            centre = self._path.control_points[index]
-            self._point_offset = np.zeros(3) if pressed is None else centre - pressed
-            self._hooks.on_point_selected(index)
-        target = self._on_plane(event, event.end_position, bench)
-        if target is not None:
-            self._hooks.on_point_dragged(index, target + self._point_offset)
-        if event.phase == "end":
-            self._hooks.on_point_drag_end(index)
-
-    async def _point_clicked(self, event: ClickEvent) -> None:
-        if (found := self._robot_and_point(event.instance_index)) is not None:
-            self._hooks.on_point_selected(found[1])
-
-    def _robot_and_point(self, instance: int | None) -> tuple[str, int] | None:
-        """Robot and index of a control point that is drawn; None if there is no such instance.
-
-        The path may have changed since the browser drew it, and a browser may send any number.
-        """
-        count = 0 if self._path is None else len(self._path.control_points)
-        if instance is None or instance >= count * len(self._benches):
-            return None
-        robot, index = divmod(instance, count)
-        return self._benches[robot], index
-
-    def _at_robot(
-        self, event: DragEvent, pointer: tuple[float, float, float], robot: int
-    ) -> np.ndarray | None:
-        """Pointer position on the path's plane in the frame of a robot, by its number."""
-        return self._on_plane(event, pointer, self._benches[robot])
-
-    def _on_plane(
-        self,
-        event: DragEvent,
-        pointer: tuple[float, float, float],
-        bench: str,
-        plane: DragPlane | None = None,
-    ) -> np.ndarray | None:
-        """Pointer position in a robot's frame on a plane, by default the path's plane."""
-        camera, stage = event.client.camera.position, self._stage
-        place, base = np.array(pointer), stage.bases[bench]
-        return pointer_on_plane(camera, place, base, plane or stage.path_plane, stage.reachable)

@@ -9,14 +9,14 @@ import numpy as np
 
 from onpath.app.common import palette
 from onpath.app.scene import meshes
+from onpath.app.scene.pointer import DragByOffset, Pointer
 from onpath.app.scene.stage import add_copies
 from onpath.app.viser_adapter.frame_channel import update_node
 
 if TYPE_CHECKING:
     import viser
 
-    StartDrag = viser.SceneNodeDragEvent[viser.BatchedMeshHandle]
-    Pointer = Callable[[StartDrag, tuple[float, float, float], int], np.ndarray | None]
+    from onpath.app.scene.pointer import DragEvent
 
 RADIUS = 0.01
 """Radius of the ball [m]."""
@@ -34,7 +34,7 @@ class StartNodes:
     Args:
         scene: the client's scene.
         origins: of the robots' frames in the world, shape (k, 3), [m].
-        pointer: see `WallNodes`.
+        pointer: where the mouse is.
         on_move: called with the new place, shape (3,), in the robot's frame [m].
     """
 
@@ -46,11 +46,10 @@ class StartNodes:
         on_move: Callable[[np.ndarray], None],
     ) -> None:
         self._scene, self._origins = scene, origins
-        self._pointer, self._on_move = pointer, on_move
+        self._drag, self._on_move = DragByOffset(pointer), on_move
         self._ball: viser.BatchedMeshHandle | None = None
         self._arrows: viser.ArrowsHandle | None = None
         self._start = np.zeros((2, 3))
-        self._offset = np.zeros(3)
 
     def show(self, visible: bool) -> None:
         """Show or hide the start."""
@@ -102,14 +101,13 @@ class StartNodes:
     def _moves(self) -> bool:
         return bool(np.linalg.norm(SECONDS * (self._start[1] - self._start[0])) > LEAST)
 
-    async def _dragged(self, event: StartDrag) -> None:
+    async def _dragged(self, event: DragEvent) -> None:
         """Mouse callback; a coroutine without await, because viser runs those in order."""
         robot = event.instance_index
         if robot is None or robot >= len(self._origins):  # a browser may send any
             return
-        if event.phase == "start":  # keep the press's offset from the middle, so no jump
-            pressed = self._pointer(event, event.start_position, robot)
-            self._offset = np.zeros(3) if pressed is None else self._start[0] - pressed
-        target = self._pointer(event, event.end_position, robot)
+        if event.phase == "start":
+            self._drag.press(event, robot, self._start[0])
+        target = self._drag.target(event, robot)
         if target is not None:
-            self._on_move(target + self._offset)
+            self._on_move(target)

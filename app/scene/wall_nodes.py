@@ -10,14 +10,14 @@ from viser import transforms
 
 from onpath.app.common import palette
 from onpath.app.scene import meshes
+from onpath.app.scene.pointer import DragByOffset, Pointer
 from onpath.app.scene.stage import add_copies
 from onpath.app.viser_adapter.frame_channel import update_node
 
 if TYPE_CHECKING:
     import viser
 
-    WallDrag = viser.SceneNodeDragEvent[viser.BatchedMeshHandle]
-    Pointer = Callable[[WallDrag, tuple[float, float, float], int], np.ndarray | None]
+    from onpath.app.scene.pointer import DragEvent
 
 KNOB = 0.009
 """Radius of the knobs [m]."""
@@ -33,8 +33,7 @@ class WallNodes:
     Args:
         scene: the client's scene.
         origins: of the robots' frames in the world, shape (k, 3), [m].
-        pointer: (event, position of the pointer, number of the robot) -> the place on the path's
-            plane in the robot's frame, shape (3,), [m], or None.
+        pointer: where the mouse is.
         on_move: called with the new place of the wall's middle, shape (3,), in the robot's frame.
         on_turn: called with one of `ENDS` and the place at which it must point, shape (3,).
     """
@@ -48,10 +47,9 @@ class WallNodes:
         on_turn: Callable[[int, np.ndarray], None],
     ) -> None:
         self._scene, self._origins, self._pointer = scene, origins, pointer
-        self._on_move, self._on_turn = on_move, on_turn
+        self._drag, self._on_move, self._on_turn = DragByOffset(pointer), on_move, on_turn
         self._nodes: list[viser.BatchedMeshHandle] = []
         self._wall = np.zeros((0, 3))
-        self._offset = np.zeros(3)
 
     def draw(self, wall: np.ndarray) -> None:
         """Draw a wall, see `Snapshot.wall`; sends nothing if it is drawn already."""
@@ -94,22 +92,21 @@ class WallNodes:
 
     # Mouse callbacks. Coroutines without await, because viser runs those in order.
 
-    async def _body_dragged(self, event: WallDrag) -> None:
+    async def _body_dragged(self, event: DragEvent) -> None:
         robot = event.instance_index
         if robot is None or robot >= len(self._origins) or not len(self._wall):
             return  # a browser may send any
-        if event.phase == "start":  # keep the press's offset from the middle, so no jump
-            pressed = self._pointer(event, event.start_position, robot)
-            self._offset = np.zeros(3) if pressed is None else self._wall[0] - pressed
-        target = self._pointer(event, event.end_position, robot)
+        if event.phase == "start":
+            self._drag.press(event, robot, self._wall[0])
+        target = self._drag.target(event, robot)
         if target is not None:
-            self._on_move(target + self._offset)
+            self._on_move(target)
 
-    async def _end_dragged(self, event: WallDrag) -> None:
+    async def _end_dragged(self, event: DragEvent) -> None:
         instance = event.instance_index
         if instance is None or instance >= len(ENDS) * len(self._origins) or not len(self._wall):
             return
         robot, end = divmod(instance, len(ENDS))
-        target = self._pointer(event, event.end_position, robot)
+        target = self._pointer.place(event, event.end_position, robot)
         if target is not None:
             self._on_turn(ENDS[end], target)

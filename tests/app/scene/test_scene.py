@@ -21,9 +21,10 @@ from onpath.app.lab.snapshots.snapshot import (
     RobotView,
     Snapshot,
 )
+from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.poses import trace_segments
 from onpath.app.scene.robot_nodes import TRACE_SEGMENTS
-from onpath.app.scene.scene import Scene, SceneCallbacks, meshes
+from onpath.app.scene.scene import Scene, meshes
 from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Stage, view_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT, RIGHT
@@ -206,7 +207,7 @@ def test_a_dragged_point_moves_by_what_the_mouse_moved(lab, robot_index):
 def test_where_an_end_point_covers_a_control_point_the_one_that_is_meant_is_taken(
     lab, path_first, selected, beside, taken
 ):
-    lab.scene.path_first = path_first
+    lab.scene.mouse.path_first = path_first
     lab.scene.update(snapshot(path=replace(path(1), selected=selected)).motion)
     name = BENCHES[1]
     point = path().control_points[4] + [beside, 0.0, 0.0]
