@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from onpath.lessons.schema import RobotName
+from onpath.lessons.action_schema import RobotName
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.control.laws.own import LABEL, OWN, is_text

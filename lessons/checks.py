@@ -9,16 +9,16 @@ from functools import singledispatch
 import msgspec
 import numpy as np
 
+from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import robot_names
 from onpath.lessons.labels import event_label, setting_label, value_label
 from onpath.lessons.record import QUANTITIES, Mask, Record
-from onpath.lessons.schema import (
+from onpath.lessons.task_schema import (
     Bound,
     Check,
     Compare,
     Event,
     Order,
-    RobotName,
     Setting,
     Stat,
     Task,

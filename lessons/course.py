@@ -12,7 +12,8 @@ import msgspec
 
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem
-from onpath.lessons.schema import Lesson, Reference, Sketch, Step, Task, Text
+from onpath.lessons.schema import Lesson, Sketch, Step, Text
+from onpath.lessons.task_schema import Reference, Task
 from onpath.lessons.vocabulary import script_faults
 from onpath.lessons.words import DEFAULT
 

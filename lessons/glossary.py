@@ -9,7 +9,7 @@ from typing import Annotated
 import msgspec
 
 from onpath.assets import asset_path
-from onpath.lessons.schema import Data
+from onpath.lessons.action_schema import Data
 from onpath.lessons.words import DEFAULT
 
 Said = Annotated[str, msgspec.Meta(min_length=1)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from urllib.parse import unquote
 
-from onpath.lessons.schema import Action, Laws, Value
+from onpath.lessons.action_schema import Action, Laws, Value
 from onpath.models.control.benches import BENCHES
 
 SCHEME = "lab:"

@@ -13,6 +13,7 @@ from markdown_it.token import Token
 from markupsafe import Markup
 
 from onpath.lessons import vocabulary
+from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.formulas import FormulaError, embedded, folded, reader, render, to_html
 from onpath.lessons.links import read_link
 from onpath.lessons.problems import LessonError, Problem
@@ -25,14 +26,12 @@ from onpath.lessons.schema import (
     Option,
     Prediction,
     Quiz,
-    Script,
     Sketch,
     Step,
     StepKind,
-    StepSetup,
-    Task,
     Text,
 )
+from onpath.lessons.task_schema import Task
 from onpath.lessons.toml_blocks import read_checked, read_toml
 
 LARGEST = 1_000_000

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from onpath.lessons.schema import RobotName, Window
+from onpath.lessons.action_schema import RobotName
+from onpath.lessons.task_schema import Window
 from onpath.models.arrays import Array
 from onpath.models.systems.parameters import Parameters
 
@@ -41,7 +42,7 @@ class Happening:
     Attributes:
         run: number of resets before it.
         time: simulated time, [s].
-        name: one of lessons.schema.EventName.
+        name: one of lessons.task_schema.EventName.
         detail: name of the parameter, the path or the robot; or empty.
         robots: the robots that it concerns.
     """

@@ -6,24 +6,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import get_args
 
+from onpath.lessons.action_schema import Action, Laws, Script, StepSetup, Value
 from onpath.lessons.record import PLOTS, QUANTITIES
-from onpath.lessons.schema import (
-    Action,
-    Bound,
-    Check,
-    Compare,
-    Event,
-    EventName,
-    Laws,
-    Order,
-    Prediction,
-    Script,
-    Setting,
-    Sketch,
-    StepSetup,
-    Task,
-    Value,
-)
+from onpath.lessons.schema import Prediction, Sketch
+from onpath.lessons.task_schema import Bound, Check, Compare, Event, EventName, Order, Setting, Task
 from onpath.models.closed_loop.simulation import check_level_set, raised
 from onpath.models.control.benches import BENCHES, checked_laws
 from onpath.models.control.laws.own import OWN

@@ -12,13 +12,14 @@ from onpath.app.classroom.classroom import Member
 from onpath.app.classroom.results import Distribution, tasks_passed
 from onpath.app.common.palette import AMBER, GREEN, GREY, OF_BENCH, SLATE
 from onpath.app.common.templates import render
+from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import ROLES, robot_names
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import MOST_POINTS as MOST_OF_TRUTH
 from onpath.lessons.progress import Progress, Truth
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Choice, Prediction, RobotName, Sketch
+from onpath.lessons.schema import Choice, Prediction, Sketch
 from onpath.lessons.thinning import peaks
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS

@@ -12,7 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from onpath.app.classroom.moment import Moment, read_moment, take_over, typed_loops_of
+from onpath.app.classroom.moment import Moment, typed_loops_of
+from onpath.app.classroom.moment_check import read_moment
+from onpath.app.classroom.moment_to_lab import take_over
 from onpath.app.common.error_log import log_warning
 from onpath.app.lab.advance_together import Frame, Ticks
 from onpath.app.lab.lab import Lab

@@ -11,7 +11,8 @@ from functools import partial
 import msgspec
 
 from onpath.app.classroom.mirror import Mirror
-from onpath.app.classroom.moment import Moment, tell
+from onpath.app.classroom.moment import Moment
+from onpath.app.classroom.moment_of_lab import tell
 from onpath.app.classroom.watches import Watches
 from onpath.app.common.error_log import log_warning
 from onpath.app.common.periodic import Periodic

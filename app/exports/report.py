@@ -15,10 +15,12 @@ from onpath.app.common.templates import render
 from onpath.app.exports.report_facts import Chapter, chapters, predictions, quizzes
 from onpath.app.exports.report_plot import draw_prediction, number
 from onpath.app.lab.lesson_state import LessonState
+from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import ROLES, robot_names
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Prediction, Quiz, RobotName, Sketch, Task
+from onpath.lessons.schema import Prediction, Quiz, Sketch
+from onpath.lessons.task_schema import Task
 from onpath.lessons.words import DEFAULT, Words
 
 

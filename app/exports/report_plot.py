@@ -14,10 +14,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from onpath.app.common.palette import OF_BENCH, SELECTED
+from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import ROLES
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import RobotName, Sketch
+from onpath.lessons.schema import Sketch
 from onpath.lessons.words import Words
 
 SIZE = (6.6, 2.9)  # [in]

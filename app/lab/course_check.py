@@ -10,10 +10,12 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.lesson_run import setup_of
 from onpath.app.lab.loop_cache import LoopCache
+from onpath.lessons.action_schema import Script
 from onpath.lessons.checks import Verdict, judge
 from onpath.lessons.course import REFERENCE, Course, read_references
 from onpath.lessons.problems import Problem
-from onpath.lessons.schema import Lesson, Script, Step, Task
+from onpath.lessons.schema import Lesson, Step
+from onpath.lessons.task_schema import Task
 from onpath.lessons.words import DEFAULT, Words
 
 FRAME = 1 / 60  # [s]

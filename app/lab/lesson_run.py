@@ -20,7 +20,8 @@ from onpath.lessons.checks import Verdict, judge, statistic
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Answer, Progress, Truth
 from onpath.lessons.record import Record
-from onpath.lessons.schema import Lesson, Prediction, Sketch, Task, Window
+from onpath.lessons.schema import Lesson, Prediction, Sketch
+from onpath.lessons.task_schema import Task, Window
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameter_specs import unknown_name

@@ -10,7 +10,8 @@ from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.checks import Verdict
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Choice, Lesson, Quiz, Sketch, Step, Task
+from onpath.lessons.schema import Choice, Lesson, Quiz, Sketch, Step
+from onpath.lessons.task_schema import Task
 from onpath.lessons.words import Words
 
 

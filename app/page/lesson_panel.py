@@ -18,7 +18,8 @@ from onpath.app.scene.scene import Scene
 from onpath.lessons.benches import robot_names
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
-from onpath.lessons.schema import Choice, Prediction, Quiz, Sketch, Step, Task, Text
+from onpath.lessons.schema import Choice, Prediction, Quiz, Sketch, Step, Text
+from onpath.lessons.task_schema import Task
 from onpath.lessons.words import Words
 
 if TYPE_CHECKING:

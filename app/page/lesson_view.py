@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
+from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import option_order
-from onpath.lessons.schema import Choice, Quiz, StepSetup
+from onpath.lessons.schema import Choice, Quiz
 from onpath.lessons.words import Words
 
 NO_SETUP = StepSetup()

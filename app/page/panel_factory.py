@@ -28,7 +28,7 @@ from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_user_updat
 from onpath.app.page.plots import MORE, LivePlot, MorePlots
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
-from onpath.lessons.schema import StepSetup
+from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 

@@ -9,8 +9,8 @@ import viser
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panel_factory import PanelFactory, Part
+from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import Course
-from onpath.lessons.schema import StepSetup
 from onpath.lessons.words import Words
 
 

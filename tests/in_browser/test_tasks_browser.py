@@ -16,7 +16,7 @@ from playwright.sync_api import Browser
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.course import BUILT_IN, read_course
-from onpath.lessons.schema import Task
+from onpath.lessons.task_schema import Task
 from tests.support.browser import Tab, wait_for
 from tests.support.hands import (
     ROBOT,

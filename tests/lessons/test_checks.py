@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from onpath.lessons.checks import verdict
 from onpath.lessons.record import Happening, Record
-from onpath.lessons.schema import Bound, Compare, During
+from onpath.lessons.task_schema import Bound, Compare, During
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR
 

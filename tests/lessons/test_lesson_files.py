@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 
 from onpath.app.cli.main import run_command
 from onpath.assets.messages import identifier, languages
+from onpath.lessons.action_schema import Action
 from onpath.lessons.course import read_course
 from onpath.lessons.formulas import to_html
 from onpath.lessons.links import read_link
 from onpath.lessons.parse import LARGEST, read_lesson
 from onpath.lessons.problems import LessonError
-from onpath.lessons.schema import Action, Sketch, Text
+from onpath.lessons.schema import Sketch, Text
 from onpath.lessons.words import ELSEWHERE, Words
 from tests.support.catalogues import arguments, entries, messages
 from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson

@@ -17,7 +17,8 @@ from onpath.lessons.checks import judge
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.labels import setting_label
 from onpath.lessons.progress import Notes, Progress
-from onpath.lessons.schema import Choice, Lesson, Order, Quiz, Setting, Step, Task
+from onpath.lessons.schema import Choice, Lesson, Quiz, Step
+from onpath.lessons.task_schema import Order, Setting, Task
 from onpath.lessons.words import Words, languages
 from tests.support.lab import store
 from tests.support.lesson_texts import LESSON, write_lesson

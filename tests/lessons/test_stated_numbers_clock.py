@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from onpath.lessons.schema import Action
+from onpath.lessons.action_schema import Action
 from tests.support.stated_numbers import (
     Motion,
     Run,

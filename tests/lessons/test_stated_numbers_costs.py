@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from onpath.lessons.action_schema import Action
 from onpath.lessons.course import BUILT_IN
-from onpath.lessons.schema import Action
 from onpath.models.control.poles import channels
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.five_bar_parameters import FiveBarParameters

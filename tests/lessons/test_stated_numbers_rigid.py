@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from onpath.lessons.schema import Action
+from onpath.lessons.action_schema import Action
 from onpath.models.arrays import Array
 from onpath.models.control.poles import channels
 from onpath.models.systems.five_bar import inverse_kinematics, load_links

@@ -17,10 +17,11 @@ from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_run import setup_of
 from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
+from onpath.lessons.action_schema import Action, RobotName, Script, Value
 from onpath.lessons.benches import ROLES
 from onpath.lessons.course import BUILT_IN
 from onpath.lessons.parse import read_lesson
-from onpath.lessons.schema import Action, Lesson, RobotName, Script, Value
+from onpath.lessons.schema import Lesson
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from tests.support.lab import replayed, run, store

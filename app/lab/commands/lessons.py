@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from onpath.app.lab.commands.scripts import commands_of, player_of
 from onpath.app.lab.lab import Command, Lab
+from onpath.lessons.action_schema import Action
 from onpath.lessons.progress import Answer
-from onpath.lessons.schema import Action
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,8 +17,8 @@ from onpath.app.lab.commands.time import Reset, SetRunning
 from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.script_player import ScriptPlayer
+from onpath.lessons.action_schema import Action, Laws, RobotName, Script
 from onpath.lessons.benches import BENCH_OF
-from onpath.lessons.schema import Action, Laws, RobotName, Script
 from onpath.models.control.benches import BENCHES, checked_laws
 from onpath.models.errors import CodedError
 

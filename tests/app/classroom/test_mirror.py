@@ -13,7 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.app.classroom.mirror import BEHIND, Mirror
-from onpath.app.classroom.moment import Moment, read_moment, tell
+from onpath.app.classroom.moment import Moment
+from onpath.app.classroom.moment_check import read_moment
+from onpath.app.classroom.moment_of_lab import tell
 from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import advance_together
 from onpath.app.lab.commands import Freeze

@@ -32,7 +32,8 @@ from onpath.assets import asset_path
 from onpath.lessons.checks import Verdict
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.progress import Answer, Notes, Progress
-from onpath.lessons.schema import Choice, Lesson, Option, Quiz, Sketch, Task, Text
+from onpath.lessons.schema import Choice, Lesson, Option, Quiz, Sketch, Text
+from onpath.lessons.task_schema import Task
 from onpath.lessons.words import ENGLISH, Words, languages
 from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
 from tests.support.checkout import ROOT

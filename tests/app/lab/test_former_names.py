@@ -10,7 +10,9 @@ from typing import Any
 import msgspec
 import pytest
 
-from onpath.app.classroom.moment import parameters_of, read_moment, tell
+from onpath.app.classroom.moment import parameters_of
+from onpath.app.classroom.moment_check import read_moment
+from onpath.app.classroom.moment_of_lab import tell
 from onpath.app.cli.main import run_command
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup

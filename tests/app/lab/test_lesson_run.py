@@ -18,10 +18,12 @@ from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.sketches import sketched
 from onpath.app.page import lesson_html as html
+from onpath.lessons.action_schema import Action
 from onpath.lessons.checks import judge
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.progress import MOST_POINTS, Answer, Progress, read_progress
-from onpath.lessons.schema import Action, Choice, Event, Option, Quiz, Sketch, Task
+from onpath.lessons.schema import Choice, Option, Quiz, Sketch
+from onpath.lessons.task_schema import Event, Task
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, run, store

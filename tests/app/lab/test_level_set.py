@@ -15,7 +15,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.notebook.simulate import ellipse, simulate
-from onpath.lessons.schema import StepSetup
+from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.vocabulary import scene_faults
 from onpath.models.closed_loop.trajectory import header, write_csv
 from onpath.models.studies.experiments import experiments

@@ -15,8 +15,8 @@ from onpath.app.lab.lab import MOST_COMMANDS, Lab
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.storage.lab_state import _now, _state, put_back
+from onpath.lessons.action_schema import Action
 from onpath.lessons.course import Course, read_course
-from onpath.lessons.schema import Action
 from onpath.models.closed_loop.obstacles import DIRECTIONS
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of, settings_vector
 from onpath.models.closed_loop.start import BOUNDS

@@ -14,7 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.classroom.mirror import Mirror
-from onpath.app.classroom.moment import read_moment, tell
+from onpath.app.classroom.moment_check import read_moment
+from onpath.app.classroom.moment_of_lab import tell
 from onpath.app.exports.figures import draw_history
 from onpath.app.exports.files import csv_bytes
 from onpath.app.exports.recording import record_scene
@@ -32,8 +33,8 @@ from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_sn
 from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.app.viser_adapter.message_filter import Limits
+from onpath.lessons.action_schema import Laws, StepSetup
 from onpath.lessons.benches import bench_titles, law_label, law_text, robot_names
-from onpath.lessons.schema import Laws, StepSetup
 from onpath.lessons.vocabulary import scene_faults
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.start import Start

@@ -1,0 +1,118 @@
+"""The data of a task and of the checks that decide whether it is passed; lessons/checks.py does."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from onpath.lessons.action_schema import Data, RobotName, Script, Value
+
+Stat = Literal["max", "min", "mean", "rms", "final"]
+During = Literal["always", "held", "pulled", "free"]
+EventName = Literal[
+    "hold",
+    "let_go",
+    "pull",
+    "release",
+    "set",
+    "path",
+    "reset",
+    "identify",
+    "diverged",
+    "robot",
+    "law",
+]
+
+
+class Window(Data, frozen=True):
+    """The instants of a run that a check evaluates.
+
+    Attributes:
+        during: "always", "held", "pulled", or "free" (neither held nor pulled).
+        last: only the latest of those, [s]; 0 for all.
+        least: least total duration, [s].
+    """
+
+    during: During = "always"
+    last: float = 0.0
+    least: float = 1.0
+
+
+class Bound(Window, frozen=True, tag="bound", tag_field="kind"):
+    """A statistic of a quantity lies between bounds."""
+
+    quantity: str = ""
+    robot: RobotName = "follower"
+    stat: Stat = "max"
+    below: float | None = None
+    above: float | None = None
+
+
+class Compare(Window, frozen=True, tag="compare", tag_field="kind"):
+    """A statistic of `larger` is at least `ratio` times that of the other robot."""
+
+    quantity: str = ""
+    larger: RobotName = "tracker"
+    stat: Stat = "max"
+    ratio: float = 1.0
+
+
+class Event(Data, frozen=True, tag="event", tag_field="kind"):
+    """An event has happened.
+
+    Attributes:
+        name: of a parameter for "set", a path for "path", a robot for "robot", a law for "law";
+            empty for any.
+        times: least number of times.
+    """
+
+    event: EventName
+    name: str = ""
+    times: int = 1
+
+
+class Order(Data, frozen=True, tag="order", tag_field="kind"):
+    """Events have happened in this order, possibly with others in between. `set:K1` names one."""
+
+    events: tuple[str, ...]
+
+
+class Setting(Data, frozen=True, tag="setting", tag_field="kind"):
+    """A parameter has a value or lies in a range.
+
+    Attributes:
+        name: of a parameter; or "path" or "robot"; or "left" or "right" for the law of a bench.
+    """
+
+    name: str
+    equals: Value | None = None
+    below: float | None = None
+    above: float | None = None
+
+
+Check = Bound | Compare | Event | Order | Setting
+
+
+class Task(Data, frozen=True):
+    """What the student has to do, and how the lab checks it.
+
+    Attributes:
+        id: unique in the lesson, the same in all languages.
+        check: all of them must be satisfied at the same time.
+        hints: shown one at a time.
+        best: a quantity of the follower to minimise; the student's best value is kept.
+        passed: why it worked, shown once the task is passed.
+    """
+
+    id: str
+    text: str
+    check: tuple[Check, ...]
+    hints: tuple[str, ...] = ()
+    best: str = ""
+    passed: str = ""
+
+
+class Reference(Data, frozen=True):
+    """Scripts for one task: one that solves it, and one that does not."""
+
+    solution: Script
+    failure: Script
