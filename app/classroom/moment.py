@@ -1,8 +1,8 @@
 """The state of a lab at one instant, serialised to be shown in another process.
 
 Unlike a setup it includes the exact states of the robots and the pushes on them, so that a lab that
-adopts it continues exactly as the original does. moment_of_lab.py makes it, moment_check.py reads and
-checks it, moment_to_lab.py adopts it.
+adopts it continues exactly as the original does. moment_of_lab.py makes it, moment_check.py reads
+and checks it, moment_to_lab.py adopts it.
 """
 
 from __future__ import annotations
