@@ -35,7 +35,9 @@ def steps(file: Path) -> list[tuple[str, str]]:
 def formulas(step: str) -> Counter[str]:
     """Formulas without their words, with decimal points."""
     found = ("".join(groups) for groups in FORMULA.findall(step))
-    return Counter(re.sub(r"\\text\{[^}]*}", "", each.replace("{,}", ".")) for each in found)
+    return Counter(
+        re.sub(r"\\(text|operatorname)\{[^}]*}", "", each.replace("{,}", ".")) for each in found
+    )
 
 
 @both
