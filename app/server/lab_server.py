@@ -18,7 +18,6 @@ from onpath.app.common.access_codes import normalised
 from onpath.app.common.error_log import log_error
 from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
-from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.build_queue import BuildQueue
@@ -32,6 +31,7 @@ from onpath.app.server.arrivals import Arrivals, Kept
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
+from onpath.app.server.new_lab import new_lab
 from onpath.app.server.lazy_imports import warm_up
 from onpath.app.server.memory_release import INTERVAL, MemoryRelease, limit_heap
 from onpath.app.server.tab_visibility import TabVisibilities
@@ -96,7 +96,7 @@ class LabServer:
         self._leases = Leases(records) if records else None
         self._keeper = WriteBehind(self._leases) if self._leases else None
         self._expiry = Expiry(records, retention or Retention()) if records else None
-        self.sessions = LabRegistry(self.simulation, lambda: Lab(store, FIVE_BAR, lessons))
+        self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons))
         if records is not None:
             self.sessions.load, self.sessions.keeper = records.load, self._keeper
             self.sessions.leases = self._leases

@@ -641,7 +641,9 @@ help-text =
     - **Ring oder Punkt**: worauf der Regler zielt. Ein Ring ist ein Bezugspunkt des Reglers, der etwa
       nach der Uhr läuft, ein Punkt mit weißem Rand der nächste Punkt der Bahn.
     - **Pfeil**: die Kraft von Hand oder Bremse auf die Spitze.
-    - **Drehe die Ansicht** mit der Maus oder einem Finger; *Ansicht* stellt sie wieder her.
+    - **Drehe die Ansicht** mit der rechten Taste oder zwei Fingern; *Ansicht* stellt sie wieder her.
+    - **Ein neues Labor beginnt langsam**: Das gewünschte Tempo steigt von 0 auf 2 rad/s, deshalb sind
+      beide Roboter von Anfang an auf der Bahn. *Tempo* und *Tempo-Rampe* unter *Weitere* ändern das.
 
     Eine Taste, die das gerade gewählte Bedienelement selbst braucht, etwa die Pfeile auf einem
     Schieberegler oder die Leertaste auf einem Knopf, wirkt nur dort.

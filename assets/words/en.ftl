@@ -586,7 +586,9 @@ help-text = **Hold both back** and watch: under trajectory tracking, the left ro
     - **Ring or dot**: what the controller aims at. A ring is a reference point of its own, which may
       run by the clock; a dot with a white rim is the closest point of the path.
     - **Arrow**: the force that pulls or holds the end-point.
-    - **Turn the view** with the mouse or a finger; *Reset view* restores it.
+    - **Turn the view** with the right button or two fingers; *Reset view* restores it.
+    - **A new lab begins slowly**: the wanted speed rises from 0 to 2 rad/s, so both robots are on the
+      path from the beginning. *Speed* and *Speed ramp* under *Advanced* change that.
 
     A key that the focused control uses itself, such as the arrows on a slider or the space bar on a
     button, acts on that control only.

@@ -1,0 +1,36 @@
+"""The lab that a newcomer finds begins gently, whichever robot is chosen."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.server.new_lab import new_lab
+from onpath.lessons.course import NO_LESSONS
+from onpath.models.systems.catalogue import ROBOTS
+from tests.support.lab import do, run, store
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_both_robots_are_on_the_path_from_the_beginning(name: str) -> None:
+    lab = new_lab(store(), NO_LESSONS)
+    do(lab, c.ChooseRobot(name))
+    run(lab, 2.0)
+    assert all(run.max_distance < 1e-4 for run in lab.session.runs.values())
+
+
+def test_a_hand_can_catch_an_end_point() -> None:
+    lab = new_lab(store(), NO_LESSONS)
+    places = []
+    for _ in range(120):
+        run(lab, 1 / 60)
+        places.append(lab.session.runs["right"].shown()["y"].copy())
+    speeds = 60 * np.linalg.norm(np.diff(places, axis=0), axis=1)
+    assert speeds[:6].max() < 0.03 and 0.09 < speeds.max() < 0.11
+
+
+def test_the_usual_parameters_are_one_command_away() -> None:
+    lab = new_lab(store(), NO_LESSONS)
+    do(lab, c.ResetParameters())
+    assert lab.session.parameters == ROBOTS["five_bar"].lab
