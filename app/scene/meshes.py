@@ -130,9 +130,9 @@ def link() -> Mesh:
     Scaling turns its round ends into half ellipses. They are circular for 0.2 m, and the bearings
     cover them.
     """
-    half, chamfer, pocket = LINK_THICKNESS / 2, 0.0016, 0.0024
-    rim, edge = _stadium(0.008, 0.0104, 0.055), _stadium(0.0, 0.012, 0.055)
-    mouth, bed = _stadium(0.13, 0.0062, 0.03), _stadium(0.138, 0.0046, 0.03)
+    half, chamfer, pocket = LINK_THICKNESS / 2, 0.0016, 0.0036
+    rim, edge = _stadium(0.008, 0.0122, 0.055), _stadium(0.0, 0.014, 0.055)
+    mouth, bed = _stadium(0.13, 0.0078, 0.03), _stadium(0.138, 0.0052, 0.03)
     layers = [(bed, pocket - half), (mouth, -half), (rim, -half), (edge, chamfer - half)]
     mirrored = [(ring, -y) for ring, y in reversed(layers)]
     return crisp(loft(np.stack([np.insert(ring, 1, y, axis=1) for ring, y in layers + mirrored])))
@@ -151,9 +151,10 @@ def bearing() -> Mesh:
 
     Scaled per instance, it also serves as the pen and as the flat discs that mark points.
     """
-    shell = [(0.0108, 0.0165), (0.012, 0.015), (0.012, -0.015), (0.0108, -0.0165)]
-    bolt = [(0.0075, -0.0165), (0.0075, -0.0152), (0.0052, -0.0152), (0.0052, -0.0195)]
-    return crisp(turned(shell + bolt + [(0.0044, -0.0203)]))
+    back = [(0.0108, 0.0165), (0.012, 0.015), (0.012, -0.015), (0.0112, -0.0165)]
+    seal = [(0.0092, -0.0165), (0.0086, -0.0148), (0.0068, -0.0148), (0.0062, -0.0168)]
+    bolt = [(0.0044, -0.0168), (0.0042, -0.0195), (0.0034, -0.0203)]
+    return crisp(turned(back + seal + bolt))
 
 
 @lru_cache
@@ -227,6 +228,31 @@ def cross() -> Mesh:
     arm = np.array([(0.5, 0.09), (-0.5, 0.09), (-0.5, -0.09), (0.5, -0.09)])
     turn = np.sqrt(0.5) * np.array([[1.0, 1.0], [-1.0, 1.0]])
     return crisp(*(extruded(arm @ r, -0.06, 0.06, 0.02) for r in (turn, turn.T)))
+
+
+RAIL = (0.0125, 0.0165)  # inner and outer edge of a brake's jaws, from its middle [m]
+_RAIL_LAYERS = (-0.014, -0.001)  # in front of the path, on both sides of the pen [m]
+
+
+def _jaws(half: float) -> Mesh:
+    """Two bars at both sides of an end-point, joined at their ends, `half` long to either side."""
+    inner, outer = RAIL
+    bar = np.array([(inner, -half), (outer, -half), (outer, half), (inner, half)])
+    end = np.array([(-outer, half), (outer, half), (outer, half + 0.006), (-outer, half + 0.006)])
+    outlines = bar, bar - [inner + outer, 0.0], end, end - [0.0, 2 * half + 0.006]
+    return crisp(*(extruded(outline, *_RAIL_LAYERS, 0.001) for outline in outlines))
+
+
+@lru_cache
+def guide() -> Mesh:
+    """A brake that leaves an end-point free along z: it slides between two rails."""
+    return _jaws(0.055)
+
+
+@lru_cache
+def clamp() -> Mesh:
+    """A brake that leaves an end-point no way to move."""
+    return _jaws(0.013)
 
 
 WALL = (0.13, 0.04)  # length of the drawn part of a wall, and its depth behind the surface [m]

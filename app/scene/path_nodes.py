@@ -79,7 +79,9 @@ class PathNodes:
             # Not a scaled unit ball: viser keeps an unscaled, invisible copy of a clickable mesh at
             # its origin, which would take presses meant for the camera.
             ball = meshes.ball(POINT_RADIUS)
-            self._points = add_copies(self._scene, "/path/points", ball, positions, colours)
+            self._points = add_copies(
+                self._scene, "/path/points", ball, positions, colours, shadow=False
+            )
             self._connect(self._points)
 
     def _draw_marks(self, refused: np.ndarray) -> None:

@@ -1,9 +1,8 @@
-"""Moving nodes of all robots: links, bearings, pens, markers, grips, forces, traces."""
+"""Moving nodes of all robots: links, bearings, pens, markers, grips, arrows, traces."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,17 +10,15 @@ import numpy as np
 from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import Counts, RobotView
 from onpath.app.scene import meshes
+from onpath.app.scene.contact_nodes import FORCE_SHOWN
 from onpath.app.scene.poses import Poses, difference, trace_segments
-from onpath.app.scene.stage import IDENTITY, ChangingText, Stage, add_copies
+from onpath.app.scene.stage import IDENTITY, Stage, add_copies
 from onpath.app.viser_adapter.frame_channel import NodeGroup, update_node
-from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.laws.registry import law_named
 
 if TYPE_CHECKING:
     import viser
 
-FORCE_SHOWN = 0.05
-"""Forces below this are not drawn [N]."""
 NEGLIGIBLE = 1e-6
 """Changes of lengths, rotations and forces below this are not drawn [m, N]."""
 TRACE_SEGMENTS = 120
@@ -29,7 +26,7 @@ TRACE_DEPTHS = (0.012, 0.002)
 """Depth of the trace behind the path, and of older laps behind newer ones [m]."""
 
 # Scales of the bearing's mesh, which also serves as pen and as the discs of a marker.
-BEARING = (1.0, 1.0, 1.0)
+BEARING = (1.25, 1.0, 1.25)
 MOTOR = (1.8, 1.5, 1.8)
 PEN = (0.42, 0.5, 0.42)
 EXTRA = (0.4, 0.1, 0.4)
@@ -142,7 +139,6 @@ class RobotNodes:
         counts: numbers of parts of each robot.
         laws: their control laws.
         poses: their initial poses.
-        words: message catalogue for the labels.
     """
 
     def __init__(
@@ -152,9 +148,8 @@ class RobotNodes:
         counts: Counts,
         laws: dict[str, str],
         poses: Poses,
-        words: Words = ENGLISH,
     ) -> None:
-        self._words, self._laws = words, laws
+        self._laws = laws
         self._counts, self._motors = counts, stage.motors
         self._bases = bases = stage.bases
         self._force_scale = stage.force_scale
@@ -246,20 +241,12 @@ class RobotNodes:
             self._acting = self._arrows.visible = acts
 
     def update_traces(self, robots: list[RobotView]) -> None:
-        """Redraws the traces if they have changed, and updates the force labels."""
+        """Redraws the traces if they have changed."""
         lines = [trace_segments(robot.trace, TRACE_SEGMENTS) for robot in robots]
         points = np.concatenate(lines) + self._trace_origins
         if 0.0 < difference(points, self._traced) < np.inf:  # false if there is a NaN
             self._traced = points
             update_node(self._traces, points=points)
-        for robot, label in zip(robots, self._force_labels, strict=True):
-            label.show(self._force_words(hypot(*robot.force.tolist())))
-
-    def _force_words(self, force: float) -> str:
-        """Label with the magnitude of a force, [N]; empty when none is drawn."""
-        if force > FORCE_SHOWN:
-            return self._words("scene.force", force=f"{force:.{int(force < 1.0)}f}")
-        return ""
 
     def _add_force(self, scene: viser.SceneApi, stage: Stage) -> None:
         self._acting = False
@@ -272,7 +259,3 @@ class RobotNodes:
             head_length=0.018,
             visible=False,
         )
-        self._force_labels = [
-            ChangingText(scene, f"/force_labels/{name}", base + stage.force)
-            for name, base in stage.bases.items()
-        ]

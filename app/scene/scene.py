@@ -15,6 +15,7 @@ from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import Motion, PathView, Snapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.captions import Captions
+from onpath.app.scene.contact_nodes import ContactNodes
 from onpath.app.scene.freehand import Freehand
 from onpath.app.scene.mouse import Mouse, SceneCallbacks
 from onpath.app.scene.path_nodes import PathNodes
@@ -95,8 +96,9 @@ class Scene:
         self._titles = Titles(self._client.scene, self._stage, self._words)
         poses = poses_of(self._stage, motion)
         self._machine = RobotNodes(
-            self._client.scene, self._stage, motion.counts, snapshot.laws, poses, self._words
+            self._client.scene, self._stage, motion.counts, snapshot.laws, poses
         )
+        self._contacts = ContactNodes(self._client.scene, self._stage, self._words)
         self.mouse.connect_grips(self._machine.grips)
         self._notes = [
             ChangingText(self._client.scene, f"/notes/{name}", base + self._stage.note)
@@ -123,6 +125,7 @@ class Scene:
         self._titles.show(snapshot.laws, self._captions.of(snapshot))
         self._machine.update_laws(snapshot.laws)
         self._machine.update_traces([snapshot.robots[bench] for bench in self._benches])
+        self._contacts.update(snapshot)
         freehand = self._freehand  # another thread may end the stroke
         drawing = self.is_drawing
         if freehand is not None:

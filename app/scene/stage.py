@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 FIELD_OF_VIEW = np.radians(15.0)
 NARROW = 0.6  # width to height; for phones, where the panel covers the lower part
+GROUND = 1.6
+"""Radius within which the ground is seen; beyond it there is the horizon [m]."""
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 TITLE, AIM = (0.0, 0.036), (0.047, 0.026)
 """Lines over a robot: offset below the title's position, and height, [m]."""
@@ -42,7 +44,6 @@ class Stage:
         reach: radii of the circles about the base pivot at which the robot is singular.
         title: position of the title; the second line is lower by a third of its height.
         note: position of the note that the drawing is not to scale.
-        force: position of the label with the magnitude of the force.
         force_scale: length of the force's arrow [m/N].
         sheet: low and high corner (x, z), and y, of the sheet for a freehand stroke.
         motors: joints that are drawn as motors.
@@ -60,7 +61,6 @@ class Stage:
     reach: tuple[float, float]
     title: np.ndarray
     note: np.ndarray
-    force: np.ndarray
     force_scale: float
     sheet: tuple[tuple[float, float], tuple[float, float], float]
     motors: tuple[int, ...]
@@ -152,25 +152,38 @@ def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
 
 def build_stage(scene: viser.SceneApi, stage: Stage) -> None:
     """Adds floor, lights and machine bases to a client's scene."""
-    middle = (stage.low[0] + stage.high[0]) / 2
-    scene.configure_environment_map(None)
-    scene.add_light_ambient("/stage/ambient", intensity=1.9)
-    scene.add_light_directional("/stage/front", intensity=1.5, position=(-0.4, -1.0, 0.7))
+    _add_lights(scene)
     scene.add_grid(
         "/stage/floor",
-        width=2.4,
-        height=1.6,
+        plane="xy",
+        infinite_grid=True,
+        fade_from="origin",
+        fade_distance=GROUND,
+        fade_strength=1.6,
         cell_size=0.05,
         section_size=0.2,
         cell_color=palette.GRID.rgb,
-        section_color=palette.GRID.toward(palette.INK, 0.12).rgb,
+        section_color=palette.GRID.toward(palette.INK, 0.08).rgb,
         plane_color=palette.FLOOR.rgb,
         plane_opacity=1.0,
-        shadow_opacity=0.18,
-        position=stage.origins.mean(0) + [middle, 0.05, stage.floor],
+        shadow_opacity=0.5,
+        position=stage.origins.mean(0) + [0.0, 0.0, stage.floor],
     )
     for part, mesh, colour in stage.parts():
         add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
+
+
+def _add_lights(scene: viser.SceneApi) -> None:
+    """A studio: one light that casts shadows, from the left above, a soft one, one from behind."""
+    scene.configure_environment_map(None)
+    scene.configure_default_lights(enabled=False)
+    scene.add_light_hemisphere(
+        "/stage/sky", sky_color=(255, 255, 255), ground_color=(205, 200, 196), intensity=2.2
+    )
+    scene.add_light_directional(
+        "/stage/key", intensity=2.9, position=(-0.9, -0.7, 1.25), cast_shadow=True
+    )
+    scene.add_light_directional("/stage/rim", intensity=0.8, position=(0.6, 0.8, 0.5))
 
 
 def add_text(
@@ -203,8 +216,8 @@ class ChangingText:
         size: float = 0.026,
         below: float = 0.0,
     ) -> None:
-        self._label = add_text(scene, name, "", position, size, below)
-        self._label.visible = False
+        self.label = add_text(scene, name, "", position, size, below)
+        self.label.visible = False
         self._shown, self._hidden = "", False
 
     def show(self, text: str) -> None:
@@ -213,7 +226,7 @@ class ChangingText:
             return
         self._shown = text
         if text:
-            self._label.text = text
+            self.label.text = text
         self._update()
 
     def hide(self, hidden: bool) -> None:
@@ -223,8 +236,8 @@ class ChangingText:
 
     def _update(self) -> None:
         visible = bool(self._shown) and not self._hidden
-        if self._label.visible != visible:
-            self._label.visible = visible
+        if self.label.visible != visible:
+            self.label.visible = visible
 
 
 class Titles:

@@ -22,8 +22,6 @@ LARGEST_PATH = 0.1
 """Usual extent of paths from their centre, for which the view leaves room [m]."""
 ASIDE, ABOVE, BELOW = 0.045, 0.11, 0.05
 """Margins beside the bars, above them for the title, and between them and the floor [m]."""
-BELOW_PATH = np.array([0.0, 0.0, -LARGEST_PATH])
-"""From the centre of paths to the label of a force [m]."""
 THIN = 0.03
 """Half of the depth of robots in the vertical plane [m]."""
 
@@ -54,7 +52,6 @@ def stage_of(robot: Robot) -> Stage:
         reach=robot.reach,
         title=np.array(drawing.title or (middle, 0.0, high[2] - 0.033)),
         note=np.array(drawing.note or (middle, 0.0, floor + 0.06)),
-        force=np.array(drawing.force) if drawing.force else plane.point + BELOW_PATH,
         force_scale=drawing.force_scale,
         sheet=drawing.sheet
         or ((low[0] + 0.01, floor - 0.01), (high[0] - 0.01, high[2] - 0.1), -0.06),

@@ -31,9 +31,9 @@ from onpath.app.server.arrivals import Arrivals, Kept
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
-from onpath.app.server.new_lab import new_lab
 from onpath.app.server.lazy_imports import warm_up
 from onpath.app.server.memory_release import INTERVAL, MemoryRelease, limit_heap
+from onpath.app.server.new_lab import new_lab
 from onpath.app.server.tab_visibility import TabVisibilities
 from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json

@@ -99,7 +99,6 @@ class Drawing:
         apart: distance between the base pivots of neighbouring robots, [m].
         title: place of the title.
         note: place of the note that the drawing is not to scale.
-        force: place of the force's magnitude.
         force_scale: length of the force's arrow, [m/N].
         sheet: low and high corner (x, z), and y, of the area for freehand strokes.
         angles, waist, lengths: what is labelled on demand, as in the paper's figures 1 and 4.
@@ -116,7 +115,6 @@ class Drawing:
     apart: float | None = None
     title: Point | None = None
     note: Point | None = None
-    force: Point | None = None
     force_scale: float = 0.005
     sheet: tuple[tuple[float, float], tuple[float, float], float] | None = None
     angles: tuple[Angle, ...] = ()

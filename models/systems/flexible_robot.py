@@ -53,7 +53,6 @@ DRAWING = Drawing(
     apart=0.56,
     title=(0.0, 0.0, 0.475),
     note=(0.0, -0.5, 0.08),
-    force=(0.0, -0.5, 0.13),
     force_scale=0.04,
     sheet=((-0.24, 0.1), (0.24, 0.5), -0.56),
     angles=ANGLES,

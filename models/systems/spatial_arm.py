@@ -57,7 +57,6 @@ DRAWING = Drawing(
     box=((-0.13, -0.14, -0.17), (0.4, 0.14, 0.4)),
     title=(0.12, 0.0, 0.37),
     note=(0.25, -0.12, -0.1),
-    force=(0.3, -0.12, -0.06),
     sheet=((0.02, 0.34), (-0.14, 0.32), -0.16),
     angles=(Angle("q₂", bar=0), Angle("q₃", bar=1, after=0, near=-math.pi / 2)),
     waist=Waist("q₁"),

@@ -1,4 +1,4 @@
-"""The wall and the start of a lab, as its scene draws them and its panels show them."""
+"""The wall, the brakes and the start of a lab, as its scene draws them and its panels show them."""
 
 from __future__ import annotations
 
@@ -28,6 +28,29 @@ def drawn_wall(session: Session) -> Array:
     if session.viewing is None and session.wall is not None:
         return _placed(session.robot, session.wall)
     return _rows(session.robot, *lifted)
+
+
+def drawn_brakes(session: Session) -> dict[str, Array]:
+    """`Snapshot.brakes`."""
+    if session.viewing is not None:
+        return {}
+    pushes, rows = session.grips.pushes, dict[str, Array]()
+    for bench in BENCHES:
+        if bench in session.grips.held and (hold := pushes[bench].hold) is not None:
+            slides = pushes[bench].hold_normal is None
+            rows[bench] = _brake_rows(session.robot, *(each.tobytes() for each in hold), slides)
+    return rows
+
+
+@lru_cache(maxsize=256)
+def _brake_rows(robot: Robot, anchor: bytes, blocked: bytes, slides: bool) -> Array:
+    """One of `Snapshot.brakes`; the same array for the same arguments."""
+    place, way = np.frombuffer(anchor), np.frombuffer(blocked)
+    corners = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])
+    origin, right, up = robot.place(robot.frame.lift(corners))
+    at, ahead = robot.place(np.stack([place, place + way]))
+    free = np.cross(np.cross(right - origin, up - origin), ahead - at)
+    return np.stack([at, ahead - at, slides * free / np.linalg.norm(free)])
 
 
 def wall_then(robot: Robot, past: Segment) -> Array:

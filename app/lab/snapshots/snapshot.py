@@ -220,6 +220,9 @@ class Snapshot:
         path: followed by both robots.
         held: whether Hold is on.
         held_back: benches of the robots that it holds.
+        brakes: of the robots that are held back, by bench: where the end-point was held [m], the
+            unit vector along which it cannot move, and the one along which it can, shape (3, 3);
+            the latter is 0 if it cannot move at all. Empty while the past is viewed.
         stopped: benches of the robots that have diverged by then and stand still.
         grabbed: bench of the robot whose end-point is being pulled, or None.
         message: message to the user (a divergence, a refusal), plain text, or "".
@@ -246,6 +249,7 @@ class Snapshot:
     wall: np.ndarray = field(default_factory=_nothing)
     start: np.ndarray = field(default_factory=_nothing)
     held_back: tuple[str, ...] = ()
+    brakes: dict[str, np.ndarray] = field(default_factory=dict)
     stopped: tuple[str, ...] = ()
 
     @property

@@ -11,7 +11,13 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Instant
 from onpath.app.lab.session import Session
-from onpath.app.lab.snapshots.obstacles import drawn_start, drawn_wall, start_state, wall_state
+from onpath.app.lab.snapshots.obstacles import (
+    drawn_brakes,
+    drawn_start,
+    drawn_wall,
+    start_state,
+    wall_state,
+)
 from onpath.app.lab.snapshots.page_snapshot import (
     LessonSnapshot,
     PageSnapshot,
@@ -116,6 +122,7 @@ def _scene(
         "wall": drawn_wall(session),
         "start": _drawn_start(session),
         "held_back": tuple(bench for bench in session.runs if bench in session.grips.held),
+        "brakes": drawn_brakes(session),
         "stopped": _stopped(session, time),
     }
 

@@ -1,0 +1,104 @@
+"""What holds or pulls an end-point: the brake's guide, and the size of the force at the contact."""
+
+from __future__ import annotations
+
+from math import hypot
+from typing import TYPE_CHECKING
+
+import numpy as np
+from viser import transforms
+
+from onpath.app.common import palette
+from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.scene import meshes
+from onpath.app.scene.stage import ChangingText, Stage, add_copies
+from onpath.app.viser_adapter.frame_channel import move_node
+from onpath.lessons.words import Words
+
+if TYPE_CHECKING:
+    import viser
+
+FORCE_SHOWN = 0.05
+"""Forces below this are not drawn [N]."""
+CLEAR = 0.034
+"""From the path to the label of a force, above or below it [m]."""
+WIDE = 0.13
+"""Width of such a label [m]."""
+STAYS = 0.03
+"""How far an end-point goes until the label of its force follows it [m]."""
+
+
+class ContactNodes:
+    """Brakes and labels of forces, of all robots.
+
+    A brake leaves an end-point free in one direction, so it is drawn as a guide in which the
+    end-point slides, where the brake was applied: it does not move.
+    """
+
+    def __init__(self, scene: viser.SceneApi, stage: Stage, words: Words) -> None:
+        self._scene, self._bases, self._words = scene, stage.bases, words
+        self._brakes = dict[str, np.ndarray]()
+        self._guides: list[viser.BatchedMeshHandle] = []
+        self._labels = {bench: ForceLabel(scene, stage, bench, words) for bench in stage.bases}
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Show a snapshot; sends nothing if the same is shown already."""
+        path = snapshot.path.points
+        for bench, view in snapshot.robots.items():
+            force = hypot(*view.force.tolist())
+            self._labels[bench].show(force, view.tip, path)
+        if not _same(snapshot.brakes, self._brakes):
+            self._brakes = snapshot.brakes
+            self._draw_guides()
+
+    def _draw_guides(self) -> None:
+        for node in self._guides:
+            node.remove()
+        self._guides = []
+        for bench, (place, blocked, free) in self._brakes.items():
+            slides = bool(free.any())
+            across = free if slides else np.cross([0.0, 1.0, 0.0], blocked)
+            turn = np.column_stack([blocked, np.cross(across, blocked), across])
+            node = add_copies(
+                self._scene,
+                f"/brakes/{bench}",
+                meshes.guide() if slides else meshes.clamp(),
+                (self._bases[bench] + place)[None],
+                palette.MOTOR,
+            )
+            node.batched_wxyzs = transforms.SO3.from_matrix(turn).wxyz[None]
+            self._guides.append(node)
+
+
+class ForceLabel:
+    """The size of the force on one end-point, above or below the path there.
+
+    It stays where it is while the end-point moves a little, so that it can be read.
+    """
+
+    def __init__(self, scene: viser.SceneApi, stage: Stage, bench: str, words: Words) -> None:
+        self._words, self._at = words, np.full(3, np.inf)
+        self._base = stage.bases[bench]
+        self._within = stage.low[0] + WIDE / 2, stage.high[0] - WIDE / 2
+        self._text = ChangingText(scene, f"/force_labels/{bench}", np.zeros(3))
+
+    def show(self, force: float, tip: np.ndarray, path: np.ndarray) -> None:
+        """Show a force [N] on an end-point at `tip`, shape (3,), in the robot's frame [m]."""
+        if force <= FORCE_SHOWN:
+            self._text.show("")
+            self._at = np.full(3, np.inf)
+            return
+        if not np.linalg.norm(tip - self._at) < STAYS:
+            self._at = tip.copy()
+            low, high = path[:, 2].min(), path[:, 2].max()
+            above = tip[2] > (low + high) / 2
+            height = max(high, tip[2]) + CLEAR if above else min(low, tip[2]) - CLEAR
+            x = np.clip(tip[0], *self._within)
+            move_node(self._text.label, self._base + [x, tip[1], height])
+        self._text.show(self._words("scene.force", force=f"{force:.{int(force < 1.0)}f}"))
+
+
+def _same(some: dict[str, np.ndarray], others: dict[str, np.ndarray]) -> bool:
+    return some.keys() == others.keys() and all(
+        each is others[bench] or np.array_equal(each, others[bench]) for bench, each in some.items()
+    )
