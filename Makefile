@@ -1,6 +1,7 @@
 # make run   creates the environment, installs, starts the lab and prints its address
-# make test  all tests, headless Chromium included; adds what they need to the environment
-#            (.ci/run adds a minute of attacks: pytest -m soak)
+# make test  the tests, headless Chromium included; adds what they need to the environment
+# make thorough  the other tests: every task of every lesson in Chromium, whole servers and crowds,
+#            processes that hang, a minute of attacks (.ci/run runs these, too)
 # make fuzz  the property tests with random inputs; make test has the same ones every time
 # make check lint, format, types      make bench  the speed table
 # make soak  40 labs under attack for half an hour: lateness, memory and log stay within bounds
@@ -13,7 +14,7 @@ TOOLS   = $(VENV)/.tools
 # In order, so that the longest test begins early: it would be the last one otherwise.
 PYTEST  = $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: run test fuzz check format bench soak wheel clean
+.PHONY: run test thorough fuzz check format bench soak wheel clean
 .DEFAULT_GOAL := run
 
 # What running needs; --clear takes the tools away, too, and their stamp with them.
@@ -32,11 +33,19 @@ run: $(LAB)
 
 # Both parts run, whatever the first says: Playwright keeps a running event loop in its thread, with
 # which other tests cannot share it.
+define BOTH_PARTS
+@failed=0; \
+$(PYTEST) -m $(1) --ignore=tests/in_browser $(ARGS) || failed=$$?; \
+$(PYTEST) -m $(1) tests/in_browser $(ARGS) || failed=$$?; \
+exit $$failed
+endef
+
 test: $(TOOLS)
-	@failed=0; \
-	$(PYTEST) -m "not soak" --ignore=tests/in_browser $(ARGS) || failed=$$?; \
-	$(PYTEST) tests/in_browser $(ARGS) || failed=$$?; \
-	exit $$failed
+	$(call BOTH_PARTS,"not thorough and not soak")
+
+thorough: $(TOOLS)
+	$(call BOTH_PARTS,thorough)
+	$(PYTEST) -n 0 -m soak $(ARGS)
 
 fuzz: $(TOOLS)
 	$(PYTEST) -m hypothesis --hypothesis-profile fuzz $(ARGS)

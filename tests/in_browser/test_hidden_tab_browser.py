@@ -25,6 +25,8 @@ from onpath.app.server.tab_visibility import PATIENCE, QUESTION_INTERVAL, TICK
 from tests.support.browser import CHROMIUM, COARSER, PLAIN, wait_for
 from tests.support.frame_clock import FrameClock
 
+pytestmark = pytest.mark.thorough
+
 VALUES = "[...document.querySelectorAll('input')].map(each => each.value)"
 SMALL = ("--window-size=600,400",)  # so that drawing in software keeps up
 HIDDEN, PAUSED = 200.0, 1000.0  # [B/s]

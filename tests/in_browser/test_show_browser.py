@@ -19,6 +19,8 @@ from onpath.app.server.lab_server import LabServer
 from onpath.models.control.benches import RIGHT
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 WINDOW = {"width": 1280, "height": 800}
 NODES = ("/show/arcs", "/show/axes", "/show/tube", "/show/grid", "/show/rank/left")
 

@@ -23,6 +23,7 @@ CLIENTS, SECONDS = 3, 1.0
 WORKERS = 2 if sys.platform == "linux" else 1
 
 
+@pytest.mark.thorough
 def test_a_small_crowd_on_a_real_server(tmp_path: Path) -> None:
     crowd = ClientLoad(CLIENTS, WORKERS, SECONDS, rows=2)
     rows = list(measured(crowd, folders(tmp_path, "data")))
@@ -99,6 +100,7 @@ def has_browsers(folder: Path) -> bool:
     return bool(ports) and ports[0] in Path("/proc/net/tcp").read_text()
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 def test_a_bench_that_is_stopped_takes_its_server_along(tmp_path: Path) -> None:
     """Both at once: each waits until its server is at rest before its browsers come."""

@@ -43,6 +43,7 @@ def test_filling_in_a_push_is_the_same_as_packing_anew(name: str) -> None:
             assert np.array_equal(pushed(kernel, before, push), pack)
 
 
+@pytest.mark.thorough
 def test_simulated_browsers_see_and_do_what_real_ones_do() -> None:
     async def look(port: int) -> list[Observations]:
         async with aclosing(crowd(port, 2, seconds=4.5)) as seen:
@@ -63,6 +64,7 @@ def test_simulated_browsers_see_and_do_what_real_ones_do() -> None:
     assert any(lab.session.parameters.K1 != 400.0 for lab in labs)
 
 
+@pytest.mark.thorough
 def test_a_crowd_that_is_not_served_says_so() -> None:
     async def settle(port: int, patience: float) -> None:
         async with aclosing(crowd(port, 2, 1.0, patience)) as seen:

@@ -6,10 +6,14 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+
 from onpath.lessons.words import ENGLISH
 from tests.support.student import Student
 from tests.support.supervisor import Supervisor
 from tests.support.waiting import wait_for
+
+pytestmark = pytest.mark.thorough
 
 SOON = 240  # frames within which the teacher's word is everywhere; 30 with nothing else to do
 HOSTILE = "<img src=x onerror=1>"

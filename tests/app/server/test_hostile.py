@@ -46,6 +46,8 @@ from tests.support import waiting
 from tests.support.checkout import ROOT
 from tests.support.lab import assert_sound
 
+pytestmark = pytest.mark.thorough
+
 LEAST_RATE = 18.0  # frames that a witness is shown per second of processor time of this process
 LONGEST_GAP = 0.5  # [s] of processor time from one to the next
 LEAST = 40  # frames in which a witness is watched

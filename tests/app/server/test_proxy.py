@@ -24,6 +24,8 @@ from tests.support.student import Student
 from tests.support.supervisor import Supervisor
 from tests.support.waiting import wait_for
 
+pytestmark = pytest.mark.thorough
+
 NGINX = shutil.which("nginx", path=os.environ.get("PATH", "") + ":/usr/sbin")
 HOST, ORIGIN = "lab.example.org", "https://lab.example.org"
 CONFIGURATION = ROOT / "assets" / "deploy" / "nginx.conf"

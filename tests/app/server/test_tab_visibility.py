@@ -159,6 +159,7 @@ def tab(server: LabServer) -> Iterator[Tab]:
         yield tab
 
 
+@pytest.mark.thorough
 def test_a_hidden_tab_gets_nothing_and_then_the_present_whole(server: LabServer, tab: Tab) -> None:
     (scheduled,), clock = server.simulation.labs, FrameClock(server.simulation)
     visible = tab.rate(clock, 2 * GONE)
@@ -176,6 +177,7 @@ def test_a_hidden_tab_gets_nothing_and_then_the_present_whole(server: LabServer,
     assert scheduled.session.time > simulated
 
 
+@pytest.mark.thorough
 def test_a_paused_lab_sends_nothing(server: LabServer, tab: Tab) -> None:
     (scheduled,), clock = server.simulation.labs, FrameClock(server.simulation)
     running = tab.rate(clock, 2.0)

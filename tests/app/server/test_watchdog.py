@@ -132,6 +132,7 @@ def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Served]:
     served.end()
 
 
+@pytest.mark.thorough
 @linux_only
 def test_a_simulation_that_hangs_is_replaced_and_its_labs_go_on(
     served: Served, capfd: pytest.CaptureFixture[str]
@@ -152,6 +153,7 @@ def test_a_simulation_that_hangs_is_replaced_and_its_labs_go_on(
     assert "threading.py" in said  # where it hangs
 
 
+@pytest.mark.thorough
 @linux_only
 @pytest.mark.parametrize(
     ("value", "code"),
@@ -169,6 +171,7 @@ def test_whatever_hangs_ends_the_process(
     assert "most recent call first" in capfd.readouterr().err  # where each thread was
 
 
+@pytest.mark.thorough
 @linux_only
 def test_a_suspended_process_does_not_hang(
     served: Served, capfd: pytest.CaptureFixture[str]

@@ -35,6 +35,7 @@ def supervisor(tmp_path: Path) -> Iterator[Supervisor]:
     made.end()
 
 
+@pytest.mark.thorough
 @linux_only
 def test_a_lab_survives_its_worker_on_a_shared_port(supervisor: Supervisor) -> None:
     supervisor.wait_for(r"^\[worker [12]\] INFO .*OnPath is ready", times=2)
