@@ -9,12 +9,13 @@ from pathlib import Path
 import pytest
 
 from onpath.lessons.course import BUILT_IN
-from onpath.lessons.words import ENGLISH, Words
+from onpath.lessons.words import ENGLISH, Words, languages
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import specs
 from tests.support.catalogues import arguments, messages
 from tests.support.stated_numbers import numbers
 
+LESSONS = sorted({file.parent for file in BUILT_IN.glob("*/en.md")})
 TRANSLATED = sorted(file for file in BUILT_IN.glob("*/*.md") if file.stem != "en")
 FORMULA = re.compile(r"\$\$(.+?)\$\$|\$([^$\n]+)\$", re.DOTALL)
 PICTURE = re.compile(r"!\[[^]]*]\(([^)]+)\)")
@@ -38,6 +39,11 @@ def formulas(step: str) -> Counter[str]:
     return Counter(
         re.sub(r"\\(text|operatorname)\{[^}]*}", "", each.replace("{,}", ".")) for each in found
     )
+
+
+def test_every_lesson_is_written_in_every_language_of_the_page() -> None:
+    written = {lesson.name: {file.stem for file in lesson.glob("*.md")} for lesson in LESSONS}
+    assert len(written) >= 9 and set(map(frozenset, written.values())) == {frozenset(languages())}
 
 
 @both
