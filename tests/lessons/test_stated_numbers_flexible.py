@@ -1,4 +1,4 @@
-"""What lesson 7 and the README tell in numbers of the flexible robot, replayed each millisecond."""
+"""What lesson 7 and the READMEs tell in numbers of the flexible robot, each millisecond."""
 
 from __future__ import annotations
 
@@ -218,7 +218,7 @@ def test_the_riddle() -> None:
     assert going(FOLLOWER, 8.0, alpha=1.0, rho=0.05).stopped is not None
 
 
-# The README ---------------------------------------------------------------------------------------
+# The READMEs -------------------------------------------------------------------------------------
 
 
 @cache

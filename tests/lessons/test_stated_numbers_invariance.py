@@ -1,4 +1,4 @@
-"""What lesson 5 and the README tell in numbers of the rigid robot, replayed every millisecond."""
+"""What lesson 5 and the READMEs tell in numbers of the rigid robot, replayed every millisecond."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from tests.support.one_robot import (
 from tests.support.stated_numbers import NUMBER, assert_stated, said, value
 
 LESSON = "05"
-README = ROOT / "README.md"
+READMES = (ROOT / "README.md", ROOT / "models" / "studies" / "README.md")
 
 
 def stated_in_readme(sentence: str) -> list[str]:
-    """As `said`."""
-    text = " ".join(README.read_text(encoding="utf-8").split())
+    """As `said`, of the README and of that of the studies."""
+    text = " ".join(" ".join(file.read_text(encoding="utf-8") for file in READMES).split())
     found = re.findall(NUMBER.join(map(re.escape, sentence.split("#"))), text)
-    assert len(found) == 1, f"{len(found)} times in README.md: {sentence}"
+    assert len(found) == 1, f"{len(found)} times: {sentence}"
     return [found[0]] if isinstance(found[0], str) else list(found[0])
 
 

@@ -1,4 +1,4 @@
-"""What lesson 7 and the README tell of the limit of alpha, from the pencil of matrices at home."""
+"""What lesson 7 and the READMEs tell of the limit of alpha, from the pencil of matrices at home."""
 
 from __future__ import annotations
 
