@@ -108,11 +108,15 @@ class Step(msgspec.Struct, frozen=True):
 
 
 class Front(Data, frozen=True):
-    """The front matter of a lesson, between two lines +++."""
+    """The front matter of a lesson, between two lines +++.
+
+    Attributes:
+        minutes: an estimate by hand in earlier files; ignored, see lessons/minutes.py.
+    """
 
     title: str
     summary: str
-    minutes: int
+    minutes: int | None = None
     robot: str = "five_bar"
 
 

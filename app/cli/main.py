@@ -7,8 +7,7 @@ import io
 import re
 import sys
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated
 
 import tyro
 
@@ -16,11 +15,8 @@ from onpath.app.cli.compare import CompareCommand
 from onpath.app.cli.experiment import ExperimentCommand, ZeroDynamicsCommand
 from onpath.app.cli.figure import FigureCommand
 from onpath.app.cli.identify import IdentifyCommand
+from onpath.app.cli.lessons import LessonsCommand
 from onpath.app.cli.serve import Serve
-
-if TYPE_CHECKING:
-    from onpath.lessons.course import Course
-    from onpath.lessons.problems import Problem
 
 COMMANDS = (
     "serve",
@@ -35,44 +31,6 @@ COMMANDS = (
 )
 INTERRUPTED = 130
 SOAKED = 40  # honest clients
-
-
-@dataclass(frozen=True)
-class Lessons:
-    """List the lessons, or check your own lessons by reading them and playing their scripts."""
-
-    do: Annotated[Literal["list", "check"], tyro.conf.Positional]
-    """list or check."""
-    folder: Annotated[Path | None, tyro.conf.Positional] = None
-    """Folder of lessons; by default the built-in ones."""
-
-    def run(self) -> int:
-        """List or check; return exit code 1 if there are problems."""
-        from onpath.lessons.course import BUILT_IN, read_course
-
-        folder = self.folder or BUILT_IN
-        course, problems = read_course([folder])
-        if self.do == "list":
-            for name, versions in course.lessons.items():
-                facts = course.lesson(name, "en").front
-                print(f"{name:30s} {facts.minutes:3d} min  {','.join(versions):8s} {facts.title}")
-        elif not problems:
-            problems = self._played(course, folder)
-        for problem in problems:
-            print(problem, file=sys.stderr)
-        return 1 if problems else 0
-
-    def _played(self, course: Course, folder: Path) -> list[Problem]:
-        from onpath.app.lab.course_check import play_course
-        from onpath.app.lab.loop_cache import LoopCache
-
-        problems = list(play_course(course, folder, LoopCache(at_once=True)))
-        if not problems:
-            lessons = list(course.lessons.values())
-            tasks = sum(len(next(iter(versions.values())).tasks()) for versions in lessons)
-            count = f"{len(lessons)} lesson{'s' if len(lessons) != 1 else ''}"
-            print(f"{count}, {tasks} solutions and failures played, nothing wrong")
-        return problems
 
 
 @dataclass(frozen=True)
@@ -184,7 +142,7 @@ def _parse(
     | FigureCommand
     | IdentifyCommand
     | ZeroDynamicsCommand
-    | Lessons
+    | LessonsCommand
     | BenchCommand
     | Forget
 ):
@@ -198,7 +156,7 @@ def _parse(
                 | Annotated[FigureCommand, tyro.conf.subcommand("figure")]
                 | Annotated[IdentifyCommand, tyro.conf.subcommand("identify")]
                 | Annotated[ZeroDynamicsCommand, tyro.conf.subcommand("zero-dynamics")]
-                | Annotated[Lessons, tyro.conf.subcommand("lessons")]
+                | Annotated[LessonsCommand, tyro.conf.subcommand("lessons")]
                 | Annotated[BenchCommand, tyro.conf.subcommand("bench")]
                 | Annotated[Forget, tyro.conf.subcommand("forget")],
                 prog="onpath",

@@ -8,6 +8,7 @@ from onpath.app.common.palette import AZURE, BORDER, GREEN
 from onpath.app.common.templates import render
 from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.checks import Verdict
+from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Choice, Lesson, Quiz, Sketch, Step
@@ -102,7 +103,7 @@ def entry(lesson: Lesson, run: LessonState, number: str) -> str:
     done = sum(task.id in notes.tasks for task in tasks) if notes else 0
     finished = notes is not None and notes.seen >= len(lesson.steps) and done == len(tasks)
     facts = [
-        run.words("lesson.minutes", minutes=lesson.front.minutes),
+        run.words("lesson.minutes", minutes=lesson_minutes(lesson)),
         run.words("lesson.tasks", done=done, all=len(tasks)),
     ]
     if lesson.language != run.words.language:

@@ -1,0 +1,100 @@
+"""`onpath lessons`: the lessons as files."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+if TYPE_CHECKING:
+    from onpath.lessons.course import Course
+    from onpath.lessons.problems import Problem
+
+
+@dataclass(frozen=True)
+class ListLessons:
+    """List the lessons and how many minutes each is estimated to take."""
+
+    folder: Annotated[Path | None, tyro.conf.Positional] = None
+    """Folder of lessons; by default the built-in ones."""
+    steps: bool = False
+    """List the steps of each lesson, too."""
+
+    def run(self) -> int:
+        """Print the list; return exit code 1 if there are problems."""
+        from onpath.lessons.course import BUILT_IN, read_course
+
+        course, problems = read_course([self.folder or BUILT_IN])
+        print(minutes_table(course, self.steps))
+        return _reported(problems)
+
+
+@dataclass(frozen=True)
+class CheckLessons:
+    """Read lessons and play their scripts, solutions and failures."""
+
+    folder: Annotated[Path | None, tyro.conf.Positional] = None
+    """Folder of lessons; by default the built-in ones."""
+
+    def run(self) -> int:
+        """Print what is wrong; return exit code 1 if anything is."""
+        from onpath.app.lab.course_check import play_course
+        from onpath.app.lab.loop_cache import LoopCache
+        from onpath.lessons.course import BUILT_IN, read_course
+
+        folder = self.folder or BUILT_IN
+        course, problems = read_course([folder])
+        if not problems:
+            problems = list(play_course(course, folder, LoopCache(at_once=True)))
+        if not problems:
+            lessons = list(course.lessons.values())
+            tasks = sum(len(next(iter(versions.values())).tasks()) for versions in lessons)
+            count = f"{len(lessons)} lesson{'s' if len(lessons) != 1 else ''}"
+            print(f"{count}, {tasks} solutions and failures played, nothing wrong")
+        return _reported(problems)
+
+
+LessonsAction = (
+    Annotated[ListLessons, tyro.conf.subcommand("list", prefix_name=False)]
+    | Annotated[CheckLessons, tyro.conf.subcommand("check", prefix_name=False)]
+)
+
+
+@dataclass(frozen=True)
+class LessonsCommand:
+    """List the lessons, or check your own lessons by reading them and playing their scripts."""
+
+    do: Annotated[LessonsAction, tyro.conf.arg(name="")]
+
+    def run(self) -> int:
+        """Run the chosen action; return its exit code."""
+        return self.do.run()
+
+
+def minutes_table(course: Course, steps: bool) -> str:
+    """A line per lesson, and if wanted per step, with the minutes and what takes them."""
+    from onpath.lessons.minutes import Minutes, step_minutes, together
+
+    def row(name: str, spent: Minutes, *rest: str) -> str:
+        parts = (spent.total, spent.reading, spent.runs, spent.predictions, spent.tasks)
+        return " ".join([f"{name:32.32s}", *(f"{part:7.1f}" for part in parts), *rest])
+
+    heads = "minutes", "reading", "runs", "predict", "do"
+    lines = [" ".join([f"{'':32s}", *(f"{head:>7s}" for head in heads)])]
+    for name, versions in course.lessons.items():
+        lesson = course.lesson(name, "en")
+        spent = [step_minutes(step) for step in lesson.steps]
+        lines.append(row(name, together(spent), f" {','.join(versions):8s} {lesson.front.title}"))
+        for number, (step, each) in enumerate(zip(lesson.steps, spent, strict=True), 1):
+            if steps:
+                lines.append(row(f"  {number} {step.kind}: {step.title}", each))
+    return "\n".join(lines)
+
+
+def _reported(problems: list[Problem]) -> int:
+    for problem in problems:
+        print(problem, file=sys.stderr)
+    return 1 if problems else 0

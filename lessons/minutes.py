@@ -1,0 +1,96 @@
+"""How long a lesson takes, estimated from its files.
+
+The sum of the words at 130 a minute, the runs at their own length, and a fixed time for whatever is
+drawn, chosen, answered or done. Folded texts, hints, and answers to options that are wrong are not
+counted: they need not be read. A formula has as many words as letters and numbers.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import singledispatch
+from html import unescape
+
+from onpath.lessons.schema import Block, Choice, Lesson, Quiz, Sketch, Step, Text
+from onpath.lessons.task_schema import Task
+
+WORDS = 130
+"""Words read in a minute."""
+MINUTES = {"play": 2.0, "sketch": 1.0, "choice": 0.5, "quiz": 0.5, "task": 3.0}
+"""Assumed time for trying freely, a sketch, a choice, a question and a task, beyond reading."""
+FOLDED = re.compile(r"<details>.*?</details>", re.DOTALL)
+TAG = re.compile(r"<[^>]*>")
+
+
+@dataclass(frozen=True, slots=True)
+class Minutes:
+    """Estimated duration of a step or of a lesson, in minutes, by what takes it."""
+
+    reading: float = 0.0
+    runs: float = 0.0
+    predictions: float = 0.0
+    tasks: float = 0.0
+
+    @property
+    def total(self) -> float:
+        """The whole duration."""
+        return self.reading + self.runs + self.predictions + self.tasks
+
+
+def word_count(html: str) -> int:
+    """Number of words of an HTML text, without what is folded."""
+    words = unescape(TAG.sub(" ", FOLDED.sub(" ", html))).split()
+    return sum(any(letter.isalnum() for letter in word) for word in words)
+
+
+def step_minutes(step: Step) -> Minutes:
+    """Estimated duration of a step: its text, its run, and what the student does in it."""
+    asked = [block for block in step.blocks if isinstance(block, Sketch | Choice | Quiz)]
+    tried = MINUTES["play"] if step.kind == "play" else 0.0
+    return Minutes(
+        reading=sum(word_count(text) for block in step.blocks for text in _read(block)) / WORDS,
+        runs=0.0 if step.script is None else step.script.until / 60,
+        predictions=sum(MINUTES[type(block).__name__.lower()] for block in asked),
+        tasks=MINUTES["task"] * len(step.tasks()) + tried,
+    )
+
+
+def together(parts: Iterable[Minutes]) -> Minutes:
+    """The sum of some durations."""
+    columns = [(part.reading, part.runs, part.predictions, part.tasks) for part in parts]
+    return Minutes(*map(sum, zip(*columns, strict=True)))
+
+
+def lesson_minutes(lesson: Lesson) -> int:
+    """Estimated duration of a lesson, in whole minutes."""
+    return max(1, round(together(map(step_minutes, lesson.steps)).total))
+
+
+@singledispatch
+def _read(block: Block) -> list[str]:
+    """What a student reads of a part of a step."""
+    raise TypeError(f"no such block: {block!r}")
+
+
+@_read.register
+def _(block: Text) -> list[str]:
+    return [block.html]
+
+
+@_read.register
+def _(block: Sketch) -> list[str]:
+    return [block.question]
+
+
+@_read.register(Choice)
+@_read.register(Quiz)
+def _(block: Choice | Quiz) -> list[str]:
+    right = [option.answer for option in block.options if option.right]
+    return [block.question, *(option.text for option in block.options), *right]
+
+
+@_read.register
+def _(block: Task) -> list[str]:
+    return [block.text, block.passed]

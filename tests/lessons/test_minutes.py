@@ -1,0 +1,70 @@
+"""The estimated minutes of a lesson are those of its parts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from onpath.app.cli.main import run_command
+from onpath.app.lab.lesson_state import LessonState
+from onpath.app.page.lesson_html import entry
+from onpath.lessons.course import read_course
+from onpath.lessons.formulas import to_html
+from onpath.lessons.minutes import (
+    MINUTES,
+    WORDS,
+    Minutes,
+    lesson_minutes,
+    step_minutes,
+    together,
+    word_count,
+)
+from onpath.lessons.parse import read_lesson
+from tests.support.lesson_texts import LESSON, write_lesson
+
+BEFORE = "Which one *waits*?"
+
+
+def spent(folder: Path, text: str = LESSON) -> Minutes:
+    return together(map(step_minutes, read_lesson(write_lesson(folder, text)).steps))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [("one *two* three, four.", 4), ("$x^2 = 4$", 3), ("a — b", 2), ("", 0)],
+)
+def test_words_are_letters_and_numbers(text: str, words: int) -> None:
+    assert word_count(to_html(text)) == words
+
+
+def test_more_words_take_longer_unless_they_are_folded(tmp_path: Path) -> None:
+    more = " ".join(["word"] * WORDS)
+    read = spent(tmp_path, LESSON.replace(BEFORE, f"{more} {BEFORE}"))
+    assert read.reading == pytest.approx(spent(tmp_path).reading + 1)
+    folded = f"```fold More\n{more}\n```\n\n{BEFORE}"
+    assert spent(tmp_path, LESSON.replace(BEFORE, folded)) == spent(tmp_path)
+
+
+def test_runs_take_their_own_time_and_everything_done_a_fixed_one(tmp_path: Path) -> None:
+    plain = spent(tmp_path)
+    assert plain.runs == pytest.approx((2.0 + 1.0) / 60)
+    assert plain.predictions == MINUTES["sketch"] + MINUTES["choice"] + MINUTES["quiz"]
+    assert plain.tasks == MINUTES["play"] + MINUTES["task"]
+    longer = spent(tmp_path, LESSON.replace("until = 1.0", "until = 31.0"))
+    assert longer.total == pytest.approx(plain.total + 0.5)
+
+
+def test_the_estimate_is_listed_and_on_the_card(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also that of earlier files, which state minutes of their own."""
+    write_lesson(tmp_path, LESSON.replace("minutes = 1", "minutes = 77"))
+    course, found = read_course([tmp_path])
+    lesson = course.lesson("01-a", "en")
+    assert found == [] and lesson_minutes(lesson) == round(spent(tmp_path).total)
+    assert f"{lesson_minutes(lesson)} min" in entry(lesson, LessonState(course), "1")
+    assert run_command(["lessons", "list", str(tmp_path), "--steps"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert float(lines[1].split()[1]) == pytest.approx(spent(tmp_path).total, abs=0.051)
+    assert len(lines) == 2 + len(lesson.steps)
