@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.words import Words
@@ -27,6 +27,14 @@ def law_text(law: str, words: Words) -> str:
     if is_text(law):
         return law
     return words.get(f"law.{law}.text", LAWS[law].text)
+
+
+def law_titles(laws: Iterable[str], words: Words) -> dict[str, str]:
+    """Displayed names of several control laws; typed ones are numbered if there are several."""
+    names = list(dict.fromkeys(laws))
+    typed = [law for law in names if is_text(law)]
+    number = {law: f" {i + 1}" for i, law in enumerate(typed)} if len(typed) > 1 else {}
+    return {law: law_label(law, words) + number.get(law, "") for law in names}
 
 
 def bench_titles(laws: Mapping[str, str | tuple[str, ...]], words: Words) -> dict[str, str]:

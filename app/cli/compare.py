@@ -6,7 +6,7 @@ import csv
 import dataclasses
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -28,7 +28,8 @@ class CompareCommand:
     robot: str = "five_bar"
     """Name of the robot."""
     law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """A law to compare; repeat for more. By default all that suit the robot."""
+    """A law to compare, also one of your own in two lines: "across = …; along = …"; repeat for
+    more. By default all that suit the robot."""
     obstruction: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """An obstruction; repeat for more. By default all."""
     radius: float = 0.05
@@ -92,7 +93,7 @@ class CompareCommand:
 
         from onpath.models.studies.comparison import OBSTRUCTIONS, compare
 
-        laws = _known(self.law, contest.laws(), "law")
+        laws = _laws(self.law, contest)
         obstructions = _known(self.obstruction, list(OBSTRUCTIONS), "obstruction")
         pairs = compare(contest, laws, obstructions)
         console = Console(stderr=True)
@@ -105,6 +106,23 @@ class CompareCommand:
             disable=not sys.stderr.isatty(),
         )
         return {(each[0].law, each[0].obstruction): each for each in shown}
+
+
+def _laws(asked: tuple[str, ...], contest: Contest) -> list[str]:
+    """The laws asked for, or all; typed laws on one line.
+
+    Raises:
+        ValueError: one of them does not exist, or cannot be compared.
+    """
+    from onpath.models.control.laws.own import is_text
+    from onpath.models.control.laws.registry import law_name
+
+    typed = {name: law_name(name) for name in asked if is_text(name)}
+    for name in typed.values():
+        if not contest.admits(name):
+            raise ValueError(f"{name}: it does not suit {contest.robot.label}")
+    known = [*contest.laws(), *typed.values()]
+    return _known(tuple(typed.get(name, name) for name in asked), known, "law")
 
 
 def _known(names: tuple[str, ...], known: list[str], what: str) -> list[str]:
@@ -121,19 +139,29 @@ def _known(names: tuple[str, ...], known: list[str], what: str) -> list[str]:
     return list(dict.fromkeys(names)) or known
 
 
+def law_columns(laws: Iterable[str]) -> dict[str, str]:
+    """What the table calls the laws: by their names, typed ones `own`, or `own 1`, `own 2`."""
+    from onpath.models.control.laws.own import OWN, is_text
+
+    names = list(laws)
+    typed = [law for law in names if is_text(law)]
+    numbered = {law: f"{OWN} {i + 1}" if len(typed) > 1 else OWN for i, law in enumerate(typed)}
+    return {law: numbered.get(law, law) for law in names}
+
+
 def table(results: Results) -> str:
     """The worst distance [mm] and delay [s] of every law under every obstruction."""
-    laws = list(dict.fromkeys(law for law, _ in results))
+    laws = law_columns(dict.fromkeys(law for law, _ in results))
     obstructions = list(dict.fromkeys(name for _, name in results))
-    lines = list[str]()
+    lines = [f"{short}: {law}" for law, short in laws.items() if short != law]
     for title, cell in (
         ("largest distance to the path, worst place  [mm]", _distance),
         ("delay at the end, worst place  [s]", _delay),
     ):
         lines += [title, " " * 20 + "".join(f"{name:>19s}" for name in obstructions)]
         lines += [
-            f"  {law:18s}" + "".join(f"{cell(results[law, name]):>19s}" for name in obstructions)
-            for law in laws
+            f"  {short:18s}" + "".join(f"{cell(results[law, name]):>19s}" for name in obstructions)
+            for law, short in laws.items()
         ]
         lines.append("")
     lines.append("Runs that were stopped as diverged are marked by !; see --json for all measures.")

@@ -9,7 +9,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from onpath.app.exports.figures import ShownFigure, save
-from onpath.lessons.benches import law_label
+from onpath.lessons.benches import law_titles
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.studies.comparison import Outcome
 
@@ -54,8 +54,8 @@ def comparison_figure(
     axes.set_xlabel(words("compare.delay"))
     axes.set_ylabel(words("compare.distance"))
     by_law = [
-        axes.plot([], [], "o", color=colour, label=law_label(law, words))[0]
-        for law, colour in zip(laws, cycle(COLOURS), strict=False)
+        axes.plot([], [], "o", color=colour, label=title)[0]
+        for title, colour in zip(law_titles(laws, words).values(), cycle(COLOURS), strict=False)
     ]
     by_obstruction = [
         axes.plot(

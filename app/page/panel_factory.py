@@ -109,7 +109,7 @@ class PanelFactory:
             "editor": lambda: self._editor(first),
             "gains": lambda: GainsPanel(gui, words, post, first),
             "plots": lambda: MorePlots(gui, words, first.key.fields),
-            "compare": lambda: _silent(ComparePanel(gui, words, first, exporter.compare)),
+            "compare": lambda: ComparePanel(gui, words, first, exporter.compare),
             "past": lambda: PastPanel(gui, words, post, exporter),
             "keep": lambda: KeepPanel(gui, words, post, exporter, self._desk),
             "robot": lambda: _silent(RobotPanel(gui, words, post, first.key.robot)),

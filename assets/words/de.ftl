@@ -555,6 +555,7 @@ export-nothing = Es gibt noch nichts mitzunehmen: Lass es erst laufen.
 
 compare-title = Regelungen vergleichen
 compare-text = Für alle derselbe Roboter, dieselbe Bahn, dasselbe Tempo und dieselben Verstärkungen, und ein Hindernis. Das gewünschte Tempo bleibt gleich. Gerechnet wird im Hintergrund, mit den jetzigen Einstellungen dieses Labors; es läuft weiter.
+compare-own_hint = Das Gesetz, das für diesen Roboter eingegeben ist, so wie es zu Beginn des Vergleichs lautet
 compare-obstruction = Hindernis
 compare-run = Vergleichen
 compare-count = Bitte ein bis { $most } Regelungen auswählen.

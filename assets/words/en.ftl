@@ -503,6 +503,7 @@ export-nothing = There is nothing to export yet: let it run first.
 
 compare-title = Compare laws
 compare-text = The same robot, path, speed and gains for all, and one obstruction. The wanted speed is constant. The robots are simulated in the background, with the parameters that this lab has now; your lab goes on.
+compare-own_hint = The law that is typed for this robot, as it is when the comparison begins
 compare-obstruction = Obstruction
 compare-run = Compare
 compare-count = Choose one to { $most } laws.

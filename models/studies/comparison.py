@@ -28,7 +28,7 @@ from onpath.models.closed_loop.simulation import (
     kind_of,
     settings_vector,
 )
-from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
 from onpath.models.systems.parameters import Parameters, time_step
@@ -136,15 +136,18 @@ class Contest:
         return self.entry.make(self.parameters)
 
     def laws(self) -> list[str]:
-        """The laws that can take part: they suit the robot, and move along the path."""
-        composite = getattr(self.parameters, "law", "") == "composite"
-        return [
-            name
-            for name, law in LAWS.items()
-            if law.travels
-            and law.suits(self.robot.system)
-            and (law.commands_acceleration or not composite)
-        ]
+        """The laws of the registry that can take part."""
+        return [name for name in LAWS if self.admits(name)]
+
+    def admits(self, name: str) -> bool:
+        """Whether a law, also a typed one, can take part: it suits the robot, and moves along.
+
+        Raises:
+            ValueError: there is no such law.
+        """
+        law, composite = law_named(name), getattr(self.parameters, "law", "") == "composite"
+        suits = law.suits(self.robot.system) and (law.commands_acceleration or not composite)
+        return law.travels and suits
 
 
 def compare(

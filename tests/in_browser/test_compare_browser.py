@@ -10,8 +10,10 @@ from playwright.sync_api import Browser, expect
 
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
+from onpath.models.control.benches import RIGHT
 from tests.support.browser import Tab, wait_for
 
+TYPED = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed/2)"
 TABLE = "table:has-text('largest force')"
 
 
@@ -28,6 +30,12 @@ def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabSe
     assert told["Trajectory"] > 40
     assert told["Path"] < 6 and told["Waiting"] < 6
     expect(tab.page.get_by_alt_text("Largest distance to the path over delay")).to_be_visible()
+
+    tab.ask(c.TypeLaw(RIGHT, TYPED))
+    own = tab.page.get_by_label("Own law, right", exact=True)
+    own.check(timeout=20_000)
+    tab.press("Compare")
+    expect(tab.page.locator(f"{TABLE} tbody tr", has_text=TYPED)).to_have_count(1, timeout=60_000)
 
     tab.ask(c.SetParameter("speed", 0.0))
     tab.press("Compare")

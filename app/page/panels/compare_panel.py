@@ -12,8 +12,10 @@ from onpath.app.common.templates import render
 from onpath.app.exports.comparison import Results
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.page.panels.widgets import on_press
-from onpath.lessons.benches import law_label, law_text
+from onpath.lessons.benches import law_label, law_text, law_titles
 from onpath.lessons.words import Words
+from onpath.models.control.benches import BENCHES
+from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.studies.comparison import OBSTRUCTIONS, worst
 
@@ -24,6 +26,8 @@ Ask = Callable[[list[str], str, Callable[[Results, bytes], None]], None]
 
 class ComparePanel:
     """Choice of laws and obstruction, and what they lead to.
+
+    A law that is typed for a bench is among the laws as long as it is there.
 
     Args:
         ask: starts a comparison: laws, obstruction, and what is called with the results so far and
@@ -42,6 +46,8 @@ class ComparePanel:
                 for name, law in LAWS.items()
                 if law.travels and law.suits(system)
             }
+            self._typed = {b: self._own(gui, b, first.run.laws[b]) for b in BENCHES}
+            self._own_laws = first.run.laws
             self._obstructions = {words(f"obstruction.{name}"): name for name in OBSTRUCTIONS}
             self._obstruction = gui.add_dropdown(
                 words("compare.obstruction"),
@@ -52,12 +58,26 @@ class ComparePanel:
             self._shown = gui.add_html("")
         on_press(start, self._start)
 
-    def _box(self, gui: viser.GuiApi, law: str) -> viser.GuiCheckboxHandle:
-        label, hint = law_label(law, self._words), law_text(law, self._words)
-        return gui.add_checkbox(label, law in CHOSEN, hint=hint)
+    def _own(self, gui: viser.GuiApi, bench: str, law: str) -> viser.GuiCheckboxHandle:
+        hint, label = self._words("compare.own_hint"), self._words(f"laws.own_{bench}")
+        return gui.add_checkbox(label, False, visible=is_text(law), hint=hint)
+
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Offer the typed laws of the benches."""
+        if snapshot.run.laws == self._own_laws:
+            return
+        self._own_laws = snapshot.run.laws
+        for bench, box in self._typed.items():
+            box.visible = is_text(self._own_laws[bench])
+
+    def _chosen(self) -> list[str]:
+        """The laws that are chosen; the same law typed for both benches once."""
+        laws = [name for name, box in self._laws.items() if box.value]
+        typed = [self._own_laws[b] for b, box in self._typed.items() if box.visible and box.value]
+        return [*laws, *dict.fromkeys(typed)]
 
     def _start(self) -> None:
-        laws = [name for name, box in self._laws.items() if box.value]
+        laws = self._chosen()
         if not 1 <= len(laws) <= MOST:
             self._shown.content = render(
                 "panel/note.html", said=self._words("compare.count", most=MOST), small=True
@@ -72,11 +92,13 @@ class ComparePanel:
 def comparison_html(results: Results, picture: bytes, words: Words) -> str:
     """A table with a row for each law, and the picture."""
     rows: list[dict[str, Any]] = []
+    titles = law_titles((law for law, _ in results), words)
     for (law, _), outcomes in results.items():
         values = worst(outcomes)
         rows.append(
             {
-                "law": law_label(law, words),
+                "law": titles[law],
+                "text": law if is_text(law) else "",
                 "distance": f"{1000 * (values['max_distance_m'] or 0):.1f}",
                 "delay": f"{(values['delay_s'] or 0) + 0.0:.1f}",
                 "force": f"{values['peak_force_N'] or 0:.0f}",

@@ -32,11 +32,38 @@ def test_table_json_csv_and_picture_tell_the_same(
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+TYPED = "across = -K1*xi - K2*dxi - K3*int_xi; along = -K5*(dtheta - speed)"
+SLOW = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed/2)"
+
+
+def test_typed_laws_are_compared_like_the_others(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Path following as a user types it has the numbers of path following."""
+    rows, picture = tmp_path / "a.csv", tmp_path / "a.png"
+    laws = ["--law", "path_following", "--law", TYPED.replace("; ", "\n"), "--law", SLOW]
+    arguments = ["compare", *laws, "--obstruction", "brake", "--csv", str(rows)]
+    assert run_command([*arguments, "--plot", str(picture)]) == 0
+    table = capsys.readouterr().out
+    assert f"own 1: {TYPED}" in table and f"own 2: {SLOW}" in table
+    found: dict[str, list[dict[str, str]]] = {}
+    with rows.open(newline="") as file:
+        for row in csv.DictReader(file):
+            found.setdefault(row.pop("law"), []).append(row)
+    assert len(found[TYPED]) == 8 and found[TYPED] == found["path_following"]
+    assert all(float(row["delay_s"]) > 2 for row in found[SLOW])
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (["--law", "path_folowing"], "did you mean path_following"),
         (["--law", "set_point"], "unknown law"),
+        (["--law", "across = xi.real; along = 0"], "column"),
+        (["--law", "across = 0"], "along"),
+        (["--law", "u1 = 0; u2 = 0; u3 = 0"], "does not suit"),
+        (["--set", "speed_profile=sine"], "constant speed"),
         (["--obstruction", "moon"], "unknown obstruction"),
         (["--robot", "hexapod"], "unknown robot"),
         (["--radius", "nan"], "--radius"),
