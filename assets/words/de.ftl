@@ -450,6 +450,7 @@ gains-plane = Die Pole in der Ebene: { $names }. Links der Achse klingt eine Bew
 gains-rate = Abklingen [1/s]
 gains-swing = Schwingen [rad/s]
 gains-poles = Pole { $poles } 1/s
+gains-poles_at = Pole { $poles } 1/s bei θ = { $place }°; sie ändern sich längs der Bahn
 gains-identify = M und b identifizieren
 gains-identify_hint = Schätzt M und b aus den letzten 3 s des rechten Roboters und lässt beide Regler daran glauben.
 
@@ -933,6 +934,7 @@ behaviour-damping = Dämpfungsgrad { $damping }
 behaviour-unstable = instabil: Ein Fehler wächst alle { $seconds } s auf das e-fache
 behaviour-not_stable = nicht stabil: Ein Fehler klingt nie ab
 behaviour-swings = nicht stabil: Ein Fehler schwingt ewig
+behaviour-free = eine Perle auf einem Draht: Was hier schneller oder langsamer wird, gleicht sich über eine Runde aus
 behaviour-no_poles = für dieses Gesetz werden keine Pole berechnet
 behaviour-not_constant = keine Pole: Das Gesetz hängt vom Ort oder von der Zeit ab oder gibt Drehmomente vor
 behaviour-not_smooth = keine Pole: Auf der Bahn hat das Gesetz einen Knick oder Sprung, oder es bleibt nicht dort

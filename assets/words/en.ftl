@@ -398,6 +398,7 @@ gains-plane = The poles in the plane: { $names }. Left of the axis a motion deca
 gains-rate = decay [1/s]
 gains-swing = swing [rad/s]
 gains-poles = poles { $poles } 1/s
+gains-poles_at = poles { $poles } 1/s at θ = { $place }°; they vary along the path
 gains-identify = Identify M and b
 gains-identify_hint = Estimates M and b from the right robot's last 3 s and uses them in the model of both controllers.
 
@@ -663,6 +664,7 @@ behaviour-damping = damping { $damping }
 behaviour-unstable = unstable: an error grows by a factor of e every { $seconds } s
 behaviour-not_stable = not stable: an error never dies out
 behaviour-swings = not stable: an error swings for ever
+behaviour-free = a bead on a wire: what speeds up or slows down here balances over a lap
 behaviour-no_poles = poles are not computed for this law
 behaviour-not_constant = no poles: the law depends on the place or on the time, or commands torques
 behaviour-not_smooth = no poles: on the path, the law has a kink or a jump, or does not stay

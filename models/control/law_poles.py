@@ -1,8 +1,9 @@
 """The channels of any control law, if its closed loop along the path has poles.
 
-A law of the registry says whether it is `linear`. The commands of a typed law are linearized about
-the motion on the path at the wanted speed. Its poles are constant if the commands depend on ξ, ξ',
-∫ξ dt, θ' and the wanted speed only; if they depend on the place or on the time, it has none.
+A law of the registry says whether it is `linear`, or what its `channels` are at a place. The
+commands of a typed law are linearized about the motion on the path at the wanted speed. Its poles
+are constant if the commands depend on ξ, ξ', ∫ξ dt, θ' and the wanted speed only; if they depend on
+the place or on the time, it has none.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from onpath.models.arrays import Array
 from onpath.models.control.laws.own import formulas_of, is_text
 from onpath.models.control.laws.references import LEAST_GAIN
 from onpath.models.control.laws.registry import SHARED_GAINS, law_named
+from onpath.models.control.place import Place
 from onpath.models.control.poles import Channel, channel, channels
 from onpath.models.errors import Message
 from onpath.models.systems.parameters import Parameters
@@ -26,18 +28,26 @@ LARGEST_BEND = 1e-3
 """Largest deviation from a line, as a share of the slope, or of 1."""
 
 
-def channels_of(law: str, parameters: Parameters) -> tuple[Channel, Channel] | Message:
+def channels_of(
+    law: str, parameters: Parameters, place: Place | None = None
+) -> tuple[Channel, Channel] | Message:
     """The channels of a law across and along the path, or why it has none.
 
     Args:
         law: a name of the registry, or a typed law.
+        place: of the robot, for laws whose poles vary along the path.
 
     Raises:
         ValueError: there is no such law.
     """
     if is_text(law):
         return _of_typed(law, parameters)
-    return channels(parameters) if law_named(law).linear else Message("behaviour.no_poles")
+    own = law_named(law)
+    if own.linear:
+        return channels(parameters)
+    if own.channels is None or place is None:
+        return Message("behaviour.no_poles")
+    return own.channels(parameters, place)
 
 
 def _of_typed(text: str, parameters: Parameters) -> tuple[Channel, Channel] | Message:

@@ -7,12 +7,14 @@ the gains, the control rate and the delay alone.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag, expm
 
+from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.systems.parameters import Parameters, look_ahead_time
 
@@ -30,12 +32,16 @@ class Channel:
         poles: s = ln(z) / T for the eigenvalues z of the sampled system with interval T, [1/s].
         stable: whether all of them decay. The position of a speed loop is not part of the channel.
         integral: whether the channel has integral action.
+        at: θ at which these are the poles, if they vary along the path, [rad].
+        said: what the channel does, in place of what its poles say.
     """
 
     name: str
     poles: Complex
     stable: bool
     integral: bool
+    at: float | None = None
+    said: Message | None = None
 
     def behaviour(self) -> Message:
         """Stability, settling time (4 / |Re s| of the slowest pole) and damping, for a user.
@@ -44,6 +50,8 @@ class Channel:
         promise of no overshoot: the integral, empty at the start, is empty at the end as well, so
         that an initial error must change its sign.
         """
+        if self.said is not None:
+            return self.said
         if not self.stable:
             return self._unstable()
         settles, damping = 4 / float(-self.poles.real.max()), min(map(_damping, self.poles))
@@ -102,7 +110,8 @@ def channel(
 
     Args:
         gains: (k1, k2, k3).
-        kept: the states that the channel has; see `_sampled`.
+        kept: the states of `_sampled` that the channel has, a subset of "xvia"; "a" stands for
+            all of a_j.
     """
     times = 1 / parameters.control_rate, look_ahead_time(parameters), parameters.delay
     return _channel(name, times, gains, kept)
@@ -112,13 +121,48 @@ def channel(
 def _channel(
     name: str, times: tuple[float, float, float], gains: tuple[float, float, float], kept: str
 ) -> Channel:
-    """One channel from its times, gains and states; see `_sampled`."""
-    roots = _sampled(*times, gains, kept)
-    decay = np.log(np.abs(roots) + 1e-300) / times[0]
+    """One channel from its times, gains and states; see `channel`."""
+    states = [i for i in range(4 + int(times[2])) if "xvia"[min(i, 3)] in kept]
+    matrix = _sampled(*times, gains)[np.ix_(states, states)]
+    return _from_matrix(name, times[0], matrix, len(kept) - 1, "i" in kept)
+
+
+def turning_channel(
+    name: str, parameters: Parameters, gains: tuple[float, float, float], turn: Array, at: float
+) -> Channel:
+    """The channel across the path, if its integral is kept in axes that do not turn.
+
+    The axes A = (T, N), or (T, n1, n2), turn as A' = A Ω. In these axes the integral of the error
+    across the path moves as I' = (0, e) - Ω I, so that it comes in as well along T, and the
+    directions across act on one another.
+
+    Args:
+        gains: (k1, k2, k3).
+        turn: Ω, (2, 2) or (3, 3), [rad/s].
+        at: θ at which this is so, [rad]; NaN: everywhere.
+    """
+    t, directions = 1 / parameters.control_rate, len(turn) - 1
+    one = _sampled(t, look_ahead_time(parameters), parameters.delay, gains)
+    matrix: Array = np.asarray(block_diag(1.0, *[one] * directions), dtype=float)
+    sums = [0, *(1 + len(one) * i + 2 for i in range(directions))]
+    matrix[sums] = np.asarray(expm(-t * turn)) @ matrix[sums]
+    found = _from_matrix(name, t, matrix, 1 + 3 * directions, integral=True)
+    return found if np.isnan(at) else replace(found, at=at)
+
+
+def _from_matrix(name: str, t: float, matrix: Array, count: int, integral: bool) -> Channel:
+    """The channel of a sampled system: its `count` slowest poles.
+
+    Args:
+        t: sampling interval, [s].
+        count: of its states, without the accelerations that are on their way.
+    """
+    roots: Complex = np.linalg.eigvals(matrix).astype(np.complex128)
+    decay = np.log(np.abs(roots) + 1e-300) / t
     stable = bool(np.all(decay < -LEAST_DECAY))
-    slow = _slowest(roots, len(kept) - 1)  # without those of the accelerations on their way
-    poles: Complex = np.asarray(np.log(slow + 1e-300) / times[0], dtype=np.complex128)
-    return Channel(name, poles, stable, "i" in kept)
+    slow = _slowest(roots, count)
+    poles: Complex = np.asarray(np.log(slow + 1e-300) / t, dtype=np.complex128)
+    return Channel(name, poles, stable, integral)
 
 
 def _slowest(roots: Complex, count: int) -> Complex:
@@ -130,10 +174,8 @@ def _slowest(roots: Complex, count: int) -> Complex:
     return rising[-count:]
 
 
-def _sampled(
-    t: float, h: float, delay: float, gains: tuple[float, float, float], kept: str
-) -> Complex:
-    """Eigenvalues of a sampled double integrator under PID control with look-ahead and delay.
+def _sampled(t: float, h: float, delay: float, gains: tuple[float, float, float]) -> Array:
+    """The matrix of a sampled double integrator under PID control with look-ahead and delay.
 
     State: position x, velocity v, integral i, and the accelerations a_1 to a_{l+1} commanded one to
     l + 1 intervals ago, with delay = l + f, 0 <= f < 1. The last one still acts, up to the time f t
@@ -149,7 +191,6 @@ def _sampled(
         h: look-ahead, [s].
         delay: in sampling intervals.
         gains: (k1, k2, k3).
-        kept: the states that the channel has, a subset of "xvia"; "a" stands for all of a_j.
 
     Source: Åström and Wittenmark, Computer-Controlled Systems, 3.2, for systems with time delay.
     """
@@ -161,7 +202,7 @@ def _sampled(
     command = -np.array(gains) @ np.stack(predicted)
     moved = np.vstack([command, unit[3:]])  # a_0, the present command, to a_{l+1}
     early, late = moved[whole + 1], moved[whole]
-    after = np.vstack(
+    return np.vstack(
         [
             unit[0] + t * unit[1] + t**2 * (f * (1 - f / 2) * early + (1 - f) ** 2 / 2 * late),
             unit[1] + t * (f * early + (1 - f) * late),
@@ -169,5 +210,3 @@ def _sampled(
             moved[:-1],
         ]
     )
-    states = [i for i in range(size) if "xvia"[min(i, 3)] in kept]
-    return np.linalg.eigvals(after[np.ix_(states, states)]).astype(np.complex128)

@@ -9,6 +9,7 @@ import numpy as np
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.lessons.checks import Verdict
 from onpath.lessons.progress import Progress, Truth
+from onpath.models.control.place import Place
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -56,6 +57,21 @@ class WallState:
     z2: float
     angle: float
     forces: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LawPlaces:
+    """Places on the path at which the poles of some laws are shown.
+
+    Attributes:
+        time: at which the robots were there, [s].
+        version: changes whenever the robot, the path or a law does.
+        of: places, by bench; benches whose laws have the same poles everywhere are missing.
+    """
+
+    time: float
+    version: tuple[str | int, ...]
+    of: dict[str, Place]
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +148,7 @@ class PageSnapshot(Snapshot):
         run, edit, lesson, plots: state of these parts of the page.
         obstacle: the wall, or None.
         beginning: the start of the next run.
+        places: of the robots on the path, for the poles of their laws.
         shared: the last share code made.
         nickname: the student's nickname in the class, or empty.
     """
@@ -146,6 +163,7 @@ class PageSnapshot(Snapshot):
     nickname: str
     obstacle: WallState | None
     beginning: StartState
+    places: LawPlaces
 
 
 def parameters_of(snapshot: PageSnapshot) -> Parameters:

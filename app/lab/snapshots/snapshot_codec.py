@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_origin
 
 import msgspec
 import numpy as np
@@ -35,7 +35,7 @@ def _encode(value: Any) -> Any:
 
 
 def _decode(kind: type, data: Any) -> Any:
-    if kind is not np.ndarray:
+    if (get_origin(kind) or kind) is not np.ndarray:
         raise NotImplementedError(kind.__name__)
     dtype, shape, numbers = msgspec.convert(data, tuple[str, tuple[int, ...], bytes])
     return np.frombuffer(numbers, np.dtype(dtype)).reshape(shape)

@@ -11,6 +11,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Instant
 from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.law_places import law_places
 from onpath.app.lab.snapshots.obstacles import (
     drawn_brakes,
     drawn_start,
@@ -96,6 +97,7 @@ def take_page_snapshot(
         nickname=nickname,
         obstacle=wall_state(session),
         beginning=start_state(session),
+        places=law_places(session, scene["time"], before),
     )
 
 

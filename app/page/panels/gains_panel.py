@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
+import numpy as np
 import viser
 
 from onpath.app.lab.commands import Identify, Pulse, ResetParameters
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues, parameters_of
+from onpath.app.lab.snapshots.page_snapshot import (
+    LawPlaces,
+    PageSnapshot,
+    ParameterValues,
+    parameters_of,
+)
 from onpath.app.page.panels.pole_picture import pole_picture
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, SwitchedParameter, on_press
 from onpath.lessons.benches import bench_titles
@@ -31,7 +35,7 @@ class GainsPanel:
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         self._words = words
-        self._shown: tuple[ParameterValues, dict[str, str]] | None = None
+        self._shown: tuple[ParameterValues, dict[str, str], LawPlaces] | None = None
         self._widgets = [ParameterWidgets(gui, words, post, BASIC, first)]
         self._settling = gui.add_markdown("")
         self._picture = gui.add_html("")
@@ -60,15 +64,14 @@ class GainsPanel:
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's values and the resulting settling behaviour."""
-        now = snapshot.parameters, snapshot.run.laws
+        now = snapshot.parameters, snapshot.run.laws, snapshot.places
         if now == self._shown:
             return
         self._shown = now
         for widgets in self._widgets:
             widgets.follow(snapshot)
-        found = _channels(snapshot, self._words)
-        self._settling.content = "\n\n".join(_lines(found, self._words))
-        self._picture.content = pole_picture(found, self._words)
+        self._settling.content = "\n\n".join(lines_of_poles(snapshot, self._words))
+        self._picture.content = pole_picture(_channels(snapshot, self._words), self._words)
 
 
 def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
@@ -85,16 +88,16 @@ def _channels(snapshot: PageSnapshot, words: Words) -> dict[str, tuple[Channel, 
         bench_titles(snapshot.run.laws, words),
     )
     for bench, law in snapshot.run.laws.items():
-        channels = channels_of(law, parameters_of(snapshot))
-        own = is_text(law) or isinstance(channels, Message)
+        channels = channels_of(law, parameters_of(snapshot), snapshot.places.of.get(bench))
+        own = bench in snapshot.places.of or is_text(law) or isinstance(channels, Message)
         found[titles[bench] if own else ""] = channels
     return found
 
 
-def _lines(found: Mapping[str, tuple[Channel, ...] | Message], words: Words) -> list[str]:
-    """A line for each channel, or why a law has none."""
+def lines_of_poles(snapshot: PageSnapshot, words: Words) -> list[str]:
+    """A line of Markdown for each channel of the laws, or why a law has none."""
     lines = list[str]()
-    for whose, channels in found.items():
+    for whose, channels in _channels(snapshot, words).items():
         if isinstance(channels, Message):
             lines.append(f"**{whose}:** {words.sentence(channels)}")
             continue
@@ -105,5 +108,8 @@ def _lines(found: Mapping[str, tuple[Channel, ...] | Message], words: Words) -> 
 def _line(channel: Channel, words: Words, whose: str) -> str:
     name = whose + words(f"gains.{channel.name}")
     poles = words("gains.poles", poles=channel.pole_words())
-    mark = "" if channel.stable else "⚠️ "
+    if channel.at is not None:
+        place = f"{np.degrees(channel.at) % 360:.0f}"
+        poles = words("gains.poles_at", poles=channel.pole_words(), place=place)
+    mark = "" if channel.stable or channel.said else "⚠️ "
     return f"**{name}:** {mark}{words.sentence(channel.behaviour())} <br/>{poles}"

@@ -11,8 +11,11 @@ from onpath.models.control.laws.references import (
     clock_rate,
     tracking_error,
 )
+from onpath.models.control.place import Place
+from onpath.models.control.poles import Channel, channel, turning_channel
 from onpath.models.control.space_output import normals
 from onpath.models.paths.projection import LocalCurve
+from onpath.models.systems.parameters import Parameters
 
 
 def contouring(view: View) -> ControlAction:
@@ -123,6 +126,24 @@ def _skew(bend: ca.SX, rise: ca.SX, twist: ca.SX) -> ca.SX:
     return ca.blockcat([[0, -bend, -rise], [bend, 0, -twist], [rise, twist, 0]])
 
 
+def contouring_channels(parameters: Parameters, place: Place) -> tuple[Channel, Channel]:
+    """The channels of the error in the frame (T, N) at the reference point.
+
+    Along: κ K1 and √κ K2. Across: K1 and K2, on every path; with the integral also K3, whose sum is
+    kept in axes that do not turn, so that its poles depend on how the path turns at the place.
+    """
+    ratio, k1, k2 = parameters.contour_ratio, parameters.K1, parameters.K2
+    along = channel("along", parameters, (ratio * k1, ratio**0.5 * k2, 0.0), "xva")
+    if parameters.K3 == 0 or parameters.tracker_integral == "off":
+        return channel("across", parameters, (k1, k2, 0.0), "xva"), along
+    rate = parameters.speed if parameters.task == "speed" else 0.0
+    at = float("nan") if place.turns_evenly or rate == 0 else place.theta
+    gains = k1, k2, parameters.K3
+    if not (place.turn * rate).any():
+        return channel("across", parameters, gains, "xvia"), along
+    return turning_channel("across", parameters, gains, place.turn * rate, at), along
+
+
 def _cross(a: ca.SX, b: ca.SX) -> ca.SX:
     return a[0] * b[1] - a[1] * b[0]
 
@@ -135,6 +156,7 @@ LAW = Law(
     command=contouring,
     reference=clock_ahead,
     by_clock=True,
+    channels=contouring_channels,
     gains=("K1", "K2", "K3", "contour_ratio"),
     good="It is on time and yields along the curve while it is stiff across it, as long as its"
     " error is small.",

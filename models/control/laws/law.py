@@ -12,10 +12,13 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
+from onpath.models.control.place import Place
+from onpath.models.control.poles import Channel
 from onpath.models.control.virtual_output import VirtualOutput
 from onpath.models.layout import Fields
 from onpath.models.paths.frames import Frame
 from onpath.models.paths.projection import LocalCurve
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.system import MechanicalSystem
 
 Memory = tuple[tuple[str, int], ...]
@@ -173,6 +176,8 @@ class Law:
         commands_acceleration: whether it commands y'' rather than torques.
         travels: whether it moves along the path at a wanted speed, or slides on it.
         linear: whether its error has the poles of its gains; see `models/control/poles.py`.
+        channels: the motion across and along the path near a place, if it is not `linear`; None if
+            that has no poles either.
         motors: number of motors that it is made for; None: any.
         spatial: whether it is made for outputs in space, p = 3.
         always_integrates: whether it uses the integral even if K3 = 0.
@@ -192,6 +197,7 @@ class Law:
     commands_acceleration: bool = True
     travels: bool = True
     linear: bool = False
+    channels: Callable[[Parameters, Place], tuple[Channel, Channel]] | None = None
     motors: int | None = None
     spatial: bool = False
     always_integrates: bool = False

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import casadi as ca
+import numpy as np
 
 from onpath.models.control.laws.law import ControlAction, Law, View
 from onpath.models.control.laws.path_following import transversal
+from onpath.models.control.place import Place
+from onpath.models.control.poles import Channel, Complex, channels
+from onpath.models.errors import Message
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.system import coriolis
 
 
@@ -41,6 +46,23 @@ def virtual_constraint(view: View) -> ControlAction:
     )
 
 
+def wire_channels(parameters: Parameters, place: Place) -> tuple[Channel, Channel]:
+    """The channels of (18) across, and of a bead on a wire along.
+
+    With m(θ) the inertia along the path and g = m' / (2 m), the bead keeps ½ m θ'²:
+
+        θ'' = -g θ'²,   and near a motion at θ' = w:   δθ'' = -2 g w δθ' - g' w² δθ.
+
+    Both coefficients vary along the path. Where the poles lie to the right, the bead is being
+    slowed down by a growing inertia, or the other way round; over a lap, nothing grows or decays.
+    """
+    across = channels(parameters)[0]
+    damping, stiffness = 2 * place.slope * place.rate, place.bend * place.rate**2
+    poles: Complex = np.roots([1.0, damping, stiffness]).astype(np.complex128)
+    said = Message("behaviour.free")
+    return across, Channel("along", poles, False, False, at=place.theta, said=said)
+
+
 LAW = Law(
     name="virtual_constraint",
     label="Virtual constraint",
@@ -49,6 +71,7 @@ LAW = Law(
     command=virtual_constraint,
     aim="theta",
     square=True,
+    channels=wire_channels,
     good="It keeps to the curve and leaves the pace to whoever pushes it along.",
     limits="It does not travel by itself: at rest it stays where it is.",
 )

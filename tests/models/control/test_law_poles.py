@@ -19,6 +19,7 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.control.law_poles import channels_of
 from onpath.models.control.laws.own import PATH_FOLLOWING
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.place import place_at
 from onpath.models.control.poles import Channel, channels
 from onpath.models.errors import Message
 from onpath.models.paths.curves import circle
@@ -26,6 +27,7 @@ from onpath.models.systems.catalogue import FIVE_BAR
 from onpath.models.systems.parameters import Parameters
 
 CURVE = circle(0.05)
+HERE = place_at(FIVE_BAR.make(FIVE_BAR.lab), FIVE_BAR.lab, CURVE, 1.0, 5.0)
 ALONG = "along = -K5*(dtheta - speed)"
 
 
@@ -99,3 +101,5 @@ def test_a_law_without_constant_poles_says_why(law: str, code: str) -> None:
 def test_every_law_of_the_registry_has_poles_or_says_why_not() -> None:
     for name, law in LAWS.items():
         assert isinstance(channels_of(name, FIVE_BAR.lab), tuple) == law.linear
+        there = channels_of(name, FIVE_BAR.lab, HERE)
+        assert isinstance(there, tuple) == (law.linear or law.channels is not None)

@@ -1,0 +1,42 @@
+"""Where the robots are on the path, for the poles of laws whose poles vary along it."""
+
+from __future__ import annotations
+
+from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.page_snapshot import LawPlaces, PageSnapshot
+from onpath.app.lab.snapshots.snapshot import Motion
+from onpath.models.control.laws.registry import law_named
+from onpath.models.control.place import Place, place_at
+
+INTERVAL = 1.0  # [s] of simulated time between places that are shown, so that one can read them
+
+
+def law_places(session: Session, time: float, before: PageSnapshot | Motion | None) -> LawPlaces:
+    """The places of the robots at the instant that is shown, each where its law aims.
+
+    They are taken anew after `INTERVAL`, or when something else has changed, or in a lab that
+    stands still.
+
+    Args:
+        time: that is shown, [s].
+        before: the previous snapshot of the same lab.
+    """
+    aims = {bench: law_named(law) for bench, law in session.chosen_laws.items()}
+    aims = {bench: law for bench, law in aims.items() if law.channels is not None}
+    version = (session.entry.name, session.editor.version, *session.chosen_laws.values())
+    old = before.places if isinstance(before, PageSnapshot) else None
+    if old is not None and old.version == version:
+        fresh = session.running and 0 <= time - old.time < INTERVAL
+        if fresh or time == old.time or not aims:
+            return old
+    robot, parameters = session.robot, session.parameters
+    past = None if session.viewing is None else session.history.at(session.viewing)
+    instant = session.instant() if past is None else past.instant()
+    curve = session.editor.curve if past is None else past.curve
+    fields = session.sample_layout.unpack(instant.sample)
+    found = dict[str, Place]()
+    for row, bench in enumerate(session.runs):
+        if bench in aims:
+            theta, rate = (float(fields[name][row, 0]) for name in (aims[bench].aim, "theta_rate"))
+            found[bench] = place_at(robot, parameters, curve, theta, rate)
+    return LawPlaces(time, version, found)
