@@ -54,16 +54,16 @@ def place_at(
         at = at.clip(-np.pi + 2 * STEP, np.pi - 2 * STEP)
     slope = bend = 0.0
     if system.n == system.m == system.p:
-        logs = np.log(_inertia(robot, parameters, curve, at + STEP * np.arange(-2, 3))) / 2
-        slope = float(logs[3] - logs[1]) / (2 * STEP)
-        bend = float(logs[3] - 2 * logs[2] + logs[1]) / STEP**2
+        near = at + STEP * np.array([-1.0, 0.0, 1.0])
+        before, here, after = (np.log(_inertia(robot, parameters, curve, near)) / 2).tolist()
+        slope, bend = (after - before) / (2 * STEP), (after - 2 * here + before) / STEP**2
     return Place(theta, rate, _turn(curve, at)[0], _turns_evenly(curve), slope, bend)
 
 
 def _turn(curve: Curve, theta: Array) -> Array:
     """Ω per radian at some places, (n, d, d)."""
-    axes = _axes(curve, theta)
-    slope = (_axes(curve, theta + STEP) - _axes(curve, theta - STEP)) / (2 * STEP)
+    axes: Array = _axes(curve, theta)
+    slope: Array = (_axes(curve, theta + STEP) - _axes(curve, theta - STEP)) / (2 * STEP)
     turn = axes.transpose(0, 2, 1) @ slope
     return (turn - turn.transpose(0, 2, 1)) / 2
 
@@ -77,7 +77,8 @@ def _axes(curve: Curve, theta: Array) -> Array:
     if curve.dimension == 2:
         return np.stack([tangent, left], axis=2)
     left = np.column_stack([left, np.zeros(len(left))])
-    return np.stack([tangent, left, np.cross(tangent, left)], axis=2)
+    up: Array = np.asarray(np.cross(tangent, left), dtype=float)
+    return np.stack([tangent, left, up], axis=2)
 
 
 @lru_cache(maxsize=64)
@@ -93,8 +94,8 @@ def _inertia(robot: Robot, parameters: Parameters, curve: Curve, theta: Array) -
     rates = frame.lift(first) - frame.lift(np.zeros_like(first))
     found = list[float]()
     for q, rate in zip(robot.rest(frame.lift(y)), rates, strict=True):
-        jacobian, mass = (each.full() for each in _matrices(robot)(q, model))
-        joints = np.linalg.solve(jacobian, rate)
+        jacobian, mass = (np.asarray(each, dtype=float) for each in _matrices(robot)(q, model))
+        joints: Array = np.asarray(np.linalg.solve(jacobian, rate), dtype=float)
         found.append(float(joints @ mass @ joints))
     return np.array(found)
 

@@ -143,7 +143,7 @@ def turning_channel(
     """
     t, directions = 1 / parameters.control_rate, len(turn) - 1
     one = _sampled(t, look_ahead_time(parameters), parameters.delay, gains)
-    matrix: Array = np.asarray(block_diag(1.0, *[one] * directions), dtype=float)
+    matrix: Array = np.asarray(block_diag(np.ones((1, 1)), *[one] * directions), dtype=float)
     sums = [0, *(1 + len(one) * i + 2 for i in range(directions))]
     matrix[sums] = np.asarray(expm(-t * turn)) @ matrix[sums]
     found = _from_matrix(name, t, matrix, 1 + 3 * directions, integral=True)

@@ -103,7 +103,8 @@ class Linearized:
         )
         z = np.linalg.eigvals(after @ moved @ np.linalg.inv(before))
         slow: Complex = z[np.abs(z) > 0.3].astype(np.complex128)  # without the held torques
-        return np.log(slow) / DT
+        found: Complex = np.asarray(np.log(slow) / DT, dtype=np.complex128)
+        return found
 
     def in_axes(self, state: Array) -> Array:
         """The tracking error, its first two rates and last the integral, in the axes at θ_r."""
