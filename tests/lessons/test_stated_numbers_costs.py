@@ -145,7 +145,8 @@ def bulge(index: int, right: float, up: float, *more: Action, **settings: Any) -
 
 def test_bulge_costs_what_its_bend_needs() -> None:
     right, slow = bulge(4, 15, 0), bulge(4, 15, 0, speed=TURN / 2)
-    costs = [float(run.torque[4000:].max()) for run in (right, bulge(6, 0, 15), slow)]
+    top = bulge(6, 0, 15)
+    costs = [float(run.torque[4000:].max()) for run in (right, top, slow)]
     assert_stated(said("08", "The bulge to the right costs # N m, twice"), costs[:1])
     assert_stated(said("08", "The same bulge at the top costs #. And"), costs[1:2])
     assert_stated(said("08", "the right one costs #: not half"), costs[2:])
@@ -163,6 +164,13 @@ def test_bulge_costs_what_its_bend_needs() -> None:
     assert f"v²/R = {stated[2]} m/s²" in drawn and f"{costs[0]:.2f} N m" in drawn
     estimate = said("08", r"\frac{#\cdot #}{#} = #\ \text{N m}")
     assert_stated(estimate, [0.0226, across, 0.2, 0.0226 * value(stated[2]) / 0.2])
+    told = said(
+        "08",
+        "$M_{22} = #$ is only half as large: # by this estimate, and # in the plot."
+        " (The # of before is motor 1's,",
+    )
+    first, second = (float(most) for most in top.torques[4000:].max(axis=0))
+    assert_stated(told, [0.012, 0.012 * value(stated[2]) / 0.2, second, first])
 
 
 def test_six_times_the_gain_and_less_speed() -> None:

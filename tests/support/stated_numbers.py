@@ -81,9 +81,14 @@ class Motion:
     reference: Array
     rate: Array
     speed: Array
-    torque: Array
+    torques: Array
     force: Array
     y: Array
+
+    @property
+    def torque(self) -> Array:
+        """The larger one of the motors' torques, without sign."""
+        return self.torques.max(axis=1)
 
     def during(self, begin: float, end: float) -> slice:
         """The rows between two instants, [s]."""
@@ -150,7 +155,7 @@ def _motion(run: Trajectory) -> Motion:
         reference=fields["theta_ref"][:, 0],
         rate=fields["theta_rate"][:, 0],
         speed=run.speed * 1e3,
-        torque=np.abs(fields["u"]).max(axis=1),
+        torques=np.abs(fields["u"]),
         force=np.linalg.norm(fields["force"], axis=1),
         y=fields["y"] * 1e3,
     )
