@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+from onpath.app.cli.lesson_play import PlayStep
+
 if TYPE_CHECKING:
     from onpath.lessons.course import Course
     from onpath.lessons.problems import Problem
@@ -60,18 +62,19 @@ class CheckLessons:
 LessonsAction = (
     Annotated[ListLessons, tyro.conf.subcommand("list", prefix_name=False)]
     | Annotated[CheckLessons, tyro.conf.subcommand("check", prefix_name=False)]
+    | Annotated[PlayStep, tyro.conf.subcommand("play", prefix_name=False)]
 )
 
 
 @dataclass(frozen=True)
 class LessonsCommand:
-    """List the lessons, or check your own lessons by reading them and playing their scripts."""
+    """List, check or play the lessons, the built-in ones or your own."""
 
     do: Annotated[LessonsAction, tyro.conf.arg(name="")]
 
     def run(self) -> int:
         """Run the chosen action; return its exit code."""
-        return self.do.run()
+        return self.do.run() or 0
 
 
 def minutes_table(course: Course, steps: bool) -> str:

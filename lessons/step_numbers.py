@@ -1,0 +1,121 @@
+"""What happened in a run of a lesson's step, as numbers: one part for each action of its script."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from onpath.lessons.action_schema import Action, RobotName, Script
+from onpath.lessons.record import ROBOTS
+from onpath.models.arrays import Array
+
+NEAR = 1.0
+"""Distance to the path within which a robot counts as settled, [mm]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Numbers:
+    """Statistics of a quantity of a robot in one part of a run, in the unit of the quantity.
+
+    Attributes:
+        max_at: time of the largest value, [s] since the script began.
+        final: the last value.
+    """
+
+    max: float
+    max_at: float
+    min: float
+    mean: float
+    rms: float
+    final: float
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What happened between two actions of a script.
+
+    Attributes:
+        begin, end: [s] since the script began.
+        actions: those at the beginning.
+        numbers: robot -> quantity -> statistics.
+        settled: robot -> time after `begin` from which on it is within NEAR of the path, [s]; None
+            if it is not at the end.
+    """
+
+    begin: float
+    end: float
+    actions: tuple[Action, ...]
+    numbers: dict[RobotName, dict[str, Numbers]]
+    settled: dict[RobotName, float | None]
+
+
+def parts_of(script: Script, times: Array, values: dict[RobotName, dict[str, Array]]) -> list[Part]:
+    """The parts of a run of a script, and the whole as the last one if there are several.
+
+    Args:
+        times: shape (n,), [s] since the script began, increasing.
+        values: robot -> quantity -> shape (n,); NaN where it is undefined.
+    """
+    limits = sorted({0.0, *(action.at for action in script.do)} - {script.until})
+    ends = [*limits[1:], script.until]
+    spans = list(zip(limits, ends, strict=True))
+    parts = [
+        _part(begin, end, [a for a in script.do if a.at == begin], times, values)
+        for begin, end in spans
+    ]
+    whole = [_part(0.0, script.until, (), times, values)] if len(spans) > 1 else []
+    return [*parts, *whole]
+
+
+def action_text(action: Action) -> str:
+    """An action as in a script, such as `set K1 = 900`."""
+    given, only = getattr(action, action.what), f" ({action.only})" if action.only else ""
+    if action.what == "laws":
+        given = given.named
+    if isinstance(given, dict):
+        given = ", ".join(f"{name} = {value}" for name, value in given.items())
+    if isinstance(given, bool):
+        return (action.what if given else f"{action.what} off") + only
+    return f"{action.what} {given}" + only
+
+
+def _part(
+    begin: float,
+    end: float,
+    actions: Iterable[Action],
+    times: Array,
+    values: dict[RobotName, dict[str, Array]],
+) -> Part:
+    chosen = (times >= begin - 1e-9) & (times <= end + 1e-9)
+    numbers: dict[RobotName, dict[str, Numbers]] = {robot: {} for robot in ROBOTS}
+    settled: dict[RobotName, float | None] = dict.fromkeys(ROBOTS)
+    for robot in ROBOTS:
+        for quantity, column in values[robot].items():
+            defined = chosen & np.isfinite(column)
+            if defined.any():
+                numbers[robot][quantity] = _numbers(times[defined], column[defined])
+        if "distance" in numbers[robot]:
+            settled[robot] = _settled(times[chosen] - begin, values[robot]["distance"][chosen])
+    return Part(begin, end, tuple(actions), numbers, settled)
+
+
+def _numbers(times: Array, column: Array) -> Numbers:
+    at = int(column.argmax())
+    return Numbers(
+        max=float(column[at]),
+        max_at=float(times[at]),
+        min=float(column.min()),
+        mean=float(column.mean()),
+        rms=float(np.sqrt(np.mean(column**2))),
+        final=float(column[-1]),
+    )
+
+
+def _settled(times: Array, distances: Array) -> float | None:
+    """The first time from which on all distances are small; None if the last one is not."""
+    far: Sequence[int] = np.flatnonzero(~(distances <= NEAR)).tolist()
+    if not far:
+        return 0.0
+    return float(times[far[-1] + 1]) if far[-1] + 1 < len(times) else None
