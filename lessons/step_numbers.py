@@ -33,7 +33,7 @@ class Numbers:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class ScriptPart:
     """What happened between two actions of a script.
 
     Attributes:
@@ -51,7 +51,9 @@ class Part:
     settled: dict[RobotName, float | None]
 
 
-def parts_of(script: Script, times: Array, values: dict[RobotName, dict[str, Array]]) -> list[Part]:
+def parts_of(
+    script: Script, times: Array, values: dict[RobotName, dict[str, Array]]
+) -> list[ScriptPart]:
     """The parts of a run of a script, and the whole as the last one if there are several.
 
     Args:
@@ -87,7 +89,7 @@ def _part(
     actions: Iterable[Action],
     times: Array,
     values: dict[RobotName, dict[str, Array]],
-) -> Part:
+) -> ScriptPart:
     chosen = (times >= begin - 1e-9) & (times <= end + 1e-9)
     numbers: dict[RobotName, dict[str, Numbers]] = {robot: {} for robot in ROBOTS}
     settled: dict[RobotName, float | None] = dict.fromkeys(ROBOTS)
@@ -98,7 +100,7 @@ def _part(
                 numbers[robot][quantity] = _numbers(times[defined], column[defined])
         if "distance" in numbers[robot]:
             settled[robot] = _settled(times[chosen] - begin, values[robot]["distance"][chosen])
-    return Part(begin, end, tuple(actions), numbers, settled)
+    return ScriptPart(begin, end, tuple(actions), numbers, settled)
 
 
 def _numbers(times: Array, column: Array) -> Numbers:

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from onpath.app.exports.step_play import PlayedScript
     from onpath.lessons.course import Course
     from onpath.lessons.schema import Lesson, Step
-    from onpath.lessons.step_numbers import Part
+    from onpath.lessons.step_numbers import ScriptPart
 
 ALWAYS = ("distance", "torque")  # quantities that are printed for every step
 
 
 @dataclass(frozen=True)
-class PlayStep:
+class PlayLesson:
     """Play a step of a lesson and print numbers: its script, or its tasks' reference scripts."""
 
     lesson: Annotated[str, tyro.conf.Positional]
@@ -123,7 +123,7 @@ def _as_json(lesson: Lesson, index: int, runs: list[PlayedScript]) -> dict[str, 
     }
 
 
-def _part_as_json(part: Part) -> dict[str, Any]:
+def _part_as_json(part: ScriptPart) -> dict[str, Any]:
     from onpath.lessons.step_numbers import action_text
 
     plain: dict[str, Any] = msgspec.to_builtins(dataclasses.replace(part, actions=()))
@@ -152,7 +152,7 @@ def _lines(lesson: Lesson, index: int, runs: list[PlayedScript], every: bool) ->
             yield f"    {'✓' if verdict.passed else '○'} {verdict.words}"
 
 
-def _part_lines(part: Part, quantities: list[str]) -> Iterator[str]:
+def _part_lines(part: ScriptPart, quantities: list[str]) -> Iterator[str]:
     from onpath.lessons.record import QUANTITIES
     from onpath.lessons.step_numbers import action_text
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from onpath.app.cli.lesson_play import PlayStep
+from onpath.app.cli.lesson_play import PlayLesson
 
 if TYPE_CHECKING:
     from onpath.lessons.course import Course
@@ -62,7 +62,7 @@ class CheckLessons:
 LessonsAction = (
     Annotated[ListLessons, tyro.conf.subcommand("list", prefix_name=False)]
     | Annotated[CheckLessons, tyro.conf.subcommand("check", prefix_name=False)]
-    | Annotated[PlayStep, tyro.conf.subcommand("play", prefix_name=False)]
+    | Annotated[PlayLesson, tyro.conf.subcommand("play", prefix_name=False)]
 )
 
 

@@ -14,7 +14,7 @@ from onpath.lessons.action_schema import RobotName, Script
 from onpath.lessons.checks import Verdict
 from onpath.lessons.record import ROBOTS
 from onpath.lessons.schema import Lesson, Step
-from onpath.lessons.step_numbers import Part, parts_of
+from onpath.lessons.step_numbers import ScriptPart, parts_of
 from onpath.lessons.task_schema import Task
 from onpath.models.arrays import Array
 
@@ -32,7 +32,7 @@ class PlayedScript:
 
     title: str
     script: Script
-    parts: list[Part]
+    parts: list[ScriptPart]
     verdicts: list[Verdict] = field(default_factory=list[Verdict])
     passed: bool = False
 
