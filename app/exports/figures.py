@@ -16,7 +16,7 @@ from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.laws.registry import law_named
 from onpath.models.studies.experiments import Experiment
-from onpath.models.systems.parameters import LEVEL_SET
+from onpath.models.systems.law_parameters import LEVEL_SET
 
 EXTRA = {"deflection": ("deflection of\nthe tip  [mm]", 1e3)}
 """Label and scale of those of `Robot.extra_fields` that are drawn."""

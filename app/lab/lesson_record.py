@@ -16,7 +16,7 @@ from onpath.lessons.thinning import peaks
 from onpath.models.arrays import Array
 from onpath.models.control.benches import LEFT
 from onpath.models.layout import Layout
-from onpath.models.systems.parameters import LEVEL_SET
+from onpath.models.systems.law_parameters import LEVEL_SET
 
 MOST_SAMPLES = 3600
 

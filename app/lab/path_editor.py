@@ -8,9 +8,11 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
+from onpath.models.paths.curve_blend import blend
 from onpath.models.paths.curve_faults import Fault, curve_faults
-from onpath.models.paths.curves import Curve, blend, saddle
+from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign
+from onpath.models.paths.space_curves import saddle
 from onpath.models.systems.robots import Robot
 
 BLEND = 0.3  # [s]

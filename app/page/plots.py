@@ -17,7 +17,7 @@ from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS, LEFT
 from onpath.models.layout import Layout
-from onpath.models.systems.parameters import LEVEL_SET
+from onpath.models.systems.law_parameters import LEVEL_SET
 
 PLOT_WINDOW = 10.0  # [s], of the axis of an empty plot
 PADDING = (10, 12, 0, 0)

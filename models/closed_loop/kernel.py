@@ -169,13 +169,13 @@ def _advance(
     """
     state_symbol, state = kept_layout(system, kind, law.memory).symbols("state")
     settings_symbol, settings = settings_layout(system).symbols("settings")
-    frame = frame.at(settings["plane"])
+    plane = frame.at(settings["plane"])
     values = ca.SX.sym("values", kind.table_shape[0], 1 if law.reference is None else 2)
     measured_q, measured_v, reading = measure(system, kind, state, settings)
     measured, h = (measured_q, measured_v), settings["look_ahead"]
     q, v = look_ahead(system, state, settings, *measured, h)
     beam = beam_estimate(system, state, settings, q, v, h) if kind.law == "composite" else None
-    view = law_view(system, frame, kind, law, state, settings, values, (q, v), beam)
+    view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
     command = law.command(view)
     wanted, memory = _wanted(kind, state, settings, view, command, beam)
     fresh, acts, saturated = held_torque(kind, state, settings, wanted)
@@ -191,7 +191,7 @@ def _advance(
         **drive.memory,
         "phase": ca.SX(0) if kind.free else _next_phase(state, settings),
     }
-    output = measured_output(system, frame, kind, state, settings, values[:, 0], measured)
+    output = measured_output(system, plane, kind, state, settings, values[:, 0], measured)
     row = {**state, "speed_ref": wanted_speed(state, settings)[0], "y": tip}
     row |= {"u": drive.mean, "force": force} | logged(output)
     later = kept_layout(system, kind, law.memory).join(after)

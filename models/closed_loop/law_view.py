@@ -14,7 +14,7 @@ from onpath.models.control.laws.law import Clock, Gains, Law, View
 from onpath.models.control.space_output import space_output
 from onpath.models.control.virtual_output import LevelSet, VirtualOutput, virtual_output
 from onpath.models.layout import Fields
-from onpath.models.paths.frames import Frame
+from onpath.models.paths.frames import PlaneCoordinates
 from onpath.models.paths.projection import LocalCurve
 from onpath.models.systems.system import MechanicalSystem
 
@@ -32,7 +32,7 @@ def controlled(
 
 
 def coordinates(
-    frame: Frame,
+    frame: PlaneCoordinates,
     kind: Kind,
     state: Fields,
     settings: Fields,
@@ -62,7 +62,7 @@ def beam_estimate(
 
 def measured_output(
     system: MechanicalSystem,
-    frame: Frame,
+    frame: PlaneCoordinates,
     kind: Kind,
     state: Fields,
     settings: Fields,
@@ -100,7 +100,7 @@ def clock_at(kind: Kind, law: Law, state: Fields, settings: Fields, ahead: ca.SX
 
 def law_view(
     system: MechanicalSystem,
-    frame: Frame,
+    frame: PlaneCoordinates,
     kind: Kind,
     law: Law,
     state: Fields,

@@ -18,16 +18,11 @@ from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import OWN_GAINS
 from onpath.models.control.speed_limit import NO_SPEED_LIMIT, speed_limit
 from onpath.models.errors import CodedError
-from onpath.models.paths.curves import Curve, saddle
+from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import closest_parameter
-from onpath.models.systems.parameters import (
-    LEVEL_SET,
-    TICK,
-    Parameters,
-    look_ahead_time,
-    rise_of,
-    time_step,
-)
+from onpath.models.paths.space_curves import saddle
+from onpath.models.systems.law_parameters import LEVEL_SET
+from onpath.models.systems.parameters import TICK, Parameters, look_ahead_time, rise_of, time_step
 from onpath.models.systems.robots import Robot
 
 MOST_TYPED = 16  # kernels of typed laws that are kept here

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from onpath.models.control.virtual_output import VirtualOutput
-from onpath.models.paths.frames import Frame
+from onpath.models.paths.frames import PlaneCoordinates
 from onpath.models.paths.projection import LEAST_SLOPE, LocalCurve
 
 LEAST_PLAN = 1e-12
@@ -74,7 +74,9 @@ def normals(curve: LocalCurve) -> Normals:
     return Normals(length, tangent, left, up, bends, twist, twist_rate)
 
 
-def space_output(closest: LocalCurve, frame: Frame, y: ca.SX, y_rate: ca.SX) -> VirtualOutput:
+def space_output(
+    closest: LocalCurve, frame: PlaneCoordinates, y: ca.SX, y_rate: ca.SX
+) -> VirtualOutput:
     """Coordinates along and across a space curve at the output y.
 
     With e = y - σ, which is normal to T at the closest point, and D = |σ'|² - e · σ'',

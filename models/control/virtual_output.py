@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from onpath.models.paths.frames import Frame
+from onpath.models.paths.frames import PlaneCoordinates
 from onpath.models.paths.projection import LEAST_SLOPE, LocalCurve
 
 
@@ -76,7 +76,7 @@ class VirtualOutput:
     inverse: ca.SX
     offset: ca.SX
     per_radian: ca.SX
-    frame: Frame
+    frame: PlaneCoordinates
 
     def acceleration(self, tangential: ca.SX, transversal: ca.SX) -> ca.SX:
         """The output acceleration y'' that gives θ'' = v_par and λ'' = v_perp.
@@ -105,7 +105,7 @@ class VirtualOutput:
 
 
 def virtual_output(
-    closest: LocalCurve, frame: Frame, level_set: LevelSet | None, y: ca.SX, y_rate: ca.SX
+    closest: LocalCurve, frame: PlaneCoordinates, level: LevelSet | None, y: ca.SX, y_rate: ca.SX
 ) -> VirtualOutput:
     """Coordinates along and across the path at the output y.
 
@@ -128,7 +128,7 @@ def virtual_output(
     Args:
         closest: the path about the point closest to y.
         frame: how the plane of the path lies in the output space.
-        level_set: s for λ = s(y); None for the signed distance.
+        level: s for λ = s(y); None for the signed distance.
         y, y_rate: (p, 1), [m], [m/s].
 
     Source: eqs. (7)-(9).
@@ -148,14 +148,14 @@ def virtual_output(
     second_z_rate = second_t * along + second_n * across  # σ'' · z'
     third = 3 * length * second_t - distance * ca.dot(normal, closest.third)
     theta_offset = rate * (2 * second_z_rate - third * rate) / d
-    if level_set is None:
+    if level is None:
         xi, xi_rate = distance, across
         offset = -second_n * rate * along / length
         inverse = ca.horzcat(per_theta * tangent, normal)
     else:
-        xi, gradient = level_set.at(z)
+        xi, gradient = level.at(z)
         xi_rate = ca.dot(gradient, z_rate)
-        offset = level_set.bent(z_rate)
+        offset = level.bent(z_rate)
         inverse = ca.inv_minor(ca.vertcat((tangent / per_theta).T, gradient.T))
     return VirtualOutput(
         theta=closest.theta,

@@ -7,8 +7,8 @@ d. A space curve (z(θ), ζ(θ)) rises above the plane by ζ; z(θ) is its plan 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Protocol
+from dataclasses import dataclass
+from typing import Protocol, Self
 
 import casadi as ca
 import numpy as np
@@ -16,8 +16,8 @@ import numpy as np
 from onpath.models.arrays import Array
 
 
-class Frame(Protocol):
-    """An affine map between the output space R^p and planar coordinates.
+class PlaneCoordinates(Protocol):
+    """An affine map between the output space R^p and planar coordinates, for symbols.
 
     Because the map is affine, time derivatives are mapped by its linear part: `rate=True`.
     """
@@ -39,6 +39,10 @@ class Frame(Protocol):
         """The inverse of `split`: (z, ζ) -> y."""
         ...
 
+
+class Frame(PlaneCoordinates, Protocol):
+    """The plane of the path: its coordinates, also of arrays, and where it is."""
+
     def planar(self, y: Array) -> Array:
         """Planar coordinates z of points y, shape (..., p) -> (..., 2), [m]."""
         ...
@@ -55,8 +59,8 @@ class Frame(Protocol):
         """Where the plane is, if that is a choice of the user: b, d and the centre; else zeros."""
         ...
 
-    def at(self, numbers: ca.SX) -> Frame:
-        """The same kind of frame with other numbers, symbols (3, 1), for `split` and `join`."""
+    def at(self, numbers: ca.SX) -> PlaneCoordinates:
+        """The coordinates of such a plane with other numbers, symbols (3, 1)."""
         ...
 
     @property
@@ -73,18 +77,38 @@ class Frame(Protocol):
         ...
 
 
+class _FixedPlane:
+    """Common parts of frames whose place is no choice of the user; z shows y1 and y2."""
+
+    __slots__ = ()
+
+    @property
+    def numbers(self) -> tuple[float, float, float]:
+        """See `Frame.numbers`: there are none."""
+        return 0.0, 0.0, 0.0
+
+    def at(self, numbers: ca.SX) -> Self:
+        """See `Frame.at`."""
+        return self
+
+    @property
+    def axes(self) -> tuple[int, int]:
+        """See `Frame.axes`."""
+        return 1, 2
+
+
 @dataclass(frozen=True, slots=True)
-class Plane:
+class Plane(_FixedPlane):
     """The output space is the plane of the path: p = 2 and z = y."""
 
     p: int = 2
 
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
-        """See `Frame.split`."""
+        """See `PlaneCoordinates.split`."""
         return y, ca.SX(0, 1)
 
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
-        """See `Frame.join`."""
+        """See `PlaneCoordinates.join`."""
         return z
 
     def planar(self, y: Array) -> Array:
@@ -96,37 +120,23 @@ class Plane:
         return z
 
     @property
-    def numbers(self) -> tuple[float, float, float]:
-        """See `Frame.numbers`: there are none."""
-        return 0.0, 0.0, 0.0
-
-    def at(self, numbers: ca.SX) -> Frame:
-        """See `Frame.at`."""
-        return self
-
-    @property
-    def axes(self) -> tuple[int, int]:
-        """See `Frame.axes`."""
-        return 1, 2
-
-    @property
     def space(self) -> None:
         """See `Frame.space`: the output space has no third dimension."""
         return
 
 
 @dataclass(frozen=True, slots=True)
-class LevelPlane:
+class LevelPlane(_FixedPlane):
     """The horizontal plane y3 = 0 in R³, with z = (y1, y2) and the height ζ = y3."""
 
     p: int = 3
 
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
-        """See `Frame.split`."""
+        """See `PlaneCoordinates.split`."""
         return y[:2], y[2]
 
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
-        """See `Frame.join`."""
+        """See `PlaneCoordinates.join`."""
         return ca.vertcat(z, zeta)
 
     def planar(self, y: Array) -> Array:
@@ -138,37 +148,23 @@ class LevelPlane:
         return z if z.shape[-1] == 3 else np.concatenate([z, np.zeros_like(z[..., :1])], axis=-1)
 
     @property
-    def numbers(self) -> tuple[float, float, float]:
-        """See `Frame.numbers`: there are none."""
-        return 0.0, 0.0, 0.0
-
-    def at(self, numbers: ca.SX) -> Frame:
-        """See `Frame.at`."""
-        return self
-
-    @property
-    def axes(self) -> tuple[int, int]:
-        """See `Frame.axes`."""
-        return 1, 2
-
-    @property
     def space(self) -> Space:
         """See `Frame.space`."""
         return _SPACE
 
 
 @dataclass(frozen=True, slots=True)
-class Space:
+class Space(_FixedPlane):
     """All of R³, for space curves: z = y, and no residuals."""
 
     p: int = 3
 
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
-        """See `Frame.split`."""
+        """See `PlaneCoordinates.split`."""
         return y, ca.SX(0, 1)
 
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
-        """See `Frame.join`."""
+        """See `PlaneCoordinates.join`."""
         return z
 
     def planar(self, y: Array) -> Array:
@@ -178,20 +174,6 @@ class Space:
     def lift(self, z: Array) -> Array:
         """See `Frame.lift`."""
         return LevelPlane().lift(z)
-
-    @property
-    def numbers(self) -> tuple[float, float, float]:
-        """See `Frame.numbers`: there are none."""
-        return 0.0, 0.0, 0.0
-
-    def at(self, numbers: ca.SX) -> Frame:
-        """See `Frame.at`."""
-        return self
-
-    @property
-    def axes(self) -> tuple[int, int]:
-        """See `Frame.axes`: those of the plan view."""
-        return 1, 2
 
     @property
     def space(self) -> Space:
@@ -223,12 +205,12 @@ class SlantedPlane:
     p: int = 3
 
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
-        """See `Frame.split`."""
-        return self.at(ca.SX(ca.DM(list(self.numbers)))).split(y, rate)
+        """See `PlaneCoordinates.split`."""
+        return self._coordinates.split(y, rate)
 
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
-        """See `Frame.join`."""
-        return self.at(ca.SX(ca.DM(list(self.numbers)))).join(z, zeta, rate)
+        """See `PlaneCoordinates.join`."""
+        return self._coordinates.join(z, zeta, rate)
 
     def planar(self, y: Array) -> Array:
         """See `Frame.planar`."""
@@ -244,9 +226,14 @@ class SlantedPlane:
         """See `Frame.numbers`."""
         return self.b, self.d, self.centre
 
-    def at(self, numbers: ca.SX) -> Frame:
+    def at(self, numbers: ca.SX) -> PlaneCoordinates:
         """See `Frame.at`."""
-        return _PlaneOfSymbols(symbols=numbers)
+        b, d, centre = ca.vertsplit(numbers)
+        return _SlantedCoordinates(b, d, centre)
+
+    @property
+    def _coordinates(self) -> PlaneCoordinates:
+        return self.at(ca.SX(ca.DM(list(self.numbers))))
 
     @property
     def axes(self) -> tuple[int, int]:
@@ -260,21 +247,22 @@ class SlantedPlane:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _PlaneOfSymbols(SlantedPlane):
-    """A slanted plane whose b, d and centre are symbols; it has `split` and `join` only."""
+class _SlantedCoordinates:
+    """Coordinates of a slanted plane; see `SlantedPlane`."""
 
-    symbols: ca.SX = field(default_factory=lambda: ca.SX(3, 1))
+    b: ca.SX
+    d: ca.SX
+    centre: ca.SX
+    p: int = 3
 
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
-        """See `Frame.split`."""
-        b, d, centre = ca.vertsplit(self.symbols)
+        """See `PlaneCoordinates.split`."""
         if rate:
-            return y[1:], y[0] - b * y[1]
-        return ca.vertcat(y[1], y[2] - centre), y[0] - b * y[1] - d
+            return y[1:], y[0] - self.b * y[1]
+        return ca.vertcat(y[1], y[2] - self.centre), y[0] - self.b * y[1] - self.d
 
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
-        """See `Frame.join`."""
-        b, d, centre = ca.vertsplit(self.symbols)
+        """See `PlaneCoordinates.join`."""
         if rate:
-            return ca.vertcat(zeta + b * z[0], z)
-        return ca.vertcat(zeta + b * z[0] + d, z[0], z[1] + centre)
+            return ca.vertcat(zeta + self.b * z[0], z)
+        return ca.vertcat(zeta + self.b * z[0] + self.d, z[0], z[1] + self.centre)

@@ -13,8 +13,9 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
+from onpath.models.paths.curve_blend import aligned
 from onpath.models.paths.curve_fit import closed_through, control_points, from_stroke, open_through
-from onpath.models.paths.curves import Curve, aligned, circle, ellipse, fourier, segment
+from onpath.models.paths.curves import Curve, circle, ellipse, fourier, segment
 
 MOST_POINTS = 24
 REACH = 0.2  # [m], largest coordinate of a control point, in absolute value

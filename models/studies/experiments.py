@@ -34,8 +34,9 @@ from onpath.models.studies.scheduled_run import ScheduledRun
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.flexible_robot import flexible_five_bar_robot
+from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.parameters import LEVEL_SET, Parameters, changed, specs
+from onpath.models.systems.parameters import Parameters, changed, specs
 from onpath.models.systems.robots import Robot, RobotEntry
 
 NEAR = 1e-9  # [m], as good as on the path

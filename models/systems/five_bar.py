@@ -19,9 +19,8 @@ import numpy as np
 
 from onpath.assets import asset_path
 from onpath.models.arrays import Array
-from onpath.models.systems.system import MechanicalSystem, mechanical_system
+from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
 
-GRAVITY = 9.81  # [m/s^2]
 HOME = np.array([np.pi / 2, np.pi])
 
 

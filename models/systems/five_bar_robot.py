@@ -16,7 +16,8 @@ from onpath.models.systems import five_bar
 from onpath.models.systems.drawing import Angle, Drawing, Length
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameters import Parameters, own_parameters
-from onpath.models.systems.robots import BalancedLinkage, PlanarRobot, RobotEntry, first_fault
+from onpath.models.systems.rigid_robots import PlanarRobot
+from onpath.models.systems.robots import BalancedLinkage, RobotEntry, first_fault
 from onpath.models.systems.system import MechanicalSystem
 
 COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed

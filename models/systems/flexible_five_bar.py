@@ -16,78 +16,22 @@ A payload m at the tip y = h(q) adds ½ m |y'|² to T and, as the balance is wit
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import casadi as ca
 import numpy as np
 
-from onpath.assets import asset_path
 from onpath.models.arrays import Array
 from onpath.models.systems.beam import BeamModes, beam_modes
+from onpath.models.systems.flexible_links import NAMES, PAYLOAD
 from onpath.models.systems.system import MechanicalSystem, mechanical_system
+from onpath.models.systems.tip_load import no_load, tip_load
 
 PLANTS = ("lagrangian", "unit_modes")
 FORMER_PLANTS = {"as_printed": "unit_modes"}  # names in existing share codes, labs and lessons
-_NAMES = "M11 M22 J0 J1 l1 l rho omega1 zeta alpha b1 b2 b3"
-NAMES: tuple[str, ...] = tuple(_NAMES.split())
-PAYLOAD = "payload"  # a further name, of a robot with a payload
 HOME = np.array([np.pi / 2, np.pi, 0.0])
-GRAVITY = 9.81  # [m/s²]
 RIGID = 3  # number of joints, the first coordinates of q
-
-
-@dataclass(frozen=True, slots=True)
-class FlexibleLinks:
-    """Linkage and beam.
-
-    Attributes:
-        link1, link2, beam: lengths l1, l2 and l, [m].
-        M11, M22, J0, J1: inertias, [kg m²].
-        rho: mass of the beam per length, [kg/m].
-        frequency: of the first mode, clamped, [Hz].
-        zeta: damping ratio of every mode.
-        b1, b2, b3: viscous friction of the joints, [N m s].
-    """
-
-    link1: float
-    link2: float
-    beam: float
-    M11: float
-    M22: float
-    J0: float
-    J1: float
-    rho: float
-    frequency: float
-    zeta: float
-    b1: float
-    b2: float
-    b3: float
-
-    def lumped(self, alpha: float, payload: float = 0.0) -> dict[str, float]:
-        """The parameters of the equations of motion by name (SI).
-
-        Args:
-            alpha: α, share of the deflection in the controlled output: 1 for the tip, 0 for the
-                rigid link.
-            payload: mass at the tip, [kg].
-        """
-        own = {name: getattr(self, name) for name in NAMES if hasattr(self, name)}
-        omega1 = 2 * np.pi * self.frequency
-        lengths = {"l1": self.link1, "l": self.beam}
-        return own | lengths | {"omega1": omega1, "alpha": alpha, "payload": payload}
-
-    def changed(self, rho: float, frequency: float, zeta: float) -> FlexibleLinks:
-        """The same linkage with another beam: `rho` in [kg/m], `frequency` in [Hz]."""
-        return replace(self, rho=rho, frequency=frequency, zeta=zeta)
-
-
-def load_links() -> FlexibleLinks:
-    """The illustrative robot of assets/flexible_five_bar.toml."""
-    data = tomllib.loads(asset_path("flexible_five_bar.toml").read_text())
-    return FlexibleLinks(**data["lengths"], **data["inertia"], **data["beam"], **data["friction"])
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,7 +156,7 @@ def flexible_five_bar(
     parts = _lagrangian(s) if plant == "lagrangian" else _unit_modes(s)
     w = 2 / ca.sqrt(s.p["l"]) * ca.dot((-1.0) ** np.arange(modes), s.f)
     tip = _end_point(s, w)
-    load = _load(s, tip) if loaded else _no_load(s)
+    load = tip_load(s.p[PAYLOAD], s.q, s.v, tip, waist=2) if loaded else no_load(s.q.numel())
     return mechanical_system(
         name="flexible_five_bar",
         q=s.q,
@@ -224,7 +168,7 @@ def flexible_five_bar(
         inputs=RIGID,
         output=tip,
         controlled_output=_end_point(s, s.p["alpha"] * w),
-        potential_energy=rho / 2 * ca.dot(s.stiffness, s.f**2) + load.mass * GRAVITY * tip[2],
+        potential_energy=rho / 2 * ca.dot(s.stiffness, s.f**2) + load.energy,
         solve=lambda _, rhs: load.solve(partial(_solve, parts, rho), rhs),
     )
 
@@ -314,63 +258,6 @@ def _solve(parts: _Dynamics, rho: ca.SX, rhs: ca.SX) -> ca.SX:
         third,
         modal - parts.column @ third,
     )
-
-
-@dataclass(frozen=True, slots=True)
-class _Load:
-    """A mass at the tip, which acts on the robot like the force -m (y'' + g e_3) there.
-
-    Attributes:
-        mass: m, [kg].
-        jacobian: J = dy/dq of the tip, in coordinates that the waist has turned, (3, n).
-        bias: what m adds to c, m Jᵀ (J' v + g e_3), (n, 1).
-        active: whether there is one.
-    """
-
-    mass: ca.SX
-    jacobian: ca.SX
-    bias: ca.SX
-    active: bool = True
-
-    @property
-    def inertia(self) -> ca.SX:
-        """What m adds to M, m Jᵀ J, (n, n)."""
-        return self.mass * self.jacobian.T @ self.jacobian
-
-    def solve(self, unloaded: Callable[[ca.SX], ca.SX], rhs: ca.SX) -> ca.SX:
-        """(M + m Jᵀ J)⁻¹ R = X - Z (I + m J Z)⁻¹ m J X,  X = M⁻¹ R,  Z = M⁻¹ Jᵀ; X for m = 0.
-
-        Args:
-            unloaded: R -> M⁻¹ R.
-
-        Source: the identity of Sherman, Morrison and Woodbury.
-        """
-        if not self.active:
-            return unloaded(rhs)
-        free, ways = unloaded(rhs), unloaded(self.jacobian.T)
-        shares = ca.SX.eye(3) + self.mass * self.jacobian @ ways
-        inverse = ca.adj(shares) / ca.det(shares)
-        return free - ways @ (inverse @ (self.mass * (self.jacobian @ free)))
-
-
-def _load(s: _Symbols, tip: ca.SX) -> _Load:
-    """The payload, from two derivatives of the tip.
-
-    Turning q3 turns y about a fixed axis, so that q3 = 0 after differentiation gives J and J' v in
-    coordinates that have turned with the waist, with many zeros. J^T J and J^T J' v are the same.
-    """
-    rate = ca.jtimes(tip, s.q, s.v)
-    jacobian, turning = (
-        ca.substitute(each, s.q[2], 0)
-        for each in (ca.jacobian(tip, s.q), ca.jtimes(rate, s.q, s.v))
-    )
-    weight = ca.DM([0, 0, GRAVITY])
-    return _Load(s.p[PAYLOAD], jacobian, s.p[PAYLOAD] * jacobian.T @ (turning + weight))
-
-
-def _no_load(s: _Symbols) -> _Load:
-    n = s.q.numel()
-    return _Load(ca.SX(0), ca.SX(3, n), ca.SX(n, 1), active=False)
 
 
 def _over(divisor: ca.SX, value: ca.SX) -> ca.SX:

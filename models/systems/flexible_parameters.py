@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.systems.beam import MOST_MODES
 from onpath.models.systems.flexible_five_bar import FORMER_PLANTS, PLANTS
-from onpath.models.systems.parameter_specs import choice, number
+from onpath.models.systems.parameter_specs import choice, model_error, number, unknown_payload
 from onpath.models.systems.parameters import Parameters
 
 PLANE = SlantedPlane()  # of the default path
@@ -162,57 +162,11 @@ class FlexibleParameters(Parameters):
         label="Strain gauge noise",
         on=0.0005,
     )
-    payload: float = number(
-        0.0,
-        "kg",
-        (0, 0.1, 0.005),
-        "mass at the end-point; the controller does not know",
-        group="realism",
-        label="Payload",
-        on=0.02,
-    )
-    error_M11: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's M11 is off by this",
-        group="realism",
-        label="M11 wrong",
-        on=30.0,
-    )
-    error_M22: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's M22 is off by this",
-        group="realism",
-        label="M22 wrong",
-        on=30.0,
-    )
-    error_J0: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's waist inertia J0 is off by this",
-        group="realism",
-        label="J0 wrong",
-        on=30.0,
-    )
-    error_rho: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's ρ is off by this",
-        group="realism",
-        label="ρ wrong",
-        on=30.0,
-    )
-    error_omega1: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's first frequency is off by this",
-        group="realism",
-        label="Frequency wrong",
-        on=10.0,
+    payload: float = unknown_payload((0, 0.1, 0.005), on=0.02)
+    error_M11: float = model_error("M11 wrong", "the controller's M11 is off by this")
+    error_M22: float = model_error("M22 wrong", "the controller's M22 is off by this")
+    error_J0: float = model_error("J0 wrong", "the controller's waist inertia J0 is off by this")
+    error_rho: float = model_error("ρ wrong", "the controller's ρ is off by this")
+    error_omega1: float = model_error(
+        "Frequency wrong", "the controller's first frequency is off by this", on=10.0
     )

@@ -25,7 +25,8 @@ from onpath.models.systems.drawing import (
     Waist,
 )
 from onpath.models.systems.five_bar_robot import ANGLES, LENGTHS, collapse
-from onpath.models.systems.flexible_five_bar import RIGID, FlexibleLinks
+from onpath.models.systems.flexible_five_bar import RIGID
+from onpath.models.systems.flexible_links import FlexibleLinks, load_links
 from onpath.models.systems.flexible_parameters import PLANE, FlexibleParameters
 from onpath.models.systems.forces import Grip, SpringLimits
 from onpath.models.systems.parameters import Parameters, own_parameters
@@ -73,7 +74,7 @@ class FlexibleFiveBar:
     modes: int = 3
     plant_name: str = "lagrangian"
     loaded: bool = False
-    links: FlexibleLinks = field(default_factory=flexible_five_bar.load_links)
+    links: FlexibleLinks = field(default_factory=load_links)
     system: MechanicalSystem = field(init=False, repr=False)
     beam: BeamModes = field(init=False, repr=False)
     shapes: Array = field(init=False, repr=False)  # at the ends of the pieces, (PIECES + 1, N)

@@ -73,6 +73,17 @@ def choice(
     return field(default=default, metadata={"spec": spec})
 
 
+def model_error(label: str, text: str, on: float = 30.0) -> Any:
+    """A dataclass field for the error of a number in the controller's model, [%]."""
+    return number(0.0, "%", (-50, 50, 1), text, group="realism", label=label, on=on)
+
+
+def unknown_payload(bounds: tuple[float, float, float], on: float) -> Any:
+    """A dataclass field for a mass at the end-point of which no controller knows, [kg]."""
+    text = "mass at the end-point; the controller does not know"
+    return number(0.0, "kg", bounds, text, group="realism", label="Payload", on=on)
+
+
 def unknown_name(name: str, known: list[str], what: str = "parameter") -> CodedError:
     """The error for an unknown name, which suggests the nearest known ones."""
     near = get_close_matches(name, known, n=3, cutoff=0.4) or get_close_matches(

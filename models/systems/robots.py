@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from operator import itemgetter
-from typing import Protocol, Self
+from typing import Protocol
 
 import casadi as ca
 import numpy as np
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
-from onpath.models.paths.frames import Frame, Plane
+from onpath.models.paths.frames import Frame
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameters import Parameters
@@ -202,88 +202,6 @@ class Robot(Protocol):
     def linkage(self) -> BalancedLinkage | None:
         """Data for identification from a record of its motion, or None."""
         ...
-
-
-class RigidRobot:
-    """Common parts of robots with rigid links."""
-
-    __slots__ = ()
-
-    @property
-    def core(self) -> Self:
-        """See `Robot.core`: itself."""
-        return self
-
-    @property
-    def substeps(self) -> int:
-        """See `Robot.substeps`."""
-        return 1
-
-    def is_calm(self, q: Array, v: Array) -> bool:
-        """See `Robot.is_calm`."""
-        return False
-
-    @property
-    def grip(self) -> Grip:
-        """See `Robot.grip`."""
-        return _GRIP
-
-    @property
-    def linkage(self) -> BalancedLinkage | None:
-        """See `Robot.linkage`."""
-        return None
-
-    @property
-    def extra_fields(self) -> tuple[tuple[str, int], ...]:
-        """See `Robot.extra_fields`: none."""
-        return ()
-
-    def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
-        """See `Robot.extras`: none."""
-        return {}
-
-    def marks(self, q: ca.SX) -> ca.SX:
-        """See `Robot.marks`: none."""
-        return ca.SX(3, 0)
-
-
-class PlanarRobot(RigidRobot):
-    """Common parts of robots with rigid links that move in the vertical plane y = 0.
-
-    The output space is that plane, and the end-point y = 0 lies at `home`.
-    """
-
-    __slots__ = ()
-
-    @property
-    def home(self) -> tuple[float, float]:
-        """The end-point y = 0 in the robot's frame, (x, z), [m]."""
-        raise NotImplementedError
-
-    @property
-    def frame(self) -> Frame:
-        """See `Robot.frame`."""
-        return _PLANE
-
-    @property
-    def drawing(self) -> Drawing:
-        """See `Robot.drawing`: everything follows from the bars."""
-        return _DRAWING
-
-    def place(self, y: Array) -> Array:
-        """See `Robot.place`."""
-        x, z = self.home
-        points = np.zeros((*y.shape[:-1], 3))
-        points[..., 0], points[..., 2] = y[..., 0] + x, y[..., 1] + z
-        return points
-
-    def unplace(self, point: Array) -> Array:
-        """See `Robot.unplace`."""
-        x, z = self.home
-        return np.stack([point[..., 0] - x, point[..., 2] - z], axis=-1)
-
-
-_PLANE, _GRIP, _DRAWING = Plane(), Grip(), Drawing()  # shared, because they are keys of caches
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,12 +36,13 @@ from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, LevelPlane
 from onpath.models.systems.drawing import Angle, Depths, Drawing, Length, Waist
-from onpath.models.systems.parameter_specs import number
+from onpath.models.systems.parameter_specs import model_error, number, unknown_payload
 from onpath.models.systems.parameters import Parameters, own_parameters
-from onpath.models.systems.robots import RigidRobot, RobotEntry, first_fault
-from onpath.models.systems.system import MechanicalSystem, lagrange_bias, mechanical_system
+from onpath.models.systems.rigid_robots import RigidRobot
+from onpath.models.systems.robots import RobotEntry, first_fault
+from onpath.models.systems.system import GRAVITY, MechanicalSystem, lagrange_bias, mechanical_system
+from onpath.models.systems.two_links import elbow_sine, elbow_up
 
-GRAVITY = 9.81  # [m/s^2]
 NAMES = ("a1", "a2", "a3", "k", "g2", "g3", "b1", "b2", "b3", "l2", "l3")
 MIDDLE = (0.25, 0.0, 0.08)  # the end-point y = 0 in the robot's frame, (x0, 0, z0), [m]
 STRETCHED = 0.02  # -sin q3 below which the arm counts as stretched or folded
@@ -117,33 +118,13 @@ class SpatialParameters(Parameters):
         group="path",
         label="Rise of the path",
     )
-    error_inertias: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's inertias a1, a2, a3 and k are off by this",
-        group="realism",
-        label="Inertia wrong",
-        on=30.0,
+    error_inertias: float = model_error(
+        "Inertia wrong", "the controller's inertias a1, a2, a3 and k are off by this"
     )
-    error_weights: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's weights g2 and g3 are off by this",
-        group="realism",
-        label="Gravity wrong",
-        on=10.0,
+    error_weights: float = model_error(
+        "Gravity wrong", "the controller's weights g2 and g3 are off by this", on=10.0
     )
-    payload: float = number(
-        0.0,
-        "kg",
-        (0, 0.3, 0.01),
-        "mass at the end-point; the controller does not know",
-        group="realism",
-        label="Payload",
-        on=0.1,
-    )
+    payload: float = unknown_payload((0, 0.3, 0.01), on=0.1)
 
 
 def spatial_arm() -> MechanicalSystem:
@@ -214,23 +195,15 @@ class SpatialArm(RigidRobot):
 
     def rest(self, y: Array) -> Array:
         """See `Robot.rest`: the pose with the elbow up, (..., 3) -> (..., 3)."""
-        radius, height, cosine = self._in_its_plane(y)
-        if not np.all(np.abs(cosine) <= 1):
-            least, most = self.reach
-            raise ValueError(
-                f"end-point out of reach: it must stay between {least:.3f} m and {most:.3f} m"
-                " of the shoulder"
-            )
-        l2, l3, q3 = self.links.l2, self.links.l3, -np.arccos(cosine)
-        q2 = np.arctan2(height, radius) - np.arctan2(l3 * np.sin(q3), l2 + l3 * np.cos(q3))
+        radius, height = self._in_its_plane(y)
+        q2, q3 = elbow_up(radius, height, self.links.l2, self.links.l3, "shoulder")
         x, y2, _ = np.moveaxis(self.place(y), -1, 0)
         return np.stack([np.arctan2(y2, x), q2, q3], axis=-1)
 
-    def _in_its_plane(self, y: Array) -> tuple[Array, Array, Array]:
-        """ρ and the height above the shoulder [m], and cos q3, of end-points y, (..., 3)."""
+    def _in_its_plane(self, y: Array) -> tuple[Array, Array]:
+        """ρ and the height above the shoulder of end-points y, (..., 3) -> (...), [m]."""
         x, y2, height = np.moveaxis(self.place(y), -1, 0)
-        l2, l3, radius = self.links.l2, self.links.l3, np.hypot(x, y2)
-        return radius, height, (radius**2 + height**2 - l2**2 - l3**2) / (2 * l2 * l3)
+        return np.hypot(x, y2), height
 
     def endpoint(self, q: Array) -> Array:
         """See `Robot.endpoint`."""
@@ -243,8 +216,8 @@ class SpatialArm(RigidRobot):
     def margin(self, z: Array) -> Array:
         """See `Robot.margin`: |det J| = l2 l3 ρ |sin q3| in parts of that at home."""
         lifted = self.frame.lift(np.vstack([z, np.zeros((1, z.shape[1]))]))
-        radius, _, cosine = self._in_its_plane(lifted)
-        size = radius * np.sqrt(np.maximum(1 - cosine**2, 0.0))
+        radius, height = self._in_its_plane(lifted)
+        size = radius * elbow_sine(radius**2 + height**2, self.links.l2, self.links.l3)
         return size[:-1] / size[-1]
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:

@@ -18,6 +18,8 @@ import numpy as np
 
 from onpath.models.arrays import Array
 
+GRAVITY = 9.81  # [m/s²]
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MechanicalSystem:

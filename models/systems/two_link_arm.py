@@ -33,12 +33,13 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.systems.drawing import Angle, Drawing, Length
-from onpath.models.systems.parameter_specs import number
+from onpath.models.systems.parameter_specs import model_error, unknown_payload
 from onpath.models.systems.parameters import Parameters, own_parameters
-from onpath.models.systems.robots import PlanarRobot, RobotEntry, first_fault
-from onpath.models.systems.system import MechanicalSystem, mechanical_system
+from onpath.models.systems.rigid_robots import PlanarRobot
+from onpath.models.systems.robots import RobotEntry, first_fault
+from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
+from onpath.models.systems.two_links import elbow_sine, elbow_up
 
-GRAVITY = 9.81  # [m/s^2]
 NAMES = ("a1", "a2", "a3", "g1", "g2", "b1", "b2", "l1", "l2")
 STRETCHED = 0.02  # -sin q2 below which the arm counts as stretched or folded
 SINGULAR = Message("stop.singular")
@@ -94,33 +95,13 @@ class ArmLinks:
 class TwoLinkParameters(Parameters):
     """Additional parameters of the arm: model errors and payload."""
 
-    error_inertia: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's inertias a1, a2 and a3 are off by this",
-        group="realism",
-        label="Inertia wrong",
-        on=30.0,
+    error_inertia: float = model_error(
+        "Inertia wrong", "the controller's inertias a1, a2 and a3 are off by this"
     )
-    error_gravity: float = number(
-        0.0,
-        "%",
-        (-50, 50, 1),
-        "the controller's weights g1 and g2 are off by this",
-        group="realism",
-        label="Gravity wrong",
-        on=10.0,
+    error_gravity: float = model_error(
+        "Gravity wrong", "the controller's weights g1 and g2 are off by this", on=10.0
     )
-    payload: float = number(
-        0.0,
-        "kg",
-        (0, 0.3, 0.01),
-        "mass at the end-point; the controller does not know",
-        group="realism",
-        label="Payload",
-        on=0.1,
-    )
+    payload: float = unknown_payload((0, 0.3, 0.01), on=0.1)
 
 
 def two_link_arm() -> MechanicalSystem:
@@ -195,16 +176,7 @@ class TwoLinkArm(PlanarRobot):
         """See `Robot.rest`: the pose with the elbow up, (..., 2) -> (..., 2)."""
         l1, l2 = self.links.l1, self.links.l2
         x, z = y[..., 0] + l2, y[..., 1] + l1
-        cosine = (x**2 + z**2 - l1**2 - l2**2) / (2 * l1 * l2)
-        if not np.all(np.abs(cosine) <= 1):
-            least, most = self.reach
-            raise ValueError(
-                f"end-point out of reach: it must stay between {least:.3f} m and {most:.3f} m"
-                " of the base"
-            )
-        q2 = -np.arccos(cosine)
-        q1 = np.arctan2(z, x) - np.arctan2(l2 * np.sin(q2), l1 + l2 * np.cos(q2))
-        return np.stack([q1, q2], axis=-1)
+        return np.stack(elbow_up(x, z, l1, l2, "base"), axis=-1)
 
     def endpoint(self, q: Array) -> Array:
         """See `Robot.endpoint`."""
@@ -217,8 +189,7 @@ class TwoLinkArm(PlanarRobot):
         """See `Robot.margin`: |sin q2| = |det J| / (l1 l2)."""
         l1, l2 = self.links.l1, self.links.l2
         squared = (z[..., 0] + l2) ** 2 + (z[..., 1] + l1) ** 2
-        cosine = (squared - l1**2 - l2**2) / (2 * l1 * l2)
-        return np.sqrt(np.maximum(1 - cosine**2, 0.0))
+        return elbow_sine(squared, l1, l2)
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
         """See `Robot.fault`: too near a singular configuration, or beyond it, the elbow down."""

@@ -10,7 +10,8 @@ import pytest
 
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.studies.experiments import experiments, run
-from onpath.models.systems.flexible_five_bar import HOME, load_links
+from onpath.models.systems.flexible_five_bar import HOME
+from onpath.models.systems.flexible_links import load_links
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
 from tests.lessons.test_stated_numbers_invariance import stated_in_readme
 from tests.support.one_robot import FOLLOWER, TRACKER, Driven, at, largest

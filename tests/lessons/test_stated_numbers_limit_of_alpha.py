@@ -8,7 +8,8 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.systems.beam import beam_modes
-from onpath.models.systems.flexible_five_bar import HOME, load_links
+from onpath.models.systems.flexible_five_bar import HOME
+from onpath.models.systems.flexible_links import load_links
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
 from tests.lessons.test_stated_numbers_invariance import stated_in_readme
 from tests.support.stated_numbers import agrees, assert_stated, said

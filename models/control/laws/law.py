@@ -16,7 +16,7 @@ from onpath.models.control.place import Place
 from onpath.models.control.poles import Channel
 from onpath.models.control.virtual_output import VirtualOutput
 from onpath.models.layout import Fields
-from onpath.models.paths.frames import Frame
+from onpath.models.paths.frames import PlaneCoordinates
 from onpath.models.paths.projection import LocalCurve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.system import MechanicalSystem
@@ -107,7 +107,7 @@ class View:
     q: ca.SX
     v: ca.SX
     model: ca.SX
-    frame: Frame
+    frame: PlaneCoordinates
     y: ca.SX
     y_rate: ca.SX
     output: VirtualOutput

@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.control.laws.law import Clock, View
-from onpath.models.paths.frames import Frame
+from onpath.models.paths.frames import PlaneCoordinates
 from onpath.models.paths.projection import LocalCurve, wrap
 
 ZERO = ca.SX(0)
@@ -71,7 +71,7 @@ def fading(theta: ca.SX, speed: ca.SX, k5: ca.SX) -> ca.SX:
 
 def tracking_error(
     reference: LocalCurve,
-    frame: Frame,
+    frame: PlaneCoordinates,
     y: ca.SX,
     y_rate: ca.SX,
     rate: ca.SX,

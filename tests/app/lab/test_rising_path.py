@@ -12,7 +12,7 @@ from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.restore import restore
 from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.models.paths.curves import saddle
+from onpath.models.paths.space_curves import saddle
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from tests.support.lab import FOLLOWER, assert_drawable, assert_sound, do, run, store
 

@@ -49,7 +49,8 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.robots import PlanarRobot, RobotEntry, first_fault
+from onpath.models.systems.rigid_robots import PlanarRobot
+from onpath.models.systems.robots import RobotEntry, first_fault
 from onpath.models.systems.system import mechanical_system
 
 def equations():

@@ -26,8 +26,8 @@ from onpath.app.viser_adapter.images import add_png, png_of
 from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.rank_test import rank_grid
-from onpath.models.paths.curves import saddle
 from onpath.models.paths.path_design import presets
+from onpath.models.paths.space_curves import saddle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import RobotEntry

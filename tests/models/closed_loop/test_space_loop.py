@@ -25,9 +25,11 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.poles import channels
-from onpath.models.paths.curves import Curve, blend, circle, saddle, segment
+from onpath.models.paths.curve_blend import blend
+from onpath.models.paths.curves import Curve, circle, segment
 from onpath.models.paths.distance import path_distance
 from onpath.models.paths.path_design import presets
+from onpath.models.paths.space_curves import saddle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.spatial_arm import SpatialParameters, spatial_arm_robot
 

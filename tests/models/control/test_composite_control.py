@@ -19,13 +19,8 @@ from onpath.models.paths.curves import circle, nearest
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.paths.projection import LocalCurve
 from onpath.models.systems.beam import beam_modes
-from onpath.models.systems.flexible_five_bar import (
-    HOME,
-    RIGID,
-    end_point,
-    flexible_five_bar,
-    load_links,
-)
+from onpath.models.systems.flexible_five_bar import HOME, RIGID, end_point, flexible_five_bar
+from onpath.models.systems.flexible_links import load_links
 
 LINKS, BEAM, FRAME, RADIUS = load_links(), beam_modes(3, 0.5), SlantedPlane(), 0.05
 SYSTEM = flexible_five_bar(3)

@@ -28,8 +28,9 @@ from onpath.models.closed_loop.start import velocity_at
 from onpath.models.control.law_poles import channels_of
 from onpath.models.control.place import place_at
 from onpath.models.control.poles import Channel, Complex
-from onpath.models.paths.curves import Curve, circle, ellipse, saddle
+from onpath.models.paths.curves import Curve, circle, ellipse
 from onpath.models.paths.distance import closest_parameter
+from onpath.models.paths.space_curves import saddle
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, RobotEntry
 from onpath.models.systems.parameters import Parameters, rise_of
 

@@ -18,11 +18,10 @@ from onpath.models.paths.curves import (
     chebyshev_curve,
     circle,
     fourier,
-    in_space,
-    saddle,
 )
 from onpath.models.paths.frames import LevelPlane, Space
 from onpath.models.paths.projection import LocalCurve, basis
+from onpath.models.paths.space_curves import in_space, saddle
 
 H = 1e-3  # [s], step of the finite differences
 FRAME = Space()

@@ -10,13 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
+from onpath.models.paths.curve_blend import blend
 from onpath.models.paths.curve_fit import closed_through, control_points, from_stroke, open_through
 from onpath.models.paths.curves import (
     HARMONICS,
     ORDERS,
     TABLE_SHAPE,
     Curve,
-    blend,
     chebyshev_curve,
     circle,
     ellipse,

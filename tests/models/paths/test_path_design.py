@@ -12,18 +12,10 @@ from numpy.typing import NDArray
 
 from onpath.app.lab.path_editor import BLEND, PathEditor
 from onpath.models.arrays import Array
+from onpath.models.paths.curve_blend import aligned, blend
 from onpath.models.paths.curve_faults import LEAST_MARGIN, TUBE, curve_faults, self_crossings
 from onpath.models.paths.curve_fit import closed_through, open_through
-from onpath.models.paths.curves import (
-    Curve,
-    aligned,
-    blend,
-    chebyshev_curve,
-    circle,
-    ellipse,
-    fourier,
-    segment,
-)
+from onpath.models.paths.curves import Curve, chebyshev_curve, circle, ellipse, fourier, segment
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, drawn, presets
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 

@@ -10,14 +10,13 @@ from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
 from onpath.models.systems.five_bar import (
-    GRAVITY,
     FiveBarLinks,
     end_point,
     inverse_kinematics,
     singularity_margin,
     skeleton,
 )
-from onpath.models.systems.system import conditioning, decoupling_matrix, lagrange_bias
+from onpath.models.systems.system import GRAVITY, conditioning, decoupling_matrix, lagrange_bias
 from tests.support.drawing import drawn
 from tests.support.rig import Rig, jacobian
 

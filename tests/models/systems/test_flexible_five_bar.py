@@ -18,8 +18,8 @@ from onpath.models.systems.flexible_five_bar import (
     RIGID,
     end_point,
     flexible_five_bar,
-    load_links,
 )
+from onpath.models.systems.flexible_links import load_links
 from onpath.models.systems.system import (
     MechanicalSystem,
     conditioning,

@@ -12,8 +12,7 @@ import pytest
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.studies.experiments import experiments, run
-from onpath.models.systems import flexible_five_bar as equations
-from onpath.models.systems import flexible_robot
+from onpath.models.systems import flexible_robot, tip_load
 from onpath.models.systems.beam import beam_modes
 from onpath.models.systems.flexible_five_bar import PLANTS, RIGID, end_point, flexible_five_bar
 from onpath.models.systems.flexible_parameters import FlexibleParameters
@@ -152,7 +151,7 @@ def test_twenty_grams_destabilise_half_of_the_deflection_and_not_composite_contr
 
 @pytest.fixture
 def weightless(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(equations, "GRAVITY", 0.0)
+    monkeypatch.setattr(tip_load, "GRAVITY", 0.0)
     monkeypatch.setattr(flexible_robot, "_robot", lru_cache(FlexibleFiveBar))
 
 

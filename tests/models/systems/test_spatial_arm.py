@@ -12,16 +12,12 @@ from hypothesis import strategies as st
 from onpath.models.arrays import Array
 from onpath.models.control.rank_test import rank_number
 from onpath.models.paths.curve_faults import curve_faults
-from onpath.models.paths.curves import circle, saddle
+from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
+from onpath.models.paths.space_curves import saddle
 from onpath.models.studies.experiments import experiments, run
-from onpath.models.systems.spatial_arm import (
-    GRAVITY,
-    MIDDLE,
-    SINGULAR,
-    SpatialParameters,
-    spatial_arm_robot,
-)
+from onpath.models.systems.spatial_arm import MIDDLE, SINGULAR, SpatialParameters, spatial_arm_robot
+from onpath.models.systems.system import GRAVITY
 from tests.support.drawing import drawn
 
 ARM = spatial_arm_robot()

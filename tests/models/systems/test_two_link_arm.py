@@ -24,12 +24,8 @@ from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.experiments import experiments, run
-from onpath.models.systems.two_link_arm import (
-    GRAVITY,
-    SINGULAR,
-    TwoLinkParameters,
-    two_link_arm_robot,
-)
+from onpath.models.systems.system import GRAVITY
+from onpath.models.systems.two_link_arm import SINGULAR, TwoLinkParameters, two_link_arm_robot
 from tests.support.drawing import drawn
 
 ARM = two_link_arm_robot()

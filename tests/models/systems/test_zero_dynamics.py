@@ -15,7 +15,8 @@ from onpath.app.exports.zero_dynamics import SETTABLE, as_json, study
 from onpath.models.arrays import Array
 from onpath.models.systems.beam import MOST_MODES, beam_modes
 from onpath.models.systems.five_bar import five_bar
-from onpath.models.systems.flexible_five_bar import HOME, load_links
+from onpath.models.systems.flexible_five_bar import HOME
+from onpath.models.systems.flexible_links import load_links
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.parameters import changed, specs
 from onpath.models.systems.system import MechanicalSystem

@@ -1,0 +1,52 @@
+"""From one curve to another: a blend of the two, and the shift of the parameter that it needs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.paths.curves import HARMONICS, Curve, chebyshev_curve, fourier
+from onpath.models.paths.space_curves import in_space
+
+_ORDER = np.arange(1.0, HARMONICS + 1)
+
+
+def blend(old: Curve, new: Curve, fraction: float) -> Curve:
+    """The curve (1 - fraction) old + fraction new; both are closed, or both open.
+
+    If one of them is a space curve, the other is taken at height 0.
+    """
+    d = max(old.dimension, new.dimension)
+    old, new = (curve if curve.dimension == d else in_space(curve) for curve in (old, new))
+    return Curve(new.closed, (1 - fraction) * old.series + fraction * new.series)
+
+
+def aligned(curve: Curve, to: Curve) -> Curve:
+    """The same curve with its parameter shifted, and reversed if necessary, to match `to`.
+
+    A closed curve becomes σ(±(θ + δ)); sign and δ maximise the correlation of its Fourier
+    coefficients with those of `to`. An open curve is reversed if that brings it nearer to `to`.
+    Without this, a blend of two curves with opposite directions or starting points would shrink to
+    a point or a line half-way.
+    """
+    if not curve.closed:
+        theta = to.sample(64)
+        ahead, back = (((curve.at(s * theta) - to.at(theta)) ** 2).sum() for s in (1, -1))
+        signs = np.ones(HARMONICS + 1) if ahead <= back else (-1.0) ** np.arange(HARMONICS + 1)
+        return chebyshev_curve(signs[:, None] * curve.series[0, : HARMONICS + 1])
+    (a, b), (to_a, to_b) = _harmonics(curve), _harmonics(to)
+    shift = curve.sample(360)[:, None] * _ORDER
+    best = -np.inf, 0.0, 1
+    for sense in (1, -1):
+        alike = (a * to_a + sense * b * to_b).sum(-1)
+        turned = (sense * b * to_a - a * to_b).sum(-1)
+        overlap = np.cos(shift) @ alike + np.sin(shift) @ turned
+        best = max(best, (overlap.max(), shift[overlap.argmax(), 0], sense))
+    cosine, sine = np.cos(best[1] * _ORDER)[:, None], np.sin(best[1] * _ORDER)[:, None]
+    b = best[2] * b
+    return fourier(curve.series[0, 0], cosine * a + sine * b, cosine * b - sine * a)
+
+
+def _harmonics(curve: Curve) -> tuple[Array, Array]:
+    """The Fourier coefficients a_k and b_k of a closed curve, each (HARMONICS, 2), [m]."""
+    return curve.series[0, 1 : HARMONICS + 1], curve.series[0, HARMONICS + 1 :]

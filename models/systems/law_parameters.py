@@ -1,0 +1,158 @@
+"""What a control law is given by its user: gains, and the wanted motion along the path."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from onpath.models.systems.parameter_specs import choice, number
+
+DISTANCE, LEVEL_SET = "distance", "level_set"  # what ξ measures across the path, [m] or [m²]
+
+
+@dataclass(frozen=True, slots=True)
+class LawParameters:
+    """Gains and task; `Parameters` adds the realism. The defaults suit the rigid five-bar."""
+
+    K1: float = number(
+        400.0,
+        "1/s²",
+        (0, 2500, 5),
+        "spring that pulls back onto the path",
+        group="gains",
+        label="K1 across",
+    )
+    K2: float = number(
+        40.0,
+        "1/s",
+        (0, 200, 1),
+        "damps motion across the path",
+        group="gains",
+        label="K2 across",
+    )
+    K3: float = number(
+        1000.0,
+        "1/s³",
+        (0, 8000, 50),
+        "removes a lasting offset (integral)",
+        group="gains",
+        label="K3 across",
+    )
+    tracker_integral: str = choice(
+        "off",
+        ("off", "on"),
+        "whether K3 acts in a law that follows the clock: held back, its integral winds up",
+        group="gains",
+        label="Tracker's integral",
+    )
+    K4: float = number(
+        25.0,
+        "1/s²",
+        (0, 400, 1),
+        "spring towards the target position",
+        group="gains",
+        label="K4 along",
+    )
+    K5: float = number(
+        10.0,
+        "1/s",
+        (0, 100, 0.5),
+        "how hard the speed along the path is held",
+        group="gains",
+        label="K5 along",
+    )
+    task: str = choice(
+        "speed",
+        ("speed", "position"),
+        "go along the path at a speed, or to a place on it",
+        group="task",
+        label="Task",
+    )
+    speed: float = number(
+        2 * math.pi,
+        "rad/s",
+        (-20, 20, 0.1),
+        "wanted speed along the path; negative: backwards; with a speed profile, the mean of the"
+        " sine, and otherwise the largest speed",
+        group="task",
+        label="Speed",
+    )
+    ramp: float = number(
+        0.0,
+        "rad/s²",
+        (0, 100, 0.5),
+        "how quickly the wanted speed changes; 0: at once",
+        group="task",
+        label="Speed ramp",
+    )
+    speed_profile: str = choice(
+        "constant",
+        ("constant", "ramp_up", "sine", "stop_and_go"),
+        "how the wanted speed varies from the start of a run: up from rest, as a sine about the"
+        " speed, or stop and go at the speed; it is fed forward as in (19), instead of the ramp",
+        group="task",
+        label="Speed profile",
+    )
+    profile_period: float = number(
+        2.0,
+        "s",
+        (0.5, 20, 0.1),
+        "period of the sine and of stop and go; of ramp up, the time until the speed is reached",
+        group="task",
+        label="Profile period",
+    )
+    target: float = number(
+        math.pi / 2,
+        "rad",
+        (-math.pi, math.pi, 0.01),
+        "where to stop, with task = position",
+        group="task",
+        label="Target",
+    )
+    across: str = choice(
+        DISTANCE,
+        (DISTANCE, LEVEL_SET),
+        "what to measure across the path: the distance, or the paper's s(y) in m² (ellipses only)",
+        group="gains",
+        label="Across is",
+    )
+    clock_gain: float = number(
+        50.0,
+        "1/s",
+        (0, 200, 1),
+        "how strongly the waiting clock feels the error along the path; 0: an ordinary clock",
+        group="gains",
+        label="Clock waits",
+    )
+    contour_ratio: float = number(
+        0.1,
+        "",
+        (0.01, 1, 0.01),
+        "contouring: how stiff it is along the path, as a share of across",
+        group="gains",
+        label="Along / across",
+    )
+    field_gain: float = number(
+        10.0,
+        "1/s",
+        (0, 40, 0.5),
+        "velocity field: how quickly it leads back to the path",
+        group="gains",
+        label="Field to path",
+    )
+    field_circulation: float = number(
+        30.0,
+        "1/(J s)",
+        (0, 100, 1),
+        "velocity field: how quickly the velocity turns into the field",
+        group="gains",
+        label="Field turns",
+    )
+    field_energy: float = number(
+        0.2,
+        "J",
+        (0.02, 2, 0.01),
+        "velocity field: energy of the robot and the flywheel together",
+        group="gains",
+        label="Field energy",
+    )
