@@ -16,6 +16,8 @@ from onpath.models.closed_loop.loops import InterpretedLoop, Loop
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.closed_loop.trajectory import Trajectory, join, record
 from onpath.models.closed_loop.translated_loop import translate_loop
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 
@@ -43,18 +45,28 @@ def replay(robot: Robot, history: list[Segment]) -> dict[str, list[Trajectory]]:
 
 def _replayed(robot: Robot, bench: str, history: list[Segment]) -> list[Trajectory]:
     parts: list[Trajectory] = []
-    runs = groupby(history, key=lambda s: (id(s.curve), s.dt, s.drives[bench].kind))
-    for (_, dt, kind), group in runs:
+    robots = {id(own): _made(robot, own) for own in (s.drives[bench].parameters for s in history)}
+
+    def key(s: Segment) -> tuple[int, float, Kind, int]:
+        drive = s.drives[bench]
+        return id(s.curve), s.dt, drive.kind, id(robots[id(drive.parameters)])
+
+    for (_, dt, kind, _), group in groupby(history, key=key):
         segments = [s for s in group if not s.drives[bench].frozen]
         if not segments:
             continue
-        loop = _fast_loop(robot, kind)
+        loop = _fast_loop(robots[id(segments[0].drives[bench].parameters)], kind)
         logged = [(rows, s.curve, held) for s, rows, held in _rows(loop, bench, segments)]
         times = np.concatenate([s.time + dt * np.arange(s.ticks, dtype=float) for s in segments])
         log, law = loop.kernel.log, kind.controller
         part = record(robot, log, law, merged(logged), dt, times).thinned()
         parts.append(replace(part, level_set=kind.level_set))
     return _of_one_unit(parts)
+
+
+def _made(robot: Robot, parameters: Parameters | None) -> Robot:
+    """The robot as it was with these parameters; see `RobotEntry.goes_on`."""
+    return robot if parameters is None else ROBOTS[robot.name].make(parameters)
 
 
 def _of_one_unit(parts: list[Trajectory]) -> list[Trajectory]:

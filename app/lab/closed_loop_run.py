@@ -102,6 +102,11 @@ class ClosedLoopRun:
         self.row = self.row.copy()  # the session detects a new row by identity
         self.shown()["theta_ref"][:] = self.fields()["theta_ref"]
 
+    def change_robot(self, robot: Robot, parameters: Parameters, curve: Curve, push: Push) -> None:
+        """Go on as another robot with the same states, from the present one, with these inputs."""
+        self.robot, self._inputs = robot, None
+        self.configure(parameters, curve, push)
+
     def _go_on_from(self, state: Array, kind: Kind) -> None:
         """Go on from the state of a loop of some kind.
 
@@ -155,8 +160,9 @@ class ClosedLoopRun:
         return self._input
 
     def _made_input(self, frozen: bool) -> Input:
-        kernel, size = self._kernel, self._kernel.changed
-        return Input(self.kind, self.settings, frozen, size, kernel.state.size - size)
+        assert self._inputs is not None
+        size, rest = self._kernel.changed, self._kernel.state.size - self._kernel.changed
+        return Input(self.kind, self.settings, frozen, size, rest, self._inputs[0])
 
     @property
     def recorded(self) -> Array:

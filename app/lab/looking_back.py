@@ -80,6 +80,10 @@ def _take(session: Session, timeline: Timeline) -> None:
     session.runs, session.grips = timeline.runs, timeline.grips
     session.events = timeline.events
     session.grips.set_wall(session.wall)
+    for run in session.runs.values():
+        if run.robot is not session.robot:
+            push = session.grips.pushes[run.bench]
+            run.change_robot(session.robot, session.parameters, session.editor.curve, push)
     if timeline.curve is not session.editor.curve:
         for run in session.runs.values():
             run.change_path(session.editor.curve)

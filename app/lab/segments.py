@@ -10,6 +10,7 @@ import numpy as np
 
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.paths.curves import Curve
+from onpath.models.systems.parameters import Parameters
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,6 +22,7 @@ class Input:
         settings: of the loop.
         frozen: whether the robot has diverged and stands still.
         size: length of the part of the loop's state that it changes, which is recorded.
+        parameters: with which the robot was made, None if that does not matter.
         rest: length of the rest, which a loop of another kind changes; restored as 0.
     """
 
@@ -29,6 +31,7 @@ class Input:
     frozen: bool
     size: int
     rest: int = 0
+    parameters: Parameters | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,6 +64,7 @@ class Drive:
         settings: of the loop during the segment.
         frozen: whether it has diverged and stands still.
         max_distance: largest distance to the path since reset, [m].
+        parameters: with which the robot was made, or None.
     """
 
     kind: Kind
@@ -68,6 +72,7 @@ class Drive:
     settings: np.ndarray
     frozen: bool
     max_distance: float
+    parameters: Parameters | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -164,6 +169,6 @@ def segment_at(columns: dict[str, np.ndarray], row: int) -> Segment:
     for (bench, one), most in zip(inputs.of.items(), columns["most"][row].tolist(), strict=True):
         begin, end = end, end + one.size
         state = np.concatenate([states[begin:end], np.zeros(one.rest)])
-        drives[bench] = Drive(one.kind, state, one.settings, one.frozen, most)
+        drives[bench] = Drive(one.kind, state, one.settings, one.frozen, most, one.parameters)
     time, ticks = float(columns["time"][row]), int(columns["ticks"][row])
     return Segment(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())

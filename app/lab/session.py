@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -98,7 +99,10 @@ class Session:
             self.note("robot", entry.name)
 
     def set_parameters(self, parameters: Parameters) -> None:
-        """Set the parameters; a structural change makes a new robot, which starts anew."""
+        """Set the parameters; a structural change makes a new robot.
+
+        If that has the same states, both go on from the present one; otherwise they start anew.
+        """
         if self.robot.extra_fields:
             self.history.settle()  # its samples depend on the parameters
         rise = rise_of(parameters)
@@ -106,12 +110,18 @@ class Session:
             self.editor.raise_to(rise)
         if parameters.across != self.parameters.across:
             self.across_since = self.time
-        self.parameters = parameters
+        before, self.parameters = self.parameters, parameters
         robot = self.entry.make(parameters)
-        if robot is not self.robot:
-            self.robot = robot
-            self.editor.robot = robot
+        if robot is self.robot:
+            return
+        known = {name: getattr(before, name) for name in self.entry.goes_on}
+        goes_on = self.entry.make(replace(parameters, **known)) is self.robot
+        self.robot = self.editor.robot = robot
+        if not goes_on:
             self._restart()
+            return
+        for run in self.runs.values():
+            run.change_robot(robot, parameters, self.editor.curve, self.grips.pushes[run.bench])
 
     def belongings(self) -> Belongings:
         """What the present robot keeps while another one is used."""

@@ -659,6 +659,7 @@ say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurück
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
+say-begun_anew = Mit dieser Änderung haben beide Roboter neu begonnen, am Start.
 say-ramps_at_start = Angefahren wird vom Beginn eines Laufs an: Zurücksetzen zeigt es.
 say-nothing_to_undo = es gibt nichts rückgängig zu machen
 say-nothing_to_redo = es gibt nichts zu wiederholen

@@ -604,6 +604,7 @@ say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset brings it ba
 say-refused = This path is refused: { $reasons }. The previous one is kept.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.
+say-begun_anew = With this change, both robots have begun anew, at the start.
 say-ramps_at_start = The speed ramps up from the start of a run: press Reset to see it.
 say-nothing_to_undo = nothing to undo
 say-nothing_to_redo = nothing to redo

@@ -293,6 +293,7 @@ ROBOT = RobotEntry(
     parameters=FlexibleParameters,
     lab=FlexibleParameters(law="composite"),  # the only law that is stable under every pull
     make=robot_for,
+    goes_on=("payload",),
     flexible_link=FlexibleLink(
         joints=RIGID,
         beam=("plant", "modes", "rho", "frequency", "zeta"),

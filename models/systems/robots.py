@@ -216,6 +216,8 @@ class RobotEntry:
         lab: parameters with which the lab starts.
         make: the instance for given parameters; only structural parameters select it.
         picture: name of an asset; if empty, the bars are sketched.
+        goes_on: parameters that may select another instance with the same states and kinematics, so
+            that a run goes on from the present state.
         flexible_link: of a robot with parameters `law` and `alpha` and an extra field "deflection";
             None: all links are rigid.
     """
@@ -228,6 +230,7 @@ class RobotEntry:
     make: Callable[[Parameters], Robot]
     picture: str = ""
     flexible_link: FlexibleLink | None = None
+    goes_on: tuple[str, ...] = ()
 
 
 def first_fault(

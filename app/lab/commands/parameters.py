@@ -39,7 +39,7 @@ class SetParameter(Command):
         if self.name in PATH_MATTERS:
             check_level_set(wanted, raised(session.editor.blend.target.plan, wanted))
         _check_plane(session, wanted)
-        session.set_parameters(wanted)
+        _set(lab, wanted)
         if session.parameters != before:
             session.note("set", self.name)
             if self.name == "speed_profile" and self._begins_later(session):
@@ -50,6 +50,14 @@ class SetParameter(Command):
         """Whether the wanted speed varies at the start of a run only, and that is over."""
         profile = profile_of(session.parameters)
         return profile is not None and not profile.period and session.time >= profile.times[-1]
+
+
+def _set(lab: Lab, wanted: Parameters) -> None:
+    """Set the parameters, and tell the user if the run has begun anew with them."""
+    session, run = lab.session, lab.session.run_number
+    session.set_parameters(wanted)
+    if session.run_number != run:
+        lab.remark(lab.words("say.begun_anew"))
 
 
 def _check_plane(session: Session, wanted: Parameters) -> None:
@@ -74,7 +82,7 @@ class ResetParameters(Command):
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         _check_plane(lab.session, lab.session.entry.lab)
-        lab.session.set_parameters(lab.session.entry.lab)
+        _set(lab, lab.session.entry.lab)
 
 
 @dataclass(frozen=True, slots=True)

@@ -279,6 +279,16 @@ def test_what_comes_is_a_lab_or_is_left_out(text: str) -> None:
         assert mirror.is_seen is False
 
 
+def test_a_payload_that_is_put_on_is_seen_without_a_new_run() -> None:
+    both = Followed()
+    do(both.lab, c.ChooseRobot("flexible"))
+    both.run(0.8)
+    do(both.lab, c.SetParameter("payload", 0.02))
+    both.run(1.5)
+    assert both.mirror.session.robot is both.session.robot
+    assert both.distance() < SAME
+
+
 def test_another_plane_of_the_path_is_followed() -> None:
     both = Followed()
     do(both.lab, c.ChooseRobot("flexible"))

@@ -1,27 +1,103 @@
-"""A payload of the flexible robot in the lab: another robot, which starts anew."""
+"""A payload of the flexible robot in the lab: it is put on and taken off while the robot moves."""
 
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from onpath.app.lab import commands as c
-from tests.support.lab import FOLLOWER, assert_sound, do, new_lab, replayed, run
+from onpath.app.lab.lab import Lab
+from onpath.models.control.benches import BENCHES
+from tests.support.lab import FOLLOWER, TRACKER, assert_sound, do, new_lab, replayed, run, states
 
 
-def test_a_payload_is_put_on_and_taken_off() -> None:
+def flexible_lab(seconds: float = 1.0) -> Lab:
     lab = new_lab()
     do(lab, c.ChooseRobot("flexible"))
-    run(lab, 0.3)
-    unloaded, runs = lab.session.robot, lab.session.run_number
-    do(lab, c.SetParameter("payload", 0.02))
-    assert lab.session.robot is not unloaded and lab.session.run_number == runs + 1
-    do(lab, c.SetParameter("payload", 0.05))
-    assert lab.session.run_number == runs + 1  # another mass is another number only
-    run(lab, 1.0)
+    run(lab, seconds)
+    return lab
+
+
+def test_both_robots_go_on_from_where_they_are() -> None:
+    lab = flexible_lab()
+    session = lab.session
+    before, runs, time, unloaded = states(session), session.run_number, session.time, session.robot
+    for payload in (0.02, 0.05, 0.0):
+        do(lab, c.SetParameter("payload", payload))
+        assert (session.run_number, session.time) == (runs, time)
+        for bench, state in states(session).items():
+            assert np.array_equal(state, before[bench])
+        assert (session.robot is unloaded) == (payload == 0)
+    assert lab.message == ""
+
+
+def test_the_tip_sags_under_the_load_and_comes_back() -> None:
+    lab, distances = flexible_lab(2.0), list[float]()
+    for payload in (0.0, 0.02, 0.0):
+        do(lab, c.SetParameter("payload", payload))
+        run(lab, 2.0)
+        distances.append(lab.session.runs[FOLLOWER].distance)
+    assert distances[1] > 1e-3 > 5e-4 > max(distances[0], distances[2])
     assert_sound(lab)
-    heights = replayed(lab.session)[FOLLOWER].fields["y"][:, 2]
-    sagged = np.abs(heights).max()
-    do(lab, c.SetParameter("payload", 0.0))
-    assert lab.session.robot is unloaded
+
+
+def test_every_millisecond_of_loaded_and_unloaded_motion_is_replayed() -> None:
+    lab = flexible_lab(0.7)
+    ends = list[dict[str, np.ndarray]]()
+    for payload in (0.02, 0.04, 0.0):
+        do(lab, c.SetParameter("payload", payload))
+        run(lab, 0.5)
+        ends.append({bench: own.row.copy() for bench, own in lab.session.runs.items()})
+    for bench, own in lab.session.runs.items():
+        log = replayed(lab.session)[bench]
+        assert np.allclose(np.diff(log.t), 1e-3)
+        shown = own.log.unpack(ends[-1][bench])
+        assert log.fields["y"][-1] == pytest.approx(shown["y"], abs=1e-12)
+        assert np.abs(np.diff(log.fields["y"], axis=0)).max() < 1e-3  # [m] in a tick: no jump
+
+
+def test_going_back_to_before_the_load_goes_on_with_it() -> None:
+    lab = flexible_lab(1.0)
+    do(lab, c.SetParameter("payload", 0.02))
     run(lab, 1.0)
-    assert np.abs(replayed(lab.session)[FOLLOWER].fields["y"][:, 2]).max() < sagged
+    do(lab, c.LookAt(1.5), c.GoOn())
+    assert lab.session.time == pytest.approx(0.5, abs=0.05)
+    run(lab, 0.5)
+    assert_sound(lab)
+    do(lab, c.SetParameter("payload", 0.0), c.UndoGoOn())
+    assert all(own.robot is lab.session.robot for own in lab.session.runs.values())
+    do(lab, c.SetRunning(True))
+    run(lab, 0.5)
+    assert_sound(lab)
+    assert set(replayed(lab.session)) == {FOLLOWER, TRACKER}
+
+
+def test_a_typed_law_goes_on_too() -> None:
+    lab = flexible_lab(0.2)
+    do(lab, c.SetParameter("law", "redefined"))
+    for bench in BENCHES:
+        do(lab, c.TypeLaw(bench, "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"))
+    run(lab, 0.5)
+    time = lab.session.time
+    do(lab, c.SetParameter("payload", 0.02))
+    run(lab, 0.3)
+    assert lab.session.time == pytest.approx(time + 0.3, abs=0.02)
+    assert_sound(lab)
+
+
+@pytest.mark.parametrize(("name", "value"), [("modes", 2), ("plant", "unit_modes"), ("d", 0.45)])
+def test_a_robot_with_other_states_begins_anew_and_the_user_is_told(
+    name: str, value: int | str | float
+) -> None:
+    lab = flexible_lab(0.3)
+    do(lab, c.SetParameter(name, value))
+    assert lab.session.time == 0 and "begun anew" in lab.message
+
+
+def test_a_load_with_another_number_of_modes_begins_anew() -> None:
+    lab = flexible_lab(0.3)
+    do(lab, c.SetParameter("payload", 0.02), c.SetParameter("modes", 2))
+    assert lab.session.time == 0
+    run(lab, 0.2)
+    do(lab, c.ResetParameters())
+    assert lab.session.time == 0 and "begun anew" in lab.message
