@@ -23,7 +23,9 @@ from onpath.app.page.panels.keys import add_keys
 from onpath.app.page.panels.readout import Readout
 from onpath.app.page.panels.widgets import Post
 from onpath.app.page.plots import DISTANCE, LivePlot
+from onpath.app.page.preferences import Preferences
 from onpath.app.page.rebuild_thread import RebuildThread
+from onpath.app.page.saying import Saying
 from onpath.app.page.step_controls import StepControls
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.pointer_projection import plane_coordinates
@@ -31,15 +33,12 @@ from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.viser_adapter.frame_channel import FrameChannel
-from onpath.app.viser_adapter.local_storage import ask_item
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot
 
 SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
-SPEAKS = "speaks"
-"""Where a browser keeps whether what happens is spoken."""
 
 
 class Page:
@@ -61,8 +60,7 @@ class Page:
         self._framed, self._settling = 0.0, SETTLING
         self._switches = Switches()
         self._building, self.is_outdated = True, False
-        self._speaks = True
-        ask_item(client, SPEAKS, self._heard)
+        self._wanted = Preferences(client)
         client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
         self._is_phone = self._is_narrow()
@@ -146,8 +144,11 @@ class Page:
         self._overlays = Overlays(*drawn, *how)
         self._parts: list[Part] = []
         self._client.gui.add_html(render("panel/page.html", words=words))
+        self._saying = Saying(self._client.gui, words, self._wanted)
+        self._parts.append(self._saying)
         self._build_panels(first, words, post)
-        add_keys(self._client.gui, words, post, self.reset_view)
+        own = {"view": self.reset_view, "summary": self._saying.ask_summary}
+        add_keys(self._client.gui, words, post, own)
         self._building = self.is_outdated = False
 
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
@@ -210,20 +211,10 @@ class Page:
 
     def _build_menus(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the buttons for language, display and help."""
-        PageMenus(self._client.gui, words, post, first, self._is_speaking, self._set_speaking)
-
-    def _is_speaking(self) -> bool:
-        return self._speaks
-
-    def _set_speaking(self, on: bool) -> None:
-        self._speaks = on
-        self._client.local_storage.set_item(SPEAKS, "yes" if on else "no")
-
-    def _heard(self, kept: str) -> None:
-        self._speaks = kept != "no"
+        PageMenus(self._client.gui, words, post, first, self._wanted)
 
     def _build_numbers(self, words: Words) -> None:
-        self._parts.append(Readout(self._client.gui, words, self._is_speaking))
+        self._parts.append(Readout(self._client.gui, words))
 
     def _build_distance(self, first: PageSnapshot, words: Words) -> None:
         """Build the plot of the distance from the path."""
@@ -249,7 +240,7 @@ class Page:
         shape = width / max(height, 1)
         if width > 0 and abs(shape - self._framed) > 0.02 * shape:
             self._framed = shape
-            below = 0.6 * height if self._is_phone else 0.0  # a tablet's panel is at the side
+            below = 0.6 * height if self._is_phone else 0.0
             self._scene.frame_camera(Insets(bottom=below))
 
 

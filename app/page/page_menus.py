@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import viser
 
@@ -12,6 +13,7 @@ from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.glossary import glossary_html
 from onpath.app.page.panels.keys import help_text
 from onpath.app.page.panels.widgets import Post, on_menu_press, on_user_update
+from onpath.app.page.preferences import Preferences
 from onpath.lessons.words import Words, languages
 
 HALF = "dark"
@@ -22,8 +24,7 @@ class PageMenus:
     """Both buttons and their windows.
 
     Args:
-        speaks: whether what happens is spoken by a screen reader.
-        set_speaking: switches that.
+        wanted: the browser's preferences.
     """
 
     def __init__(
@@ -32,11 +33,10 @@ class PageMenus:
         words: Words,
         post: Post,
         first: PageSnapshot,
-        speaks: Callable[[], bool],
-        set_speaking: Callable[[bool], None],
+        wanted: Preferences,
     ) -> None:
         self._gui, self._words, self._post = gui, words, post
-        self._speaks, self._set_speaking = speaks, set_speaking
+        self._wanted = wanted
         self._presenting = first.key.presenting
         display = gui.add_button(words("display.title"), color=HALF, icon=viser.Icon.LANGUAGE)
         on_menu_press(display, self._open_display)
@@ -53,7 +53,8 @@ class PageMenus:
                 initial_value=words(f"language.{words.language}"),
             )
             large = gui.add_checkbox(words("lesson.presenting"), self._presenting)
-            speak = gui.add_checkbox(words("display.speak"), self._speaks())
+            labels = {"speaks": words("display.speaks"), "sounds": words("display.sounds")}
+            boxes = {name: gui.add_checkbox(labels[name], on) for name, on in self._wanted.items()}
 
         def chosen(command: c.Command) -> None:
             close()
@@ -61,7 +62,8 @@ class PageMenus:
 
         on_user_update(language, lambda name: chosen(c.SetLanguage(names[name])))
         on_user_update(large, lambda on: chosen(c.SetPresenting(on)))
-        on_user_update(speak, self._set_speaking)
+        for name, box in boxes.items():
+            on_user_update(box, partial(self._wanted.set, name))
         return close
 
     def _open_help(self) -> Callable[[], None]:

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     import viser
 
 FIELD_OF_VIEW = np.radians(15.0)
-NARROW = 0.6  # width to height; for phones, where the panel covers the lower part
+NARROW = 0.8
+"""Width to height of windows whose panel covers the lower part; also in assets/page/portrait.js."""
 GROUND = 1.6
 """Radius within which the ground is seen; beyond it there is the horizon [m]."""
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])

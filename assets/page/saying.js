@@ -22,7 +22,7 @@
   region.id = "op-voice";
   region.setAttribute("aria-live", "polite");
 
-  let spoken = "", wanted = "", spokenAt = -AGAIN, waiting = 0;
+  let spoken = "", wanted = "", spokenAt = -AGAIN, waiting = 0, said = "", told = "0";
 
   function sense(said) {
     return said.replace(/\d+/g, "");
@@ -42,7 +42,6 @@
   }
 
   function show(said, level) {
-    if (text.textContent === said) return;
     text.textContent = said;
     box.dataset.level = level;
     box.hidden = said === "";
@@ -68,12 +67,21 @@
   function look() {
     const source = document.querySelector("[data-said]");
     if (source === null) return;
-    const { said, level, spoken: next, close } = source.dataset;
+    const { said: now, level, spoken: next, close, summary, summaries } = source.dataset;
     if (!document.body.contains(box)) document.body.append(box, region);
     cross.setAttribute("aria-label", close);
-    show(said, level);
+    if (now !== said) {  // what was closed, or has given way to a summary, does not come back
+      said = now;
+      show(said, level);
+    }
     if (document.querySelector(".op-over-scene:not([hidden])")) place();
     clearTimeout(waiting);
+    if (summaries !== told) {  // asked for: now, and to be read, too
+      told = summaries;
+      spoken = region.textContent = summary;
+      spokenAt = performance.now();
+      if (level !== "stop") show(summary, "info");
+    }
     wanted = next;
     if (wanted !== "") speak();
   }

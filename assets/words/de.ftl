@@ -304,7 +304,10 @@ spoken-held = Festgehalten.
 spoken-on_path = Beide auf der Bahn.
 
 display-title = Sprache, Anzeige
-display-speak = Sagen, was geschieht (für Bildschirmleser)
+display-speaks = Sagen, was geschieht (für Bildschirmleser)
+display-sounds = Abstand als Ton: linker Roboter im linken Ohr, rechter im rechten
+summary-clock = Zeit { $time } Sekunden. Bahn: { $path }.
+summary-robot = { $robot }: { $now } Millimeter von der Bahn, höchstens { $most }, { $speed } Millimeter je Sekunde die Bahn entlang.
 
 code-copy = Kopieren
 code-copied = Kopiert
@@ -618,6 +621,7 @@ key-back = Eine Sekunde weiter zurückblicken
 key-forward = Eine Sekunde nach vorn blicken
 key-go_on = Von dem Augenblick aus weiter, den du siehst; was danach kam, wird vergessen
 key-undo_go_on = Zurückholen, was beim Weitergehen aus der Vergangenheit vergessen wurde
+key-summary = sagen, was zu sehen ist
 key-view = Die Ansicht zurücksetzen
 
 keyname-space = Leertaste

@@ -252,7 +252,10 @@ spoken-held = Held back.
 spoken-on_path = Both on the path.
 
 display-title = Language, display
-display-speak = Say what happens, for screen readers
+display-speaks = Say what happens, for screen readers
+display-sounds = Distance as sound: left robot in the left ear, right robot in the right
+summary-clock = Time { $time } seconds. Path: { $path }.
+summary-robot = { $robot }: { $now } millimetres from the path, { $most } at most, { $speed } millimetres a second along it.
 
 code-copy = Copy
 code-copied = Copied
@@ -564,6 +567,7 @@ key-back = Look back one more second
 key-forward = Look forward one second
 key-go_on = Go on from the moment shown; discard what came after
 key-undo_go_on = Restore what was discarded by going on from the past
+key-summary = say what is on the screen
 key-view = Reset the view
 
 keyname-space = space

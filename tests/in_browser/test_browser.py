@@ -461,14 +461,17 @@ def test_a_narrow_screen_shows_both_robots_and_the_buttons(
     context.close()
 
 
-def test_a_tablet_shows_both_robots_in_the_middle(browser: Browser, server: LabServer) -> None:
+def test_an_upright_tablet_has_the_robots_across_its_width_above_the_panel(
+    browser: Browser, server: LabServer
+) -> None:
     context = fresh(browser, viewport={"width": 820, "height": 1180}, has_touch=True)
     tab = Tab(server, context, draws=False)
-    left, right = tab._canvas()["x"], tab._canvas()["x"] + tab._canvas()["width"]
+    places = [tab.pixel(name, np.zeros(3)) for name in (TRACKER, FOLLOWER)]
+    assert places[1][0] - places[0][0] > 0.45 * 820
     for name in (TRACKER, FOLLOWER):
         for point in tab.session.editor.points():
             x, y = tab.placed(name, point)
-            assert left < x < right < 820 and 0.3 * 1180 < y < 0.6 * 1180
+            assert 0 < x < 820 and 0 < y < 0.4 * 1180
     context.close()
 
 

@@ -142,6 +142,53 @@ def test_what_happens_is_spoken_unless_that_is_switched_off(tab: Tab) -> None:
     tab.page.get_by_role("dialog").wait_for(state="hidden")
 
 
+def test_a_summary_is_told_on_demand(tab: Tab) -> None:
+    tab.page.keyboard.press("q")
+    told = re.compile(r"Path: circle\. Trajectory tracking: \d+\.\d millimetres from the path")
+    expect(tab.page.locator("#op-voice")).to_contain_text(told)
+    message = tab.page.locator("#op-message")
+    expect(message).to_contain_text(told)
+    message.get_by_role("button").click()
+    expect(message).to_be_hidden()
+    tab.page.keyboard.press("q")
+    expect(message).to_contain_text(told)
+    message.get_by_role("button").click()
+
+
+AUDIO = """window.AudioContext = class {
+    currentTime = 0
+    state = "running"
+    constructor() { window.tones = []; window.sides = [] }
+    createOscillator() {
+        const index = tones.push(0) - 1
+        const frequency = { setTargetAtTime: (pitch) => { tones[index] = pitch } }
+        return { frequency, connect: (next) => next, start() {} }
+    }
+    createGain() { return { gain: { setTargetAtTime() {} }, connect: (next) => next } }
+    createStereoPanner() {
+        return { pan: { set value(side) { sides.push(side) } }, connect: (next) => next }
+    }
+}"""
+
+
+def test_the_distances_are_heard_once_that_is_switched_on(
+    browser: Browser, server: LabServer
+) -> None:
+    context = browser.new_context(viewport=WINDOW)
+    context.add_init_script(AUDIO)
+    tab = Tab(server, context, draws=False)
+    tab.settle()
+    assert tab.page.evaluate("window.tones === undefined")
+    tab.press("Language, display")
+    tab.page.get_by_label("Distance as sound").check()
+    tab.page.keyboard.press("Escape")
+    tab.ask(c.Hold(True))
+    wait_for(lambda: tab.page.evaluate("tones[0]") > 400)
+    assert tab.page.evaluate("sides") == [-1, 1]
+    assert 220 <= tab.page.evaluate("tones[1]") < 250
+    tab.page.context.close()
+
+
 def test_a_message_is_over_the_scene_and_moves_nothing_in_the_panel(tab: Tab) -> None:
     button, message = tab.button("Hold both back"), tab.page.locator("#op-message")
     expect(button).to_be_visible()

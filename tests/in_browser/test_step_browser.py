@@ -106,3 +106,20 @@ def test_a_fold_is_opened_by_mouse_and_by_keys_and_the_lab_does_not_hear_them(ta
         inside.wait_for(state="visible" if opens else "hidden")
     tab.settle()
     assert tab.session.running == running
+
+
+def test_on_a_telephone_a_step_and_the_buttons_it_speaks_of_are_seen_together(
+    browser: Browser, server: LabServer
+) -> None:
+    context = browser.new_context(viewport={"width": 390, "height": 844}, has_touch=True)
+    tab = Tab(server, context, draws=False)
+    tab.ask(TakeStep(LESSON, 9))
+    wait_for(lambda: is_seen(tab, 9))
+    hold = tab.page.locator("#op-bar").get_by_role("button", name="Hold back")
+    box = hold.bounding_box()
+    assert box is not None and box["height"] >= 44 and box["y"] + box["height"] < 0.42 * 844
+    tab.ask(c.SetRunning(True))
+    hold.tap()
+    tab.page.locator("#op-bar").get_by_role("button", name="Let go").wait_for()
+    assert tab.session.grips.held and is_seen(tab, 9)
+    context.close()

@@ -138,7 +138,7 @@ class Tab:
         self._listen()
         self.page.get_by_role("button", name="Pause").or_(
             self.page.get_by_role("button", name="Run", exact=True)
-        ).wait_for()
+        ).first.wait_for()
         wait_for(self._framed)
         self.page.get_by_role("alert").get_by_role("button").click()  # "software rendering"
 

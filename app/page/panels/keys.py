@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import viser
@@ -25,7 +25,7 @@ class Key:
         name: of its action in the message catalogue.
         hotkey: viser's name for it.
         written: names of its keys, for display.
-        command: sent to the lab; None for the key that resets the view of this tab.
+        command: sent to the lab; None for what concerns this tab alone.
     """
 
     name: str
@@ -73,20 +73,27 @@ KEYS = (
     Key("forward", "F", "F", c.LookBack(-1.0)),
     Key("go_on", "G", "G", c.GoOn()),
     Key("undo_go_on", "U", "U", c.UndoGoOn()),
+    Key("summary", "Q", "Q", None),
     Key("view", "home", "Home", None),
 )
 
 
-def add_keys(gui: viser.GuiApi, words: Words, post: Post, reset_view: Callable[[], None]) -> None:
-    """Register the shortcuts, which also appear in viser's command palette."""
+def add_keys(
+    gui: viser.GuiApi, words: Words, post: Post, own: Mapping[str, Callable[[], None]]
+) -> None:
+    """Register the shortcuts, which also appear in viser's command palette.
+
+    Args:
+        own: what the keys without a command do, by name.
+    """
     for key in KEYS:
         handle = gui.add_command(key.does(words), hotkey=key.hotkey, modifier=key.modifier)
 
-        async def triggered(_: object, command: c.Command | None = key.command) -> None:
-            if command is None:
-                reset_view()
+        async def triggered(_: object, key: Key = key) -> None:
+            if key.command is None:
+                own[key.name]()
             else:
-                post(command)
+                post(key.command)
 
         handle.on_trigger(triggered)
 

@@ -1,8 +1,7 @@
-"""Current and maximum distance of each robot from the path, and what the lab has to say."""
+"""Current and maximum distance of each robot from the path, and the clock."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache, partial
 
 import viser
@@ -11,24 +10,16 @@ from markupsafe import escape
 from onpath.app.common.palette import OF_BENCH
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.snapshot import Snapshot
-from onpath.app.scene.captions import Captions, spoken
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
 
 
 class Readout:
-    """Two lines of numbers, a clock, and the message and the words that are shown over the scene.
+    """Two lines of numbers, and a clock."""
 
-    Args:
-        speaks: whether what happens is spoken by a screen reader.
-    """
-
-    def __init__(
-        self, gui: viser.GuiApi, words: Words, speaks: Callable[[], bool] = lambda: True
-    ) -> None:
-        self._words, self._speaks = words, speaks
-        self._captions = Captions(words)
+    def __init__(self, gui: viser.GuiApi, words: Words) -> None:
+        self._words = words
         self._table = gui.add_html("")
         self._shown = ""
         self._frame = lru_cache(maxsize=8)(partial(_frame, self._words))
@@ -40,41 +31,26 @@ class Readout:
             for view in snapshot.robots.values()
             for distance in (view.distance, view.max_distance)
         ]
-        laws = tuple(snapshot.laws.items())
-        level = snapshot.message_level if snapshot.message else ""
-        running = snapshot.running and level != "stop"
-        frame = self._frame(laws, level, running)
+        running = snapshot.running and not (snapshot.message and snapshot.message_level == "stop")
+        frame = self._frame(tuple(snapshot.laws.items()), running)
         time = f"{snapshot.time:.{1 if running else 2}f}"
-        speed, message = f"{snapshot.achieved_speed:.2g}", escape(snapshot.message)
-        said = escape(self._spoken(snapshot)) if self._speaks() else ""
-        content = frame.format(*numbers, time=time, speed=speed, message=message, spoken=said)
+        content = frame.format(*numbers, time=time, speed=f"{snapshot.achieved_speed:.2g}")
         if content != self._shown:
             self._shown = content
             update_gui(self._table, "content", content)
 
-    def _spoken(self, snapshot: Snapshot) -> str:
-        """What a sighted user sees: the state of the lab, and what each robot is doing."""
-        words, state = self._words, "held" if snapshot.held else "running"
-        captions = spoken(
-            self._captions.of(snapshot), bench_titles(snapshot.laws, words), words
-        ) or words("spoken.on_path")
-        return f"{words('spoken.' + (state if snapshot.running else 'paused'))} {captions}"
 
-
-def _frame(words: Words, laws: tuple[tuple[str, str], ...], level: str, running: bool) -> str:
+def _frame(words: Words, laws: tuple[tuple[str, str], ...], running: bool) -> str:
     """Template of the readout, with {} and {name} for the values updated at 10 Hz.
 
     Args:
         laws: benches and their control laws.
-        level: severity of the message; empty without one.
         running: whether the clock runs.
     """
     titles = bench_titles(dict(laws), words)
     table = render(
         "panel/readout.html",
         rows=[(OF_BENCH[bench].hex, title) for bench, title in titles.items()],
-        level=level,
-        running=running,
         words=words,
     )
     clock = words(

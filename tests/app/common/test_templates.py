@@ -25,9 +25,9 @@ from onpath.app.classroom.results import distribution
 from onpath.app.common.templates import environment, phrase, render
 from onpath.app.exports.report import report
 from onpath.app.lab.lesson_run import LessonRun
-from onpath.app.page import lesson_html
-from onpath.app.page.panels import readout
+from onpath.app.page import lesson_html, saying
 from onpath.app.page.panels.flexible_panel import alpha_bar
+from onpath.app.page.preferences import DEFAULTS
 from onpath.assets import asset_path
 from onpath.lessons.checks import Verdict
 from onpath.lessons.course import BUILT_IN, Course, read_course
@@ -136,7 +136,7 @@ def message(text: str) -> str:
 
 
 def shown(words: Words, text: str) -> str:
-    """The readout with a message, as a browser is given it."""
+    """What is said, with a message, as a browser is given it."""
     view = SimpleNamespace(
         law=DEFAULT_LAWS[LEFT],
         force=np.zeros(3),
@@ -162,8 +162,8 @@ def shown(words: Words, text: str) -> str:
     sent: list[str] = []
     gui: Any = SimpleNamespace(add_html=lambda content: None)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(readout, "update_gui", lambda handle, name, content: sent.append(content))
-        readout.Readout(gui, words).follow(snapshot)  # type: ignore[arg-type]
+        patch.setattr(saying, "update_gui", lambda handle, name, content: sent.append(content))
+        saying.Saying(gui, words, DEFAULTS).follow(snapshot)  # type: ignore[arg-type]
     return sent[0]
 
 
