@@ -17,6 +17,7 @@ from onpath.assets.messages import catalogue, languages
 LATER = (
     "onpath.app.scene.sketch_board",
     "scipy.interpolate",
+    "scipy.linalg",
     "scipy.signal",
 )
 REST = 3.0  # [s] in which the first browser can open its lab

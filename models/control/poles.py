@@ -12,7 +12,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag, expm
 
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
@@ -141,6 +140,8 @@ def turning_channel(
         turn: Ω, (2, 2) or (3, 3), [rad/s].
         at: θ at which this is so, [rad]; NaN: everywhere.
     """
+    from scipy.linalg import block_diag, expm  # slow to import; see app/server/lazy_imports.py
+
     t, directions = 1 / parameters.control_rate, len(turn) - 1
     one = _sampled(t, look_ahead_time(parameters), parameters.delay, gains)
     matrix: Array = np.asarray(block_diag(np.ones((1, 1)), *[one] * directions), dtype=float)
