@@ -183,7 +183,7 @@ def test_the_distances_are_heard_once_that_is_switched_on(
     tab.page.get_by_label("Distance as sound").check()
     tab.page.keyboard.press("Escape")
     tab.ask(c.Hold(True))
-    wait_for(lambda: tab.page.evaluate("tones[0]") > 400)
+    wait_for(lambda: tab.page.evaluate("window.tones?.[0] > 400"))
     assert tab.page.evaluate("sides") == [-1, 1]
     assert 220 <= tab.page.evaluate("tones[1]") < 250
     tab.page.context.close()
