@@ -13,6 +13,7 @@ from time import perf_counter
 from typing import ClassVar
 
 from onpath.app.lab.advance_together import Frame, advance_together
+from onpath.app.lab.breakdown import Breakdown
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.script_player import ScriptPlayer
@@ -75,6 +76,7 @@ class Lab:
         frozen: whether the teacher has stopped this lab.
         asked: number of commands given by the user.
         unsaved: whether the latest changes cannot be saved at present.
+        breakdown: what can be done when a robot has stopped.
         watch: called in every frame, or None.
     """
 
@@ -90,6 +92,7 @@ class Lab:
         self.shared = ""
         self.frozen, self.asked = False, 0
         self.unsaved = False
+        self.breakdown = Breakdown()
         self.watch: Callable[[Lab], None] | None = None
 
     @property
@@ -180,6 +183,8 @@ class Lab:
         if not self.frozen:
             yield from self.session.frame(seconds)
             self.show_faults()
+            if self.breakdown.follow(self.session, seconds / self.session.rate):
+                self.clear_message()
 
     def advance(self, seconds: float) -> None:
         """Simulate `seconds` of simulated time of this lab alone."""

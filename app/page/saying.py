@@ -11,10 +11,16 @@ from markupsafe import escape
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.page.panels.widgets import label_of
 from onpath.app.scene.captions import Captions, spoken
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import specs
+
+MOST = 2
+"""Settings that are named on a button."""
 
 
 class Saying:
@@ -53,10 +59,12 @@ class Saying:
             self._summary = summary(snapshot, captions, self._words)
         distances = [1e3 * view.distance for view in snapshot.robots.values()]
         said = _spoken(snapshot, captions, self._words) if self._wanted["speaks"] else ""
-        content = self._frame(level, running, snapshot.held).format(
+        stopped = bool(snapshot.stopped) and level == "error"
+        content = self._frame(level, running, snapshot.held, stopped).format(
             message=escape(snapshot.message),
             spoken=escape(said),
             summary=escape(self._summary),
+            mend=escape(_mending(snapshot, self._words)) if stopped else "",
             number=self._summaries,
             tones=" ".join(f"{each:.1f}" for each in distances) if self._wanted["sounds"] else "",
         )
@@ -65,15 +73,17 @@ class Saying:
             update_gui(self._handle, "content", content)
 
 
-def _frame(words: Words, level: str, running: bool, held: bool) -> str:
+def _frame(words: Words, level: str, running: bool, held: bool, stopped: bool) -> str:
     """Template of the element, with {name} for what changes often.
 
     Args:
         level: severity of the message; empty without one.
         running: whether the clock runs.
         held: whether Hold is on.
+        stopped: whether the message says why a robot has stopped.
     """
-    return render("panel/saying.html", level=level, running=running, held=held, words=words)
+    shown = {"level": level, "running": running, "held": held, "stopped": stopped}
+    return render("panel/saying.html", **shown, words=words)
 
 
 def _spoken(snapshot: Snapshot, captions: dict[str, str], words: Words) -> str:
@@ -81,6 +91,22 @@ def _spoken(snapshot: Snapshot, captions: dict[str, str], words: Words) -> str:
     state = "held" if snapshot.held else "running"
     said = spoken(captions, bench_titles(snapshot.laws, words), words) or words("spoken.on_path")
     return f"{words('spoken.' + (state if snapshot.running else 'paused'))} {said}"
+
+
+def _mending(snapshot: Snapshot, words: Words) -> str:
+    """Label of the button that goes back to the settings that did well; empty if there is none."""
+    if not snapshot.remedy:
+        return ""
+    known = specs(ROBOTS[snapshot.key.robot].parameters)
+    changes = [
+        f"{label_of(words, name, known[name])} = {_written(value)}"
+        for name, value in list(snapshot.remedy.items())[:MOST]
+    ]
+    return words("breakdown.mend", changes=", ".join(changes))
+
+
+def _written(value: float | int | str) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def summary(snapshot: PageSnapshot, captions: dict[str, str], words: Words) -> str:

@@ -18,7 +18,19 @@
   cross.textContent = "\u00d7";
   cross.className = "op-cross";
   cross.addEventListener("click", () => { box.hidden = true; });
-  box.append(text, cross);
+  const acts = ["slowly", "mend"].map((name) => {  // buttons that press a key of the lab
+    const button = document.createElement("button"), key = { slowly: "p", mend: "e" }[name];
+    button.type = "button";
+    button.className = name === "mend" ? "op-act" : "op-quiet";
+    button.hidden = true;
+    button.addEventListener("click", () => {
+      button.blur();
+      const code = `Key${key.toUpperCase()}`;
+      document.body.dispatchEvent(new KeyboardEvent("keydown", { key, code, bubbles: true }));
+    });
+    return { name, button };
+  });
+  box.append(text, ...acts.map(({ button }) => button), cross);
   region.id = "op-voice";
   region.setAttribute("aria-live", "polite");
 
@@ -75,6 +87,13 @@
       show(said, level);
     }
     if (document.querySelector(".op-over-scene:not([hidden])")) place();
+    for (const { name, button } of acts) {
+      const label = source.dataset[name] ?? "";
+      if (button.textContent === label) continue;
+      button.textContent = label;
+      button.hidden = label === "";
+      place();
+    }
     clearTimeout(waiting);
     if (summaries !== told) {  // asked for: now, and to be read, too
       told = summaries;

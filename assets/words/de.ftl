@@ -306,6 +306,8 @@ spoken-on_path = Beide auf der Bahn.
 display-title = Sprache, Anzeige
 display-speaks = Sagen, was geschieht (für Bildschirmleser)
 display-sounds = Abstand als Ton: linker Roboter im linken Ohr, rechter im rechten
+breakdown-slowly = Langsam zeigen
+breakdown-mend = Zurücksetzen mit { $changes }
 summary-clock = Zeit { $time } Sekunden. Bahn: { $path }.
 summary-robot = { $robot }: { $now } Millimeter von der Bahn, höchstens { $most }, { $speed } Millimeter je Sekunde die Bahn entlang.
 
@@ -621,6 +623,8 @@ key-back = Eine Sekunde weiter zurückblicken
 key-forward = Eine Sekunde nach vorn blicken
 key-go_on = Von dem Augenblick aus weiter, den du siehst; was danach kam, wird vergessen
 key-undo_go_on = Zurückholen, was beim Weitergehen aus der Vergangenheit vergessen wurde
+key-slowly = wenn ein Roboter stehen geblieben ist: die letzten Augenblicke, langsam
+key-mend = wenn ein Roboter stehen geblieben ist: zurücksetzen, mit den Einstellungen, die gut gingen
 key-summary = sagen, was zu sehen ist
 key-view = Die Ansicht zurücksetzen
 
@@ -660,6 +664,7 @@ help-text =
 ## Was das Labor von selbst sagt
 
 say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen hilft.
+say-slowly = Die letzten Augenblicke, langsam; ein Glied, das sich biegt, ist { $larger }-fach gebogen gezeichnet.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
@@ -1019,6 +1024,8 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: sie hat { $s
 ## Ablehnungen: ein eingetipptes Regelgesetz (models/control/laws)
 
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
+error-nothing_stopped = kein Roboter ist stehen geblieben
+error-nothing_to_mend = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
 error-law = Zeile { $line }, Spalte { $column }: { $reason }
 error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $count }

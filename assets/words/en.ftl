@@ -254,6 +254,8 @@ spoken-on_path = Both on the path.
 display-title = Language, display
 display-speaks = Say what happens, for screen readers
 display-sounds = Distance as sound: left robot in the left ear, right robot in the right
+breakdown-slowly = Show it slowly
+breakdown-mend = Reset with { $changes }
 summary-clock = Time { $time } seconds. Path: { $path }.
 summary-robot = { $robot }: { $now } millimetres from the path, { $most } at most, { $speed } millimetres a second along it.
 
@@ -567,6 +569,8 @@ key-back = Look back one more second
 key-forward = Look forward one second
 key-go_on = Go on from the moment shown; discard what came after
 key-undo_go_on = Restore what was discarded by going on from the past
+key-slowly = after a robot has stopped: its last moments, slowly
+key-mend = after a robot has stopped: reset, with the settings that did well
 key-summary = say what is on the screen
 key-view = Reset the view
 
@@ -605,6 +609,7 @@ help-text = **Hold both back** and watch: under trajectory tracking, the left ro
 ## What the lab says by itself
 
 say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset brings it back.
+say-slowly = Its last moments, slowly; a link that bends is drawn bent { $larger } times as much.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.
@@ -741,6 +746,8 @@ error-no_step = there is no step { $step } in this lesson: it has { $steps ->
 ## Refusals: a law that is typed (models/control/laws)
 
 error-law_cannot_run = a law of one's own is not possible with this robot and these settings
+error-nothing_stopped = no robot has stopped
+error-nothing_to_mend = there are no earlier settings to go back to
 error-law_not_ready = the law is still being made; try again in a moment
 error-law = line { $line }, column { $column }: { $reason }
 error-law_too_long = a law has at most { $most } characters, not { $count }

@@ -118,3 +118,24 @@ def test_the_other_robot_is_unchanged(tab: Tab) -> None:
     wait_for(lambda: tab.session.entry is FIVE_BAR and tab.session.time > 0.3)
     tab.page.get_by_text("Flexible link", exact=True).wait_for(state="detached")
     assert tab.session.parameters == FIVE_BAR.lab
+
+
+def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
+    browser: Browser, server: LabServer
+) -> None:
+    tab = Tab(server, browser.new_context(viewport={"width": 1280, "height": 800}), draws=False)
+    tab.ask(c.ChooseRobot("flexible"), c.SetParameter("law", "redefined"))
+    wait_for(tab.is_built)
+    tab.ask(c.SetRunning(True))
+    time = tab.session.time
+    wait_for(lambda: tab.session.time > time + 1.5)
+    tab.ask(c.SetParameter("alpha", 1.0))
+    message = tab.page.locator("#op-message")
+    message.get_by_role("button", name="Show it slowly").click()
+    wait_for(lambda: tab.lab.breakdown.replaying)
+    message.get_by_text("drawn bent 5 times as much").wait_for()
+    wait_for(lambda: not tab.lab.breakdown.replaying)
+    message.get_by_role("button", name="Reset with α = 0.5").click()
+    wait_for(lambda: tab.session.parameters.alpha == 0.5)
+    assert tab.errors == []
+    tab.page.context.close()

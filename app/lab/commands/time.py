@@ -50,6 +50,28 @@ class Reset(Command):
 
 
 @dataclass(frozen=True, slots=True)
+class ReplayBreakdown(Command):
+    """Show the last moments before a robot stopped, slowly."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.breakdown.begin(lab.session)
+        lab.show_message(lab.words("say.slowly", larger=f"{lab.session.exaggeration:g}"))
+
+
+@dataclass(frozen=True, slots=True)
+class Mend(Command):
+    """Reset with the settings under which no robot had stopped."""
+
+    lets_time_run: ClassVar[bool] = True
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.breakdown.mend(lab.session)
+        lab.show_message("")
+
+
+@dataclass(frozen=True, slots=True)
 class SetRate(Command):
     """Set the simulated seconds per second, within the range of `RATES`."""
 

@@ -224,6 +224,7 @@ class Snapshot:
             unit vector along which it cannot move, and the one along which it can, shape (3, 3);
             the latter is 0 if it cannot move at all. Empty while the past is viewed.
         stopped: benches of the robots that have diverged by then and stand still.
+        remedy: see `Breakdown.remedy`; empty if no robot is stopped.
         grabbed: bench of the robot whose end-point is being pulled, or None.
         message: message to the user (a divergence, a refusal), plain text, or "".
         message_level: "info", "warning", "error" or "stop".
@@ -251,6 +252,7 @@ class Snapshot:
     held_back: tuple[str, ...] = ()
     brakes: dict[str, np.ndarray] = field(default_factory=dict)
     stopped: tuple[str, ...] = ()
+    remedy: dict[str, float | int | str] = field(default_factory=dict)
 
     @property
     def laws(self) -> dict[str, str]:

@@ -55,7 +55,7 @@ def take_motion(lab: Lab, before: PageSnapshot | Motion | None = None, student: 
         student: see `PageKey`.
     """
     session, key = lab.session, page_key(lab, student)
-    instant, curve, _ = _shown(session)
+    instant, curve, _ = _shown(lab)
     drawn, counts = drawn_robots(session.robot, curve, instant, session.exaggeration)
     path = _path_view(session, curve, key, before)
     return Motion(key, path, counts, drawn, drawn_wall(session), _drawn_start(session))
@@ -106,7 +106,7 @@ def _scene(
 ) -> dict[str, Any]:
     """The fields of `Snapshot`."""
     session, key = lab.session, page_key(lab, student)
-    instant, curve, time = _shown(session)
+    instant, curve, time = _shown(lab)
     traces, larger = _traces(session, time), session.exaggeration
     message, level = lab.notice
     return {
@@ -126,6 +126,7 @@ def _scene(
         "held_back": tuple(bench for bench in session.runs if bench in session.grips.held),
         "brakes": drawn_brakes(session),
         "stopped": _stopped(session, time),
+        "remedy": lab.breakdown.remedy(session),
     }
 
 
@@ -139,8 +140,11 @@ def _stopped(session: Session, time: float) -> tuple[str, ...]:
     return tuple(bench for bench, fault in faults.items() if fault and fault.time <= time)
 
 
-def _shown(session: Session) -> tuple[Instant, Curve, float]:
+def _shown(lab: Lab) -> tuple[Instant, Curve, float]:
     """The instant that is shown, its path and its time, [s]."""
+    session = lab.session
+    if (slow := lab.breakdown.instant(session)) is not None:
+        return *slow, slow[0].time
     past = None if session.viewing is None else session.history.at(session.viewing)
     time = session.time if session.viewing is None else session.viewing
     if past is None:

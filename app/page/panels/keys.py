@@ -73,6 +73,8 @@ KEYS = (
     Key("forward", "F", "F", c.LookBack(-1.0)),
     Key("go_on", "G", "G", c.GoOn()),
     Key("undo_go_on", "U", "U", c.UndoGoOn()),
+    Key("slowly", "P", "P", c.ReplayBreakdown()),
+    Key("mend", "E", "E", c.Mend()),
     Key("summary", "Q", "Q", None),
     Key("view", "home", "Home", None),
 )

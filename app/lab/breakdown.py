@@ -1,0 +1,146 @@
+"""A robot that has stopped: its last moments once more, slowly, and the settings that did well."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from onpath.app.lab.plot_samples import samples_of
+from onpath.app.lab.segments import Instant, Segment
+from onpath.app.lab.session import Session
+from onpath.models.errors import CodedError
+from onpath.models.paths.curves import Curve
+from onpath.models.systems.parameters import Parameters, specs
+
+SPAN, LASTS = 0.3, 6.0
+"""Simulated time that is shown again, at most, and how long that takes, [s]."""
+RESTS = 1.5
+"""How long its end is shown [s]."""
+LARGER = 5.0
+"""Magnification of the bending meanwhile, at least."""
+WELL = 1.0
+"""Simulated time after which settings under which no robot has stopped have done well [s]."""
+
+
+@dataclass
+class _Replay:
+    """A replay from `begin` to `end`, [s]; `larger` is the magnification to go back to."""
+
+    begin: float
+    end: float
+    larger: float
+    elapsed: float = 0.0
+
+    @property
+    def time(self) -> float:
+        share = min(self.elapsed / LASTS, 1.0)
+        return self.begin + share * (self.end - self.begin)
+
+
+class Breakdown:
+    """Follows a session, and helps when one of its robots has stopped."""
+
+    def __init__(self) -> None:
+        self._replay: _Replay | None = None
+        self._under: tuple[int, Parameters] | None = None
+        self._since = 0.0
+        self._well: tuple[str, Parameters] | None = None
+
+    @property
+    def replaying(self) -> bool:
+        """Whether the last moments are being shown."""
+        return self._replay is not None
+
+    def follow(self, session: Session, seconds: float) -> bool:
+        """Called once a frame of this duration; returns whether a replay has just ended."""
+        if self._replay is not None:
+            return self._go_on(session, self._replay, seconds)
+        now, before = session.parameters, self._under
+        same = before is not None and before[0] == session.run_number and before[1] is now
+        if not same or _stopped(session):
+            self._under, self._since = (session.run_number, now), session.time
+        elif session.time > self._since + WELL:
+            self._well = session.entry.name, now
+        return False
+
+    def remedy(self, session: Session) -> dict[str, float | int | str]:
+        """What has been changed since all went well, with the values of then; empty: nothing."""
+        if self._well is None or self._well[0] != session.entry.name or not _stopped(session):
+            return {}
+        well, now = self._well[1], session.parameters
+        return {n: getattr(well, n) for n in specs(well) if getattr(well, n) != getattr(now, n)}
+
+    def mend(self, session: Session) -> None:
+        """Reset, with the settings that did well.
+
+        Raises:
+            CodedError: there are none.
+        """
+        if not self.remedy(session):
+            raise CodedError("error.nothing_to_mend")
+        assert self._well is not None
+        session.set_parameters(self._well[1])
+        session.reset()
+        session.running = True
+
+    def begin(self, session: Session) -> None:
+        """Begin to show the last moments before a robot stopped.
+
+        Raises:
+            CodedError: none has.
+        """
+        stopped = _stopped(session)
+        if not stopped or not len(session.history):
+            raise CodedError("error.nothing_stopped")
+        if self._replay is not None:
+            self._end(session, self._replay)
+        end = max(stopped)
+        begin = max(end - SPAN, session.time - session.history.span())
+        self._replay = _Replay(begin, end, session.exaggeration)
+        session.running, session.viewing = False, begin
+        session.exaggeration = max(session.exaggeration, LARGER)
+
+    def _go_on(self, session: Session, replay: _Replay, seconds: float) -> bool:
+        left = session.viewing != replay.time or session.running  # somebody looks at another time
+        replay.elapsed += seconds
+        session.viewing = session.viewing if left else replay.time
+        over = replay.elapsed > LASTS + RESTS
+        if left or over:
+            self._end(session, replay)
+            session.viewing = None if over and not left else session.viewing
+        return left or over
+
+    def _end(self, session: Session, replay: _Replay) -> None:
+        self._replay, session.exaggeration = None, replay.larger
+
+    def instant(self, session: Session) -> tuple[Instant, Curve] | None:
+        """What is shown of a replay, to the tick, and its path; None if there is none."""
+        if self._replay is None or (segment := session.history.at(self._replay.time)) is None:
+            return None
+        ticks = round((self._replay.time - segment.time) / segment.dt)
+        return _after(session, segment, min(ticks, segment.ticks)), segment.curve
+
+
+def _stopped(session: Session) -> list[float]:
+    return [run.diverged.time for run in session.runs.values() if run.diverged is not None]
+
+
+def _after(session: Session, segment: Segment, ticks: int) -> Instant:
+    """The instant some ticks after the beginning of a segment, as far as it is finite."""
+    first = segment.instant()
+    states, samples = list(first.states), first.sample.copy()
+    for i, (bench, drive) in enumerate(segment.drives.items()):
+        run = session.runs[bench]
+        if ticks <= 0 or drive.frozen or run.kind != drive.kind:
+            continue
+        with np.errstate(all="ignore"):
+            table = segment.curve.table()
+            state, rows = run.loop().run(drive.state, drive.settings, table, ticks)
+        if np.isfinite(state).all() and np.isfinite(rows[-1]).all():
+            distance = samples[i, session.sample_layout.slices["distance"].start]
+            states[i] = state
+            samples[i] = samples_of(session.robot, session.parameters, [rows[-1]], [distance])[0]
+    return Instant(
+        first.time + ticks * segment.dt, first.laws, states, first.max_distances, samples
+    )

@@ -1,0 +1,72 @@
+"""When a robot has stopped: its last moments slowly, and the settings that did well."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.breakdown import LARGER, LASTS, RESTS, SPAN
+from onpath.app.lab.lab import Lab
+from tests.support.lab import FRAME, do, new_lab, run, take_snapshot
+
+
+@pytest.fixture
+def blown_up() -> Lab:
+    """The flexible robot, whose actual tip has become the output after a while."""
+    lab = new_lab()
+    do(lab, c.ChooseRobot("flexible"), c.SetParameter("law", "redefined"))
+    run(lab, 1.5)
+    do(lab, c.SetParameter("alpha", 1.0))
+    run(lab, 0.5)
+    assert any(each.diverged for each in lab.session.runs.values())
+    return lab
+
+
+def test_the_last_moments_are_shown_slowly_and_larger(blown_up: Lab) -> None:
+    lab, session = blown_up, blown_up.session
+    fault = max(run.diverged.time for run in session.runs.values() if run.diverged)
+    said = lab.message
+    do(lab, c.ReplayBreakdown())
+    times, ends, notes = [], [], set[str]()
+    while lab.breakdown.replaying and len(times) < 1000:
+        shown = take_snapshot(lab, 1.0)
+        times.append(shown.time)
+        ends.append(shown.robots["right"].end)
+        notes.add(shown.note)
+        run(lab, FRAME)
+    assert times == sorted(times) and fault - SPAN - 1e-9 <= times[0] < times[-1]
+    assert times[-1] == pytest.approx(fault, abs=2e-3)
+    assert len(times) == pytest.approx((LASTS + RESTS) / FRAME, abs=3)
+    assert len({end.tobytes() for end in ends}) > 5  # not only the beginnings of frames
+    assert np.isfinite(ends).all()
+    assert any(f"{LARGER:g}" in note for note in notes)
+    assert session.exaggeration == 1.0 and session.viewing is None
+    assert lab.message == said
+
+
+def test_looking_elsewhere_ends_it(blown_up: Lab) -> None:
+    do(blown_up, c.ReplayBreakdown())
+    run(blown_up, 0.5)
+    do(blown_up, c.LookAt(0.02))
+    run(blown_up, 0.1)
+    session = blown_up.session
+    assert not blown_up.breakdown.replaying and session.exaggeration == 1.0
+    assert session.viewing == pytest.approx(session.time - 0.02)
+
+
+def test_the_last_settings_that_did_well_are_offered_and_taken(blown_up: Lab) -> None:
+    assert take_snapshot(blown_up, 1.0).remedy == {"alpha": 0.5}
+    do(blown_up, c.Mend())
+    run(blown_up, 1.0)
+    session = blown_up.session
+    assert take_snapshot(blown_up, 1.0).parameters["alpha"] == 0.5 and session.running
+    assert not any(each.diverged for each in session.runs.values())
+    assert take_snapshot(blown_up, 1.0).remedy == {}
+
+
+def test_without_a_stopped_robot_both_are_refused() -> None:
+    lab = new_lab(0.1)
+    for command in (c.ReplayBreakdown(), c.Mend()):
+        do(lab, command)
+        assert lab.message and lab.message_level == "warning"
