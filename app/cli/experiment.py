@@ -29,8 +29,9 @@ class ExperimentCommand:
     your own, as "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"."""
     path: str | None = None
     """Path: a preset, "circle R", "ellipse A B", "closed Z1 Z2 Z1 Z2 ...", "open ...", "segment
-    ...", "implicit EXPRESSION" (of z1 and z2, 0 on the path), or JSON with points; in metres.
-    Or @FILE with such a text."""
+    ...", "implicit EXPRESSION" (of z1 and z2, 0 on the path; followed by its distance, or with
+    --set across=level_set by the expression), or JSON with points; in metres. Or @FILE with such a
+    text."""
     profile: str | None = None
     """Wanted speed over time, linear between points, as 0:0,1:6.28,4:6.28 in s and rad/s."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()

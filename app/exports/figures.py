@@ -16,7 +16,6 @@ from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.laws.registry import law_named
 from onpath.models.studies.experiments import Experiment
-from onpath.models.systems.law_parameters import LEVEL_SET
 
 EXTRA = {"deflection": ("deflection of\nthe tip  [mm]", 1e3)}
 """Label and scale of those of `Robot.extra_fields` that are drawn."""
@@ -38,7 +37,7 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
 
 def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     """Plot the end-point in output space, and distance, xi, eta, speed and torque over time."""
-    panels = _panels(level_set=experiment.parameters.across == LEVEL_SET)
+    panels = _panels(level_set=any(run.level_set for run in runs))
     panels[1:1] = _extra_panels(experiment)
     figure = ShownFigure(figsize=(13, 2.1 * len(panels)), layout="constrained")
     axes = figure.subplot_mosaic([["space", name] for name, _, _ in panels], width_ratios=(1, 1.25))

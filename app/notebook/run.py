@@ -78,8 +78,9 @@ class Run:
     def xi(self) -> Array:
         """Virtual output across the path, as the law sees it, shape (n, p - 1).
 
-        The first is the signed distance, [m], or s(y) with across="level_set", [m²]; for p = 3 the
-        second is the distance to the path's plane, [m]. Source: eq. (9).
+        The first is the signed distance, [m], or s(y) with across="level_set", [m²], on a path with
+        an equation divided by the mean of |∇s|, [m]; for p = 3 the second is the distance to the
+        path's plane, [m]. Source: eq. (9).
         """
         return self.trajectory.fields["xi"]
 

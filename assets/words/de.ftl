@@ -754,7 +754,7 @@ parameter-target-label = Ziel
 parameter-target-help = wo er stehen bleiben soll, beim Auftrag Ort
 
 parameter-across-label = Quer heißt
-parameter-across-help = was quer zur Bahn gemessen wird: der Abstand, oder s(y) wie im Artikel in m² (nur Ellipsen)
+parameter-across-help = was quer zur Bahn gemessen wird: der Abstand, oder s(y) wie im Artikel in m² (Ellipsen; auf der Kommandozeile auch Polynome, in m)
 parameter-across-option-distance = Abstand
 parameter-across-option-level_set = Niveaumenge
 
@@ -991,7 +991,9 @@ error-implicit_lines =
        *[other] die Lösungen der Gleichung sind { $count } Linien: erwartet wird eine geschlossene Linie
     }
 error-implicit_shape = die Lösungen der Gleichung haben eine Form, der eine glatte Bahn nicht folgen kann: sie läge bis zu { $apart } mm daneben
-error-no_level_set = diese Bahn hat keine Niveaumenge s(y): Eine solche haben hier nur Kreise und Ellipsen
+error-no_level_set = diese Bahn hat keine Niveaumenge s(y): Eine solche haben hier nur Kreise und Ellipsen, und auf der Kommandozeile Bahnen mit einer Gleichung
+error-level_no_polynomial = nach seiner Niveaumenge wird nur ein Polynom von z1 und z2 verfolgt; nach ihrem Abstand jede Bahn mit einer Gleichung
+error-level_gradient = nach dieser Niveaumenge kann die Bahn nicht verfolgt werden: { $beside } mm neben ihr zeigt der Gradient von s nicht mehr von ihr weg, und der Schlauch um die Bahn ist { $tube } mm weit
 error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
 
 ## Refusals: numbers and names

@@ -721,7 +721,9 @@ error-implicit_lines =
        *[other] the solutions of the equation are { $count } lines: one closed line is expected
     }
 error-implicit_shape = the solutions of the equation have a shape that a smooth path cannot follow: it is up to { $apart } mm off
-error-no_level_set = this path has no level set s(y): only circles and ellipses have one here
+error-no_level_set = this path has no level set s(y): only circles and ellipses have one here, and on the command line paths with an equation
+error-level_no_polynomial = only a polynomial of z1 and z2 is followed by its level set; any path with an equation is followed by its distance
+error-level_gradient = the path cannot be followed by this level set: { $beside } mm beside it, the gradient of s does not point away from it any more, and the tube around the path is { $tube } mm wide
 error-cannot_follow = { $robot } cannot follow this path: { $reasons }
 
 ## Refusals: numbers and names

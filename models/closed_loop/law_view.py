@@ -42,7 +42,8 @@ def coordinates(
 ) -> tuple[VirtualOutput, LocalCurve]:
     """The virtual output at y and the closest point, from `values` at the predicted θ."""
     names = ("level_centre", "level_weights", "level_constant")
-    level = LevelSet(*[settings[name] for name in names]) if kind.level_set else None
+    conic = LevelSet(*[settings[name] for name in names])
+    level = (kind.level or conic) if kind.level_set else None
     start = LocalCurve.from_values(predicted(state, settings), kind.closed, values)
     closest = start.project(frame.split(y)[0])
     if kind.space:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from onpath.models.control.implicit_level import ImplicitLevel
 from onpath.models.paths.curves import SPACE_TABLE_SHAPE, TABLE_SHAPE
 
 
@@ -20,6 +21,7 @@ class Kind:
         free: whether the loop may omit external forces, torque limits, dry friction and held
             torques, for speed. It is equivalent to the full loop while none of these act.
         space: whether the path is a space curve.
+        level: with `level_set`, λ of a path that is given by an equation; None: of a conic.
         law: the controlled output of a flexible robot: "redefined" (with a share α of the
             deflection) or "composite" (the tip, see models/control/composite_control.py).
         across_first: whether a torque limit takes from the motion along the path first; see
@@ -40,6 +42,7 @@ class Kind:
     stiction: bool = False
     noise: bool = False
     space: bool = False
+    level: ImplicitLevel | None = None
 
     @property
     def table_shape(self) -> tuple[int, int]:

@@ -14,6 +14,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS
 from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.control import composite_control
+from onpath.models.control.implicit_level import check_level, implicit_level
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import OWN_GAINS
 from onpath.models.control.speed_limit import NO_SPEED_LIMIT, speed_limit
@@ -56,18 +57,22 @@ _conic = lru_cache(maxsize=64)(Curve.conic)  # needed at every change of a setti
 
 
 def has_level_set(curve: Curve) -> bool:
-    """Whether a path is an ellipse, so that it has the level set of eq. (15)."""
-    return _conic(curve) is not None
+    """Whether a path is an ellipse, so that it has the level set of eq. (15), or an equation."""
+    return curve.equation is not None or _conic(curve) is not None
 
 
 def check_level_set(parameters: Parameters, curve: Curve) -> None:
-    """Refuse across = level_set on a path that has no level set.
+    """Refuse across = level_set on a path that has no level set, or none in all of its tube.
 
     Raises:
         CodedError: it has none.
     """
-    if parameters.across == LEVEL_SET and not has_level_set(curve):
+    if parameters.across != LEVEL_SET:
+        return
+    if not has_level_set(curve):
         raise CodedError("error.no_level_set")
+    if curve.equation is not None:
+        check_level(curve)
 
 
 def kind_of(
@@ -89,7 +94,8 @@ def kind_of(
     return Kind(
         controller=controller,
         closed=curve.closed,
-        level_set=parameters.across == LEVEL_SET and has_level_set(curve),
+        level_set=(level_set := parameters.across == LEVEL_SET and has_level_set(curve)),
+        level=implicit_level(curve) if level_set else None,
         encoder=parameters.encoder_counts > 0,
         law=getattr(parameters, "law", "redefined"),
         space=curve.dimension == 3,

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from onpath.models.control.implicit_level import ImplicitLevel
 from onpath.models.paths.frames import PlaneCoordinates
 from onpath.models.paths.projection import LEAST_SLOPE, LocalCurve
 
@@ -39,7 +40,7 @@ class LevelSet:
         half = self._turned(centred)
         return ca.dot(centred, half) - self.constant, 2 * half
 
-    def bent(self, z_rate: ca.SX) -> ca.SX:
+    def bent(self, z: ca.SX, z_rate: ca.SX) -> ca.SX:
         """The part z'ᵀ 2 G z' of the second derivative of s that is there at z'' = 0, [m²/s²]."""
         return 2 * ca.dot(z_rate, self._turned(z_rate))
 
@@ -105,7 +106,11 @@ class VirtualOutput:
 
 
 def virtual_output(
-    closest: LocalCurve, frame: PlaneCoordinates, level: LevelSet | None, y: ca.SX, y_rate: ca.SX
+    closest: LocalCurve,
+    frame: PlaneCoordinates,
+    level: LevelSet | ImplicitLevel | None,
+    y: ca.SX,
+    y_rate: ca.SX,
 ) -> VirtualOutput:
     """Coordinates along and across the path at the output y.
 
@@ -121,7 +126,7 @@ def virtual_output(
         λ'  = N · z',
         λ'' = N · z'' - (N · σ'' / |σ'|) θ' (T · z'),
 
-    and the level set λ = s(z) has λ' = ∇s · z' and λ'' = ∇s · z'' + 2 z'ᵀ G z'.
+    and the level set λ = s(z) has λ' = ∇s · z' and λ'' = ∇s · z'' + z'ᵀ (∂²s/∂z²) z'.
 
     D is bounded from below, because it vanishes at the centre of curvature, where θ is undefined.
 
@@ -133,10 +138,8 @@ def virtual_output(
 
     Source: eqs. (7)-(9).
     """
-    z, zeta = frame.split(y)
-    z_rate, zeta_rate = frame.split(y_rate, rate=True)
-    length2 = ca.dot(closest.first, closest.first)
-    length = ca.sqrt(length2)
+    (z, zeta), (z_rate, zeta_rate) = frame.split(y), frame.split(y_rate, rate=True)
+    length = ca.sqrt(length2 := ca.dot(closest.first, closest.first))
     tangent = closest.first / length
     normal = ca.vertcat(-tangent[1], tangent[0])
     distance = ca.dot(normal, z - closest.sigma)
@@ -155,7 +158,7 @@ def virtual_output(
     else:
         xi, gradient = level.at(z)
         xi_rate = ca.dot(gradient, z_rate)
-        offset = level.bent(z_rate)
+        offset = level.bent(z, z_rate)
         inverse = ca.inv_minor(ca.vertcat((tangent / per_theta).T, gradient.T))
     return VirtualOutput(
         theta=closest.theta,

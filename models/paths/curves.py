@@ -38,10 +38,12 @@ class Curve:
         series: coefficients of σ, σ', σ'' and σ''', shape (ORDERS, TERMS, d). For each order: the
             constant, K rows for C_k and K rows for S_k; [m] for σ, [m/rad^i] for its i-th
             derivative.
+        equation: s = ... in z1 and z2, if the curve was made of the points where s is 0.
     """
 
     closed: bool
     series: Array
+    equation: str | None = None
 
     @property
     def dimension(self) -> int:

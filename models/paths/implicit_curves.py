@@ -5,8 +5,7 @@ Newton's method along the gradient:
 
     z ← z - s(z) ∇s(z) / |∇s(z)|²
 
-Such paths are followed by their distance; the level set itself is an output, as in eq. (15), for
-circles and ellipses only (`Curve.conic`).
+Such paths are followed by their distance, or by s itself, see models/control/implicit_level.py.
 """
 
 from __future__ import annotations

@@ -254,7 +254,7 @@ def _finished(
 ) -> Trajectory:
     """The trajectory of a run, cut off at the fault if there was one."""
     dt = time_step(experiment.parameters)
-    level_set = experiment.parameters.across == LEVEL_SET
+    level_set = experiment.parameters.across == LEVEL_SET and experiment.curve().equation is None
     whole = record(robot, kernel.log, controller, segments, dt)
     whole = dataclasses.replace(whole, level_set=level_set)
     if fault is None:

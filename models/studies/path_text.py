@@ -16,13 +16,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, cast
 
-import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.control.laws.expressions import read
+from onpath.models.control.implicit_level import level_function
 from onpath.models.paths import curves
 from onpath.models.paths.curve_fit import closed_through, open_through
 from onpath.models.paths.curves import Curve
@@ -69,10 +69,7 @@ def curve_from_text(text: str) -> Curve:
 def _implicit(text: str) -> Curve:
     """The path on which an expression of z1 and z2 is 0."""
     equation = text.replace(IMPLICIT, "s".ljust(len(IMPLICIT) - 1) + "=", 1)  # columns stay
-    formulas = read(equation, ("z1", "z2"), ("s",))
-    z = ca.SX.sym("z", 2)
-    value = formulas({"z1": z[0], "z2": z[1]})["s"]
-    return implicit_curve(ca.Function("s", [z], [value]))
+    return replace(implicit_curve(level_function(equation)), equation=equation)
 
 
 def _from_json(text: str) -> Curve:

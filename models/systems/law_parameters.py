@@ -112,7 +112,8 @@ class LawParameters:
     across: str = choice(
         DISTANCE,
         (DISTANCE, LEVEL_SET),
-        "what to measure across the path: the distance, or the paper's s(y) in m² (ellipses only)",
+        "what to measure across the path: the distance, or the paper's s(y) in m² (ellipses; on the"
+        " command line also polynomials, in m)",
         group="gains",
         label="Across is",
     )
