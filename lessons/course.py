@@ -19,6 +19,8 @@ from onpath.lessons.words import DEFAULT
 
 BUILT_IN = Path(__file__).parent / "course"
 REFERENCE = "reference.toml"
+NOTES = ("usual", "answer", "ask", "passed")
+"""Texts that a block has in all languages or in none."""
 SIDE_ROAD = re.compile(r"\d+([a-z])-")  # folder of a lesson that may be left out, such as 01b-...
 
 
@@ -131,6 +133,9 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
 
 def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
     """Problems where a translation differs from the lesson in more than its words."""
+    for name in ("needs", "goals", "misconception"):
+        if bool(getattr(first.front, name)) != bool(getattr(other.front, name)):
+            yield Problem(str(file), 1, f"{name} is not given in both languages")
     if len(first.steps) != len(other.steps):
         text = f"{len(other.steps)} steps, {len(first.steps)} in {first.language}.md"
         yield Problem(str(file), 1, text)
@@ -146,8 +151,13 @@ def _structure(step: Step) -> tuple[object, ...]:
     tasks = [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()]
     blocks = [block for block in step.blocks if not isinstance(block, Text | Task)]
     right = [[o.right for o in block.options] for block in blocks if not isinstance(block, Sketch)]
-    drawn = [msgspec.structs.replace(b, question="") for b in blocks if isinstance(b, Sketch)]
+    drawn = [
+        msgspec.structs.replace(b, question="", usual="", answer="", ask="")
+        for b in blocks
+        if isinstance(b, Sketch)
+    ]
+    told = [tuple(bool(getattr(b, name, "")) for name in NOTES) for b in step.blocks]
     texts = [block for block in step.blocks if isinstance(block, Text)]
     links = [link.actions for text in texts for link in text.links]
     kinds = [type(block) for block in blocks]
-    return step.kind, step.scene, step.script, tasks, kinds, right, drawn, links
+    return step.kind, step.scene, step.script, tasks, kinds, right, drawn, told, links

@@ -8,22 +8,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
 
-import msgspec
 from markdown_it.token import Token
 from markupsafe import Markup
 
 from onpath.lessons import vocabulary
 from onpath.lessons.action_schema import Script, StepSetup
-from onpath.lessons.formulas import FormulaError, embedded, folded, reader, render, to_html
+from onpath.lessons.formulas import FormulaError, embedded, folded, reader, render
 from onpath.lessons.links import read_link
 from onpath.lessons.problems import LessonError, Problem
+from onpath.lessons.rendered import rendered
 from onpath.lessons.schema import (
     Block,
     Choice,
     Front,
     LabLink,
     Lesson,
-    Option,
     Prediction,
     Quiz,
     Sketch,
@@ -115,6 +114,10 @@ class _Reader:
                 1, vocabulary.scene_faults(StepSetup(robot=front.robot), front.robot)
             )
             self._robot = self._home = front.robot
+            try:
+                front = rendered(front)
+            except FormulaError as error:
+                self._complain(2, str(error))
         return front, ends[1] + 1
 
     def _steps(self, body: str, first: int) -> list[_Draft]:
@@ -164,7 +167,7 @@ class _Reader:
         if block is None:
             return
         try:
-            draft.blocks.append(_rendered(block))
+            draft.blocks.append(rendered(block))
         except FormulaError as error:
             self._complain(line, str(error))
 
@@ -280,21 +283,6 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
 
 def _quiz_faults(quiz: Quiz) -> Iterator[str]:
     return vocabulary.option_faults([option.right for option in quiz.options])
-
-
-def _rendered(block: Choice | Sketch | Task | Quiz) -> Choice | Sketch | Task | Quiz:
-    """The same block with its texts as safe HTML."""
-    replace = msgspec.structs.replace
-    if isinstance(block, Sketch):
-        return replace(block, question=to_html(block.question))
-    if isinstance(block, Task):
-        text, hints, passed = to_html(block.text), map(to_html, block.hints), to_html(block.passed)
-        return replace(block, text=text, hints=tuple(hints), passed=passed)
-    options = tuple(
-        Option(to_html(option.text), to_html(option.answer), option.right)
-        for option in block.options
-    )
-    return replace(block, question=to_html(block.question), options=options)
 
 
 def _missing(drafts: list[_Draft]) -> Iterator[str]:

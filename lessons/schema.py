@@ -1,6 +1,6 @@
 """The data that a lesson consists of. lessons/parse.py reads a lesson file into them.
 
-Questions, answers, tasks and hints are Markdown in the file and Markup here.
+Questions, answers, tasks, hints, needs and goals are Markdown in the file and Markup here.
 """
 
 from __future__ import annotations
@@ -31,10 +31,15 @@ class Option(Data, frozen=True):
 
 
 class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
-    """A prediction: one of several options."""
+    """A prediction: one of several options.
+
+    Attributes:
+        ask: for the teacher, what to ask the class before it is seen.
+    """
 
     question: str
     options: tuple[Option, ...]
+    ask: str = ""
 
 
 class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
@@ -45,6 +50,9 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
         seconds: length of the time axis, [s].
         top, bottom: limits of the other axis, in the quantity's unit.
         robot: the robot that is predicted; the true curves of both are shown afterwards.
+        usual: for the teacher, what students usually draw.
+        answer: for the teacher, what the true curve is like, and why.
+        ask: for the teacher, what to ask the class before it is seen.
     """
 
     question: str
@@ -53,6 +61,9 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
     top: float
     bottom: float = 0.0
     robot: RobotName = "tracker"
+    usual: str = ""
+    answer: str = ""
+    ask: str = ""
 
 
 Prediction = Choice | Sketch
@@ -111,6 +122,9 @@ class Front(Data, frozen=True):
     """The front matter of a lesson, between two lines +++.
 
     Attributes:
+        needs: what the student must know, which follows "You need:" on the first page.
+        goals: what the student learns, which follows "Afterwards you can:" on the first page.
+        misconception: for the teacher, the false belief that the lesson aims at.
         minutes: an estimate by hand in earlier files; ignored, see lessons/minutes.py.
     """
 
@@ -118,6 +132,9 @@ class Front(Data, frozen=True):
     summary: str
     minutes: int | None = None
     robot: str = "five_bar"
+    needs: str = ""
+    goals: str = ""
+    misconception: str = ""
 
 
 class Lesson(msgspec.Struct, frozen=True):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import time
 from collections.abc import Callable
 from importlib.util import find_spec
@@ -18,7 +17,6 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.models.control.benches import BENCHES, RIGHT
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 ARGUMENTS = (
     *("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
@@ -44,13 +42,6 @@ def check_installed() -> None:
             'bench needs Playwright to move a mouse: pip install "onpath[bench]"'
             " (--quick and --clients do without)"
         )
-
-
-def find_browser() -> str | None:
-    """Path of a Chromium; None if there is none, or Playwright is not installed."""
-    if find_spec("playwright") is None:
-        return None
-    return next(filter(None, map(shutil.which, BROWSERS)), None)
 
 
 def seen_at(camera: viser.CameraHandle, box: dict[str, float], point: np.ndarray) -> np.ndarray:

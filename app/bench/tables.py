@@ -18,12 +18,13 @@ from pathlib import Path
 import numpy as np
 
 from onpath.app.bench.crowd import HEAD, ClientLoad, folders, measured
-from onpath.app.bench.mouse_latency import find_browser, mouse_latency
+from onpath.app.bench.mouse_latency import mouse_latency
 from onpath.app.bench.reference import LANES, reference_loop
 from onpath.app.bench.server_process import serving
 from onpath.app.bench.simulated_browser import first_poses
 from onpath.app.bench.soak import HEAD as SOAK_HEAD
 from onpath.app.bench.soak import SoakRow, soak, verdict
+from onpath.app.common.chromium import find_browser
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.loops import InterpretedLoop, Loop

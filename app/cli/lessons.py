@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+from onpath.app.cli.lesson_pages import WriteGuide, WriteWorksheet
 from onpath.app.cli.lesson_play import PlayLesson
 
 if TYPE_CHECKING:
@@ -63,12 +64,14 @@ LessonsAction = (
     Annotated[ListLessons, tyro.conf.subcommand("list", prefix_name=False)]
     | Annotated[CheckLessons, tyro.conf.subcommand("check", prefix_name=False)]
     | Annotated[PlayLesson, tyro.conf.subcommand("play", prefix_name=False)]
+    | Annotated[WriteGuide, tyro.conf.subcommand("guide", prefix_name=False)]
+    | Annotated[WriteWorksheet, tyro.conf.subcommand("worksheet", prefix_name=False)]
 )
 
 
 @dataclass(frozen=True)
 class LessonsCommand:
-    """List, check or play the lessons, the built-in ones or your own."""
+    """List, check, play or print the lessons, the built-in ones or your own."""
 
     do: Annotated[LessonsAction, tyro.conf.arg(name="")]
 

@@ -29,6 +29,14 @@ def heading(lesson: Lesson, step: Step, run: LessonState) -> str:
     )
 
 
+def aims(lesson: Lesson, words: Words) -> str:
+    """What the student needs and will learn, on the first page, if it is said."""
+    front = lesson.front
+    return (
+        render("lesson/aims.html", front=front, words=words) if front.needs or front.goals else ""
+    )
+
+
 def text(content: str) -> str:
     """Prose: markup from a lesson, or plain text."""
     return render("lesson/text.html", content=content)

@@ -120,6 +120,8 @@ class LessonPanel:
             self._panel.set_width(width)
         with self._tab:
             self._html(page.heading(lesson, step, run))
+            if run.index == 0 and (aims := page.aims(lesson, run.words)):
+                self._html(aims)
             if step.kind == "run":
                 self._add_run(run)
             if step.kind != "run" or run.has_played() or self._reading == run.index:

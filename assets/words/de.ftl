@@ -70,6 +70,8 @@ lesson-tasks =
         [one] { $done } von 1 Aufgabe
        *[other] { $done } von { $all } Aufgaben
     }
+lesson-needs = Du brauchst:
+lesson-goals = Danach kannst du:
 lesson-open = Öffnen
 lesson-continue = Weitermachen
 lesson-close = Freies Labor
@@ -687,6 +689,44 @@ identified-limited = { " " }{ $names }: so weit, wie sich das Modell verstellen 
 identified-also = { " " }Außerdem am Werk, aber nicht im Modell der Regler: { $values }.
 identified-unexplained = { " " }{ $percent } % des Drehmoments sind nicht erklärt.
 identified-other_robot = Identifizieren lässt sich nur das Fünfgelenk: Wähle erst diesen Roboter.
+
+## Handreichung und Arbeitsblätter (app/exports/guide.py)
+
+guide-title = Handreichung für Lehrkräfte
+guide-intro = Was jede Lektion fragt, der Reihe nach, mit den Antworten. Die Klasse soll sich auf jede Vorhersage festlegen, bevor man etwas sieht. Stellt dann die hier vorgeschlagene Frage, lasst Nachbarn diskutieren, und lasst es erst danach geschehen. Die Buchstaben sind die der Präsentation und der Arbeitsblätter; die Labore der Lernenden zeigen die Möglichkeiten in anderer Reihenfolge.
+guide-assumed = Die Minuten sind aus Wörtern, Läufen und Aufgaben der Lektionen geschätzt, nicht in einer Klasse gemessen.
+guide-needs = Voraussetzungen
+guide-goals = Danach können die Lernenden
+guide-misconception = Die Fehlvorstellung
+guide-timing = Schritt
+guide-minutes = Minuten
+guide-sketch = Vorhersage: eine Kurve
+guide-choice = Vorhersage
+guide-quiz = Frage
+guide-task = Aufgabe
+guide-ask = Zu fragen, bevor man es sieht:
+guide-usual = Meist wird gezeichnet:
+guide-distractors = Was oft gesagt wird, und die Antwort darauf:
+guide-answer = Was geschieht:
+guide-right = Richtig:
+guide-curves = Die wirklichen Kurven beider Roboter
+guide-solution = Eine Lösung
+guide-why = Warum sie geht:
+guide-at = bei { $time } s: { $what }
+guide-pull = um { $right } mm nach rechts und { $up } mm nach oben ziehen
+guide-move = Kontrollpunkt { $index } um { $right } mm nach rechts und { $up } mm nach oben verschieben
+guide-run = laufen lassen
+guide-pause = anhalten
+worksheet-title = Arbeitsblatt: { $lesson }
+worksheet-key = Lösungen: { $lesson }
+worksheet-name = Name
+worksheet-date = Datum
+worksheet-axes = Achsen, in die gezeichnet wird
+worksheet-because = Weil
+worksheet-sure = Wie sicher?
+worksheet-after = Aufgaben und Fragen
+worksheet-done = Was ging, und warum:
+worksheet-learnt = Was ich vorher dachte und jetzt denke:
 
 ## Wovon das Englische in models/ steht
 

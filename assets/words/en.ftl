@@ -72,6 +72,8 @@ lesson-tasks =
         [one] { $done } of 1 task
        *[other] { $done } of { $all } tasks
     }
+lesson-needs = You need:
+lesson-goals = Afterwards you can:
 lesson-open = Open
 lesson-continue = Continue
 lesson-close = Free lab
@@ -605,6 +607,44 @@ help-text = **Hold both back** and watch: under trajectory tracking, the left ro
 
     | Key | What it does |
     |---|---|
+
+## The teacher's guide and the worksheets (app/exports/guide.py)
+
+guide-title = Teacher's guide
+guide-intro = What each lesson asks, in its order, with the answers. Let the class commit to every prediction before it is seen, ask what is suggested here, let neighbours discuss, and only then run it. The letters are those of the presentation and of the worksheets; students' own labs show the options in another order.
+guide-assumed = The minutes are estimated from the lessons' words, runs and tasks, not measured in a class.
+guide-needs = Prerequisites
+guide-goals = Afterwards the students can
+guide-misconception = The misconception
+guide-timing = Step
+guide-minutes = Minutes
+guide-sketch = Prediction: a curve
+guide-choice = Prediction
+guide-quiz = Question
+guide-task = Task
+guide-ask = Ask before it is seen:
+guide-usual = Students usually draw:
+guide-distractors = What students often say, and the answer to it:
+guide-answer = What happens:
+guide-right = Right:
+guide-curves = The true curves of both robots
+guide-solution = A solution
+guide-why = Why it works:
+guide-at = at { $time } s: { $what }
+guide-pull = pull by { $right } mm to the right and { $up } mm up
+guide-move = move control point { $index } by { $right } mm to the right and { $up } mm up
+guide-run = run
+guide-pause = pause
+worksheet-title = Worksheet: { $lesson }
+worksheet-key = Key: { $lesson }
+worksheet-name = Name
+worksheet-date = Date
+worksheet-axes = Axes to draw on
+worksheet-because = Because
+worksheet-sure = How sure?
+worksheet-after = tasks and questions
+worksheet-done = What worked, and why:
+worksheet-learnt = What I thought before, and think now:
 
 ## What the lab says by itself
 

@@ -233,6 +233,35 @@ def test_a_translation_with_the_options_in_another_order_is_named(tmp_path: Path
     assert found.path.endswith("de.md") and found.line == line_of("# quiz", LESSON)
 
 
+@pytest.mark.parametrize(
+    ("own", "theirs", "said"),
+    [
+        ('summary = "For tests."', 'summary = "For tests."\ngoals = "see"', "goals"),
+        ('question = "Which?"', 'question = "Which?"\nask = "And why?"', "step"),
+        ('question = "Draw the distance."', 'question = "D"\nusual = "nothing"', "step"),
+        ('text = "Hold back."', 'text = "Hold back."\npassed = "Because."', "step"),
+    ],
+)
+def test_a_translation_without_a_text_is_named(
+    tmp_path: Path, own: str, theirs: str, said: str
+) -> None:
+    file = write_lesson(tmp_path, LESSON.replace(own, theirs))
+    (file.parent / "de.md").write_text(LESSON)
+    (found,) = read_course([tmp_path])[1]
+    assert found.path.endswith("de.md") and said in found.text
+
+
+def test_a_formula_in_the_front_matter_is_read_or_named(tmp_path: Path) -> None:
+    front = 'summary = "For tests."'
+    text = LESSON.replace(front, f"{front}\nneeds = '$x^2$ and *more*'")
+    needs = read_lesson(write_lesson(tmp_path, text)).front.needs
+    assert "<math" in needs and "<em>more</em>" in needs
+    (found,) = problems(
+        write_lesson(tmp_path, LESSON.replace(front, f"{front}\nneeds = '$\\frac$'"))
+    )
+    assert "formula" in found[1]
+
+
 def test_the_command_line_lists_and_checks(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

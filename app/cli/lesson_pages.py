@@ -1,0 +1,110 @@
+"""`onpath lessons guide` and `onpath lessons worksheet`: pages to print for a teacher."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from onpath.app.cli.lesson_play import chosen_lesson
+from onpath.app.common.atomic_file import check_writable, whole_file
+
+if TYPE_CHECKING:
+    from onpath.lessons.course import Course
+    from onpath.lessons.words import Words
+
+
+@dataclass(frozen=True)
+class WriteGuide:
+    """Write the teacher's guide: what the lessons ask, timing, answers, solutions and reasons."""
+
+    lessons: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
+    """Names or numbers of lessons; by default all."""
+    html: Path | None = None
+    """Write a page that prints as A4."""
+    pdf: Path | None = None
+    """Write a PDF; needs Chromium and the extra onpath[bench]."""
+    folder: Path | None = None
+    """Folder of lessons; by default the built-in ones."""
+    language: str = "en"
+    """Language of the guide."""
+
+    def run(self) -> None:
+        """Write the guide."""
+        from onpath.app.exports.guide import guide
+
+        files = {"--html": self.html, "--pdf": self.pdf}
+        _check(files, "--html FILE or --pdf FILE")
+        course, folder, words = _course(self.folder, self.language)
+        names = [chosen_lesson(course, asked).name for asked in self.lessons]
+        page = guide(course, folder, names or list(course.lessons), words)
+        _write(page, self.html, self.pdf)
+
+
+@dataclass(frozen=True)
+class WriteWorksheet:
+    """Write a lesson's worksheet, two pages with axes to draw on, and its key."""
+
+    lesson: Annotated[str, tyro.conf.Positional]
+    """Name or number of the lesson."""
+    html: Path | None = None
+    """Write a page that prints as A4."""
+    pdf: Path | None = None
+    """Write a PDF; needs Chromium and the extra onpath[bench]."""
+    key: Path | None = None
+    """Write the key as a page."""
+    folder: Path | None = None
+    """Folder of lessons; by default the built-in ones."""
+    language: str = "en"
+    """Language of the worksheet."""
+
+    def run(self) -> None:
+        """Write the worksheet and the key."""
+        from onpath.app.exports.guide import worksheet
+
+        files = {"--html": self.html, "--pdf": self.pdf, "--key": self.key}
+        _check(files, "--html FILE, --pdf FILE or --key FILE")
+        course, folder, words = _course(self.folder, self.language)
+        name = chosen_lesson(course, self.lesson).name
+        page, key = worksheet(course, folder, name, words)
+        _write(page, self.html, self.pdf)
+        _write(key, self.key, None)
+
+
+def _check(files: dict[str, Path | None], wanted: str) -> None:
+    given = [path for path in files.values() if path is not None]
+    if not given:
+        raise ValueError(f"nothing to write: expected {wanted}")
+    for path in given:
+        check_writable(path)
+
+
+def _course(folder: Path | None, language: str) -> tuple[Course, Path, Words]:
+    """The lessons of a folder, which must be right, and the words of a language.
+
+    Raises:
+        ValueError: a lesson has problems, or there is no such language.
+    """
+    from onpath.assets.messages import languages
+    from onpath.lessons.course import BUILT_IN, read_course
+    from onpath.lessons.words import Words
+
+    if language not in languages():
+        raise ValueError(f"--language {language}: there are {', '.join(languages())}")
+    course, problems = read_course([folder or BUILT_IN])
+    if problems:
+        raise ValueError(str(problems[0]))
+    return course, folder or BUILT_IN, Words(language)
+
+
+def _write(page: str, html: Path | None, pdf: Path | None) -> None:
+    from onpath.app.exports.print_page import print_page
+
+    if html is not None:
+        with whole_file(html) as path:
+            path.write_text(page, encoding="utf-8")
+    if pdf is not None:
+        with whole_file(pdf) as path:
+            print_page(page, path)

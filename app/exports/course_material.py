@@ -1,0 +1,115 @@
+"""What a teacher's guide and a worksheet are made of: a lesson's steps with their answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from onpath.app.exports.report_plot import draw_prediction
+from onpath.app.lab.step_truth import computed_truth
+from onpath.lessons.action_words import script_words
+from onpath.lessons.benches import robot_names
+from onpath.lessons.course import REFERENCE, Course, read_references
+from onpath.lessons.minutes import Minutes, step_minutes, together
+from onpath.lessons.progress import Truth
+from onpath.lessons.schema import Block, Choice, Lesson, Quiz, Sketch, Step, Text
+from onpath.lessons.task_schema import Task
+from onpath.lessons.words import Words
+from onpath.models.systems.catalogue import ROBOTS
+
+
+@dataclass(frozen=True, slots=True)
+class AskedBlock:
+    """A prediction, a question or a task, with what it takes to answer it.
+
+    Attributes:
+        kind: "sketch", "choice", "quiz" or "task".
+        key: lesson, step and place in the step; unique in the course.
+        step: its number, from 1.
+        axes: of a sketch, nothing drawn, as an image for a page.
+        figure: of a sketch, with the true curves.
+        solution: of a task, a sentence for each instant of the reference solution.
+    """
+
+    kind: str
+    key: str
+    step: int
+    block: Block
+    axes: str = ""
+    figure: str = ""
+    solution: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class TaughtStep:
+    """A step of a lesson, its number from 1, its estimated minutes, and what it asks."""
+
+    number: int
+    step: Step
+    minutes: Minutes
+    asked: list[AskedBlock]
+
+
+@dataclass(frozen=True, slots=True)
+class TaughtLesson:
+    """A lesson as taught; `number` as displayed, `minutes` of all steps together."""
+
+    number: str
+    lesson: Lesson
+    minutes: Minutes
+    steps: list[TaughtStep]
+
+    def asked(self, *kinds: str) -> list[AskedBlock]:
+        """All that is asked, or only some kinds of it."""
+        every = [asked for step in self.steps for asked in step.asked]
+        return [asked for asked in every if not kinds or asked.kind in kinds]
+
+
+def taught_lesson(course: Course, folder: Path, name: str, words: Words) -> TaughtLesson:
+    """A lesson in the language of `words`, with its reference solutions and true curves.
+
+    Args:
+        folder: contains the lessons' own folders.
+
+    Raises:
+        ValueError: the reference solutions cannot be read.
+    """
+    lesson = course.lesson(name, words.language)
+    references, problems = read_references(lesson, folder / name / REFERENCE)
+    if problems:
+        raise ValueError(str(problems[0]))
+    solutions = {
+        task: tuple(script_words(each.solution, ROBOTS[lesson.front.robot].lab, words))
+        for task, each in references.items()
+    }
+    steps = [
+        TaughtStep(i + 1, step, step_minutes(step), _asked(lesson, i, solutions, words))
+        for i, step in enumerate(lesson.steps)
+    ]
+    total = together(step.minutes for step in steps)
+    return TaughtLesson(course.numbers()[name], lesson, total, steps)
+
+
+def _asked(
+    lesson: Lesson, index: int, solutions: dict[str, tuple[str, ...]], words: Words
+) -> list[AskedBlock]:
+    asked: list[AskedBlock] = []
+    for place, block in enumerate(lesson.steps[index].blocks):
+        key = f"{lesson.name}.{index}.{place}"
+        if isinstance(block, Sketch):
+            truth = computed_truth(lesson, index)
+            axes = _drawn(lesson, index, block, None, words)
+            figure = _drawn(lesson, index, block, truth, words)
+            asked.append(AskedBlock("sketch", key, index + 1, block, axes, figure))
+        elif isinstance(block, Choice | Quiz):
+            asked.append(AskedBlock(type(block).__name__.lower(), key, index + 1, block))
+        elif isinstance(block, Task):
+            asked.append(AskedBlock("task", key, index + 1, block, solution=solutions[block.id]))
+        else:
+            assert isinstance(block, Text)
+    return asked
+
+
+def _drawn(lesson: Lesson, index: int, block: Sketch, truth: Truth | None, words: Words) -> str:
+    names = robot_names(lesson.laws_shown(index), words)
+    return draw_prediction(block, None, truth, words, names)

@@ -1,0 +1,39 @@
+"""The teacher's guide and the worksheets of the lessons, as pages to print.
+
+The pages are rendered from the templates in assets/templates/guide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from onpath.app.common.templates import render
+from onpath.app.exports.course_material import taught_lesson
+from onpath.lessons.course import Course
+from onpath.lessons.option_order import LETTERS
+from onpath.lessons.words import Words
+
+
+def guide(course: Course, folder: Path, names: Iterable[str], words: Words) -> str:
+    """The teacher's guide to some lessons as a standalone page.
+
+    Args:
+        folder: contains the lessons' own folders.
+
+    Raises:
+        ValueError: the reference solutions of a lesson cannot be read.
+    """
+    lessons = [taught_lesson(course, folder, name, words) for name in names]
+    return render("guide/guide.html", lessons=lessons, words=words, letters=LETTERS)
+
+
+def worksheet(course: Course, folder: Path, name: str, words: Words) -> tuple[str, str]:
+    """A lesson's worksheet of two pages, and its key, as standalone pages.
+
+    Raises:
+        ValueError: see `guide`.
+    """
+    taught = taught_lesson(course, folder, name, words)
+    given = {"taught": taught, "words": words, "letters": LETTERS}
+    return render("guide/worksheet.html", **given), render("guide/key.html", **given)

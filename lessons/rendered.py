@@ -1,0 +1,59 @@
+"""The parts of a lesson with their Markdown as safe HTML."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+from typing import Any
+
+from msgspec.structs import replace
+
+from onpath.lessons.formulas import to_html
+from onpath.lessons.schema import Choice, Front, Option, Quiz, Sketch
+from onpath.lessons.task_schema import Task
+
+
+@singledispatch
+def rendered(part: Any) -> Any:
+    """The same part with its texts as HTML.
+
+    Raises:
+        FormulaError: LaTeX that cannot be converted.
+        TypeError: no part of a lesson.
+    """
+    raise TypeError(f"no part of a lesson: {part!r}")
+
+
+@rendered.register
+def _(part: Front) -> Front:
+    return _html(part, "needs", "goals", "misconception")
+
+
+@rendered.register
+def _(part: Sketch) -> Sketch:
+    return _html(part, "question", "usual", "answer", "ask")
+
+
+@rendered.register
+def _(part: Choice) -> Choice:
+    return replace(_html(part, "question", "ask"), options=_options(part))
+
+
+@rendered.register
+def _(part: Quiz) -> Quiz:
+    return replace(_html(part, "question"), options=_options(part))
+
+
+@rendered.register
+def _(part: Task) -> Task:
+    return replace(_html(part, "text", "passed"), hints=tuple(map(to_html, part.hints)))
+
+
+def _html(part: Any, *names: str) -> Any:
+    return replace(part, **{name: to_html(getattr(part, name)) for name in names})
+
+
+def _options(part: Choice | Quiz) -> tuple[Option, ...]:
+    return tuple(
+        Option(to_html(option.text), to_html(option.answer), option.right)
+        for option in part.options
+    )

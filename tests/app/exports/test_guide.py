@@ -1,0 +1,178 @@
+"""The teacher's guide, the worksheets and their keys hold everything that the lessons ask, once."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from onpath.app.cli.main import run_command
+from onpath.app.exports.guide import guide, worksheet
+from onpath.assets.messages import languages
+from onpath.lessons.action_schema import Action, Laws, Script
+from onpath.lessons.action_words import script_words
+from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.schema import Block, Choice, Quiz, Sketch
+from onpath.lessons.task_schema import Task
+from onpath.lessons.words import ENGLISH, Words
+from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
+
+ARTICLE = re.compile(r'<article[^>]* data-asked="([^"]+)">(.*?)</article>', re.DOTALL)
+in_every_language = pytest.mark.parametrize("language", languages())
+
+
+@cache
+def course() -> Course:
+    """The built-in lessons."""
+    return read_course([BUILT_IN])[0]
+
+
+def asked(name: str, language: str) -> Iterator[tuple[str, Block]]:
+    """Every prediction, question and task of a lesson with its key."""
+    for index, step in enumerate(course().lesson(name, language).steps):
+        for place, block in enumerate(step.blocks):
+            if isinstance(block, Choice | Sketch | Quiz | Task):
+                yield f"{name}.{index}.{place}", block
+
+
+def texts(block: Block) -> list[str]:
+    """What the guide says of a block."""
+    if isinstance(block, Task):
+        return [block.text, block.passed]
+    if isinstance(block, Sketch):
+        return [block.question, block.usual, block.answer, block.ask, "data:image/svg+xml"]
+    assert isinstance(block, Choice | Quiz)
+    told = [text for option in block.options for text in (option.text, option.answer)]
+    return [block.question, *told, getattr(block, "ask", "")]
+
+
+@in_every_language
+def test_everything_asked_is_in_the_guide_once_with_its_answer(language: str) -> None:
+    page = guide(course(), BUILT_IN, course().lessons, Words(language))
+    articles = ARTICLE.findall(page)
+    every = {key: block for name in course().lessons for key, block in asked(name, language)}
+    assert [key for key, _ in articles] == list(every)
+    for key, article in articles:
+        for text in texts(every[key]):
+            assert text in article, (key, text)
+        if isinstance(every[key], Task):
+            assert re.search(r'<ol class="solution">\s*<li>', article), key
+    for name in course().lessons:
+        front = course().lesson(name, language).front
+        assert page.count(f'data-lesson="{name}"') == 1
+        assert front.needs in page and front.goals in page and front.misconception in page
+
+
+@in_every_language
+def test_the_lessons_tell_a_teacher_everything(language: str) -> None:
+    """No lesson leaves out what the guide needs of it."""
+    for name in course().lessons:
+        front = course().lesson(name, language).front
+        assert front.needs and front.goals and front.misconception, name
+        for key, block in asked(name, language):
+            assert isinstance(block, Quiz) or all(texts(block)), key
+
+
+@in_every_language
+@pytest.mark.parametrize("name", list(course().lessons))
+def test_a_worksheet_asks_everything_once_and_only_its_key_answers(
+    name: str, language: str
+) -> None:
+    page, key = worksheet(course(), BUILT_IN, name, Words(language))
+    every = dict(asked(name, language))
+    sheet, answers = dict(ARTICLE.findall(page)), dict(ARTICLE.findall(key))
+    assert sorted(k for k, _ in ARTICLE.findall(page)) == sorted(every) == sorted(answers)
+    for each, block in every.items():
+        first, *_ = texts(block)
+        assert first in sheet[each] and first in answers[each]
+        if isinstance(block, Sketch):
+            assert block.answer in answers[each]
+            assert block.answer not in page and block.usual not in page
+            empty, drawn = (len(found[each]) for found in (sheet, answers))
+            assert "data:image/svg+xml" in sheet[each] and drawn > empty  # no curve to copy
+        elif isinstance(block, Task):
+            assert block.passed in answers[each] and block.passed not in page
+        else:
+            assert isinstance(block, Choice | Quiz)
+            (right,) = [option for option in block.options if option.right]
+            assert right.text in answers[each] and right.answer in answers[each]
+            assert all(option.text in sheet[each] for option in block.options)
+            assert not any(option.answer in sheet[each] for option in block.options)
+
+
+def test_a_solution_is_told_in_words() -> None:
+    script = Script(
+        (
+            Action(at=0.5, set={"K1": 600, "K2": 50.5}),
+            Action(at=3.0, hold=True),
+            Action(at=3.0, pull=(30.0, -2.5), only="follower"),
+            Action(at=5.0, hold=False),
+            Action(at=6.0, path="ellipse"),
+            Action(at=7.0, laws=Laws(left="path_following")),
+            Action(at=8.0, run=False),
+            Action(at=9.0, move=(3, 1.0, 2.0)),
+        ),
+        until=10.0,
+    )
+    said = list(script_words(script, FIVE_BAR.lab, ENGLISH))
+    assert len(said) == 7
+    assert "0.5 s" in said[0] and "= 600" in said[0] and "= 50.5" in said[0]
+    assert "hold back; pull by 30 mm to the right and −2.5 mm up (Follower)" in said[1]
+    assert "let go" in said[2] and "ellipse" in said[3].lower() and "left" in said[4]
+
+
+def test_lessons_of_ones_own_have_a_guide_and_a_worksheet(tmp_path: Path) -> None:
+    """Also those without any of the teacher's texts; whatever they say is escaped."""
+    write_lesson(tmp_path, LESSON.replace('"Hold back."', '"<script>alert(1)</script>"'))
+    files = [tmp_path / name for name in ("g.html", "w.html", "k.html")]
+    own = ["--folder", str(tmp_path)]
+    assert run_command(["lessons", "guide", "--html", str(files[0]), *own]) == 0
+    sheets = ["--html", str(files[1]), "--key", str(files[2]), "--language", "de"]
+    assert run_command(["lessons", "worksheet", "1", *sheets, *own]) == 0
+    for file in files:
+        page = file.read_text(encoding="utf-8")
+        assert "<script" not in page and "&lt;script&gt;" in page and "default-src 'none'" in page
+    assert files[0].read_text(encoding="utf-8").count("<article") == 4
+    assert 'lang="de"' in files[1].read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["guide"], "nothing to write"),
+        (["worksheet", "1"], "nothing to write"),
+        (["guide", "--html", "/none/g.html"], "no folder"),
+        (["guide", "07-flexible", "--html", "{}"], "did you mean 07-flexible-link"),
+        (["worksheet", "99", "--html", "{}"], "unknown lesson '99'"),
+        (["guide", "--language", "xx", "--html", "{}"], "there are de, en"),
+    ],
+)
+def test_what_cannot_be_written_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], said: str
+) -> None:
+    file = tmp_path / "page.html"
+    assert run_command(["lessons", *(each.format(file) for each in arguments)]) == 2
+    assert said in capsys.readouterr().err and not file.exists()
+
+
+def test_lessons_with_problems_are_not_printed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_lesson(tmp_path, reference=REFERENCE.replace("hold.", "other."))
+    given = ["--html", str(tmp_path / "g.html"), "--folder", str(tmp_path)]
+    assert run_command(["lessons", "guide", *given]) == 2
+    assert "reference.toml" in capsys.readouterr().err
+
+
+def test_a_pdf_without_a_browser_is_refused_with_a_way_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("onpath.app.exports.print_page.find_browser", lambda: None)
+    write_lesson(tmp_path)
+    pdf = tmp_path / "g.pdf"
+    assert run_command(["lessons", "guide", "--pdf", str(pdf), "--folder", str(tmp_path)]) == 2
+    assert "--html" in capsys.readouterr().err and not pdf.exists()

@@ -1,0 +1,39 @@
+"""What the lessons print, as a browser prints it."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from onpath.app.exports.guide import worksheet
+from onpath.assets.messages import languages
+from onpath.lessons.course import BUILT_IN, read_course
+from onpath.lessons.words import Words
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+PAGE = re.compile(rb"/Type\s*/Page\b")
+
+
+@pytest.mark.parametrize("language", languages())
+def test_every_worksheet_has_two_pages(browser: Browser, language: str) -> None:
+    course, _ = read_course([BUILT_IN])
+    page = browser.new_page()
+    for name in course.lessons:
+        page.set_content(worksheet(course, BUILT_IN, name, Words(language))[0])
+        assert len(PAGE.findall(page.pdf(prefer_css_page_size=True))) == 2, name
+    page.close()
+
+
+def test_a_worksheet_is_written_as_pdf(tmp_path: Path) -> None:
+    """In a process of its own, since `browser` is open in this one."""
+    file = tmp_path / "sheet.pdf"
+    command = [sys.executable, "-m", "onpath", "lessons", "worksheet", "1", "--pdf", str(file)]
+    subprocess.run(command, check=True)
+    assert len(PAGE.findall(file.read_bytes())) == 2
