@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from onpath.lessons.action_schema import Action, RobotName, Script
+from onpath.lessons.action_schema import Action, Laws, RobotName, Script
 from onpath.lessons.record import ROBOTS
 from onpath.models.arrays import Array
 
@@ -73,14 +73,14 @@ def parts_of(
 
 def action_text(action: Action) -> str:
     """An action as in a script, such as `set K1 = 900`."""
-    given, only = getattr(action, action.what), f" ({action.only})" if action.only else ""
-    if action.what == "laws":
-        given = given.named
-    if isinstance(given, dict):
-        given = ", ".join(f"{name} = {value}" for name, value in given.items())
+    what, only = action.what, f" ({action.only})" if action.only else ""
+    given = getattr(action, what)
+    if what in ("set", "laws"):
+        values = (action.set or {}) if what == "set" else (action.laws or Laws()).named
+        given = ", ".join(f"{name} = {value}" for name, value in values.items())
     if isinstance(given, bool):
-        return (action.what if given else f"{action.what} off") + only
-    return f"{action.what} {given}" + only
+        return (what if given else f"{what} off") + only
+    return f"{what} {given}{only}"
 
 
 def _part(
