@@ -5,9 +5,12 @@ from __future__ import annotations
 import logging
 import threading
 import time
+from collections import OrderedDict
 from collections.abc import Callable, Collection
 from concurrent.futures import Future, ThreadPoolExecutor
+from weakref import WeakValueDictionary
 
+from onpath.app.lab.compile_queue import CompileQueue
 from onpath.app.lab.typed_loops import Key, TypedLoops
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
@@ -19,12 +22,14 @@ from onpath.models.control.speed_limit import prepare_speed_limit
 from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
+MOST = 64  # loops that are kept besides those in use; of the five-bar robot 1.3 MB each
 
 
 class LoopCache:
     """Loops by robot and kind. `get` never waits for compilation.
 
-    Those of the registry's laws are kept for ever; for those of typed laws see `TypedLoops`.
+    Of the registry's laws, the loops that labs use are shared, and of the others those used last
+    are kept. For those of typed laws see `TypedLoops`.
 
     Args:
         at_once: whether loops of typed laws are made while they are asked for, not in the
@@ -33,12 +38,12 @@ class LoopCache:
     """
 
     def __init__(self, at_once: bool = False, clock: Callable[[], float] = time.monotonic) -> None:
-        self._compiled: dict[Key, CompiledLoop] = {}
-        self._interpreted: dict[Key, InterpretedLoop] = {}
-        self._wanted: dict[Key, Future[None]] = {}
+        self._made: WeakValueDictionary[Key, Loop] = WeakValueDictionary()
+        self._kept: OrderedDict[Key, Loop] = OrderedDict()  # the one used last comes last
+        self._waiting, self._making = CompileQueue[Key](clock), set[Key]()
         self._typed, self._at_once = TypedLoops(self._submit, clock), at_once
         self._pool: ThreadPoolExecutor | None = ThreadPoolExecutor(1, "compile")
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()
 
     def get(self, robot: Robot, kind: Kind, known: Loop | None = None) -> Loop:
         """The fastest loop available now. Call from the simulation thread only.
@@ -49,13 +54,9 @@ class LoopCache:
         key = (robot.core, kind)
         if is_text(kind.controller):
             return self._typed.find(key) or known or InterpretedLoop(kernel_of(robot, kind))
-        ready = self._compiled.get(key)
-        if ready is not None:
-            return ready
-        if key not in self._interpreted:
-            self._interpreted.setdefault(key, InterpretedLoop(kernel_of(robot, kind)))
+        found = self._find(key) or self._keep(key, InterpretedLoop(kernel_of(robot, kind)))
         self.prepare(robot, kind)
-        return self._interpreted[key]
+        return found
 
     def kernel(self, robot: Robot, kind: Kind) -> Kernel:
         """The kernel of a loop; built now if that of a typed law is not ready."""
@@ -75,11 +76,10 @@ class LoopCache:
             if self._typed.find(key) is None and (self._at_once or self._pool is None):
                 self._typed.make(key)
             return self._typed.find(key) is not None
-        if key in self._compiled or key in self._interpreted:
+        if self._find(key) is not None:
             return True
         self.prepare(robot, kind)
-        wanted = self._wanted.get(key)
-        return wanted is None or wanted.done()
+        return self._pool is None
 
     def want(self, lab: object, keys: Collection[Key]) -> None:
         """Make these loops of typed laws in the background, and no others for this lab."""
@@ -87,11 +87,16 @@ class LoopCache:
             self._typed.want(lab, [(robot.core, kind) for robot, kind in keys])
 
     def prepare(self, robot: Robot, kind: Kind) -> None:
-        """Compile a loop of a registry's law in the background, unless requested before."""
+        """Compile a loop of a registry's law in the background, unless that is done.
+
+        Ask again in every frame in which it is lacking: see `CompileQueue`.
+        """
         key = (robot.core, kind)
+        if is_text(kind.controller) or isinstance(self._made.get(key), CompiledLoop):
+            return
         with self._lock:
-            if self._pool is not None and key not in self._wanted and not is_text(kind.controller):
-                self._wanted[key] = self._pool.submit(self._compile, key)
+            if self._pool is not None and key not in self._making and self._waiting.ask(key):
+                self._pool.submit(self._compile_next)
 
     def close(self) -> None:
         """Cancel pending compilations."""
@@ -108,13 +113,34 @@ class LoopCache:
         ended.cancel()
         return ended
 
-    def _compile(self, key: Key) -> None:
+    def _find(self, key: Key) -> Loop | None:
+        """The loop that was made, which then counts as the one used last."""
+        with self._lock:
+            found = self._made.get(key)
+            return found if found is None else self._keep(key, found)
+
+    def _keep(self, key: Key, loop: Loop) -> Loop:
+        with self._lock:
+            self._made[key] = self._kept[key] = loop
+            self._kept.move_to_end(key)
+            if len(self._kept) > MOST:
+                self._kept.popitem(last=False)
+        return loop
+
+    def _compile_next(self) -> None:
+        with self._lock:
+            key = self._waiting.next()
+            if key is None:  # given up
+                return
+            self._making.add(key)
         try:
             kernel = kernel_of(*key)
-            if key not in self._interpreted:
-                self._interpreted.setdefault(key, InterpretedLoop(kernel))
-            self._compiled[key] = translate_loop(kernel)
+            if self._find(key) is None:
+                self._keep(key, InterpretedLoop(kernel))
+            self._keep(key, translate_loop(kernel))
             prepare_speed_limit(key[0])
         except Exception as error:  # the lab continues with interpreted loops
             log.warning("cannot compile a loop, the interpreted one goes on: %s", error)
             self.close()  # further compilations would fail, too
+        finally:
+            self._making.discard(key)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import CancelledError
+from contextlib import suppress
 from functools import lru_cache
 
 import numpy as np
@@ -34,6 +36,14 @@ def new_lab(seconds: float = 0.0) -> Lab:
     lab = Lab(store())
     run(lab, seconds)
     return lab
+
+
+def finish(store: LoopCache) -> None:
+    """Wait until all loops that were asked for are compiled, or given up."""
+    pool = store._pool
+    if pool is not None:
+        with suppress(CancelledError):
+            pool.submit(lambda: None).result(60.0)  # it does one thing after the other
 
 
 def run(lab: Lab, seconds: float) -> None:

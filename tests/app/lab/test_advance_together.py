@@ -14,7 +14,7 @@ from onpath.models.closed_loop.loops import CompiledLoop
 from onpath.models.control.benches import BENCHES
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
-from tests.support.lab import FOLLOWER, FRAME, do, new_lab, store
+from tests.support.lab import FOLLOWER, FRAME, do, finish, new_lab, store
 
 WILD = [("K1", 5000), ("K2", 0), ("control_rate", 50)]
 """Settings with which a robot diverges once it is held."""
@@ -94,8 +94,7 @@ def vars_of(event: object) -> list[object]:
 def compiled_labs(count: int) -> list[Lab]:
     """Equal labs whose loops are compiled."""
     labs = [new_lab(FRAME) for _ in range(count)]
-    for wanted in list(store()._wanted.values()):
-        wanted.result(60.0)
+    finish(store())
     return labs
 
 

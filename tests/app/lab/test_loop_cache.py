@@ -2,29 +2,34 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError
-from contextlib import suppress
 from dataclasses import replace
+from itertools import count, islice, product
+from weakref import WeakSet
 
 import numpy as np
 import pytest
 
 from onpath.app.lab import commands as c
+from onpath.app.lab import compile_queue
 from onpath.app.lab import loop_cache as loop_store
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loop_cache import MOST, LoopCache
 from onpath.app.server.lazy_imports import LATER, warm_up
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
+from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.control import speed_limit
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
+from onpath.models.control.laws.registry import LAWS
 from onpath.models.systems.five_bar_robot import rigid_five_bar
-from tests.support.lab import FRAME, do, states
+from tests.support.lab import FRAME, do, finish, run, states
+from tests.support.waiting import wait_for
 
 PATIENCE = 60.0  # [s]
 
@@ -58,13 +63,6 @@ def gate(monkeypatch: pytest.MonkeyPatch) -> Iterator[Gate]:
     monkeypatch.setattr(loop_store, "translate_loop", made)
     yield made
     made.set()
-
-
-def finish(store: LoopCache) -> None:
-    """Wait until all loops that were asked for are compiled, or given up."""
-    for wanted in list(store._wanted.values()):
-        with suppress(CancelledError):
-            wanted.result(PATIENCE)
 
 
 def loops(lab: Lab, store: LoopCache) -> list[Loop]:
@@ -118,14 +116,17 @@ def test_closing_gives_up_what_is_waiting(store: LoopCache, gate: Gate) -> None:
     for kind in kinds:
         store.get(rigid_five_bar(), kind)
     assert gate.reached.wait(PATIENCE)
+    pool = store._pool
+    assert pool is not None
     store.close()
     gate.set()
-    finish(store)
+    pool.shutdown(wait=True)
     assert len(gate.passed) == 1
+    waiting = len(store._waiting)
     for kind in kinds[1:]:
         assert isinstance(store.get(rigid_five_bar(), kind), InterpretedLoop)
     store.get(rigid_five_bar(), replace(kinds[0], free=True))  # that is new, and refused quietly
-    assert len(store._wanted) == len(kinds)
+    assert len(store._waiting) == waiting
 
 
 def test_a_first_lab_finds_its_loops_compiled(store: LoopCache) -> None:
@@ -138,7 +139,61 @@ def test_a_first_lab_finds_its_loops_compiled(store: LoopCache) -> None:
         do(lab, *commands)
         lab.advance(FRAME)
         assert all(isinstance(loop, CompiledLoop) for loop in loops(lab, store))
-    assert len(store._wanted) == 2 * len(BENCHES)
+    assert len(store._kept) == 2 * len(BENCHES)
+
+
+class Quick(InterpretedLoop):
+    """Stands for a compiled loop."""
+
+
+@pytest.fixture
+def cheap(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is compiled, and all loops have one kernel."""
+    kernel = kernel_of(rigid_five_bar(), Kind(DEFAULT_LAWS[LEFT]))
+    monkeypatch.setattr(loop_store, "kernel_of", lambda *_: kernel)
+    monkeypatch.setattr(loop_store, "translate_loop", Quick)
+    monkeypatch.setattr(loop_store, "CompiledLoop", Quick)
+
+
+def some_kinds(most: int) -> list[Kind]:
+    flags = ("closed", "level_set", "encoder", "free", "delay", "stiction", "noise")
+    every = (
+        Kind(law, **dict(zip(flags, chosen, strict=True)))
+        for law in LAWS
+        for chosen in product((False, True), repeat=len(flags))
+    )
+    return list(islice(every, most))
+
+
+@pytest.mark.usefixtures("cheap")
+def test_loops_in_use_are_shared_and_of_the_others_only_the_last_are_kept(store: LoopCache) -> None:
+    robot, (mine, *others) = rigid_five_bar(), some_kinds(3 * MOST)
+    store.prepare(robot, mine)
+    finish(store)
+    used, seen = store.get(robot, mine), WeakSet[Loop]()
+    for kind in others:
+        seen.add(store.get(robot, kind))
+        finish(store)
+        seen.add(store.get(robot, kind))
+    gc.collect()
+    assert store.get(robot, mine) is used
+    assert len(store._kept) <= MOST and len(seen) <= MOST + 1  # the loop of the last turn
+
+
+def test_settings_changed_without_end_do_not_hold_up_another_lab(
+    store: LoopCache, gate: Gate
+) -> None:
+    clock = count()  # [s]; time passes whenever somebody asks
+    store._waiting._clock = lambda: float(next(clock))
+    for kind in some_kinds(200):
+        store.prepare(rigid_five_bar(), kind)
+    lab = Lab(store)
+    do(lab, c.ChooseLaw(LEFT, "waiting_clock"))
+    run(lab, FRAME)
+    assert len(store._waiting) <= compile_queue.MOST
+    gate.set()
+    wait_for(lambda: (run(lab, FRAME), lab.session.laws[LEFT] == "waiting_clock")[1], PATIENCE)
+    assert len(gate.passed) <= 2 * len(BENCHES)
 
 
 def test_what_a_speed_limit_needs_is_made_in_the_background(store: LoopCache) -> None:
