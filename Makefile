@@ -14,7 +14,7 @@ TOOLS   = $(VENV)/.tools
 # In order, so that the longest test begins early: it would be the last one otherwise.
 PYTEST  = $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: run test thorough fuzz check format bench soak wheel clean
+.PHONY: run test thorough fuzz check format bench soak picture wheel clean
 .DEFAULT_GOAL := run
 
 # What running needs; --clear takes the tools away, too, and their stamp with them.
@@ -64,6 +64,10 @@ bench: $(TOOLS)
 
 soak: $(TOOLS)
 	$(BIN)/onpath bench --soak 30 $(ARGS)
+
+# The README's moving picture.
+picture: $(TOOLS)
+	$(BIN)/python -m tests.support.readme_picture
 
 # The sdist, and the wheel from it.
 wheel: $(TOOLS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -136,6 +137,6 @@ def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
     message.get_by_text("drawn bent 5 times as much").wait_for()
     wait_for(lambda: not tab.lab.breakdown.replaying)
     message.get_by_role("button", name="Reset with α = 0.5").click()
-    wait_for(lambda: tab.session.parameters.alpha == 0.5)
+    wait_for(lambda: asdict(tab.session.parameters)["alpha"] == 0.5)
     assert tab.errors == []
     tab.page.context.close()
