@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -114,10 +113,8 @@ class Session:
         robot = self.entry.make(parameters)
         if robot is self.robot:
             return
-        known = {name: getattr(before, name) for name in self.entry.goes_on}
-        goes_on = self.entry.make(replace(parameters, **known)) is self.robot
         self.robot = self.editor.robot = robot
-        if not goes_on:
+        if not self.entry.keeps_states(before, parameters):
             self._restart()
             return
         for run in self.runs.values():

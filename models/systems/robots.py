@@ -8,7 +8,7 @@ bars and joints are in `drawing.py`, with a default for each.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import itemgetter
 from typing import Protocol
 
@@ -231,6 +231,11 @@ class RobotEntry:
     picture: str = ""
     flexible_link: FlexibleLink | None = None
     goes_on: tuple[str, ...] = ()
+
+    def keeps_states(self, before: Parameters, now: Parameters) -> bool:
+        """Whether the robots of two sets of parameters differ at most by those in `goes_on`."""
+        same = {name: getattr(before, name) for name in self.goes_on}
+        return self.make(replace(now, **same)) is self.make(before)
 
 
 def first_fault(
