@@ -96,6 +96,10 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
             Press("Identify M and b"),
         ),
     },
+    "06b-friction-and-the-integral": {
+        "lower-the-jumps": (Enter("K1", 1600), Enter("K2", 80), Wait(8)),
+        "get-it-going": (Enter("K5", 30), Wait(4)),
+    },
     "07-flexible-link": {
         "choose-alpha": (Enter("α", 0.7), Wait(4)),
         "broken-promise": (
