@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import msgspec
 
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem
+from onpath.lessons.routes import Route, read_routes
 from onpath.lessons.schema import Lesson, Sketch, Step, Text
 from onpath.lessons.task_schema import Reference, Task
 from onpath.lessons.vocabulary import script_faults
@@ -30,9 +31,11 @@ class Course:
 
     Attributes:
         lessons: name -> language -> lesson.
+        routes: name -> route.
     """
 
     lessons: dict[str, dict[str, Lesson]]
+    routes: dict[str, Route] = field(default_factory=dict[str, Route])
 
     def lesson(self, name: str, language: str) -> Lesson:
         """A lesson in a language; failing that in English, failing that in any language.
@@ -67,6 +70,7 @@ NO_LESSONS = Course({})
 def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
     """All valid lessons in some folders, and the problems of the others."""
     lessons: dict[str, dict[str, Lesson]] = {}
+    routes: dict[str, Route] = {}
     problems: list[Problem] = []
     for folder in folders:
         found = sorted({file.parent for file in folder.glob("*/*.md") if file.stem != "README"})
@@ -80,7 +84,9 @@ def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
                 problems.append(Problem(str(home), 1, f"a second lesson {home.name!r}"))
             elif versions:
                 lessons[home.name] = versions
-    return Course(lessons), sorted(problems)
+        read = read_routes(folder, lessons)
+        routes, problems = {**read.routes, **routes}, problems + read.problems
+    return Course(lessons, routes), sorted(problems)
 
 
 def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:

@@ -68,6 +68,7 @@ class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         lesson: name of the open lesson; empty for none.
+        route: name of the route that is followed; empty for none.
         language: of texts and interface.
         presenting: whether large type is used, for a projector.
         notes: by lesson.
@@ -77,6 +78,7 @@ class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     language: Annotated[str, msgspec.Meta(max_length=8)] = "en"
     presenting: bool = False
     notes: dict[Key, Notes] = {}
+    route: Key = ""
 
 
 def read_progress(data: object) -> Progress:

@@ -111,7 +111,8 @@ def push_text(push: Push | None) -> str:
     if push is None:
         return ""
     if isinstance(push, TakeStep):
-        return msgspec.json.encode({"lesson": push.lesson, "step": push.step}).decode()
+        kept = {"lesson": push.lesson, "step": push.step, "route": push.route}
+        return msgspec.json.encode(kept).decode()
     return msgspec.json.encode({"setup": to_data(push.setup)}).decode()
 
 

@@ -97,6 +97,8 @@ def minutes_table(course: Course, steps: bool) -> str:
         for number, (step, each) in enumerate(zip(lesson.steps, spent, strict=True), 1):
             if steps:
                 lines.append(row(f"  {number} {step.kind}: {step.title}", each))
+    for name, route in course.routes.items():
+        lines.append(f"{name:32.32s} {route.minutes:7.1f} route: {route.text(route.title, 'en')}")
     return "\n".join(lines)
 
 

@@ -77,9 +77,24 @@ class LessonRun(LessonState):
             ValueError: there is no such lesson.
         """
         self.open_at(name, self.left_at(name), lab)
+        self.progress = replace(self.progress, route="")
 
-    def open_at(self, name: str, index: int, lab: LessonLab) -> None:
+    def follow_route(self, name: str, lab: LessonLab) -> None:
+        """Open the first step of a route, and follow it from stop to stop.
+
+        Raises:
+            ValueError: there is no such route.
+        """
+        if name not in self.course.routes:
+            raise unknown_name(name, list(self.course.routes), "route")
+        first = self.course.routes[name].stop[0]
+        self.open_at(first.lesson, first.steps[0] - 1, lab, name)
+
+    def open_at(self, name: str, index: int, lab: LessonLab, route: str = "") -> None:
         """Open a step of a lesson, and set the lab up for it.
+
+        Args:
+            route: to follow from now on; empty for that which is followed.
 
         Raises:
             ValueError: there is no such lesson or step.
@@ -91,7 +106,8 @@ class LessonRun(LessonState):
             raise CodedError("error.no_step", step=index + 1, steps=len(lesson.steps))
         before = capture(lab.session) if self.lesson is None else self.before
         _set_up(lab, lesson, index)
-        self.progress, self.before = replace(self.progress, lesson=name), before
+        route = route if route in self.course.routes else self.progress.route
+        self.progress, self.before = replace(self.progress, lesson=name, route=route), before
         self._arrive(index, lab)
 
     def resume(self, progress: Progress, before: Setup | None, lab: LessonLab) -> None:
@@ -114,7 +130,7 @@ class LessonRun(LessonState):
 
     def close(self, lab: LessonLab) -> None:
         """Close the lesson and restore the lab as it was before."""
-        self.progress = replace(self.progress, lesson="")
+        self.progress = replace(self.progress, lesson="", route="")
         self._begin_again(lab, running=lab.session.running)
         if self.before is not None:
             lab.set_up(self.before)
@@ -130,13 +146,16 @@ class LessonRun(LessonState):
         lesson = self.lesson
         if lesson is None:
             return
-        target = min(max(self.index + by, 0), len(lesson.steps) - 1)
+        name, target = self.beside(by)
         if by > 0 and self.waits:
             self.note_answer(Answer())
             if self.step_is("run"):
                 self._lock(lab.session)
                 return
-        self._go(target, lab)
+        if name == lesson.name:
+            self._go(target, lab)
+        else:
+            self.open_at(name, target, lab)
 
     def begin_anew(self, lab: LessonLab) -> None:
         """Set the lab up for the open step again."""

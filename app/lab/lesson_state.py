@@ -11,6 +11,7 @@ from msgspec.structs import replace
 
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Answer, Notes, Progress
+from onpath.lessons.routes import Route
 from onpath.lessons.schema import Lesson, Prediction, Quiz, Step
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError, Message
@@ -64,6 +65,29 @@ class LessonState:
         """The open step, or None."""
         lesson = self.lesson
         return lesson.steps[self.index] if lesson else None
+
+    @property
+    def route(self) -> Route | None:
+        """The route that is followed, or None."""
+        return self.course.routes.get(self.progress.route)
+
+    def beside(self, by: int) -> tuple[str, int]:
+        """Lesson and index of a step `by` steps from the open one; at an end, of the last one.
+
+        On a route, the step after the last one of a stop is the first one of the next stop.
+        """
+        lesson, route = self.lesson, self.route
+        if lesson is None:
+            return "", 0
+        here = lesson.name, self.index
+        name, index = (route.beside(*here, by) or here) if route else (lesson.name, here[1] + by)
+        steps = self.course.lesson(name, self.progress.language).steps
+        return name, min(max(index, 0), len(steps) - 1)
+
+    @property
+    def at_end(self) -> bool:
+        """Whether the open step is the last one, of the lesson or of the route."""
+        return self.lesson is not None and self.beside(1) == (self.lesson.name, self.index)
 
     def prediction(self) -> tuple[str, Prediction] | None:
         """Key and prediction of the open step, from this step or the previous one."""

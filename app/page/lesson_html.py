@@ -11,6 +11,7 @@ from onpath.lessons.checks import Verdict
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.record import QUANTITIES
+from onpath.lessons.routes import Route
 from onpath.lessons.schema import Choice, Lesson, Quiz, Sketch, Step
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import Words
@@ -25,6 +26,7 @@ def heading(lesson: Lesson, step: Step, run: LessonState) -> str:
         index=run.index,
         seen=run.notes.seen,
         large=run.progress.presenting,
+        route=route_line(run),
         words=run.words,
     )
 
@@ -101,6 +103,40 @@ def _task(
         hints=hints,
         passed=passed,
         why=why,
+    )
+
+
+def route_entry(route: Route, run: LessonState) -> str:
+    """A route in the lesson overview, with its stops and their times."""
+    words, numbers = run.words, run.course.numbers()
+    stops = list[str]()
+    for stop in route.stop:
+        title = run.course.lesson(stop.lesson, words.language).front.title
+        first, last = stop.steps
+        told = {"first": first, "last": last, "minutes": f"{stop.minutes:g}"}
+        stops.append(words("route.stop", lesson=f"{numbers[stop.lesson]}. {title}", **told))
+    return render(
+        "lesson/route.html",
+        title=route.text(route.title, words.language),
+        summary=route.text(route.summary, words.language),
+        minutes=words("lesson.minutes", minutes=f"{route.minutes:g}"),
+        stops=stops,
+    )
+
+
+def route_line(run: LessonState) -> str:
+    """Where the student is on the route that is followed; empty if it is not on the open step."""
+    lesson, route = run.lesson, run.route
+    at = None if lesson is None or route is None else route.stop_of(lesson.name, run.index)
+    if at is None or route is None:
+        return ""
+    return run.words(
+        "route.here",
+        route=route.text(route.title, run.words.language),
+        stop=at + 1,
+        stops=len(route.stop),
+        last=route.stop[at].steps[1],
+        minutes=f"{route.stop[at].minutes:g}",
     )
 
 

@@ -44,6 +44,11 @@ class LessonMenu:
                     hint=lesson.front.title,
                 )
                 on_press(open_it, self._then(close, c.OpenLesson(name)))
+            for name, route in run.course.routes.items():
+                gui.add_html(page.route_entry(route, run))
+                title = route.text(route.title, run.words.language)
+                follow = gui.add_button(run.words("route.follow"), color="gray", hint=title)
+                on_press(follow, self._then(close, c.FollowRoute(name)))
         return close
 
     def _chosen(self, close: Callable[[], None], command: c.Command) -> None:

@@ -279,10 +279,7 @@ class LessonPanel:
 
     def _add_ways(self, step: Step, run: LessonView) -> None:
         """Navigation buttons: back, next, restore the set-up, close."""
-        lesson = run.lesson
-        assert lesson is not None
-        last = run.index == len(lesson.steps) - 1
-        if last:
+        if run.at_end:
             self._button(run.words("lesson.finish"), c.CloseLesson(), None, viser.Icon.CHECK)
         else:
             unseen = step.script is not None and not run.has_played()
@@ -291,7 +288,9 @@ class LessonPanel:
                 colour = "gray"
                 label = run.words("lesson.skip" if run.waits else "lesson.next_unseen")
             self._button(label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)
-        keys = ["back", "again", "close"][0 if run.index else 1 :]
+        lesson = run.lesson
+        first = lesson is None or run.beside(-1) == (lesson.name, run.index)
+        keys = ["back", "again", "close"][1 if first else 0 :]
         commands = {"back": c.GoToStep(-1), "again": c.BeginStepAnew(), "close": c.CloseLesson()}
         asked = {run.words(f"lesson.{key}"): commands[key] for key in keys}
         group = self._gui.add_button_group("", list(asked))

@@ -690,6 +690,14 @@ identified-also = { " " }Außerdem am Werk, aber nicht im Modell der Regler: { $
 identified-unexplained = { " " }{ $percent } % des Drehmoments sind nicht erklärt.
 identified-other_robot = Identifizieren lässt sich nur das Fünfgelenk: Wähle erst diesen Roboter.
 
+## Routen durch die Lektionen
+
+route-route = Route
+route-send = Diese Route für alle öffnen
+route-follow = Dieser Route folgen
+route-stop = { $lesson }, Schritte { $first } bis { $last }, { $minutes } min
+route-here = { $route }: Teil { $stop } von { $stops }, bis Schritt { $last }, { $minutes } min
+
 ## Handreichung und Arbeitsblätter (app/exports/guide.py)
 
 guide-title = Handreichung für Lehrkräfte

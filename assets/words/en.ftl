@@ -608,6 +608,14 @@ help-text = **Hold both back** and watch: under trajectory tracking, the left ro
     | Key | What it does |
     |---|---|
 
+## Routes through the lessons
+
+route-route = Route
+route-send = Open this route for all
+route-follow = Follow this route
+route-stop = { $lesson }, steps { $first } to { $last }, { $minutes } min
+route-here = { $route }: part { $stop } of { $stops }, to step { $last }, { $minutes } min
+
 ## The teacher's guide and the worksheets (app/exports/guide.py)
 
 guide-title = Teacher's guide

@@ -181,6 +181,17 @@ def test_the_teacher_watches_a_lab_without_changing_it(tabs: Class) -> None:
     assert first.client.scene.get_handle_by_name("/show/tube") is None
 
 
+def test_a_route_is_opened_for_all(tabs: Class) -> None:
+    teacher = tabs.teacher
+    teacher.page.get_by_role("tab", name="Predictions").click()
+    teacher.field("Route").click()
+    teacher.page.get_by_role("option", name=re.compile("20 minutes")).click()
+    teacher.press("Open this route for all")
+    for student in tabs.students:
+        student.page.get_by_text(re.compile("20 minutes.*part 1 of 3")).wait_for()
+        assert student.lab.lessons.progress.route == "2-lecture-20-minutes"
+
+
 def test_a_teacher_who_reloads_is_still_the_teacher(tabs: Class) -> None:
     tabs.teacher.page.reload(wait_until="commit")
     tabs.teacher.page.get_by_text("2 in the class").first.wait_for()

@@ -49,17 +49,22 @@ class TakeSetup(Command):
 
 @dataclass(frozen=True, slots=True)
 class TakeStep(Command):
-    """Open a step of a lesson, wherever the student is."""
+    """Open a step of a lesson, wherever the student is.
+
+    Attributes:
+        route: that is followed from there; empty for that which the student follows.
+    """
 
     from_teacher: ClassVar[bool] = True
     lesson: str
     step: int
+    route: str = ""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         run = lab.lessons
         elsewhere = run.lesson is not None and run.progress.lesson != self.lesson
-        run.open_at(self.lesson, self.step, lab)
+        run.open_at(self.lesson, self.step, lab, self.route)
         lab.show_message(run.words("class.step_elsewhere" if elsewhere else "class.step"))
         _tell(lab)
 

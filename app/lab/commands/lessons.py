@@ -22,6 +22,17 @@ class OpenLesson(Command):
 
 
 @dataclass(frozen=True, slots=True)
+class FollowRoute(Command):
+    """Open the first step of a route, and follow it from stop to stop."""
+
+    name: str
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.follow_route(self.name, lab)
+
+
+@dataclass(frozen=True, slots=True)
 class CloseLesson(Command):
     """Close the lesson and restore the lab as it was before."""
 

@@ -13,6 +13,7 @@ from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.step_truth import computed_truth
 from onpath.app.page.panels.dialog import mark_closing
+from onpath.app.page.panels.route_sender import RouteSender
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.course import Course
@@ -147,6 +148,7 @@ class TeacherPanel:
         )
         push = gui.add_button(words("class.push_step"), icon=viser.Icon.SEND)
         self._sent = gui.add_html("")
+        RouteSender(gui, words, self._course, self._class)
         reveal = gui.add_checkbox(words("class.truth"), chosen.revealed)
         large = gui.add_checkbox(words("lesson.presenting"), self._large)
         self._prediction = gui.add_html("")

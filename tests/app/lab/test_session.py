@@ -92,6 +92,7 @@ def parameter_values() -> st.SearchStrategy[c.SetParameter]:
 TYPED = [PATH_FOLLOWING, "across = e1; along = sqrt(1 - t)", "u1 = 0.01*t; u2 = 0", "xi", ""]
 LESSON_COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.OpenLesson: st.builds(c.OpenLesson, st.sampled_from(["", "hexapod"])),
+    c.FollowRoute: st.builds(c.FollowRoute, st.sampled_from(["", "1-lab-90-minutes"])),
     c.CloseLesson: st.builds(c.CloseLesson),
     c.GoToStep: st.builds(c.GoToStep, st.integers(-3, 3)),
     c.Predict: st.builds(

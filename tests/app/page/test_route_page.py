@@ -1,0 +1,50 @@
+"""A route in the list of lessons and on the page of the open step."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+from onpath.app.classroom.class_rows import push_text, read_push
+from onpath.app.lab.commands import TakeStep
+from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.server.lab_server import LabServer
+from onpath.lessons.words import ENGLISH
+from tests.lessons.test_routes import written
+from tests.support import waiting
+from tests.support.student import Student
+
+wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that would hang
+
+
+def test_a_student_follows_a_route_from_the_list_to_its_end(tmp_path: Path) -> None:
+    server = LabServer("127.0.0.1", 0, LoopCache(), written(tmp_path))
+    try:
+        with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+            student.open()
+            student.read(lambda: student.code)
+            lab = wait_for(lambda: server.sessions.find(student.code)).scheduled.lab
+            student.set(ENGLISH("lesson.lessons"), True)
+            student.read(lambda: student.has_widget(ENGLISH("route.follow")))
+            assert student.sees("A lesson, steps 2 to 3, 5 min") and student.sees("11.5 min")
+            student.set(ENGLISH("route.follow"), True)
+            student.read(lambda: student.sees("Short: part 1 of 3, to step 3, 5 min"))
+            assert lab.lessons.progress.route == "short"
+            lab.post(TakeStep("02-b", 5))
+            student.read(lambda: student.sees("Short: part 2 of 3, to step 6, 2.5 min"))
+            student.set(ENGLISH("lesson.next"), True)
+            student.read(lambda: student.sees("Short: part 3 of 3"))
+            assert not student.has_widget(ENGLISH("lesson.finish"))
+            student.set(ENGLISH("lesson.next"), True)
+            student.read(lambda: student.has_widget(ENGLISH("lesson.finish")))
+            lab.post(TakeStep("02-b", 0))
+            student.read(lambda: student.sees("Step 1 of 8") and not student.sees("Short: part"))
+    finally:
+        server.stop()
+
+
+def test_what_the_teacher_sends_keeps_its_route() -> None:
+    """In the database of a class, and as earlier versions kept it."""
+    for push in (TakeStep("01-a", 1, "short"), TakeStep("01-a", 1)):
+        assert read_push(push_text(push)) == push
+    assert read_push('{"lesson": "01-a", "step": 1}') == TakeStep("01-a", 1)
