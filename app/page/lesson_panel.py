@@ -13,7 +13,7 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
 from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.panels.widgets import Post, on_press, on_user_update
+from onpath.app.page.panels.widgets import Post, add_buttons, on_press, on_user_update
 from onpath.app.scene.scene import Scene
 from onpath.lessons.benches import robot_names
 from onpath.lessons.course import Course
@@ -200,9 +200,8 @@ class LessonPanel:
         Args:
             act: is given the place.
         """
-        letters = LETTERS[: len(order)]
-        group = self._gui.add_button_group("", list(letters))
-        on_press(group, lambda: act(letters.index(group.value)))
+        places = {letter: place for place, letter in enumerate(LETTERS[: len(order)])}
+        group = add_buttons(self._gui, "", places, act)
         self._handles.append(group)
         return group
 
@@ -293,9 +292,7 @@ class LessonPanel:
         keys = ["back", "again", "close"][1 if first else 0 :]
         commands = {"back": c.GoToStep(-1), "again": c.BeginStepAnew(), "close": c.CloseLesson()}
         asked = {run.words(f"lesson.{key}"): commands[key] for key in keys}
-        group = self._gui.add_button_group("", list(asked))
-        on_press(group, lambda: self._post(asked[group.value]))
-        self._handles.append(group)
+        self._handles.append(add_buttons(self._gui, "", asked, self._post))
 
     def _html(self, content: str) -> viser.GuiHtmlHandle:
         handle = self._gui.add_html(content)

@@ -23,6 +23,7 @@ from onpath.models.systems.robots import Robot
 
 Submit = Callable[[Callable[[], None]], None]
 Result = TypeVar("Result")
+Node = TypeVar("Node", RobotLabels, TubeNodes, RankNodes)
 
 
 @dataclass(slots=True)
@@ -73,6 +74,30 @@ class Background(Generic[Result]):
         self._submit(work)
 
 
+class Drawn(Generic[Node]):
+    """Nodes of one kind, which are drawn anew when what they show changes.
+
+    Attributes:
+        nodes: those that are drawn, or None.
+    """
+
+    def __init__(self) -> None:
+        self.nodes: Node | None = None
+        self._key: Hashable = None
+
+    def show(self, key: Hashable, draw: Callable[[], Node]) -> None:
+        """Draw what has this key, unless it is drawn."""
+        if self.nodes is None or key != self._key:
+            self.remove()
+            self._key, self.nodes = key, draw()
+
+    def remove(self) -> None:
+        """Remove what is drawn."""
+        if self.nodes is not None:
+            self.nodes.remove()
+            self.nodes = None
+
+
 class Overlays:
     """The nodes that are drawn on demand. Called on the simulation thread, like the page.
 
@@ -100,29 +125,27 @@ class Overlays:
         self._letters = LARGE if is_narrow else LETTERS
         self._scene, self.stage, self._robot = scene, stage, robot
         self.switches = switches
-        self._labels: RobotLabels | None = None
-        self._tube: TubeNodes | None = None
-        self._rank: RankNodes | None = None
+        self._labels = Drawn[RobotLabels]()
+        self._tube = Drawn[TubeNodes]()
+        self._rank = Drawn[RankNodes]()
         self._shape: Background[TubeShape] = Background(submit)
         self._map: Background[RankPicture] = Background(submit)
-        self._drawn_tube: Hashable = None
-        self._drawn_map: Hashable = None
 
     @property
     def shape(self) -> TubeShape | None:
         """The tube that is drawn, or None."""
-        return self._shape.value if self._tube is not None else None
+        return self._shape.value if self._tube.nodes is not None else None
 
     @property
     def rank_map(self) -> RankGrid | None:
         """The map that is drawn, or None."""
-        picture = self._map.value if self._rank is not None else None
+        picture = self._map.value if self._rank.nodes is not None else None
         return None if picture is None else picture.grid
 
     def update(self, motion: Motion) -> None:
         """Move what moves with the robots."""
-        if self._labels is not None:
-            self._labels.update(motion)
+        if self._labels.nodes is not None:
+            self._labels.nodes.update(motion)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Draw what is wanted, and remove what is not; nothing if that has not changed."""
@@ -131,41 +154,29 @@ class Overlays:
         self._follow_map(snapshot)
 
     def _follow_labels(self, snapshot: PageSnapshot) -> None:
-        wanted = self.switches.labels
-        if wanted and self._labels is None:
-            parts = self._scene, self.stage, self._robot, snapshot.motion
-            self._labels = RobotLabels(*parts, self._letters)
-        elif not wanted and self._labels is not None:
+        parts = self._scene, self.stage, self._robot, snapshot.motion
+        if self.switches.labels:
+            self._labels.show(True, lambda: RobotLabels(*parts, self._letters))
+        else:
             self._labels.remove()
-            self._labels = None
 
     def _follow_tube(self, snapshot: PageSnapshot) -> None:
         fill, grid, path = self.switches.tube, self.switches.grid, snapshot.path
         if fill or grid:
             self._shape.ask(path.version, lambda: tube_shape(self._robot, path))
-        shape = self._shape.value if fill or grid else None
-        wanted = None if shape is None else (self._shape.key, fill, grid)
-        if wanted == self._drawn_tube:
-            return
-        self._drawn_tube = wanted
-        if self._tube is not None:
+        if (shape := self._shape.value) is None or not (fill or grid):
             self._tube.remove()
-            self._tube = None
-        if shape is not None:
-            self._tube = TubeNodes(self._scene, self.stage, shape, fill, grid)
+        else:
+            key = self._shape.key, fill, grid
+            self._tube.show(key, lambda: TubeNodes(self._scene, self.stage, shape, fill, grid))
 
     def _follow_map(self, snapshot: PageSnapshot) -> None:
         if self.switches.rank:
             parameters = parameters_of(snapshot)
             key = self._robot.plant(parameters).tobytes()
             self._map.ask(key, lambda: rank_picture(self.stage, self._robot, parameters))
-        picture = self._map.value if self.switches.rank else None
-        wanted = None if picture is None else self._map.key
-        if wanted == self._drawn_map:
-            return
-        self._drawn_map = wanted
-        if self._rank is not None:
+        if (picture := self._map.value) is None or not self.switches.rank:
             self._rank.remove()
-            self._rank = None
-        if picture is not None:
-            self._rank = RankNodes(self._scene, self.stage, self._robot, picture)
+        else:
+            key = self._map.key
+            self._rank.show(key, lambda: RankNodes(self._scene, self.stage, self._robot, picture))

@@ -12,7 +12,7 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.glossary import glossary_html
 from onpath.app.page.panels.keys import help_text
-from onpath.app.page.panels.widgets import Post, on_menu_press, on_user_update
+from onpath.app.page.panels.widgets import Post, add_menu, on_menu_press, on_user_update
 from onpath.app.page.preferences import Preferences
 from onpath.lessons.words import Words, languages
 
@@ -47,10 +47,12 @@ class PageMenus:
         gui, words = self._gui, self._words
         names = {words(f"language.{code}"): code for code in languages()}
         with dialog(gui, words, words("display.title")) as close:
-            language = gui.add_dropdown(
+            add_menu(
+                gui,
                 words("lesson.language"),
-                list(names),
-                initial_value=words(f"language.{words.language}"),
+                names,
+                lambda code: chosen(c.SetLanguage(code)),
+                shown=words(f"language.{words.language}"),
             )
             large = gui.add_checkbox(words("lesson.presenting"), self._presenting)
             labels = {"speaks": words("display.speaks"), "sounds": words("display.sounds")}
@@ -60,7 +62,6 @@ class PageMenus:
             close()
             self._post(command)
 
-        on_user_update(language, lambda name: chosen(c.SetLanguage(names[name])))
         on_user_update(large, lambda on: chosen(c.SetPresenting(on)))
         for name, box in boxes.items():
             on_user_update(box, partial(self._wanted.set, name))

@@ -5,25 +5,14 @@
 
   const KEPT_AS = "viser-user:first_minute";
 
-  const box = document.createElement("aside");
   const text = document.createElement("div");
-  const act = document.createElement("button");
+  const act = boxesOverScene.button("op-act");
   const skip = document.createElement("button");
-  box.id = "op-invitation";
-  box.className = "op-over-scene";
-  box.hidden = true;
-  act.className = "op-act";
-  act.type = skip.type = "button";
+  const box = boxesOverScene.make("aside", "op-invitation", text, act, skip);
+  skip.type = "button";
   skip.className = "op-quiet";
-  box.append(text, act, skip);
 
   let shown = "", end = "", skipped = false;
-
-  act.addEventListener("click", () => {
-    const key = act.dataset.key, code = `Key${key.toUpperCase()}`;
-    act.blur();  // it is about to go, and the focus with it
-    document.body.dispatchEvent(new KeyboardEvent("keydown", { key, code, bubbles: true }));
-  });
 
   skip.addEventListener("click", () => {
     skipped = true;
@@ -47,7 +36,7 @@
     act.dataset.key = words.key;
     act.hidden = words.key === "";
     skip.textContent = words.skip;
-    dispatchEvent(new Event("op-shown"));  // saying.js places it
+    boxesOverScene.place();
   }
 
   new MutationObserver(look).observe(document, { childList: true, subtree: true });

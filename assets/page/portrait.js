@@ -10,25 +10,8 @@
 
   // There the scene has its two buttons with it, since the panel shows a lesson's text or controls.
   const upright = ask.call(window, `${TELEPHONE}, ${PORTRAIT}`);
-  const bar = document.createElement("div");
-  const hold = document.createElement("button");
-  const run = document.createElement("button");
-  bar.id = "op-bar";
-  bar.className = "op-over-scene";
-  bar.hidden = true;
-  hold.className = run.className = "op-act";
-  hold.type = run.type = "button";
-  bar.append(hold, run);
-
-  function presses(button, key, code) {
-    button.addEventListener("click", () => {
-      button.blur();
-      document.body.dispatchEvent(new KeyboardEvent("keydown", { key, code, bubbles: true }));
-    });
-  }
-
-  presses(hold, "h", "KeyH");
-  presses(run, " ", "Space");
+  const hold = boxesOverScene.button("op-act", "h"), run = boxesOverScene.button("op-act", " ");
+  const bar = boxesOverScene.make("div", "op-bar", hold, run);
 
   function look() {
     const words = document.querySelector("[data-said]")?.dataset;
@@ -41,7 +24,7 @@
     }
     if (bar.hidden === hidden) return;
     bar.hidden = hidden;
-    dispatchEvent(new Event("op-shown"));
+    boxesOverScene.place();
   }
 
   new MutationObserver(look).observe(document, { childList: true, subtree: true });

@@ -6,31 +6,20 @@
   const AGAIN = 8000;  // [ms], between announcements that differ in their numbers only
   const REST = 1500;  // [ms], between any two
 
-  const box = document.createElement("div");
   const text = document.createElement("span");
   const cross = document.createElement("button");
   const region = document.createElement("div");
-  box.id = "op-message";
-  box.className = "op-over-scene";
-  box.hidden = true;
+  const slowly = boxesOverScene.button("op-quiet", "p"), mend = boxesOverScene.button("op-act", "e");
+  const acts = [slowly, mend];
+  slowly.dataset.name = "slowly";
+  mend.dataset.name = "mend";
+  slowly.hidden = mend.hidden = true;
+  const box = boxesOverScene.make("div", "op-message", text, ...acts, cross);
   text.setAttribute("role", "status");
   cross.type = "button";
   cross.textContent = "\u00d7";
   cross.className = "op-cross";
   cross.addEventListener("click", () => { box.hidden = true; });
-  const acts = ["slowly", "mend"].map((name) => {  // buttons that press a key of the lab
-    const button = document.createElement("button"), key = { slowly: "p", mend: "e" }[name];
-    button.type = "button";
-    button.className = name === "mend" ? "op-act" : "op-quiet";
-    button.hidden = true;
-    button.addEventListener("click", () => {
-      button.blur();
-      const code = `Key${key.toUpperCase()}`;
-      document.body.dispatchEvent(new KeyboardEvent("keydown", { key, code, bubbles: true }));
-    });
-    return { name, button };
-  });
-  box.append(text, ...acts.map(({ button }) => button), cross);
   region.id = "op-voice";
   region.setAttribute("aria-live", "polite");
 
@@ -57,23 +46,7 @@
     text.textContent = said;
     box.dataset.level = level;
     box.hidden = said === "";
-    place();
-  }
-
-  // In the middle of what is seen of the scene, above what covers its lower part on a telephone,
-  // and a message above an invitation.
-  function place() {
-    const scene = document.querySelector("canvas[data-engine]")?.getBoundingClientRect();
-    if (!scene) return;
-    const sheet = document.querySelector('.mantine-Paper-root[style*="bottom: 0"]');
-    const bottom = Math.min(scene.bottom, sheet?.getBoundingClientRect().top ?? scene.bottom);
-    let above = innerHeight - bottom + 12;
-    for (const each of document.querySelectorAll(".op-over-scene")) {
-      each.style.left = `${scene.left + scene.width / 2}px`;
-      each.style.bottom = `${above}px`;
-      each.style.maxWidth = `${Math.min(scene.width - 24, 560)}px`;
-      above += each.offsetHeight && each.offsetHeight + 8;
-    }
+    boxesOverScene.place();
   }
 
   function look() {
@@ -86,13 +59,13 @@
       said = now;
       show(said, level);
     }
-    if (document.querySelector(".op-over-scene:not([hidden])")) place();
-    for (const { name, button } of acts) {
-      const label = source.dataset[name] ?? "";
+    boxesOverScene.place();
+    for (const button of acts) {
+      const label = source.dataset[button.dataset.name] ?? "";
       if (button.textContent === label) continue;
       button.textContent = label;
       button.hidden = label === "";
-      place();
+      boxesOverScene.place();
     }
     clearTimeout(waiting);
     if (summaries !== told) {  // asked for: now, and to be read, too
@@ -106,6 +79,4 @@
   }
 
   new MutationObserver(look).observe(document, { childList: true, subtree: true });
-  addEventListener("resize", place);
-  addEventListener("op-shown", place);
 })();

@@ -12,7 +12,7 @@ import viser
 from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
-from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_user_update
+from onpath.app.page.panels.widgets import ParameterWidgets, Post, add_menu, on_user_update
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
 from onpath.models.systems.parameters import Parameters
@@ -126,9 +126,8 @@ class FlexiblePanel:
             self._bar = gui.add_html("")
             self._numbers = gui.add_markdown("")
             planes = {words(f"pull.{plane}"): plane for plane in pulls}
-            pull = gui.add_dropdown(
-                words("flexible.pull"), list(planes), hint=words("flexible.pull_hint")
-            )
+            hint = words("flexible.pull_hint")
+            add_menu(gui, words("flexible.pull"), planes, choose_pull, hint=hint)
             self._larger = gui.add_slider(
                 words("flexible.larger"),
                 min=c.EXAGGERATIONS[0],
@@ -143,7 +142,6 @@ class FlexiblePanel:
             with gui.add_folder(words("flexible.composite"), expand_by_default=False):
                 gains = list(link.composite)
                 self._widgets.append(ParameterWidgets(gui, words, post, gains, first))
-        on_user_update(pull, lambda shown: choose_pull(planes[shown]))
         on_user_update(self._larger, lambda factor: post(c.SetExaggeration(factor)))
 
     def follow(self, snapshot: PageSnapshot) -> None:

@@ -14,7 +14,7 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.law_help import law_help
 from onpath.app.page.panels.own_law_box import OwnLawBox
-from onpath.app.page.panels.widgets import Post, on_menu_press, on_user_update
+from onpath.app.page.panels.widgets import Post, add_menu, on_menu_press
 from onpath.lessons.benches import law_label, law_text
 from onpath.lessons.words import Words
 from onpath.models.control.benches import BENCHES
@@ -78,17 +78,16 @@ class LawPanel:
 
     def _add(self, gui: viser.GuiApi, bench: str) -> Menu:
         words = self._words
-        menu = gui.add_dropdown(
+        return add_menu(
+            gui,
             words(f"laws.{bench}"),
-            list(self._names),
-            initial_value=self._label(bench, self._laws[bench]),
+            self._names,
+            partial(self._choose, bench),
+            shown=self._label(bench, self._laws[bench]),
             hint=words("laws.hint"),
         )
-        on_user_update(menu, partial(self._choose, bench))
-        return menu
 
-    def _choose(self, bench: str, label: str) -> None:
-        law = self._names[label]
+    def _choose(self, bench: str, law: str) -> None:
         self._just_changed.add(bench)
         self._boxes[bench].show(law == OWN)
         if law == OWN:

@@ -13,6 +13,7 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, 
 from onpath.app.page.panels.widgets import (
     ParameterWidgets,
     Post,
+    add_buttons,
     help_of,
     label_of,
     on_press,
@@ -95,11 +96,9 @@ class PathPanel:
         )
         on_press(drawing, draw)
         undoing = {words("design.undo"): c.Undo(), words("design.redo"): c.Redo()}
-        edit = gui.add_button_group(words("design.edit"), list(undoing))
-        on_press(edit, lambda: post(undoing[edit.value]))
+        add_buttons(gui, words("design.edit"), undoing, post)
         adding = {words("design.add"): c.AddPoint(), words("design.remove"): c.RemovePoint()}
-        points = gui.add_button_group(words("design.point"), list(adding))
-        on_press(points, lambda: post(adding[points.value]))
+        add_buttons(gui, words("design.point"), adding, post)
         first_axis, second_axis = robot_of(first).frame.axes
         self._add_coordinates(gui, post, (f"y{first_axis}", f"y{second_axis}"))
         gui.add_markdown(words("design.arrows"))

@@ -8,7 +8,7 @@ import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.panels.widgets import Post, on_hold, on_press, on_user_update
+from onpath.app.page.panels.widgets import Post, add_buttons, add_menu, on_hold, on_press
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.obstacles import DIRECTIONS
 
@@ -45,14 +45,17 @@ class RunPanel:
             words("run.reset"): lambda: post(c.Reset()),
             words("run.view"): reset_view,
         }
-        group = gui.add_button_group("", list(row))
-        self._rate = gui.add_dropdown(
-            words("run.rate"), list(RATE_LABELS), initial_value="1×", hint=words("run.rate_hint")
+        add_buttons(gui, "", row, lambda act: act())
+        self._rate = add_menu(
+            gui,
+            words("run.rate"),
+            RATE_LABELS,
+            lambda rate: post(c.SetRate(rate)),
+            shown="1×",
+            hint=words("run.rate_hint"),
         )
         on_press(self._hold, lambda: post(c.Hold()))
         on_press(self._run, lambda: post(c.SetRunning()))
-        on_press(group, lambda: row[group.value]())
-        on_user_update(self._rate, lambda label: post(c.SetRate(RATE_LABELS[label])))
         on_hold(press, lambda: post(c.Hold(True)), lambda: post(c.Hold(False)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
@@ -81,20 +84,20 @@ class HoldDirection:
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         labels = {name: words(f"run.direction_{name}") for name in DIRECTIONS}
-        names = {label: name for name, label in labels.items()}
         self._labels, self._just_changed = labels, False
-        self._menu = gui.add_dropdown(
+
+        def choose(name: str) -> None:
+            self._just_changed = True
+            post(c.SetHoldDirection(name))
+
+        self._menu = add_menu(
+            gui,
             words("run.direction"),
-            list(names),
-            initial_value=labels[first.run.hold_direction],
+            {label: name for name, label in labels.items()},
+            choose,
+            shown=labels[first.run.hold_direction],
             hint=words("run.direction_hint"),
         )
-
-        def choose(label: str) -> None:
-            self._just_changed = True
-            post(c.SetHoldDirection(names[label]))
-
-        on_user_update(self._menu, choose)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's direction; see `LawPanel.follow`."""

@@ -11,7 +11,7 @@ import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, StartState
-from onpath.app.page.panels.widgets import Post, on_press, on_user_update, set_number
+from onpath.app.page.panels.widgets import Post, add_buttons, on_user_update, set_number
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.start import BOUNDS
 
@@ -47,11 +47,10 @@ class StartPanel:
             seen = gui.add_checkbox(words("start.show"), False, hint=words("start.show_hint"))
             self._numbers = {name: self._add(gui, words, name) for name in UNITS}
             ways = {words("start.reset"): c.Reset(), words("start.default"): c.StartOnPath()}
-            buttons = gui.add_button_group("", list(ways))
+            add_buttons(gui, "", ways, post)
         on_user_update(seen, show)
         for name, handle in self._numbers.items():
             on_user_update(handle, partial(self._change, post, name))
-        on_press(buttons, lambda: post(ways[buttons.value]))
         self.follow(first)
 
     @staticmethod

@@ -5,9 +5,9 @@ from __future__ import annotations
 import asyncio
 import math
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
-from typing import Any
+from typing import Any, TypeVar
 from weakref import WeakKeyDictionary
 
 import viser
@@ -23,6 +23,7 @@ from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import specs
 
 Post = Callable[[Command], None]
+Option = TypeVar("Option")
 PRESS_ENDS = 0.35  # [s] without a "held" message after which the button counts as released
 
 
@@ -66,6 +67,30 @@ def on_hold(handle: Any, begin: Callable[[], None], end: Callable[[], None]) -> 
         ending = asyncio.get_running_loop().call_later(PRESS_ENDS, ended)
 
     handle.on_hold(held_down)
+
+
+def add_menu(
+    gui: viser.GuiApi,
+    label: str,
+    options: Mapping[str, Option],
+    act: Callable[[Option], None],
+    *,
+    shown: str | None = None,
+    hint: str | None = None,
+) -> viser.GuiDropdownHandle[str]:
+    """A dropdown of options by their labels; `act(option)` when the user chooses one."""
+    menu = gui.add_dropdown(label, list(options), initial_value=shown, hint=hint)
+    on_user_update(menu, lambda chosen: act(options[chosen]))
+    return menu
+
+
+def add_buttons(
+    gui: viser.GuiApi, label: str, options: Mapping[str, Option], act: Callable[[Option], None]
+) -> viser.GuiButtonGroupHandle:
+    """A row of buttons, one for each option by its label; `act(option)` when one is pressed."""
+    group = gui.add_button_group(label, list(options))
+    on_press(group, lambda: act(options[group.value]))
+    return group
 
 
 _slow_presses: WeakKeyDictionary[Any, threading.Lock] = WeakKeyDictionary()
@@ -187,14 +212,10 @@ class ParameterWidgets:
     def _add_choice(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
         spec, words = self._specs[name], self._words
         options = {option_of(words, name, option): option for option in spec.options}
-        handle = gui.add_dropdown(
-            label_of(words, name, spec),
-            list(options),
-            initial_value=shown,
-            hint=help_of(words, name, spec),
+        label, hint = label_of(words, name, spec), help_of(words, name, spec)
+        return add_menu(
+            gui, label, options, lambda new: self._change(name, new), shown=shown, hint=hint
         )
-        on_user_update(handle, lambda new: self._change(name, options[new]))
-        return handle
 
     def _add_slider(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
         spec, words = self._specs[name], self._words

@@ -1,0 +1,50 @@
+// Boxes over the scene, in the middle of what is seen of it, above what covers its lower part on a
+// telephone. A later one in the document stands above an earlier one.
+const boxesOverScene = (() => {
+  "use strict";
+
+  const BOX = ".op-over-scene";
+
+  // A box that is hidden, and not in the document yet.
+  function make(tag, id, ...parts) {
+    const box = document.createElement(tag);
+    box.id = id;
+    box.className = BOX.slice(1);
+    box.hidden = true;
+    box.append(...parts);
+    return box;
+  }
+
+  // A button that presses a key of the lab, its [data-key].
+  function button(className, key = "") {
+    const made = document.createElement("button");
+    made.type = "button";
+    made.className = className;
+    made.dataset.key = key;
+    made.addEventListener("click", () => {
+      const pressed = made.dataset.key;
+      const code = pressed === " " ? "Space" : `Key${pressed.toUpperCase()}`;
+      made.blur();  // it may be about to go, and the focus with it
+      document.body.dispatchEvent(new KeyboardEvent("keydown", { key: pressed, code, bubbles: true }));
+    });
+    return made;
+  }
+
+  function place() {
+    if (!document.querySelector(`${BOX}:not([hidden])`)) return;
+    const scene = document.querySelector("canvas[data-engine]")?.getBoundingClientRect();
+    if (!scene) return;
+    const sheet = document.querySelector('.mantine-Paper-root[style*="bottom: 0"]');
+    const bottom = Math.min(scene.bottom, sheet?.getBoundingClientRect().top ?? scene.bottom);
+    let above = innerHeight - bottom + 12;
+    for (const each of document.querySelectorAll(BOX)) {
+      each.style.left = `${scene.left + scene.width / 2}px`;
+      each.style.bottom = `${above}px`;
+      each.style.maxWidth = `${Math.min(scene.width - 24, 560)}px`;
+      above += each.offsetHeight && each.offsetHeight + 8;
+    }
+  }
+
+  addEventListener("resize", place);
+  return { button, make, place };
+})();
