@@ -10,21 +10,26 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from onpath.app.lab.advance_together import Frame, Ticks, advance_together
+from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.belongings import Belongings
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
-from onpath.app.lab.current_instant import CurrentInstant, sample_of, samples_of_frames
 from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.history import History
 from onpath.app.lab.law_changes import LawChanges, suits
 from onpath.app.lab.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout
-from onpath.app.lab.segments import HistoryFrame, Inputs, Instant
+from onpath.app.lab.recorder import (
+    CurrentInstant,
+    FramePart,
+    Recorder,
+    sample_of,
+    samples_of_frames,
+)
+from onpath.app.lab.segments import HistoryFrame, Instant
 from onpath.app.lab.timeline import LabEvent, Timeline
 from onpath.models.closed_loop.obstacles import ALONG, Wall
 from onpath.models.closed_loop.profile_shapes import profile_of
-from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.closed_loop.start import ON_PATH, Start, check_start
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import short_name
@@ -74,7 +79,7 @@ class Session:
         self.earlier: dict[str, Belongings] = {}
         self.history = History(self._samples)
         self._now = CurrentInstant()
-        self._inputs: Inputs | None = None
+        self._recorder = Recorder()
         self.runs: dict[str, ClosedLoopRun] = {}
         self.law_changes = LawChanges(store, self.change_law)
         self.presets: Mapping[str, PathDesign] = presets()
@@ -204,35 +209,19 @@ class Session:
         """
         dt, profile = time_step(self.parameters), profile_of(self.parameters)
         self._bend(ticks * dt)
+        runs, pushes, editor = list(self.runs.values()), self.grips.pushes, self.editor
         while ticks > 0:
             now = round(self.time / dt)
             leg = None if profile is None else profile.leg(now, dt)
             count = ticks if leg is None or leg.end is None else min(ticks, leg.end - now)
-            yield from self._part_of_frame(count, leg)
-            ticks -= count
-
-    def _part_of_frame(self, ticks: int, leg: Leg | None) -> Frame:
-        """Some ticks of a frame, within one part of the speed profile if there is one."""
-        dt, parameters = time_step(self.parameters), self.parameters
-        curve, table, runs = self.editor.curve, self.editor.table, list(self.runs.values())
-        for run in runs:
-            push = self.grips.pushes[run.bench]
-            run.configure(parameters, curve, push, leg, round(self.time / dt))
-        states, most = [run.recorded for run in runs], [run.max_distance for run in runs]
-        rows, distances = [run.row for run in runs], [run.distance for run in runs]
-        moving = [(run, run.loop()) for run in runs if run.diverged is None]
-        yield Ticks(moving, ticks, self.time, dt, parameters, curve, table)
-        for run, _ in moving:
-            if run.diverged is not None:
+            part = FramePart(self.time, count, dt, self.parameters, editor.curve, editor.table, leg)
+            frame, stopped = yield from self._recorder.simulate(part, runs, pushes)
+            self.history.append(frame)
+            for run in stopped:
                 self.note("diverged", benches=(run.bench,))
                 self.faults.append(run.bench)
-        inputs = {run.bench: run.input() for run in runs}
-        if self._inputs is None or not self._inputs.are(curve, dt, inputs.values()):
-            self._inputs = Inputs(curve, dt, inputs)
-        self.history.append(
-            HistoryFrame(self.time, ticks, self._inputs, states, most, rows, distances)
-        )
-        self.time += ticks * dt
+            self.time += count * dt
+            ticks -= count
 
     def _bend(self, seconds: float) -> None:
         """Advance the blend of an edited path."""
