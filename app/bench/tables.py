@@ -25,7 +25,7 @@ from onpath.app.bench.simulated_browser import first_poses
 from onpath.app.bench.soak import HEAD as SOAK_HEAD
 from onpath.app.bench.soak import SoakRow, soak, verdict
 from onpath.app.common.chromium import find_browser
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.loops import InterpretedLoop, Loop
 from onpath.models.closed_loop.simulation import (

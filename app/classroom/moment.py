@@ -12,8 +12,8 @@ from typing import Annotated
 import msgspec
 import numpy as np
 
+from onpath.app.lab.loops.typed_loops import Key
 from onpath.app.lab.setups.setup import EXAGGERATIONS, RATES, LawName, Word
-from onpath.app.lab.typed_loops import Key
 from onpath.models.closed_loop.obstacles import Wall
 from onpath.models.closed_loop.simulation import kind_of
 from onpath.models.control.benches import BENCHES

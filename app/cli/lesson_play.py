@@ -76,7 +76,7 @@ def chosen_lesson(course: Course, asked: str) -> Lesson:
 
 def _runs(lesson: Lesson, step: Step, folder: Path) -> Iterator[PlayedScript]:
     from onpath.app.exports.step_play import play_script
-    from onpath.app.lab.loop_cache import LoopCache
+    from onpath.app.lab.loops.loop_cache import LoopCache
     from onpath.lessons.course import REFERENCE, read_references
 
     store = LoopCache(at_once=True)

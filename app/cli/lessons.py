@@ -45,7 +45,7 @@ class CheckLessons:
     def run(self) -> int:
         """Print what is wrong; return exit code 1 if anything is."""
         from onpath.app.lab.course_check import play_course
-        from onpath.app.lab.loop_cache import LoopCache
+        from onpath.app.lab.loops.loop_cache import LoopCache
         from onpath.lessons.course import BUILT_IN, read_course
 
         folder = self.folder or BUILT_IN

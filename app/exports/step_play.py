@@ -8,7 +8,7 @@ import numpy as np
 
 from onpath.app.lab.course_check import lab_at, play
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.lessons.action_schema import RobotName, Script
 from onpath.lessons.checks import Verdict

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.segments import Drive, Input
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind

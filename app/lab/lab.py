@@ -15,7 +15,7 @@ from typing import ClassVar
 from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.breakdown import Breakdown
 from onpath.app.lab.lesson_run import LessonRun
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
 from onpath.app.lab.setups.restore import restore

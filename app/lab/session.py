@@ -15,8 +15,8 @@ from onpath.app.lab.belongings import Belongings
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.history import History
-from onpath.app.lab.law_changes import LawChanges, suits
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.law_changes import LawChanges, suits
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.recorder import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from onpath.app.lab.course_check import lab_at, play
 from onpath.app.lab.lesson_record import Beginning, Trace
 from onpath.app.lab.lesson_run import quantity_of
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Lesson, Step
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 from importlib import import_module
 from threading import Thread
 
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.assets.messages import catalogue, languages
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Belongings
 from onpath.lessons.course import Course
 from onpath.models.systems.catalogue import ROBOTS

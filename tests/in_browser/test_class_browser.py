@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, FloatRect, Locator
 from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.common.access_codes import shown
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer

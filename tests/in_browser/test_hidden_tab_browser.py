@@ -19,7 +19,7 @@ import websockets.sync.client
 pytest.importorskip("playwright")
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.tab_visibility import PATIENCE, QUESTION_INTERVAL, TICK
 from tests.support.browser import CHROMIUM, COARSER, PLAIN, wait_for

@@ -11,7 +11,7 @@ import numpy as np
 from onpath.app.exports.replay import replay
 from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot

@@ -14,7 +14,7 @@ import websockets.exceptions
 import websockets.sync.client
 
 from onpath.app.bench.simulated_browser import NotServed, Observations, crowd, first_poses
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.simulation import (
     FREE,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from onpath.app.lab.compile_queue import LATELY, MOST, CompileQueue
+from onpath.app.lab.loops.compile_queue import LATELY, MOST, CompileQueue
 
 asked = st.lists(
     st.tuples(st.integers(0, 2 * MOST), st.floats(0, 2 * LATELY)), min_size=1, max_size=4 * MOST

@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 from onpath.app.lab import commands as c
-from onpath.app.lab import compile_queue
-from onpath.app.lab import loop_cache as loop_store
+from onpath.app.lab.loops import compile_queue
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import MOST, LoopCache
+from onpath.app.lab.loops import loop_cache as loop_store
+from onpath.app.lab.loops.loop_cache import MOST, LoopCache
 from onpath.app.server.lazy_imports import LATER, warm_up
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
@@ -101,7 +101,7 @@ def test_what_cannot_be_compiled_is_told_once_and_the_lab_goes_on(
         do(lab, c.Hold(on=True))
         lab.advance(FRAME)  # a loop that nobody has asked for before
         finish(store)
-    (warning,) = [r for r in caplog.records if r.name == "onpath.app.lab.loop_cache"]
+    (warning,) = [r for r in caplog.records if r.name == "onpath.app.lab.loops.loop_cache"]
     assert "interpreted" in warning.getMessage()
     assert lab.session.time == pytest.approx(22 * FRAME, abs=2e-3)
     assert all(isinstance(loop, InterpretedLoop) for loop in loops(lab, store))

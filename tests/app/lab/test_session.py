@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import MOST_COMMANDS, Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.storage.lab_state import _now, _state, put_back
 from onpath.lessons.action_schema import Action

@@ -23,7 +23,7 @@ from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands.scripts import ScriptLaws
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup, to_data
 from onpath.app.lab.setups.share_code import decode, encode

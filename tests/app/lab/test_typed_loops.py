@@ -11,10 +11,10 @@ from concurrent.futures import Future
 import pytest
 
 from onpath.app.lab import commands as c
-from onpath.app.lab import typed_loops
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.typed_loops import MOST, MOST_MADE, WITHIN, Key, TypedLoops
+from onpath.app.lab.loops import typed_loops
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.loops.typed_loops import MOST, MOST_MADE, WITHIN, Key, TypedLoops
 from onpath.models.closed_loop import simulation
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop

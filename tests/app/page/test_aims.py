@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from onpath.app.lab.commands import TakeStep
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.lesson_html import aims
 from onpath.app.server.lab_server import LabServer
 from onpath.assets.messages import languages

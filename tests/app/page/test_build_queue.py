@@ -13,7 +13,7 @@ import pytest
 
 from onpath.app.exports import exporter
 from onpath.app.lab import commands as c
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import build_queue, page
 from onpath.app.page.build_queue import FEW, MOST_REST

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from onpath.app.exports.exporter import Exporter
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.storage.records import Records, file_url
 from onpath.lessons.words import ENGLISH

@@ -11,7 +11,7 @@ import pytest
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.lesson_html import question
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.course import Course, read_course

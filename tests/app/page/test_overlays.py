@@ -13,7 +13,7 @@ import viser
 from onpath.app.common import palette
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.page.overlays import Background, Overlays, Switches
 from onpath.app.page.panels.show_panel import SWITCHES, rank_legend, tube_numbers

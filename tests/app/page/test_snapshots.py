@@ -17,7 +17,7 @@ from viser.infra import Message
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes

@@ -15,7 +15,7 @@ from websockets.typing import Subprotocol
 
 from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from onpath.app.bench.raw_socket import frames, is_closed, knock
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.arrivals import MOST_EACH, Arrivals, Kept
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.secure_server import Limits, make_server

@@ -36,7 +36,7 @@ from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed
 from onpath.app.bench.hostile_messages import BROKEN, GARBAGE, VERSIONS
 from onpath.app.bench.raw_socket import WAIT, answer_questions, frames, is_closed, knock
 from onpath.app.bench.simulated_browser import Browser
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.build_queue import in_turn
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import FRAME
@@ -486,7 +486,7 @@ def test_a_clock_that_jumps_is_not_noticed(
 
 SUSPENDED = """
 import sys
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 server = LabServer("127.0.0.1", 0, LoopCache())
 print("told", server.server.get_port(), flush=True)

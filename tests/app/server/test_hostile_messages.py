@@ -14,7 +14,7 @@ from onpath.app.bench.hostile_messages import DRAG, HONEST, HOSTILE, INDEXES
 from onpath.app.common import error_log
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.secure_connection import FROM_BROWSER
 from onpath.app.viser_adapter.secure_server import Limits

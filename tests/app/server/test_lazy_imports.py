@@ -8,7 +8,7 @@ import sys
 FIRST_PICTURE = """
 import sys
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.server import lab_server
 from onpath.app.scene.stage_catalogue import stage_of

@@ -15,7 +15,7 @@ import pytest
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.commands import SetParameter
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.simulation import kernel_of

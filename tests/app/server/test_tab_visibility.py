@@ -13,7 +13,7 @@ import pytest
 from onpath.app.bench.client_protocol import answer
 from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import advance_together
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server import tab_visibility as onlooker
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.tab_visibility import PATIENCE, QUESTION_INTERVAL, TICK, TabVisibility

@@ -17,7 +17,7 @@ from sqlalchemy import event, exc
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.stored import from_data
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot

@@ -15,7 +15,7 @@ from onpath.app.cli.main import run_command
 from onpath.app.exports.files import csv_bytes
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.models.closed_loop.trajectory import write_csv
 from onpath.models.control.benches import LEFT, RIGHT
 from onpath.models.studies.experiments import experiments, run

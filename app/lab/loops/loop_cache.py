@@ -10,8 +10,8 @@ from collections.abc import Callable, Collection
 from concurrent.futures import Future, ThreadPoolExecutor
 from weakref import WeakValueDictionary
 
-from onpath.app.lab.compile_queue import CompileQueue
-from onpath.app.lab.typed_loops import Key, TypedLoops
+from onpath.app.lab.loops.compile_queue import CompileQueue
+from onpath.app.lab.loops.typed_loops import Key, TypedLoops
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop

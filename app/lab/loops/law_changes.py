@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
-from onpath.app.lab.loop_cache import LoopCache
-from onpath.app.lab.typed_loops import Key
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.loops.typed_loops import Key
 from onpath.models.closed_loop.simulation import FREE, Push, kind_of
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import is_text

@@ -1,0 +1,1 @@
+"""Closed loops of labs: made in the background, kept, and waited for by changes of laws."""
