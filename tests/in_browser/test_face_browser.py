@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, ViewportSize, expect
 
 from onpath.app.lab import commands as c
 from onpath.app.page.first_minute import INVITATIONS
@@ -18,7 +18,7 @@ from onpath.app.server.lab_server import LabServer
 from tests.support.axe import violations
 from tests.support.browser import WAIT, Tab, wait_for
 
-WINDOW = {"width": 1280, "height": 800}
+WINDOW: ViewportSize = {"width": 1280, "height": 800}
 LESSON = "01-path-or-timetable"
 expect.set_options(timeout=WAIT * 1e3)
 

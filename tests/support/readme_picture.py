@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 
 from PIL import Image
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import ViewportSize, sync_playwright
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
@@ -21,7 +21,7 @@ from tests.support.browser import CHROMIUM, PLAIN, Tab
 FRAMES_A_SECOND = 12
 SHOTS = (("free", 1.25), ("held", 3.75), ("free", 1.25))
 """What happens, and for how long [s]."""
-WINDOW = {"width": 1280, "height": 800}
+WINDOW: ViewportSize = {"width": 1280, "height": 800}
 CROP = (0, 96, 946, 716)  # of the window, [px]
 WIDTH = 760  # of the picture, [px]
 QUALITY = 72

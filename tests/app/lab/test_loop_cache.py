@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.loops import compile_queue
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.loops import compile_queue
 from onpath.app.lab.loops import loop_cache as loop_store
 from onpath.app.lab.loops.loop_cache import MOST, LoopCache
 from onpath.app.server.lazy_imports import LATER, warm_up

@@ -159,6 +159,8 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.Undo: st.builds(c.Undo),
     c.Redo: st.builds(c.Redo),
     c.Share: st.builds(c.Share),
+    c.ReplayBreakdown: st.builds(c.ReplayBreakdown),
+    c.Mend: st.builds(c.Mend),
     c.UseShared: st.builds(c.UseShared, st.sampled_from(["", "ONPATH1-aaaa", "x" * 10_000])),
 }
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from onpath.app.classroom.class_rows import push_text, read_push
 from onpath.app.lab.commands import TakeStep
-from onpath.app.lab.loop_cache import LoopCache
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.words import ENGLISH
 from tests.lessons.test_routes import written
