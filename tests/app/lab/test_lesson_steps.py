@@ -50,12 +50,15 @@ def wanted(name: str, index: int) -> tuple[Setup, dict[str, np.ndarray]]:
     lab, lesson = new_lab(), COURSE.lesson(name, "en")
     do(lab, TakeStep(name, index))
     assert lab.lessons.index == index
-    scene = [step.scene for step in lesson.steps[: index + 1] if step.scene][-1]
-    parameters = ROBOTS[lesson.front.robot].lab
-    for parameter, value in scene.set.items():
-        parameters = changed(parameters, parameter, value)
+    parameters, path = ROBOTS[lesson.front.robot].lab, "circle"
+    for scene in (step.scene for step in lesson.steps[: index + 1] if step.scene):
+        if not scene.keep:
+            parameters, path = ROBOTS[lesson.front.robot].lab, "circle"
+        for parameter, value in scene.set.items():
+            parameters = changed(parameters, parameter, value)
+        path = scene.path or path
     assert lab.session.parameters == parameters
-    assert lab.session.editor.design is lab.session.presets[scene.path or "circle"]
+    assert lab.session.editor.design is lab.session.presets[path]
     return setting(lab), {n: run.state.copy() for n, run in lab.session.runs.items()}
 
 
