@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
@@ -20,7 +20,7 @@ from onpath.lessons.course import Course, read_course
 from onpath.models.closed_loop.obstacles import DIRECTIONS
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of, settings_vector
 from onpath.models.closed_loop.start import BOUNDS
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
+from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
 from onpath.models.control.laws.own import PATH_FOLLOWING
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.curve_faults import curve_faults
@@ -179,6 +179,7 @@ def test_every_command_is_tried() -> None:
         max_size=14,
     )
 )
+@example([(c.ChooseLaw(LEFT, "set_point"), 0)])  # which leaves the curve on its way
 def test_no_sequence_of_commands_breaks_a_lab(steps: list[tuple[c.Command, int]]) -> None:
     lab = new_lab()
     for command, frames in steps:
@@ -187,6 +188,7 @@ def test_no_sequence_of_commands_breaks_a_lab(steps: list[tuple[c.Command, int]]
             lab.advance(lab.session.rate * FRAME)
         assert_sound(lab)
     do(lab, c.ResetParameters(), c.ChoosePath("circle"), c.SetRate(1.0))
+    do(lab, *[c.ChooseLaw(bench, law) for bench, law in DEFAULT_LAWS.items()])
     do(lab, c.SetWall(False), c.StartOnPath(), c.SetRunning(True))
     run(lab, 0.4)  # the path has blended in
     do(lab, c.Reset())
