@@ -62,7 +62,7 @@ class LessonPanel:
         if tab is None:
             self._panel = self._gui.add_panel(order=0)
             tab = self._panel.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
-            self._panel.dock_left()
+            self._panel.dock_above(client.gui.main_panel)
         self._tab = tab
         self._width = 0
         on = self._gui.add_command(words("lesson.next"), hotkey="pagedown")

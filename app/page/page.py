@@ -167,8 +167,8 @@ class Page:
             own = tabs.add_tab(words("lesson.lab"), viser.Icon.ROBOT)
             with own:
                 self._build_head(first, words, post)
-        else:
-            self._build_head(first, words, post)
+        else:  # what a step speaks of is seen beneath its text; the plot comes last
+            self._build_head(first, words, post, plot=False)
             tabs = gui.add_tab_group()
             own = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
         course = self._desk.course
@@ -179,6 +179,8 @@ class Page:
         else:
             with tabs.add_tab(words("show.title"), viser.Icon.EYE):
                 self._parts.append(controls.show())
+        if tab is None:
+            self._build_distance(first, words)
         scene, student = self._scene, self._desk.code
         lesson = LessonPanel(
             self._client, words, post, course, scene, change, first, tab=tab, student=student
@@ -198,7 +200,7 @@ class Page:
             self.reset_view,
         )
 
-    def _build_head(self, first: PageSnapshot, words: Words, post: Post) -> None:
+    def _build_head(self, first: PageSnapshot, words: Words, post: Post, plot: bool = True) -> None:
         """Build the permanent widgets: readout, lesson menu and distance plot."""
         gui = self._client.gui
         self._build_numbers(words)
@@ -207,7 +209,8 @@ class Page:
             self._parts.append(LessonMenu(gui, words, post, self._desk.course, first))
         if self._desk.seat is not None:
             self._parts.append(ClassPanel(gui, words, self._desk.seat, first))
-        self._build_distance(first, words)
+        if plot:
+            self._build_distance(first, words)
 
     def _build_menus(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the buttons for language, display and help."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -15,6 +15,7 @@ from playwright.sync_api import Browser
 from onpath.app.lab import commands as c
 from onpath.app.scene.stage_catalogue import HORIZONTAL, IN_PATH_PLANE
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.new_lab import GENTLE
 from onpath.models.control.benches import RIGHT
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
 from onpath.models.systems.flexible_robot import UNSTABLE, FlexibleFiveBar
@@ -118,7 +119,7 @@ def test_the_other_robot_is_unchanged(tab: Tab) -> None:
     tab.press(FIVE_BAR.label)
     wait_for(lambda: tab.session.entry is FIVE_BAR and tab.session.time > 0.3)
     tab.page.get_by_text("Flexible link", exact=True).wait_for(state="detached")
-    assert tab.session.parameters == FIVE_BAR.lab
+    assert tab.session.parameters == replace(FIVE_BAR.lab, **GENTLE)
 
 
 def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 
@@ -13,6 +14,7 @@ from playwright.sync_api import Browser, Page
 
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.new_lab import GENTLE
 from tests.support.browser import Tab, wait_for
 
 LESSON = "01-path-or-timetable"
@@ -133,7 +135,8 @@ def test_the_free_lab_is_unchanged(tab: Tab) -> None:
     tab.page.get_by_role("button", name="Free lab").click()
     tab.page.get_by_role("heading", name="Hold it yourself").wait_for(state="detached")
     wait_for(lambda: tab.lab.lessons.lesson is None)
-    assert tab.session.parameters == tab.session.entry.lab
+    usual = tab.session.entry.lab
+    assert tab.session.parameters == replace(usual, **GENTLE)
     tab.press("Lessons")
     tab.page.get_by_role("button", name="Continue").wait_for()
     tab.page.get_by_text(re.compile("[12] of 3 tasks")).wait_for()

@@ -123,3 +123,16 @@ def test_on_a_telephone_a_step_and_the_buttons_it_speaks_of_are_seen_together(
     tab.page.locator("#op-bar").get_by_role("button", name="Let go").wait_for()
     assert tab.session.grips.held and is_seen(tab, 9)
     context.close()
+
+
+def test_on_a_desk_a_lesson_leaves_the_scene_most_of_the_width(
+    browser: Browser, server: LabServer
+) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    tab = Tab(server, context, draws=False)
+    tab.ask(c.OpenLesson(LESSON))
+    wait_for(lambda: is_seen(tab, 0))
+    wait_for(lambda: 0.6 * 1280 < tab._canvas()["width"] < 0.75 * 1280)
+    hold = tab.button("Hold both back").bounding_box()
+    assert hold is not None and hold["y"] + hold["height"] < 800
+    context.close()
