@@ -143,6 +143,7 @@ class Slide:
 
     def __call__(self, hands: Hands) -> None:
         handle = hands.tab.slider(self.label)
+        handle.scroll_into_view_if_needed()
         low, high, now = (
             float(handle.get_attribute(f"aria-value{each}") or "nan")
             for each in ("min", "max", "now")
