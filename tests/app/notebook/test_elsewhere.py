@@ -48,6 +48,8 @@ def test_a_simulation_is_onpaths_own(folder: Path) -> None:
 def test_so_is_the_command_line(folder: Path) -> None:
     assert "zero-dynamics" in python(folder, "-m", "onpath", "--help")
     listed = python(folder, "-m", "onpath", "lessons", "list").splitlines()[1:]  # titles
-    course = sorted(lesson.name for lesson in (ROOT / "lessons" / "course").iterdir())
-    assert [line.split()[0] for line in listed] == course
+    course = ROOT / "lessons" / "course"
+    lessons = sorted(lesson.parent.name for lesson in course.glob("*/en.md"))
+    routes = sorted(route.stem for route in course.glob("routes/*.toml"))
+    assert [line.split()[0] for line in listed] == [*lessons, *routes]
     python(folder, "-m", "onpath", "experiment", "position", "--set", "duration=0.05")
