@@ -22,6 +22,8 @@ from onpath.app.server.lab_server import LabServer
 from tests.support.axe import violations
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 LESSON = "01-path-or-timetable"
 HOSTILE = "<img src=x onerror=1>"
 WINDOWS = ((1100, 600), (800, 400), (800, 400))

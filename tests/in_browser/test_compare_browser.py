@@ -13,6 +13,8 @@ from onpath.app.server.lab_server import LabServer
 from onpath.models.control.benches import RIGHT
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 TYPED = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed/2)"
 TABLE = "table:has-text('largest force')"
 

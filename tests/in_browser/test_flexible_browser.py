@@ -21,6 +21,8 @@ from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
 from onpath.models.systems.flexible_robot import UNSTABLE, FlexibleFiveBar
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 FOLLOWER = RIGHT
 
 

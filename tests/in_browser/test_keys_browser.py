@@ -43,7 +43,10 @@ def opened(browser: Browser, server: LabServer, place: str, **options: object) -
     context.close()
 
 
-@pytest.fixture(scope="module", params=["lab", "lesson"])
+PLACES = "lab", pytest.param("lesson", marks=pytest.mark.thorough)
+
+
+@pytest.fixture(scope="module", params=PLACES)
 def shared(request: pytest.FixtureRequest, browser: Browser, server: LabServer) -> Iterator[Tab]:
     with opened(browser, server, request.param) as tab:
         yield tab
@@ -121,8 +124,11 @@ def turn_the_view(tab: Tab) -> None:
     assert box is not None
     x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.08 * box["height"]
     before = camera(tab)
-    with tab.dragging((x, y), (x + 60, y + 25), in_scene=False):
-        pass
+    tab.settle()
+    tab.page.mouse.move(x, y)
+    tab.page.mouse.down(button="right")
+    tab.page.mouse.move(x + 60, y + 25, steps=2)
+    tab.page.mouse.up(button="right")
     tab.settle()
     assert np.abs(camera(tab) - before).max() > 1e-3
 
@@ -139,7 +145,7 @@ def test_the_view_is_reset_by_a_key_and_by_a_button(tab: Tab) -> None:
     assert tab.lab.asked == asked  # nobody else who looks at this lab notices
 
 
-@pytest.mark.parametrize("place", ["lab", "lesson"])
+@pytest.mark.parametrize("place", PLACES)
 def test_the_view_is_reset_on_a_phone(browser: Browser, server: LabServer, place: str) -> None:
     with opened(browser, server, place, **TOUCH) as tab:
         placed = settled_camera(tab)

@@ -15,6 +15,8 @@ from onpath.assets.messages import languages
 from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.words import Words
 
+pytestmark = pytest.mark.thorough
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 

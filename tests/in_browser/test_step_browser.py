@@ -15,6 +15,8 @@ from onpath.app.lab.commands import TakeStep
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 LESSON, LONG = "01-path-or-timetable", "03-the-five-bar"
 LINE = 24  # [px]; the browser itself may scroll so far, to keep what is read in its place
 SCROLL = """(to) => {

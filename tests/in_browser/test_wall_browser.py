@@ -19,6 +19,8 @@ from onpath.models.closed_loop.obstacles import Wall
 from onpath.models.control.benches import LEFT, RIGHT
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 WINDOW = {"width": 1280, "height": 800}
 NEAR = 2e-3  # [m]
 
@@ -27,7 +29,7 @@ NEAR = 2e-3  # [m]
 def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     context = browser.new_context(viewport=WINDOW)  # type: ignore[arg-type]
     tab = Tab(server, context, draws=False)
-    tab.ask(c.SetRunning(False), c.Reset())
+    tab.ask(c.ResetParameters(), c.SetRunning(False), c.Reset())
     yield tab
     assert tab.errors == []
     context.close()
