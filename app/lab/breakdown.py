@@ -71,14 +71,14 @@ class Breakdown:
         well, now = self._well[1], session.parameters
         return {n: getattr(well, n) for n in specs(well) if getattr(well, n) != getattr(now, n)}
 
-    def mend(self, session: Session) -> None:
+    def use_earlier_settings(self, session: Session) -> None:
         """Reset, with the settings that did well.
 
         Raises:
             CodedError: there are none.
         """
         if not self.remedy(session):
-            raise CodedError("error.nothing_to_mend")
+            raise CodedError("error.no_earlier_settings")
         assert self._well is not None
         session.set_parameters(self._well[1])
         session.reset()

@@ -64,7 +64,7 @@ class Saying:
             message=escape(snapshot.message),
             spoken=escape(said),
             summary=escape(self._summary),
-            mend=escape(_mending(snapshot, self._words)) if stopped else "",
+            earlier=escape(_earlier_settings(snapshot, self._words)) if stopped else "",
             number=self._summaries,
             tones=" ".join(f"{each:.1f}" for each in distances) if self._wanted["sounds"] else "",
         )
@@ -93,7 +93,7 @@ def _spoken(snapshot: Snapshot, captions: dict[str, str], words: Words) -> str:
     return f"{words('spoken.' + (state if snapshot.running else 'paused'))} {said}"
 
 
-def _mending(snapshot: Snapshot, words: Words) -> str:
+def _earlier_settings(snapshot: Snapshot, words: Words) -> str:
     """Label of the button that goes back to the settings that did well; empty if there is none."""
     if not snapshot.remedy:
         return ""
@@ -102,7 +102,7 @@ def _mending(snapshot: Snapshot, words: Words) -> str:
         f"{label_of(words, name, known[name])} = {_written(value)}"
         for name, value in list(snapshot.remedy.items())[:MOST]
     ]
-    return words("breakdown.mend", changes=", ".join(changes))
+    return words("breakdown.earlier", changes=", ".join(changes))
 
 
 def _written(value: float | int | str) -> str:

@@ -41,6 +41,7 @@ class LabFeed:
         self._lab: Lab | None = None
         self._shown: tuple[object, ...] = ()
         self._last: PageSnapshot | Motion | None = None
+        self._whole: PageSnapshot | None = None
 
     def show(self, lab: Lab, achieved: float, frame: int, stride: float) -> None:
         """See `app.simulation.simulation_thread.Display`."""
@@ -68,16 +69,17 @@ class LabFeed:
         return self._shown != shown
 
     def _show(self, lab: Lab, achieved: float, student: int, whole: bool) -> None:
-        before = self._last if lab is self._lab else None
-        self._lab = lab
+        if lab is not self._lab:
+            self._lab, self._last, self._whole = lab, None, None
         if whole:
             name = self._nickname()
-            snapshot = take_page_snapshot(lab, achieved, before, student, name)
+            snapshot = take_page_snapshot(lab, achieved, self._whole, student, name)
+            self._whole = snapshot
         else:
-            snapshot = take_motion(lab, before, student)
+            snapshot = take_motion(lab, self._last, student)
         self._last = snapshot
         self.page.show(snapshot)
-        if isinstance(snapshot, PageSnapshot):
+        if whole:
             self.page.exporter.serve(lab)
 
     def send(self) -> None:

@@ -9,11 +9,11 @@
   const text = document.createElement("span");
   const cross = document.createElement("button");
   const region = document.createElement("div");
-  const slowly = boxesOverScene.button("op-quiet", "p"), mend = boxesOverScene.button("op-act", "e");
-  const acts = [slowly, mend];
+  const slowly = boxesOverScene.button("op-quiet", "p"), earlier = boxesOverScene.button("op-act", "e");
+  const acts = [slowly, earlier];
   slowly.dataset.name = "slowly";
-  mend.dataset.name = "mend";
-  slowly.hidden = mend.hidden = true;
+  earlier.dataset.name = "earlier";
+  slowly.hidden = earlier.hidden = true;
   const box = boxesOverScene.make("div", "op-message", text, ...acts, cross);
   text.setAttribute("role", "status");
   cross.type = "button";

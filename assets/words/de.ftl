@@ -309,7 +309,7 @@ display-title = Sprache, Anzeige
 display-speaks = Sagen, was geschieht (für Bildschirmleser)
 display-sounds = Abstand als Ton: linker Roboter im linken Ohr, rechter im rechten
 breakdown-slowly = Langsam zeigen
-breakdown-mend = Zurücksetzen mit { $changes }
+breakdown-earlier = Zurücksetzen mit { $changes }
 summary-clock = Zeit { $time } Sekunden. Bahn: { $path }.
 summary-robot = { $robot }: { $now } Millimeter von der Bahn, höchstens { $most }, { $speed } Millimeter je Sekunde die Bahn entlang.
 
@@ -626,7 +626,7 @@ key-forward = Eine Sekunde nach vorn blicken
 key-go_on = Von dem Augenblick aus weiter, den du siehst; was danach kam, wird vergessen
 key-undo_go_on = Zurückholen, was beim Weitergehen aus der Vergangenheit vergessen wurde
 key-slowly = wenn ein Roboter stehen geblieben ist: die letzten Augenblicke, langsam
-key-mend = wenn ein Roboter stehen geblieben ist: zurücksetzen, mit den Einstellungen, die gut gingen
+key-earlier = wenn ein Roboter stehen geblieben ist: zurücksetzen, mit den Einstellungen, die gut gingen
 key-summary = sagen, was zu sehen ist
 key-view = Die Ansicht zurücksetzen
 
@@ -1075,7 +1075,7 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: sie hat { $s
 
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
 error-nothing_stopped = kein Roboter ist stehen geblieben
-error-nothing_to_mend = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
+error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
 error-law = Zeile { $line }, Spalte { $column }: { $reason }
 error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $count }

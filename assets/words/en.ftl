@@ -257,7 +257,7 @@ display-title = Language, display
 display-speaks = Say what happens, for screen readers
 display-sounds = Distance as sound: left robot in the left ear, right robot in the right
 breakdown-slowly = Show it slowly
-breakdown-mend = Reset with { $changes }
+breakdown-earlier = Reset with { $changes }
 summary-clock = Time { $time } seconds. Path: { $path }.
 summary-robot = { $robot }: { $now } millimetres from the path, { $most } at most, { $speed } millimetres a second along it.
 
@@ -572,7 +572,7 @@ key-forward = Look forward one second
 key-go_on = Go on from the moment shown; discard what came after
 key-undo_go_on = Restore what was discarded by going on from the past
 key-slowly = after a robot has stopped: its last moments, slowly
-key-mend = after a robot has stopped: reset, with the settings that did well
+key-earlier = after a robot has stopped: reset, with the settings that did well
 key-summary = say what is on the screen
 key-view = Reset the view
 
@@ -797,7 +797,7 @@ error-no_step = there is no step { $step } in this lesson: it has { $steps ->
 
 error-law_cannot_run = a law of one's own is not possible with this robot and these settings
 error-nothing_stopped = no robot has stopped
-error-nothing_to_mend = there are no earlier settings to go back to
+error-no_earlier_settings = there are no earlier settings to go back to
 error-law_not_ready = the law is still being made; try again in a moment
 error-law = line { $line }, column { $column }: { $reason }
 error-law_too_long = a law has at most { $most } characters, not { $count }

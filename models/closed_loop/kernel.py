@@ -10,7 +10,7 @@ tick, and its torque is held in between.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import casadi as ca
 
@@ -60,6 +60,7 @@ class Kernel:
         state, settings, log: layouts of the vectors. The functions take the leading fields of the
             state that this loop changes, and the others stay as they are.
         table_shape: shape of the curve's table.
+        changed: length of the leading part of the state that this loop changes.
     """
 
     basis: ca.Function
@@ -68,6 +69,10 @@ class Kernel:
     settings: Layout
     log: Layout
     table_shape: tuple[int, int] = TABLE_SHAPE
+    changed: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "changed", self.advance.size_in(0)[0])
 
     def block(self, ticks: int) -> ca.Function:
         """Many ticks, for an interpreter: (state, settings, curve table) -> (state, log columns).
@@ -96,11 +101,6 @@ class Kernel:
         table = ca.SX.sym("curve", *self.table_shape)
         after, row, _ = self.advance(state, settings, table @ self.basis(state, settings))
         return ca.Function("onpath_tick", [state, settings, table], [after, row])
-
-    @property
-    def changed(self) -> int:
-        """Length of the leading part of the state that this loop changes."""
-        return self.advance.size_in(0)[0]
 
 
 def build_kernel(

@@ -25,7 +25,6 @@ SHAPES = {
 ONCE = "ramp_up"
 
 
-@lru_cache(maxsize=64)
 def profile_of(parameters: Parameters) -> SpeedProfile | None:
     """The profile η₂ref(t) from the start of a run, [rad/s]; None if it is constant.
 
@@ -39,10 +38,14 @@ def profile_of(parameters: Parameters) -> SpeedProfile | None:
     """
     if parameters.task != "speed" or parameters.speed_profile not in SHAPES:
         return None
-    times, shares = SHAPES[parameters.speed_profile]
-    period = parameters.profile_period
+    return _profile(parameters.speed_profile, parameters.speed, parameters.profile_period)
+
+
+@lru_cache(maxsize=64)  # asked for in every frame
+def _profile(shape: str, speed: float, period: float) -> SpeedProfile:
+    times, shares = SHAPES[shape]
     return SpeedProfile(
         tuple(period * t for t in times),
-        tuple(parameters.speed * share for share in shares),
-        0.0 if parameters.speed_profile == ONCE else period,
+        tuple(speed * share for share in shares),
+        0.0 if shape == ONCE else period,
     )

@@ -46,7 +46,6 @@ from onpath.app.lab.commands.time import (
     GoOn,
     LookAt,
     LookBack,
-    Mend,
     ReplayBreakdown,
     Reset,
     SetExaggeration,
@@ -54,6 +53,7 @@ from onpath.app.lab.commands.time import (
     SetRunning,
     StepOnce,
     UndoGoOn,
+    UseEarlierSettings,
 )
 from onpath.app.lab.commands.wall import TURN, MoveWall, NudgeWall, PlaceWall, SetWall, SwingWall
 from onpath.app.lab.lab import Command as Command
@@ -83,7 +83,6 @@ __all__ = [
     "Identify",
     "LookAt",
     "LookBack",
-    "Mend",
     "MoveHand",
     "MovePoint",
     "MoveStart",
@@ -125,5 +124,6 @@ __all__ = [
     "TypeLaw",
     "Undo",
     "UndoGoOn",
+    "UseEarlierSettings",
     "UseShared",
 ]

@@ -60,14 +60,14 @@ class ReplayBreakdown(Command):
 
 
 @dataclass(frozen=True, slots=True)
-class Mend(Command):
+class UseEarlierSettings(Command):
     """Reset with the settings under which no robot had stopped."""
 
     lets_time_run: ClassVar[bool] = True
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        lab.breakdown.mend(lab.session)
+        lab.breakdown.use_earlier_settings(lab.session)
         lab.show_message("")
 
 

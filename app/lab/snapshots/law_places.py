@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.page_snapshot import LawPlaces, PageSnapshot
-from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.place import Place, place_at
 
 INTERVAL = 1.0  # [s] of simulated time between places that are shown, so that one can read them
 
 
-def law_places(session: Session, time: float, before: PageSnapshot | Motion | None) -> LawPlaces:
+def law_places(session: Session, time: float, before: PageSnapshot | None) -> LawPlaces:
     """The places of the robots at the instant that is shown, each where its law aims.
 
     They are taken anew after `INTERVAL`, or when something else has changed, or in a lab that
@@ -19,12 +18,12 @@ def law_places(session: Session, time: float, before: PageSnapshot | Motion | No
 
     Args:
         time: that is shown, [s].
-        before: the previous snapshot of the same lab.
+        before: the previous whole snapshot of the same lab.
     """
     aims = {bench: law_named(law) for bench, law in session.chosen_laws.items()}
     aims = {bench: law for bench, law in aims.items() if law.channels is not None}
     version = (session.entry.name, session.editor.version, *session.chosen_laws.values())
-    old = before.places if isinstance(before, PageSnapshot) else None
+    old = None if before is None else before.places
     if old is not None and old.version == version:
         fresh = session.running and 0 <= time - old.time < INTERVAL
         if fresh or time == old.time or not aims:

@@ -64,7 +64,7 @@ def take_motion(lab: Lab, before: PageSnapshot | Motion | None = None, student: 
 def take_page_snapshot(
     lab: Lab,
     achieved_speed: float,
-    before: PageSnapshot | Motion | None = None,
+    before: PageSnapshot | None = None,
     student: int = 0,
     nickname: str = "",
 ) -> PageSnapshot:
@@ -102,7 +102,7 @@ def take_page_snapshot(
 
 
 def _scene(
-    lab: Lab, achieved: float, before: PageSnapshot | Motion | None, student: int
+    lab: Lab, achieved: float, before: PageSnapshot | None, student: int
 ) -> dict[str, Any]:
     """The fields of `Snapshot`."""
     session, key = lab.session, page_key(lab, student)
@@ -254,9 +254,9 @@ def _truth(lab: Lab) -> Truth | None:
 
 
 def _plots(
-    session: Session, time: float, key: PageKey, before: PageSnapshot | Motion | None
+    session: Session, time: float, key: PageKey, before: PageSnapshot | None
 ) -> PlotSamples:
-    if isinstance(before, PageSnapshot) and before.time == time and before.key == key:
+    if before is not None and before.time == time and before.key == key:
         return before.plots
     history = session.history
     samples = history.samples(time - PLOT_WINDOW, time, PLOT_POINTS)

@@ -74,7 +74,7 @@ KEYS = (
     Key("go_on", "G", "G", c.GoOn()),
     Key("undo_go_on", "U", "U", c.UndoGoOn()),
     Key("slowly", "P", "P", c.ReplayBreakdown()),
-    Key("mend", "E", "E", c.Mend()),
+    Key("earlier", "E", "E", c.UseEarlierSettings()),
     Key("summary", "Q", "Q", None),
     Key("view", "home", "Home", None),
 )

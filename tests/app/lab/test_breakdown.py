@@ -57,7 +57,7 @@ def test_looking_elsewhere_ends_it(blown_up: Lab) -> None:
 
 def test_the_last_settings_that_did_well_are_offered_and_taken(blown_up: Lab) -> None:
     assert take_snapshot(blown_up, 1.0).remedy == {"alpha": 0.5}
-    do(blown_up, c.Mend())
+    do(blown_up, c.UseEarlierSettings())
     run(blown_up, 1.0)
     session = blown_up.session
     assert take_snapshot(blown_up, 1.0).parameters["alpha"] == 0.5 and session.running
@@ -67,6 +67,6 @@ def test_the_last_settings_that_did_well_are_offered_and_taken(blown_up: Lab) ->
 
 def test_without_a_stopped_robot_both_are_refused() -> None:
     lab = new_lab(0.1)
-    for command in (c.ReplayBreakdown(), c.Mend()):
+    for command in (c.ReplayBreakdown(), c.UseEarlierSettings()):
         do(lab, command)
         assert lab.message and lab.message_level == "warning"

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import LawPlaces, PageSnapshot
 from onpath.app.server.lab_feed import AT_EASE, LabFeed
 from onpath.app.simulation.display_rate import STRIDES, is_turn
 from tests.support.lab import FOLLOWER, FRAME, do, new_lab, y
@@ -25,9 +25,12 @@ class Paper:
     def __init__(self) -> None:
         self.exporter, self.now = self, 0
         self.moved, self.whole = list[int](), list[int]()
+        self.places = list[LawPlaces]()
 
     def show(self, snapshot: object) -> None:
         (self.whole if isinstance(snapshot, PageSnapshot) else self.moved).append(self.now)
+        if isinstance(snapshot, PageSnapshot):
+            self.places.append(snapshot.places)
 
     def serve(self, lab: object) -> None:
         """Nothing is exported."""
@@ -54,6 +57,14 @@ def test_slow_updates_are_even_and_take_turns_of_the_display(stride: float, offs
     gaps = {later - earlier for earlier, later in itertools.pairwise(paper.whole)}
     every = 3 * stride if stride == AT_EASE else 5 * stride
     assert gaps <= {math.floor(every), math.ceil(every)}
+
+
+@pytest.mark.parametrize(("law", "anew"), [("path_following", 1), ("virtual_constraint", 5)])
+def test_what_moves_does_not_make_the_places_of_poles_anew(law: str, anew: int) -> None:
+    """A panel that is shown other places works out the poles and draws them."""
+    paper = shown(AT_EASE, 0, c.ChooseLaw(FOLLOWER, law))
+    assert len(paper.moved) > len(paper.whole) > 4 * anew
+    assert len(set(map(id, paper.places))) <= anew  # in four seconds
 
 
 def test_pages_do_not_all_take_the_same_turn() -> None:
