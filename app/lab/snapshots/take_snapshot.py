@@ -101,9 +101,7 @@ def take_page_snapshot(
     )
 
 
-def _scene(
-    lab: Lab, achieved: float, before: PageSnapshot | None, student: int
-) -> dict[str, Any]:
+def _scene(lab: Lab, achieved: float, before: PageSnapshot | None, student: int) -> dict[str, Any]:
     """The fields of `Snapshot`."""
     session, key = lab.session, page_key(lab, student)
     instant, curve, time = _shown(lab)
@@ -253,9 +251,7 @@ def _truth(lab: Lab) -> Truth | None:
     return run.truth(lab.session)
 
 
-def _plots(
-    session: Session, time: float, key: PageKey, before: PageSnapshot | None
-) -> PlotSamples:
+def _plots(session: Session, time: float, key: PageKey, before: PageSnapshot | None) -> PlotSamples:
     if before is not None and before.time == time and before.key == key:
         return before.plots
     history = session.history
