@@ -142,6 +142,8 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
     for name in ("needs", "goals", "misconception"):
         if bool(getattr(first.front, name)) != bool(getattr(other.front, name)):
             yield Problem(str(file), 1, f"{name} is not given in both languages")
+    if len(first.front.takeaway) != len(other.front.takeaway):
+        yield Problem(str(file), 1, f"takeaway has not as many points as in {first.language}.md")
     if len(first.steps) != len(other.steps):
         text = f"{len(other.steps)} steps, {len(first.steps)} in {first.language}.md"
         yield Problem(str(file), 1, text)

@@ -72,6 +72,7 @@ class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         language: of texts and interface.
         presenting: whether large type is used, for a projector.
         notes: by lesson.
+        ended: whether the end of the open lesson is shown in place of its open step.
     """
 
     lesson: Key = ""
@@ -79,6 +80,7 @@ class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     presenting: bool = False
     notes: dict[Key, Notes] = {}
     route: Key = ""
+    ended: bool = False
 
 
 def read_progress(data: object) -> Progress:

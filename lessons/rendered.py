@@ -25,7 +25,8 @@ def rendered(part: Any) -> Any:
 
 @rendered.register
 def _(part: Front) -> Front:
-    return _html(part, "needs", "goals", "misconception")
+    points = tuple(map(to_html, part.takeaway))
+    return replace(_html(part, "needs", "goals", "misconception"), takeaway=points)
 
 
 @rendered.register

@@ -125,6 +125,7 @@ class Front(Data, frozen=True):
         needs: what the student must know, which follows "You need:" on the first page.
         goals: what the student learns, which follows "Afterwards you can:" on the first page.
         misconception: for the teacher, the false belief that the lesson aims at.
+        takeaway: what to remember, which the end of the lesson tells.
         minutes: an estimate by hand in earlier files; ignored, see lessons/minutes.py.
     """
 
@@ -135,6 +136,7 @@ class Front(Data, frozen=True):
     needs: str = ""
     goals: str = ""
     misconception: str = ""
+    takeaway: tuple[str, ...] = ()
 
 
 class Lesson(msgspec.Struct, frozen=True):

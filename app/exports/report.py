@@ -8,15 +8,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import datetime
 
-import numpy as np
-
 from onpath.app.common.access_codes import shown
 from onpath.app.common.templates import render
+from onpath.app.exports.curve_words import curve_words, number
 from onpath.app.exports.report_facts import Chapter, chapters, predictions, quizzes
-from onpath.app.exports.report_plot import draw_prediction, number
+from onpath.app.exports.report_plot import draw_prediction
 from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.action_schema import RobotName
-from onpath.lessons.benches import ROLES, robot_names
+from onpath.lessons.benches import robot_names
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Prediction, Quiz, Sketch
@@ -142,25 +141,9 @@ def _figure(
     Args:
         names: of the robots.
     """
-    unit, said = QUANTITIES[block.quantity], list[str]()
-    if answer is not None and answer.times:
-        value, time = _peak(answer.times, answer.values, words)
-        said.append(words("report.drawn", value=value, unit=unit, time=time))
-    if truth is not None:
-        peaks = list[str]()
-        for role in ROLES.values():
-            value, time = _peak(truth.times, getattr(truth, role), words)
-            peak = {"robot": names[role], "value": value, "unit": unit, "time": time}
-            peaks.append(words("report.peak", **peak))
-        said.append(words("report.happened", first=peaks[0], second=peaks[1]))
+    said = curve_words(block, answer, truth, words, names)
     if not said:
         return None
     robot, quantity = names[block.robot], words(f"quantity.{block.quantity}")
     name = words("report.curve", robot=robot, quantity=quantity)
-    return SketchFigure(name, draw_prediction(block, answer, truth, words, names), " ".join(said))
-
-
-def _peak(times: tuple[float, ...], values: tuple[float, ...], words: Words) -> tuple[str, str]:
-    """The value furthest from zero and its time, formatted."""
-    at = int(np.argmax(np.abs(values)))
-    return number(values[at], words), number(times[at], words)
+    return SketchFigure(name, draw_prediction(block, answer, truth, words, names), said)

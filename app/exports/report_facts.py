@@ -31,6 +31,11 @@ class Chapter:
     opened: bool
     strange: int
 
+    @property
+    def ended(self) -> bool:
+        """Whether the student has come to the last step."""
+        return self.notes.seen >= len(self.lesson.steps)
+
     def happened(self, key: str) -> bool:
         """Whether the predicted experiment has been observed."""
         return key in self.notes.truths

@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from onpath.app.common.palette import OF_BENCH, SELECTED
+from onpath.app.exports.curve_words import number
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import ROLES
 from onpath.lessons.progress import Answer, Truth
@@ -23,12 +24,6 @@ from onpath.lessons.words import Words
 
 SIZE = (6.6, 2.9)  # [in]
 ONE_AT_A_TIME = Lock()  # rc_context changes global state shared by all threads
-
-
-def number(value: float, words: Words) -> str:
-    """Format a number with three digits in the style of a language."""
-    text = f"{float(f'{value:.3g}') + 0.0:g}"
-    return text.replace("-", "−").replace(".", words("report.point"))
 
 
 def draw_prediction(

@@ -107,7 +107,8 @@ class LessonRun(LessonState):
         before = capture(lab.session) if self.lesson is None else self.before
         _set_up(lab, lesson, index)
         route = route if route in self.course.routes else self.progress.route
-        self.progress, self.before = replace(self.progress, lesson=name, route=route), before
+        self.progress = replace(self.progress, lesson=name, route=route, ended=False)
+        self.before = before
         self._arrive(index, lab)
 
     def resume(self, progress: Progress, before: Setup | None, lab: LessonLab) -> None:
@@ -130,7 +131,7 @@ class LessonRun(LessonState):
 
     def close(self, lab: LessonLab) -> None:
         """Close the lesson and restore the lab as it was before."""
-        self.progress = replace(self.progress, lesson="", route="")
+        self.progress = replace(self.progress, lesson="", route="", ended=False)
         self._begin_again(lab, running=lab.session.running)
         if self.before is not None:
             lab.set_up(self.before)
@@ -138,13 +139,23 @@ class LessonRun(LessonState):
             lab.session.running = True
         self.version += 1
 
+    def finish(self) -> None:
+        """Show the end of the open lesson."""
+        if self.lesson is not None:
+            self.progress = replace(self.progress, ended=True)
+            self.version += 1
+
     def go(self, by: int, lab: LessonLab) -> None:
         """Go to another step; a pending prediction is skipped when going forward.
 
-        If the step then demonstrates the answer, only the prediction is skipped.
+        If the step then demonstrates the answer, only the prediction is skipped. After the last
+        step comes the end, and before the end the last step.
         """
         lesson = self.lesson
         if lesson is None:
+            return
+        if self.ended or (by > 0 and self.at_end and not self.waits):
+            self.finish() if by > 0 else self._go(self.index, lab)
             return
         name, target = self.beside(by)
         if by > 0 and self.waits:
@@ -252,6 +263,7 @@ class LessonRun(LessonState):
         lesson = self.lesson
         assert lesson is not None
         _set_up(lab, lesson, index)
+        self.progress = replace(self.progress, ended=False)
         self._arrive(index, lab)
 
     def _arrive(self, index: int, lab: LessonLab) -> None:

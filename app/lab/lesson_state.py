@@ -89,6 +89,11 @@ class LessonState:
         """Whether the open step is the last one, of the lesson or of the route."""
         return self.lesson is not None and self.beside(1) == (self.lesson.name, self.index)
 
+    @property
+    def ended(self) -> bool:
+        """Whether the end of the open lesson is shown in place of a step."""
+        return self.progress.ended and self.lesson is not None
+
     def prediction(self) -> tuple[str, Prediction] | None:
         """Key and prediction of the open step, from this step or the previous one."""
         lesson = self.lesson

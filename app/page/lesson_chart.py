@@ -15,10 +15,11 @@ from onpath.lessons.words import Words
 
 
 class PredictionChart:
-    """One uPlot chart.
+    """One uPlot chart, with a legend of the curves that are drawn.
 
     Args:
         laws: control laws under which the prediction is put to the test.
+        truth: what has happened, as far as it has; None: nothing is drawn of it.
     """
 
     def __init__(
@@ -28,19 +29,21 @@ class PredictionChart:
         answer: Answer | None,
         laws: dict[str, str],
         words: Words,
+        truth: Truth | None = None,
     ) -> None:
-        self._sketch, self._answer = sketch, answer
-        self._shown: Truth | None = None
+        self._sketch, self._shown = sketch, truth
+        self._answer = answer if answer is not None and answer.times else None
         unit, names = QUANTITIES[sketch.quantity], robot_names(laws, words)
-        lines = (
-            *(
-                uplot.Series(label=names[role], stroke=OF_BENCH[bench].hex, width=2)
-                for bench, role in ROLES.items()
-            ),
-            uplot.Series(label=words("lesson.yours"), stroke=SELECTED.hex, width=4),
-        )
+        lines = list[uplot.Series]()
+        if truth is not None:
+            for bench, role in ROLES.items():
+                colour = OF_BENCH[bench].hex
+                lines.append(uplot.Series(label=names[role], stroke=colour, width=2))
+        if self._answer is not None:
+            yours = words("lesson.yours")
+            lines.append(uplot.Series(label=yours, stroke=SELECTED.hex, width=4))
         self._handle = gui.add_uplot(
-            self._data(None),
+            self._data(truth),
             (uplot.Series(label=words("plots.time")), *lines),
             title=f"{words(f'quantity.{sketch.quantity}')} [{unit}]",
             scales={
@@ -52,8 +55,8 @@ class PredictionChart:
         )
 
     def show(self, truth: Truth | None) -> None:
-        """Plot the data up to now."""
-        if truth is not None and truth != self._shown:
+        """Plot the data up to now; what was not drawn from the beginning stays away."""
+        if truth is not None and self._shown is not None and truth != self._shown:
             self._shown = truth
             self._handle.data = self._data(truth)
 
@@ -62,14 +65,13 @@ class PredictionChart:
         self._handle.remove()
 
     def _data(self, truth: Truth | None) -> tuple[np.ndarray, ...]:
-        """Times and three curves, NaN where a curve has no data yet."""
-        answer = self._answer
-        return together(
-            self._sketch.seconds,
-            (truth.times, truth.tracker) if truth else ((), ()),
-            (truth.times, truth.follower) if truth else ((), ()),
-            (answer.times, answer.values) if answer else ((), ()),
-        )
+        """Times and the curves that are drawn, NaN where one has no data yet."""
+        curves = list[Curve]()
+        if truth is not None:
+            curves += [(truth.times, getattr(truth, role)) for role in ROLES.values()]
+        if self._answer is not None:
+            curves.append((self._answer.times, self._answer.values))
+        return together(self._sketch.seconds, *curves)
 
 
 Curve = tuple[tuple[float, ...], tuple[float, ...]]

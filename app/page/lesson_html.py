@@ -49,6 +49,11 @@ def remark(said: str, italic: bool = False) -> str:
     return render("lesson/remark.html", said=said, italic=italic)
 
 
+def next_act(words: Words) -> str:
+    """What comes after a prediction; the button that follows is brought into view."""
+    return render("lesson/next_act.html", said=words("lesson.committed"))
+
+
 def asked(block: Sketch) -> str:
     """A question answered by a sketch."""
     return render("lesson/box.html", title=block.question, colour=BORDER.hex)
@@ -111,13 +116,15 @@ def route_entry(route: Route, run: LessonState) -> str:
     words, numbers = run.words, run.course.numbers()
     stops = list[str]()
     for stop in route.stop:
-        title = run.course.lesson(stop.lesson, words.language).front.title
+        lesson = run.course.lesson(stop.lesson, words.language).front.title
         first, last = stop.steps
         told = {"first": first, "last": last, "minutes": f"{stop.minutes:g}"}
-        stops.append(words("route.stop", lesson=f"{numbers[stop.lesson]}. {title}", **told))
+        stops.append(words("route.stop", lesson=f"{numbers[stop.lesson]}. {lesson}", **told))
+    title = route.text(route.title, words.language)
     return render(
         "lesson/route.html",
-        title=route.text(route.title, words.language),
+        title=title,
+        name=words("route.follow_name", title=title),
         summary=route.text(route.summary, words.language),
         minutes=words("lesson.minutes", minutes=f"{route.minutes:g}"),
         stops=stops,
@@ -141,7 +148,7 @@ def route_line(run: LessonState) -> str:
 
 
 def entry(lesson: Lesson, run: LessonState, number: str) -> str:
-    """One line of the lesson overview."""
+    """One line of the lesson overview, with the name of the button that follows."""
     notes = run.progress.notes.get(lesson.name)
     tasks = lesson.tasks()
     done = sum(task.id in notes.tasks for task in tasks) if notes else 0
@@ -153,5 +160,14 @@ def entry(lesson: Lesson, run: LessonState, number: str) -> str:
     if lesson.language != run.words.language:
         facts.append(run.words("lesson.english"))
     return render(
-        "lesson/entry.html", front=lesson.front, number=number, facts=facts, finished=finished
+        "lesson/entry.html",
+        front=lesson.front,
+        number=number,
+        facts=facts,
+        finished=finished,
+        name=run.words(
+            "lesson.open_name" if notes is None else "lesson.continue_name",
+            number=number,
+            title=lesson.front.title,
+        ),
     )

@@ -36,10 +36,10 @@ class LessonMenu:
         with dialog(gui, self._words, run.words("lesson.choose")) as close:
             for name, number in run.course.numbers().items():
                 lesson = run.course.lesson(name, run.words.language)
-                gui.add_html(page.entry(lesson, run, number))
                 begun = name in run.progress.notes
+                gui.add_html(page.entry(lesson, run, number))
                 open_it = gui.add_button(
-                    run.words("lesson.continue" if begun else "lesson.open"),
+                    run.words("lesson.continue" if begun else "lesson.open", number=number),
                     color=None if begun else "gray",
                     hint=lesson.front.title,
                 )

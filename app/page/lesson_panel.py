@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import viser
@@ -12,21 +12,18 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
 from onpath.app.page.lesson_chart import PredictionChart
+from onpath.app.page.lesson_end import LessonEnd
 from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.panels.widgets import Post, add_buttons, on_press, on_user_update
+from onpath.app.page.panels.widgets import Post, add_buttons, on_press
+from onpath.app.page.sketch_answer import SketchAnswer
 from onpath.app.scene.scene import Scene
-from onpath.lessons.benches import robot_names
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.schema import Choice, Prediction, Quiz, Sketch, Step, Text
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import Words
 
-if TYPE_CHECKING:
-    from onpath.app.scene.sketch_board import SketchBoard
-
 WIDTH, WIDE = 400, 560  # [px]
-NUMBERS = 6  # sliders that draw a sketch
 
 
 class LessonPanel:
@@ -35,6 +32,7 @@ class LessonPanel:
     Args:
         change: changes widgets in another thread; see `RebuildThread.change`.
         tab: parent of the widgets; without one, a separate panel on the left.
+        report: requests the record of all lessons.
         student: session code of the lab; decides the order of options, see `option_order`.
     """
 
@@ -47,15 +45,17 @@ class LessonPanel:
         scene: Scene,
         change: Callable[[Callable[[], None]], None],
         first: PageSnapshot,
+        report: Callable[[], None],
         tab: viser.GuiTabHandle | None = None,
         student: str = "",
     ) -> None:
         self._client, self._gui, self._post, self._change = client, client.gui, post, change
         self._scene, self._words, self._course, self._student = scene, words, course, student
+        self._report = report
         self._handles: list[Any] = []
         self._tasks: list[tuple[Task, viser.GuiHtmlHandle]] = []
         self._chart: PredictionChart | None = None
-        self._board: SketchBoard | None = None
+        self._board: SketchAnswer | None = None
         self._draft = c.Predict()
         self._busy, self._version, self._reading = False, -1, -1
         self._panel = None
@@ -108,7 +108,6 @@ class LessonPanel:
         if self._board is not None:
             self._board.remove()
             self._board = None
-            self._scene.show_titles(True)
 
     def _build(self, run: LessonView) -> None:
         self._version = run.version
@@ -119,6 +118,9 @@ class LessonPanel:
             self._width = width
             self._panel.set_width(width)
         with self._tab:
+            if run.ended:
+                self._handles += LessonEnd(self._gui, run, self._post, self._report).handles
+                return
             self._html(page.heading(lesson, step, run))
             if run.index == 0 and (aims := page.aims(lesson, run.words)):
                 self._html(aims)
@@ -171,9 +173,12 @@ class LessonPanel:
             if answer is None:
                 self._add_sketching(block, run)
             else:
+                self._add_let_happen(run)
                 self._add_chart(block, run)
             return
         chosen, order = answer.option if answer else None, run.order(block)
+        if answer is not None:
+            self._add_let_happen(run)
         self._html(page.question(block, order, chosen, False, run.words))
         if answer is None:
             commit = self._commit_button()
@@ -185,6 +190,21 @@ class LessonPanel:
 
             letters = self._add_letters(order, choose)
             commit.order = letters.order + 0.5
+
+    def _add_let_happen(self, run: LessonView) -> None:
+        """After a prediction: what to do next, which assets/page/steps.js brings into view."""
+        if not run.shows_next:
+            return
+        self._html(page.next_act(run.words))
+        label = run.words("lesson.play")
+        button = self._gui.add_button(label, icon=viser.Icon.PLAYER_PLAY)
+
+        def let_happen() -> None:
+            self._post(c.GoToStep(1))
+            self._post(c.PlayStep())
+
+        on_press(button, let_happen)
+        self._handles.append(button)
 
     def _commit_button(self) -> viser.GuiButtonHandle:
         commit = self._gui.add_button(self._words("lesson.commit"), icon=viser.Icon.LOCK)
@@ -206,11 +226,9 @@ class LessonPanel:
         return group
 
     def _add_sketching(self, block: Sketch, run: LessonView) -> None:
-        """The sketch board, its keyboard alternative, and the button that submits the sketch."""
+        """The button that submits the sketch, and what it is drawn with."""
         words = self._words
         said = self._html(page.remark(words("lesson.draw_first")))
-        from onpath.app.scene.sketch_board import SketchBoard  # see app/server/lazy_imports.py
-
         commit = self._commit_button()
 
         def drawn(times: np.ndarray, values: np.ndarray) -> None:
@@ -218,36 +236,7 @@ class LessonPanel:
             commit.disabled = False
             said.content = page.remark(words("lesson.drawn"))
 
-        robot = robot_names(run.laws_shown, words)[block.robot]
-        title = f"{robot}: {words(f'quantity.{block.quantity}')}"
-        self._scene.show_titles(False)
-        self._board = SketchBoard(self._client.scene, self._scene.stage, block, title, drawn)
-        self._add_numbers(block, self._board, drawn)
-
-    def _add_numbers(
-        self,
-        block: Sketch,
-        board: SketchBoard,
-        drawn: Callable[[np.ndarray, np.ndarray], None],
-    ) -> None:
-        times = np.linspace(0.0, block.seconds, NUMBERS)
-        sliders: list[Any] = []
-
-        def moved(_: object) -> None:
-            values = np.array([slider.value for slider in sliders], dtype=float)
-            board.show(times, values)
-            drawn(times, values)
-
-        folder = self._gui.add_folder(self._words("lesson.numbers"), expand_by_default=False)
-        self._handles.append(folder)
-        with folder:
-            for time in times:
-                unit = page.QUANTITIES[block.quantity]
-                label = self._words("lesson.at", time=f"{time:g}", unit=unit)
-                step = (block.top - block.bottom) / 100
-                slider = self._gui.add_slider(label, block.bottom, block.top, step, block.bottom)
-                on_user_update(slider, moved)
-                sliders.append(slider)
+        self._board = SketchAnswer(self._client, self._scene, block, run, drawn)
 
     def _add_run(self, run: LessonView) -> None:
         """The prediction next to the measured result, and the button that runs the experiment."""
@@ -272,18 +261,21 @@ class LessonPanel:
             self._html(page.question(block, run.order(block), chosen, True, run.words))
 
     def _add_chart(self, block: Sketch, run: LessonView) -> None:
-        self._chart = PredictionChart(self._gui, block, run.answer(), run.laws_shown, run.words)
+        answer = run.answer()
+        if run.truth is None and (answer is None or answer.skipped):
+            return
+        what = block, answer, run.laws_shown, run.words
+        self._chart = PredictionChart(self._gui, *what, run.truth)
         self._handles.append(self._chart)
-        self._chart.show(run.truth)
 
     def _add_ways(self, step: Step, run: LessonView) -> None:
         """Navigation buttons: back, next, restore the set-up, close."""
         if run.at_end:
-            self._button(run.words("lesson.finish"), c.CloseLesson(), None, viser.Icon.CHECK)
+            self._button(run.words("lesson.finish"), c.FinishLesson(), None, viser.Icon.CHECK)
         else:
             unseen = step.script is not None and not run.has_played()
             label, colour = run.words("lesson.next"), None
-            if run.waits or unseen:
+            if run.waits or unseen or run.shows_next:
                 colour = "gray"
                 label = run.words("lesson.skip" if run.waits else "lesson.next_unseen")
             self._button(label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)

@@ -38,6 +38,15 @@ class LessonView(LessonState):
         return {} if lesson is None or found is None else lesson.laws_shown(int(found[0]))
 
     @property
+    def shows_next(self) -> bool:
+        """Whether the open step's prediction is made and the next step lets it happen."""
+        lesson = self.lesson
+        if lesson is None or self.answer() is None or self.step_is("run") or self.at_end:
+            return False
+        name, index = self.beside(1)
+        return name == lesson.name and lesson.steps[index].kind == "run"
+
+    @property
     def setup(self) -> StepSetup:
         """Set-up of the open step."""
         lesson = self.lesson

@@ -181,10 +181,8 @@ class Page:
                 self._parts.append(controls.show())
         if tab is None:
             self._build_distance(first, words)
-        scene, student = self._scene, self._desk.code
-        lesson = LessonPanel(
-            self._client, words, post, course, scene, change, first, tab=tab, student=student
-        )
+        own = words, post, course, self._scene, change, first, self.exporter.report
+        lesson = LessonPanel(self._client, *own, tab=tab, student=self._desk.code)
         self._parts.append(lesson)
 
     def _controls(self, words: Words, post: Post) -> PanelFactory:

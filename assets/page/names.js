@@ -33,6 +33,16 @@
     }
   }
 
+  // Buttons with the same label are told apart by what stands before them.
+  function nameButtons() {
+    const marks = document.querySelectorAll("[data-names-next]");
+    const buttons = marks.length ? [...document.querySelectorAll(".mantine-Modal-body button")] : [];
+    for (const mark of marks) {
+      const after = (button) => mark.compareDocumentPosition(button) & Node.DOCUMENT_POSITION_FOLLOWING;
+      set(buttons.find(after), "aria-label", mark.dataset.namesNext);
+    }
+  }
+
   function nameTheRest() {
     const words = document.querySelector("[data-page]")?.dataset;
     if (words === undefined) return;
@@ -61,6 +71,7 @@
     due = false;
     nameFields();
     nameFolders();
+    nameButtons();
     nameTheRest();
   }
 

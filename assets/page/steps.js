@@ -1,10 +1,17 @@
 // A step of a lesson opens at its top: left alone, its panel stays scrolled as the step before was.
+// What is to be done after a prediction, [data-act], is brought into view with its button.
 (() => {
   "use strict";
 
-  let shown = "";
+  let shown = "", acting = null;
 
   function look() {
+    const act = document.querySelector("[data-act]");
+    if (act !== acting) {
+      acting = act;
+      const place = act?.closest("[class*=mantine]") ?? act;
+      if (act !== null) requestAnimationFrame(() => place.scrollIntoView({ block: "center" }));
+    }
     const heading = document.querySelector("[data-step]");
     if (heading === null || heading.dataset.step === shown) return;
     shown = heading.dataset.step;

@@ -72,8 +72,10 @@ lesson-tasks =
     }
 lesson-needs = Du brauchst:
 lesson-goals = Danach kannst du:
-lesson-open = Öffnen
-lesson-continue = Weitermachen
+lesson-open = Lektion { $number } öffnen
+lesson-open_name = Lektion { $number } öffnen: { $title }
+lesson-continue = Lektion { $number } fortsetzen
+lesson-continue_name = Lektion { $number } fortsetzen: { $title }
 lesson-close = Freies Labor
 lesson-back = Zurück
 lesson-next = Weiter
@@ -91,6 +93,7 @@ lesson-playing = Es geschieht: sieh hin.
 lesson-step = Schritt { $step } von { $steps }
 lesson-commit = Auf diese Vorhersage festlegen
 lesson-draw_first = Zeichne mit der Maus auf die Tafel in der Mitte, von links nach rechts.
+lesson-committed = Du hast dich festgelegt. Sieh jetzt, was geschieht.
 lesson-drawn = Zeichne noch einmal, oder lege dich fest.
 lesson-numbers = Lieber mit Zahlen zeichnen
 lesson-at = bei { $time } s [{ $unit }]
@@ -120,6 +123,29 @@ kind-quiz = Frage
 
 language-en = English
 language-de = Deutsch
+
+## Das Ende einer Lektion
+
+end-title = Was du vorhergesagt hast, und was geschah
+end-route = Das Ende der Route
+end-right =
+    { $all ->
+        [one] { $part } von 1 Auswahlfrage richtig
+       *[other] { $part } von { $all } Auswahlfragen richtig
+    }
+end-drawn =
+    { $all ->
+        [one] { $part } von 1 Kurve gezeichnet
+       *[other] { $part } von { $all } Kurven gezeichnet
+    }
+end-tasks =
+    { $all ->
+        [one] { $part } von 1 Aufgabe geschafft
+       *[other] { $part } von { $all } Aufgaben geschafft
+    }
+end-takeaway = Was du mitnimmst
+end-next = Lektion { $lesson } öffnen
+end-record = Mein Bericht
 
 ## Behalten und teilen
 
@@ -695,6 +721,7 @@ identified-other_robot = Identifizieren lässt sich nur das Fünfgelenk: Wähle 
 route-route = Route
 route-send = Diese Route für alle öffnen
 route-follow = Dieser Route folgen
+route-follow_name = Dieser Route folgen: { $title }
 route-stop = { $lesson }, Schritte { $first } bis { $last }, { $minutes } min
 route-here = { $route }: Teil { $stop } von { $stops }, bis Schritt { $last }, { $minutes } min
 

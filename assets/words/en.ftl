@@ -74,8 +74,10 @@ lesson-tasks =
     }
 lesson-needs = You need:
 lesson-goals = Afterwards you can:
-lesson-open = Open
-lesson-continue = Continue
+lesson-open = Open lesson { $number }
+lesson-open_name = Open lesson { $number }: { $title }
+lesson-continue = Go on with lesson { $number }
+lesson-continue_name = Go on with lesson { $number }: { $title }
 lesson-close = Free lab
 lesson-back = Back
 lesson-next = Next
@@ -93,6 +95,7 @@ lesson-playing = It is happening: watch.
 lesson-step = Step { $step } of { $steps }
 lesson-commit = Commit to this prediction
 lesson-draw_first = Draw with the mouse on the board in the middle, from left to right.
+lesson-committed = You have committed to your prediction. Now see what happens.
 lesson-drawn = Draw again, or commit.
 lesson-numbers = Draw with numbers instead
 lesson-at = at { $time } s [{ $unit }]
@@ -122,6 +125,29 @@ kind-quiz = Question
 
 language-en = English
 language-de = Deutsch
+
+## The end of a lesson
+
+end-title = What you predicted, and what happened
+end-route = The end of the route
+end-right =
+    { $all ->
+        [one] { $part } of 1 choice right
+       *[other] { $part } of { $all } choices right
+    }
+end-drawn =
+    { $all ->
+        [one] { $part } of 1 curve drawn
+       *[other] { $part } of { $all } curves drawn
+    }
+end-tasks =
+    { $all ->
+        [one] { $part } of 1 task passed
+       *[other] { $part } of { $all } tasks passed
+    }
+end-takeaway = What to take away
+end-next = Open lesson { $lesson }
+end-record = My record
 
 ## Keep and share
 
@@ -613,6 +639,7 @@ help-text = **Hold both back** and watch: under trajectory tracking, the left ro
 route-route = Route
 route-send = Open this route for all
 route-follow = Follow this route
+route-follow_name = Follow this route: { $title }
 route-stop = { $lesson }, steps { $first } to { $last }, { $minutes } min
 route-here = { $route }: part { $stop } of { $stops }, to step { $last }, { $minutes } min
 

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
@@ -26,7 +26,7 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     tab = Tab(server, context, draws=False)
     tab.press("Lessons")
-    tab.page.get_by_role("button", name="Open", exact=True).first.click()
+    tab.page.get_by_role("button", name="Open lesson 1: Path or timetable?", exact=True).click()
     wait_for_heading(tab, "Two robots, one circle")
     yield tab
     assert tab.errors == []
@@ -43,6 +43,13 @@ def positions(page: Page, *places: tuple[float, float]) -> list[tuple[float, flo
     box = page.locator("canvas").first.bounding_box()
     assert box is not None
     return [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in places]
+
+
+def legend(tab: Tab) -> list[str]:
+    """What the legend of the chart with the prediction lists."""
+    tab.page.locator(".u-label", has_text="you").wait_for()
+    chart = tab.page.locator(".uplot").filter(has_text="you").first
+    return chart.locator(".u-label").all_inner_texts()
 
 
 def test_only_the_controls_of_the_step_are_shown(tab: Tab) -> None:
@@ -67,27 +74,25 @@ def test_a_prediction_is_sketched_before_anything_happens(tab: Tab) -> None:
         pass
     tab.page.get_by_text("Draw again, or commit").wait_for()
     tab.press("Commit to this prediction")
+    act = tab.button("Let it happen")
+    expect(act).to_be_in_viewport()
+    assert legend(tab) == ["you"]
     answer = wait_for(tab.lab.lessons.answer)
     assert len(answer.times) > 4 and 0 < min(answer.times) < 3 < 5 < max(answer.times)
     assert max(answer.values) > 1.3 * answer.values[0] and max(answer.values) > answer.values[-1]
 
 
 def test_the_result_is_plotted_on_the_same_axes(tab: Tab) -> None:
-    tab.press("Next")
+    tab.press("Let it happen")
     wait_for_heading(tab, "Held from 3 s to 5 s")
+    wait_for(lambda: tab.lab.lessons.playing)
     assert tab.page.get_by_text("Four arches").count() == 0  # not told before it has happened
     tab.ask(c.SetRate(4.0))
-    tab.press("Let it happen")
     wait_for(lambda: tab.lab.lessons.has_played())
     tab.page.get_by_text("Four arches, not one bump").wait_for()
     truth = tab.lab.lessons.notes.truths["1"]
     assert max(truth.tracker) > 40 > 3 > max(truth.follower)
-    for name in ("Tracker", "Follower", "you"):
-        assert (
-            tab.page.get_by_role("cell", name=name, exact=True)
-            .or_(tab.page.locator(".u-label", has_text=name))
-            .first.is_visible()
-        )
+    assert legend(tab) == ["Tracker", "Follower", "you"]
 
 
 def test_a_reload_in_the_middle_comes_back_to_the_step(tab: Tab) -> None:
@@ -131,13 +136,29 @@ def hold_for(tab: Tab, seconds: float) -> None:
     wait_for(lambda: not tab.session.grips.held)
 
 
+def test_finish_shows_own_curves_what_to_take_away_and_the_next_lesson(tab: Tab) -> None:
+    while not tab.lab.lessons.ended:
+        before = tab.lab.lessons.version
+        tab.page.keyboard.press("PageDown")
+        wait_for(lambda before=before: tab.lab.lessons.version != before)
+    wait_for_heading(tab, "What you predicted, and what happened")
+    expect(tab.page.get_by_text("What to take away")).to_be_in_viewport()
+    assert legend(tab) == ["Tracker", "Follower", "you"]
+    tab.page.get_by_text("1 of 1 curve drawn").wait_for()
+    tab.reload()
+    wait_for_heading(tab, "What you predicted, and what happened")
+    assert tab.button("Open lesson 1b: Let the clock wait").is_visible()
+    tab.press("Back")
+    wait_for_heading(tab, "Push it off, and let it come back")
+
+
 def test_the_free_lab_is_unchanged(tab: Tab) -> None:
     tab.page.get_by_role("button", name="Free lab").click()
-    tab.page.get_by_role("heading", name="Hold it yourself").wait_for(state="detached")
+    tab.page.get_by_role("heading", name="Push it off").wait_for(state="detached")
     wait_for(lambda: tab.lab.lessons.lesson is None)
     usual = tab.session.entry.lab
-    assert tab.session.parameters == replace(usual, **GENTLE)
+    wait_for(lambda: tab.session.parameters == replace(usual, **GENTLE))
     tab.press("Lessons")
-    tab.page.get_by_role("button", name="Continue").wait_for()
+    tab.page.get_by_role("button", name="Go on with lesson 1: ").wait_for()
     tab.page.get_by_text(re.compile("[12] of 3 tasks")).wait_for()
     tab.page.keyboard.press("Escape")

@@ -42,6 +42,15 @@ class CloseLesson(Command):
 
 
 @dataclass(frozen=True, slots=True)
+class FinishLesson(Command):
+    """Show the end of the open lesson."""
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.finish()
+
+
+@dataclass(frozen=True, slots=True)
 class GoToStep(Command):
     """Go to another step of the open lesson, `by` steps from the current one."""
 

@@ -282,3 +282,11 @@ def test_it_is_sent_as_it_was_when_it_was_asked_for(course: Course) -> None:
     assert "k7mf-2xqa-9tzr" in page.text and "30 mm at 2 s" in page.text
     (picture,) = page.pictures()
     assert strokes(picture, SELECTED.hex) == strokes(picture, VERMILLION.hex) == 1
+
+
+def test_what_to_take_away_is_told_to_whom_came_to_the_end(tmp_path: Path) -> None:
+    point = "Remember the path."
+    text = LESSON.replace("minutes = 1", f'minutes = 1\ntakeaway = ["{point}"]')
+    course = read(tmp_path, text)
+    assert point in page_of(course, {NAME: full()}).text
+    assert point not in page_of(course, {NAME: replace(full(), seen=7)}).text

@@ -94,6 +94,7 @@ LESSON_COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.OpenLesson: st.builds(c.OpenLesson, st.sampled_from(["", "hexapod"])),
     c.FollowRoute: st.builds(c.FollowRoute, st.sampled_from(["", "1-lab-90-minutes"])),
     c.CloseLesson: st.builds(c.CloseLesson),
+    c.FinishLesson: st.builds(c.FinishLesson),
     c.GoToStep: st.builds(c.GoToStep, st.integers(-3, 3)),
     c.Predict: st.builds(
         c.Predict, st.one_of(st.none(), INDICES), st.just((0.0, 1.0)), st.tuples(WILD, WILD)

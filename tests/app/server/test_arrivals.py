@@ -62,7 +62,7 @@ def test_silent_tabs_hold_no_thread_no_lab_and_no_place(lab: LabServer) -> None:
         newcomer.open()
         newcomer.read(lambda: newcomer.has_widget("Path"))
         insider.set("Lessons", True)
-        insider.read(lambda: insider.has_widget("Open"))
+        insider.read(lambda: insider.has_widget("Open lesson 1"))
         wait_for(lambda: len(lab._views) == 2)
         assert len(lab.sessions) == 2
         assert [is_closed(tab) for tab in tabs] == [True] * MOST_EACH + [False] * MOST_EACH

@@ -1,0 +1,52 @@
+"""What a sketched curve and the true ones say, in words: their peaks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from onpath.lessons.action_schema import RobotName
+from onpath.lessons.benches import ROLES
+from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.record import QUANTITIES
+from onpath.lessons.schema import Sketch
+from onpath.lessons.words import Words
+
+
+def number(value: float, words: Words) -> str:
+    """Format a number with three digits in the style of a language."""
+    text = f"{float(f'{value:.3g}') + 0.0:g}"
+    return text.replace("-", "−").replace(".", words("report.point"))
+
+
+def curve_words(
+    block: Sketch,
+    answer: Answer | None,
+    truth: Truth | None,
+    words: Words,
+    names: Mapping[RobotName, str],
+) -> str:
+    """The peaks of the sketch and of what happened; empty if there is neither.
+
+    Args:
+        names: of the robots.
+    """
+    unit, said = QUANTITIES[block.quantity], list[str]()
+    if answer is not None and answer.times:
+        value, time = _peak(answer.times, answer.values, words)
+        said.append(words("report.drawn", value=value, unit=unit, time=time))
+    if truth is not None:
+        peaks = list[str]()
+        for role in ROLES.values():
+            value, time = _peak(truth.times, getattr(truth, role), words)
+            peak = {"robot": names[role], "value": value, "unit": unit, "time": time}
+            peaks.append(words("report.peak", **peak))
+        said.append(words("report.happened", first=peaks[0], second=peaks[1]))
+    return " ".join(said)
+
+
+def _peak(times: tuple[float, ...], values: tuple[float, ...], words: Words) -> tuple[str, str]:
+    """The value furthest from zero and its time, formatted."""
+    at = int(np.argmax(np.abs(values)))
+    return number(values[at], words), number(times[at], words)
