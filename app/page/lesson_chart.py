@@ -7,6 +7,7 @@ import viser
 from viser import uplot
 
 from onpath.app.common.palette import OF_BENCH, SELECTED
+from onpath.app.page.plots import PADDING
 from onpath.lessons.benches import ROLES, robot_names
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
@@ -52,6 +53,7 @@ class PredictionChart:
             },
             legend=uplot.Legend(live=False),
             height=230,
+            padding=PADDING,
         )
 
     def show(self, truth: Truth | None) -> None:
