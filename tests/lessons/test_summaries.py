@@ -1,4 +1,4 @@
-"""What is read before a lesson gives none of its answers away; what is read after it is complete."""
+"""What is read before a lesson gives no answer away; what is read after it is complete."""
 
 from __future__ import annotations
 
