@@ -43,7 +43,7 @@ class Exporter:
 
     def picture(self) -> None:
         """Request a picture of the plots."""
-        self._ask("onpath.png", picture_file, in_words=True)
+        self._ask("onpath.png", picture_file, in_words=True, names_path=True)
 
     def recording(self) -> None:
         """Request a standalone page with the scene of the last seconds."""
@@ -121,7 +121,13 @@ class Exporter:
         if self._latest is not None:
             self._latest.cancel()
 
-    def _ask(self, name: str, make: Callable[..., bytes], in_words: bool = False) -> None:
+    def _ask(
+        self,
+        name: str,
+        make: Callable[..., bytes],
+        in_words: bool = False,
+        names_path: bool = False,
+    ) -> None:
         def start(lab: Lab) -> None:
             session, words = lab.session, lab.words
             history = session.history.copy()
@@ -130,7 +136,8 @@ class Exporter:
                 self._under_way = False
                 return
             what = session.entry.name, session.parameters, history
-            self._submit(name, words, make, *what, *[words.language] * in_words)
+            own = [words.language] * in_words + [session.editor.design.name] * names_path
+            self._submit(name, words, make, *what, *own)
 
         self._want(start)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib
@@ -10,8 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from onpath.app.common.palette import OF_BENCH, Colour, of_law
-from onpath.lessons.benches import bench_titles
+from onpath.app.common.palette import Colour, of_law
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.laws.registry import law_named
@@ -19,6 +19,10 @@ from onpath.models.studies.experiments import Experiment
 
 EXTRA = {"deflection": ("deflection of\nthe tip  [mm]", 1e3)}
 """Label and scale of those of `Robot.extra_fields` that are drawn."""
+STYLES = ("-", "--", ":")
+"""Of the first, second and third component of a quantity."""
+Quantity = Callable[[Trajectory], tuple[np.ndarray]]
+"""What of a run is drawn, shape (n, k)."""
 
 
 class ShownFigure(Figure):
@@ -37,7 +41,7 @@ def draw_experiment(experiment: Experiment, runs: list[Trajectory], path: Path) 
 
 def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     """Plot the end-point in output space, and distance, xi, eta, speed and torque over time."""
-    panels = _panels(level_set=any(run.level_set for run in runs))
+    panels = panels_of(level_set=any(run.level_set for run in runs))
     panels[1:1] = _extra_panels(experiment)
     figure = ShownFigure(figsize=(13, 2.1 * len(panels)), layout="constrained")
     axes = figure.subplot_mosaic([["space", name] for name, _, _ in panels], width_ratios=(1, 1.25))
@@ -45,7 +49,7 @@ def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     _draw_space(axes["space"], experiment, runs)
     for name, label, column in panels:
         for run in runs:
-            _draw_column(axes[name], run, of_law(run.controller), *column(run))
+            draw_column(axes[name], run, of_law(run.controller), *column(run))
         axes[name].set_ylabel(label)
         axes[name].grid(alpha=0.25)
         _shade_held(axes[name], runs)
@@ -62,35 +66,8 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(path, metadata=_reproducible(path), dpi=110)
 
 
-def draw_history(runs: dict[str, list[Trajectory]], words: Words = ENGLISH) -> bytes:
-    """Draw the lab's plots over the last minute as PNG.
-
-    Args:
-        runs: what each bench did under its control laws, one after the other, by bench.
-    """
-    panels = _panels(words, any(run.level_set for parts in runs.values() for run in parts))
-    figure = Figure(figsize=(11, 2.2 * len(panels)), layout="constrained")
-    axes = figure.subplots(len(panels), 1, sharex=True)
-    for axis, (_, label, column) in zip(axes, panels, strict=True):
-        for bench, parts in runs.items():
-            for run in parts:
-                _draw_column(axis, run, OF_BENCH[bench], *column(run))
-            for run in parts[1:]:
-                axis.axvline(run.t[0], color=OF_BENCH[bench].hex, linestyle=":", linewidth=1)
-        axis.set_ylabel(label)
-        axis.grid(alpha=0.25)
-    laws = {bench: tuple(run.controller for run in parts) for bench, parts in runs.items()}
-    for bench, title in bench_titles(laws, words).items():
-        axes[0].plot([], [], color=OF_BENCH[bench].hex, label=title)
-    axes[0].legend(loc="upper right")
-    axes[-1].set_xlabel("t  [s]")
-    file = io.BytesIO()
-    figure.savefig(file, format="png", dpi=110)
-    return file.getvalue()
-
-
-def _panels(words: Words = ENGLISH, level_set: bool = False):
-    """(axes name, label, run -> (values, lines' styles)) from top to bottom.
+def panels_of(words: Words = ENGLISH, level_set: bool = False) -> list[tuple[str, str, Quantity]]:
+    """Axes name, label and quantity of each panel, from top to bottom.
 
     Args:
         level_set: whether the first component of xi is in [m²].
@@ -111,7 +88,7 @@ def _shown_xi(run: Trajectory, level_set: bool) -> np.ndarray:
 
 
 def _extra_panels(experiment: Experiment):
-    """Panels, as in `_panels`, for what the robot has to plot besides what every robot has."""
+    """Panels, as in `panels_of`, for what the robot has to plot besides what every robot has."""
     robot, parameters = experiment.robot(), experiment.parameters
     names = [name for name, _ in robot.extra_fields if name in EXTRA]
 
@@ -134,9 +111,9 @@ def _wrapped(theta: np.ndarray) -> np.ndarray:
     return wrapped
 
 
-def _draw_column(axes: Axes, run: Trajectory, colour: Colour, values: np.ndarray) -> None:
-    styles = ("-", "--", ":")
-    for column, style in zip(values.T, styles, strict=False):
+def draw_column(axes: Axes, run: Trajectory, colour: Colour, values: np.ndarray) -> None:
+    """Plot the columns of values, shape (n, k), each in the style of `STYLES`."""
+    for column, style in zip(values.T, STYLES, strict=False):
         axes.plot(run.t, column, style, color=colour.hex, linewidth=1.5)
 
 

@@ -24,12 +24,14 @@ def csv_file(robot: str, parameters: Parameters, history: HistoryCopy) -> bytes:
     return csv_bytes(ROBOTS[robot].make(parameters), history.segments())
 
 
-def picture_file(robot: str, parameters: Parameters, history: HistoryCopy, language: str) -> bytes:
-    """The plots of the history as PNG."""
-    from onpath.app.exports.figures import draw_history  # only this file needs Matplotlib
+def picture_file(
+    robot: str, parameters: Parameters, history: HistoryCopy, language: str, path: str = "circle"
+) -> bytes:
+    """The plots of the history as PNG; `path` is the name of the present path."""
+    from onpath.app.exports.history_figure import draw_history  # only this file needs Matplotlib
 
     runs = replay(ROBOTS[robot].make(parameters), history.segments())
-    return draw_history(runs, Words(language))
+    return draw_history(runs, Words(language), parameters, robot, path)
 
 
 def film_file(robot: str, parameters: Parameters, history: HistoryCopy, language: str) -> bytes:

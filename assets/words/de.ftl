@@ -613,6 +613,16 @@ obstruction-start_off_moving = Start neben der Bahn, in Bewegung
 
 ## Das mitgenommene Bild
 
+figure-history = { $robot }, Bahn: { $path }. Die letzten { $seconds } s
+figure-xi_means = ξ: Abstand der Spitze von der Bahn, mit Vorzeichen; 0 auf der Bahn
+figure-level_set_means = ξ = s(y): eine Funktion, die auf der Bahn 0 ist
+figure-eta1_means = η₂¹ = θ: Ort des nächsten Punktes, längs der Bahn
+figure-eta2_means = η₂²: wie schnell sich dieser Ort längs der Bahn bewegt
+figure-u_means = u: Drehmoment jedes Motors
+figure-motor = Motor { $number }
+figure-component = Komponente { $number }
+figure-law = Wechsel des Regelgesetzes
+figure-held = festgehalten
 figure-distance =
     Abstand zur
     Bahn  [mm]

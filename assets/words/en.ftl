@@ -561,6 +561,16 @@ obstruction-start_off_moving = start beside the path, moving
 
 ## The exported picture
 
+figure-history = { $robot }, path: { $path }. The last { $seconds } s
+figure-xi_means = ξ: signed distance of the end-point from the path; 0 on the path
+figure-level_set_means = ξ = s(y): a function that is 0 on the path
+figure-eta1_means = η₂¹ = θ: place of the closest point, along the path
+figure-eta2_means = η₂²: how fast that place moves along the path
+figure-u_means = u: torque of each motor
+figure-motor = motor { $number }
+figure-component = component { $number }
+figure-law = change of law
+figure-held = held back
 figure-distance =
     distance to
     the path  [mm]

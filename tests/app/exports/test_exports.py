@@ -6,16 +6,19 @@ import io
 
 import numpy as np
 import pytest
+from matplotlib.legend import Legend
+from matplotlib.text import Text
 
-from onpath.app.exports.figures import draw_history
 from onpath.app.exports.files import csv_bytes
+from onpath.app.exports.history_figure import draw_history, held_times, history_figure
 from onpath.app.exports.recording import record_scene
 from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
+from onpath.lessons.words import Words, languages
 from onpath.models.closed_loop.trajectory import read_csv
 from onpath.models.control.benches import BENCHES
-from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, new_lab, replayed, run, y
+from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, finish, new_lab, replayed, run, store, y
 
 
 def watched(lab: Lab, frames: int) -> list[tuple[float, dict[str, dict[str, np.ndarray]]]]:
@@ -124,3 +127,41 @@ def test_picture_and_page_are_whole() -> None:
     page = record_scene(lab.session.robot, history)
     assert page.lstrip()[:15].lower() == b"<!doctype html>" and page.rstrip().endswith(b"</html>")
     assert len(page) < 3_000_000
+
+
+@pytest.mark.parametrize("language", languages())
+def test_the_picture_says_what_it_shows(language: str) -> None:
+    lab, words = new_lab(0.3), Words(language)
+    do(lab, c.SetParameter("K1", 650.0), c.SetParameter("payload", 0.1), c.Hold(True))
+    run(lab, 0.3)
+    do(lab, c.Hold(False), c.ChooseLaw("left", "waiting_clock"))
+    finish(store())
+    run(lab, 0.3)
+    session = lab.session
+    drawn = replay(session.robot, session.history.all())
+    figure = history_figure(drawn, words, session.parameters, "five_bar", "circle")
+    said = " ".join(text.get_text() for text in figure.findobj(match=Text))
+    assert (
+        words.get("path.circle", "circle") in said
+        and words.get("machine.five_bar.label", "") in said
+    )
+    assert "K1" in said and "= 650" in said and "= 0.1 kg" in said
+    assert "ξ" in said and "θ" in said and "η" in said
+    legends = [legend.get_texts() for legend in figure.findobj(match=Legend)]
+    marked = {text.get_text() for texts in legends for text in texts}
+    assert {words("figure.held"), words("figure.law"), words("figure.motor", number=2)} <= marked
+    styles = {line.get_linestyle() for axes in figure.axes for line in axes.lines}
+    legend_styles = {
+        line.get_linestyle() for each in figure.findobj(match=Legend) for line in each.get_lines()
+    }
+    assert styles <= legend_styles
+
+
+def test_a_hold_is_marked_for_as_long_as_it_was() -> None:
+    lab = new_lab(0.3)
+    do(lab, c.Hold(True))
+    run(lab, 0.2)
+    do(lab, c.Hold(False))
+    run(lab, 0.3)
+    ((begin, end),) = held_times(replayed(lab.session)[FOLLOWER])
+    assert begin == pytest.approx(0.3, abs=0.02) and end == pytest.approx(0.5, abs=0.02)

@@ -8,8 +8,8 @@ import io
 import numpy as np
 import pytest
 
-from onpath.app.exports.figures import draw_history
 from onpath.app.exports.files import csv_bytes
+from onpath.app.exports.history_figure import draw_history
 from onpath.app.exports.recording import record_scene
 from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c

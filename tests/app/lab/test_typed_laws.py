@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from onpath.app.classroom.mirror import Mirror
 from onpath.app.classroom.moment_check import read_moment
 from onpath.app.classroom.moment_of_lab import tell
-from onpath.app.exports.figures import draw_history
 from onpath.app.exports.files import csv_bytes
+from onpath.app.exports.history_figure import draw_history
 from onpath.app.exports.recording import record_scene
 from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c

@@ -1,0 +1,168 @@
+"""The picture of the lab's last minute: title, parameters, plots, and what their lines mean."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from textwrap import fill
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from onpath.app.common.palette import OF_BENCH
+from onpath.app.exports.figures import STYLES, Quantity, draw_column, panels_of
+from onpath.lessons.benches import bench_titles
+from onpath.lessons.words import ENGLISH, Words
+from onpath.models.closed_loop.trajectory import Trajectory
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameter_specs import Spec
+from onpath.models.systems.parameters import Parameters, specs
+
+ALWAYS = ("K1", "K2", "K3", "K4", "K5", "speed")
+"""Parameters that are told in any case; the others only if they are not those of a new lab."""
+WIDE = 150
+"""Characters in a line of parameters."""
+SMALL = 9.0
+"""Size of the type that explains [pt]."""
+MEANS = {
+    "xi": "figure.xi_means",
+    "eta1": "figure.eta1_means",
+    "eta2": "figure.eta2_means",
+    "u": "figure.u_means",
+    "level_set": "figure.level_set_means",
+}
+"""Message that explains a quantity's symbols, by panel."""
+GREY = "0.35"
+Runs = Mapping[str, Sequence[Trajectory]]
+"""What each bench did under its control laws, one after the other, by bench."""
+
+
+def draw_history(
+    runs: Runs,
+    words: Words = ENGLISH,
+    parameters: Parameters | None = None,
+    robot: str = "five_bar",
+    path: str = "circle",
+) -> bytes:
+    """The lab's plots over the last minute as PNG.
+
+    Args:
+        parameters: of now; None: they are not told.
+        robot, path: names of the robot and of the path of now.
+    """
+    figure = history_figure(runs, words, parameters, robot, path)
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=110)
+    return file.getvalue()
+
+
+def history_figure(
+    runs: Runs, words: Words, parameters: Parameters | None, robot: str, path: str
+) -> Figure:
+    """See `draw_history`."""
+    every = [run for parts in runs.values() for run in parts]
+    level_set = any(run.level_set for run in every)
+    panels = panels_of(words, level_set)
+    figure = Figure(figsize=(11, 2.3 * len(panels) + 0.6), layout="constrained")
+    axes = figure.subplots(len(panels), 1, sharex=True)
+    for axis, (name, label, column) in zip(axes, panels, strict=True):
+        count = _draw(axis, runs, column)
+        axis.set_ylabel(label)
+        axis.grid(alpha=0.25)
+        if name in MEANS:
+            said = words(MEANS["level_set" if name == "xi" and level_set else name])
+            axis.set_title(said, loc="left", fontsize=SMALL, color=GREY)
+        if count > 1:
+            each = "figure.motor" if name == "u" else "figure.component"
+            _add_styles(axis, [words(each, number=i + 1) for i in range(count)])
+    entry = ROBOTS[robot]
+    figure.suptitle(
+        words(
+            "figure.history",
+            robot=words.get(f"machine.{robot}.label", entry.label),
+            path=words.get(f"path.{path}", path),
+            seconds=f"{_span(every):.0f}",
+        ),
+        fontsize=15,
+    )
+    if parameters is not None:
+        told = fill(parameter_line(parameters, entry.lab, words), WIDE)
+        axes[0].set_title(told, loc="left", fontsize=SMALL, color=GREY)
+    axes[0].legend(handles=_legend(runs, words), loc="upper right", fontsize=SMALL)
+    axes[-1].set_xlabel("t  [s]")
+    return figure
+
+
+def parameter_line(parameters: Parameters, usual: Parameters, words: Words) -> str:
+    """The gains, the speed, and whatever else is not as in a new lab, in one line."""
+    known = specs(parameters)
+    names = [
+        name
+        for name in known
+        if name in ALWAYS or getattr(parameters, name) != getattr(usual, name)
+    ]
+    return ", ".join(
+        _written(name, known[name], getattr(parameters, name), words) for name in names
+    )
+
+
+def _written(name: str, spec: Spec, value: float | int | str, words: Words) -> str:
+    label = words.get(f"parameter.{name}.label", spec.label)
+    unit = words.get(f"parameter.{name}.unit", spec.unit)
+    if isinstance(value, str):
+        return f"{label}: {words.get(f'parameter.{name}.option.{value}', value)}"
+    return f"{label} = {float(value):.4g} {unit}".strip()
+
+
+def _span(runs: Sequence[Trajectory]) -> float:
+    """Duration of all runs together [s]."""
+    return max(float(run.t[-1]) for run in runs) - min(float(run.t[0]) for run in runs)
+
+
+def _draw(axis: Axes, runs: Runs, column: Quantity) -> int:
+    """Draw one quantity of all runs, holds and changes of law; returns how many lines each has."""
+    count = 1
+    for bench, parts in runs.items():
+        for run in parts:
+            drawn = column(run)
+            count = max(count, drawn[0].shape[1])
+            draw_column(axis, run, OF_BENCH[bench], *drawn)
+            for begin, end in held_times(run):
+                axis.axvspan(begin, end, color=OF_BENCH[bench].hex, alpha=0.08, linewidth=0)
+        for run in parts[1:]:
+            axis.axvline(run.t[0], color=OF_BENCH[bench].hex, linestyle="-.", linewidth=1)
+    return count
+
+
+def held_times(run: Trajectory) -> list[tuple[float, float]]:
+    """Beginning and end of each time in which the robot was held back [s]."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], run.held.astype(int), [0]])))
+    last = len(run.t) - 1
+    pairs = zip(edges[::2], edges[1::2], strict=True)
+    return [(float(run.t[begin]), float(run.t[min(end, last)])) for begin, end in pairs]
+
+
+def _add_styles(axis: Axes, names: list[str]) -> None:
+    """A legend of the styles of one robot's lines."""
+    lines = [
+        Line2D([], [], color=GREY, linestyle=style, label=name)
+        for style, name in zip(STYLES, names, strict=False)
+    ]
+    axis.legend(handles=lines, loc="upper right", fontsize=SMALL, ncols=len(lines))
+
+
+def _legend(runs: Runs, words: Words) -> list[Line2D | Patch]:
+    """The robots' colours, and what marks a hold and a change of law if there is any."""
+    laws = {bench: tuple(run.controller for run in parts) for bench, parts in runs.items()}
+    titles = bench_titles(laws, words)
+    found: list[Line2D | Patch] = [
+        Line2D([], [], color=OF_BENCH[bench].hex, label=title) for bench, title in titles.items()
+    ]
+    if any(len(parts) > 1 for parts in runs.values()):
+        found.append(Line2D([], [], color=GREY, linestyle="-.", label=words("figure.law")))
+    if any(run.held.any() for parts in runs.values() for run in parts):
+        found.append(Patch(color=GREY, alpha=0.2, linewidth=0, label=words("figure.held")))
+    return found
