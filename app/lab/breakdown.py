@@ -25,11 +25,18 @@ WELL = 1.0
 
 @dataclass
 class _Replay:
-    """A replay from `begin` to `end`, [s]; `larger` is the magnification to go back to."""
+    """A replay from `begin` to `end`, [s].
+
+    Attributes:
+        larger: the magnification to go back to.
+        running: whether time goes on afterwards.
+        elapsed: how long it has been shown [s].
+    """
 
     begin: float
     end: float
     larger: float
+    running: bool
     elapsed: float = 0.0
 
     @property
@@ -93,23 +100,30 @@ class Breakdown:
         stopped = _stopped(session)
         if not stopped or not len(session.history):
             raise CodedError("error.nothing_stopped")
-        if self._replay is not None:
-            self._end(session, self._replay)
+        self.interrupt(session)
         end = max(stopped)
         begin = max(end - SPAN, session.time - session.history.span())
-        self._replay = _Replay(begin, end, session.exaggeration)
+        self._replay = _Replay(begin, end, session.exaggeration, session.running)
         session.running, session.viewing = False, begin
         session.exaggeration = max(session.exaggeration, LARGER)
+
+    def interrupt(self, session: Session) -> bool:
+        """End a replay, and let time go on as before; returns whether there was one."""
+        if self._replay is None:
+            return False
+        session.viewing, session.running = None, self._replay.running
+        self._end(session, self._replay)
+        return True
 
     def _go_on(self, session: Session, replay: _Replay, seconds: float) -> bool:
         left = session.viewing != replay.time or session.running  # somebody looks at another time
         replay.elapsed += seconds
         session.viewing = session.viewing if left else replay.time
-        over = replay.elapsed > LASTS + RESTS
-        if left or over:
+        if left:
             self._end(session, replay)
-            session.viewing = None if over and not left else session.viewing
-        return left or over
+        elif replay.elapsed > LASTS + RESTS:
+            self.interrupt(session)
+        return self._replay is None
 
     def _end(self, session: Session, replay: _Replay) -> None:
         self._replay, session.exaggeration = None, replay.larger

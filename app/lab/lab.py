@@ -69,8 +69,8 @@ class Lab:
         session: the simulated lab.
         lessons: the user's progress through the lessons.
         script: player of the running script, or None.
-        message, message_level: message to the user, and "info", "warning", "error" or "stop":
-            the teacher has stopped the lab.
+        message, message_level: message to the user, and "info", "warning", "error", "replay": why
+            a robot has stopped is being shown, or "stop": the teacher has stopped the lab.
         law_refusals: why the law that was last typed for a bench was refused, by bench.
         shared: the last share code made.
         frozen: whether the teacher has stopped this lab.
@@ -133,6 +133,8 @@ class Lab:
                 if refusal := self._refusal(command):
                     self.show_message(self.words.sentence(refusal), "warning")
                     continue
+                if self.breakdown.interrupt(self.session):
+                    self.clear_message()
             self._apply(command)
         taken = perf_counter() - begun
         if not self.frozen:
@@ -223,8 +225,8 @@ class Lab:
     def clear_message(self) -> None:
         """Clear the message, or show again why robots are stopped."""
         self.show_message("")
-        for name in self.session.runs:
-            self._show_fault(name)
+        if said := self.fault_words():
+            self.show_message(said, "error")
 
     def remark(self, message: str) -> None:
         """Show a message, unless a robot is stopped, which is more important."""
@@ -237,18 +239,20 @@ class Lab:
         faults, refusals = self.session.faults, self.session.law_changes.refusals
         while refusals:
             self.show_message(self.words.sentence(refusals.pop(0)), "warning")
-        while faults:
-            self._show_fault(faults.pop(0))
+        if faults:
+            faults.clear()
+            self.show_message(self.fault_words(), "error")
 
-    def _show_fault(self, name: str) -> None:
-        fault = self.session.runs[name].diverged
-        if fault is None:
-            return
+    def fault_words(self) -> str:
+        """Which robot has stopped last, when and why; empty if none has."""
+        found = {n: r.diverged for n, r in self.session.runs.items() if r.diverged is not None}
+        if not found:
+            return ""
+        name, fault = max(found.items(), key=lambda each: each[1].time)
         titles = bench_titles(self.session.laws, self.words)
-        said = self.words(
+        return self.words(
             "say.stopped",
             robot=titles[name],
             time=f"{fault.time:.2f}",
             reason=self.words.sentence(fault.reason),
         )
-        self.show_message(said, "error")

@@ -274,8 +274,8 @@ class LessonPanel:
             self._button(run.words("lesson.finish"), c.FinishLesson(), None, viser.Icon.CHECK)
         else:
             unseen = step.script is not None and not run.has_played()
-            label, colour = run.words("lesson.next"), None
-            if run.waits or unseen or run.shows_next:
+            label, colour = run.words("lesson.next"), "gray" if run.shows_next else None
+            if run.waits or unseen:
                 colour = "gray"
                 label = run.words("lesson.skip" if run.waits else "lesson.next_unseen")
             self._button(label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)

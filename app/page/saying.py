@@ -60,11 +60,13 @@ class Saying:
         distances = [1e3 * view.distance for view in snapshot.robots.values()]
         said = _spoken(snapshot, captions, self._words) if self._wanted["speaks"] else ""
         stopped = bool(snapshot.stopped) and level == "error"
-        content = self._frame(level, running, snapshot.held, stopped).format(
+        plays = isinstance(snapshot, PageSnapshot) and snapshot.lesson.playing
+        remedy = _earlier_settings(snapshot, self._words) if stopped or level == "replay" else ""
+        content = self._frame(level, running, snapshot.held, stopped, plays).format(
             message=escape(snapshot.message),
             spoken=escape(said),
             summary=escape(self._summary),
-            earlier=escape(_earlier_settings(snapshot, self._words)) if stopped else "",
+            earlier=escape(remedy),
             number=self._summaries,
             tones=" ".join(f"{each:.1f}" for each in distances) if self._wanted["sounds"] else "",
         )
@@ -73,7 +75,7 @@ class Saying:
             update_gui(self._handle, "content", content)
 
 
-def _frame(words: Words, level: str, running: bool, held: bool, stopped: bool) -> str:
+def _frame(words: Words, level: str, running: bool, held: bool, stopped: bool, plays: bool) -> str:
     """Template of the element, with {name} for what changes often.
 
     Args:
@@ -81,9 +83,10 @@ def _frame(words: Words, level: str, running: bool, held: bool, stopped: bool) -
         running: whether the clock runs.
         held: whether Hold is on.
         stopped: whether the message says why a robot has stopped.
+        plays: whether a lesson is showing something, which a replay would interrupt.
     """
     shown = {"level": level, "running": running, "held": held, "stopped": stopped}
-    return render("panel/saying.html", **shown, words=words)
+    return render("panel/saying.html", **shown, plays=plays, words=words)
 
 
 def _spoken(snapshot: Snapshot, captions: dict[str, str], words: Words) -> str:

@@ -15,6 +15,12 @@ const boxesOverScene = (() => {
     return box;
   }
 
+  // Press a key of the lab.
+  function press(key) {
+    const code = { " ": "Space", Escape: key }[key] ?? `Key${key.toUpperCase()}`;
+    document.body.dispatchEvent(new KeyboardEvent("keydown", { key, code, bubbles: true }));
+  }
+
   // A button that presses a key of the lab, its [data-key].
   function button(className, key = "") {
     const made = document.createElement("button");
@@ -22,10 +28,8 @@ const boxesOverScene = (() => {
     made.className = className;
     made.dataset.key = key;
     made.addEventListener("click", () => {
-      const pressed = made.dataset.key;
-      const code = pressed === " " ? "Space" : `Key${pressed.toUpperCase()}`;
       made.blur();  // it may be about to go, and the focus with it
-      document.body.dispatchEvent(new KeyboardEvent("keydown", { key: pressed, code, bubbles: true }));
+      press(made.dataset.key);
     });
     return made;
   }
@@ -46,5 +50,5 @@ const boxesOverScene = (() => {
   }
 
   addEventListener("resize", place);
-  return { button, make, place };
+  return { button, make, place, press };
 })();

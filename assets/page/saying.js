@@ -9,11 +9,13 @@
   const text = document.createElement("span");
   const cross = document.createElement("button");
   const region = document.createElement("div");
-  const slowly = boxesOverScene.button("op-quiet", "p"), earlier = boxesOverScene.button("op-act", "e");
-  const acts = [slowly, earlier];
-  slowly.dataset.name = "slowly";
-  earlier.dataset.name = "earlier";
-  slowly.hidden = earlier.hidden = true;
+  const keys = { slowly: "p", end: "Escape", reset: "r", earlier: "e" };
+  const acts = Object.entries(keys).map(([name, key]) => {
+    const button = boxesOverScene.button(name === "earlier" ? "op-act" : "op-quiet", key);
+    button.dataset.name = name;
+    button.hidden = true;
+    return button;
+  });
   const box = boxesOverScene.make("div", "op-message", text, ...acts, cross);
   text.setAttribute("role", "status");
   cross.type = "button";

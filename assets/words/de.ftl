@@ -335,6 +335,8 @@ display-title = Sprache, Anzeige
 display-speaks = Sagen, was geschieht (für Bildschirmleser)
 display-sounds = Abstand als Ton: linker Roboter im linken Ohr, rechter im rechten
 breakdown-slowly = Langsam zeigen
+breakdown-end = Nicht weiter zeigen
+breakdown-reset = Zurücksetzen, sonst nichts
 breakdown-earlier = Zurücksetzen mit { $changes }
 summary-clock = Zeit { $time } Sekunden. Bahn: { $path }.
 summary-robot = { $robot }: { $now } Millimeter von der Bahn, höchstens { $most }, { $speed } Millimeter je Sekunde die Bahn entlang.
@@ -702,7 +704,7 @@ help-text =
 ## Was das Labor von selbst sagt
 
 say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen hilft.
-say-slowly = Die letzten Augenblicke, langsam; ein Glied, das sich biegt, ist { $larger }-fach gebogen gezeichnet.
+say-slowly = Du siehst die letzten Augenblicke, langsam; ein Glied, das sich biegt, ist { $larger }-fach gebogen gezeichnet.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.

@@ -283,6 +283,8 @@ display-title = Language, display
 display-speaks = Say what happens, for screen readers
 display-sounds = Distance as sound: left robot in the left ear, right robot in the right
 breakdown-slowly = Show it slowly
+breakdown-end = Stop showing it
+breakdown-reset = Reset as it is
 breakdown-earlier = Reset with { $changes }
 summary-clock = Time { $time } seconds. Path: { $path }.
 summary-robot = { $robot }: { $now } millimetres from the path, { $most } at most, { $speed } millimetres a second along it.
@@ -694,7 +696,7 @@ worksheet-learnt = What I thought before, and think now:
 ## What the lab says by itself
 
 say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset brings it back.
-say-slowly = Its last moments, slowly; a link that bends is drawn bent { $larger } times as much.
+say-slowly = You see its last moments, slowly; a link that bends is drawn bent { $larger } times as much.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, ViewportSize, expect
 
 from onpath.app.lab import commands as c
 from onpath.app.scene.stage_catalogue import HORIZONTAL, IN_PATH_PLANE
@@ -135,11 +135,45 @@ def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
     wait_for(lambda: tab.session.time > time + 1.5)
     tab.ask(c.SetParameter("alpha", 1.0))
     message = tab.page.locator("#op-message")
+    wait_for(lambda: tab.lab.breakdown.replaying)  # by itself
+    message.get_by_text("drawn bent 5 times as much").wait_for()
+    expect(message).to_contain_text(str(UNSTABLE))
+    expect(message.get_by_role("button", name="Reset as it is")).to_be_visible()
+    message.get_by_role("button", name="Stop showing it").click()
+    wait_for(lambda: not tab.lab.breakdown.replaying)
     message.get_by_role("button", name="Show it slowly").click()
     wait_for(lambda: tab.lab.breakdown.replaying)
-    message.get_by_text("drawn bent 5 times as much").wait_for()
+    tab.page.keyboard.press("Escape")
     wait_for(lambda: not tab.lab.breakdown.replaying)
+    expect(message.get_by_role("button", name="Show it slowly")).to_be_visible()
+    tab.settle()
+    assert not tab.lab.breakdown.replaying  # by itself once only
     message.get_by_role("button", name="Reset with α = 0.5").click()
     wait_for(lambda: asdict(tab.session.parameters)["alpha"] == 0.5)
     assert tab.errors == []
+    tab.page.context.close()
+
+
+def blow_up(tab: Tab) -> None:
+    """Make the actual tip the output of the flexible robot, until it has stopped."""
+    tab.ask(c.ChooseRobot("flexible"), c.SetParameter("law", "redefined"))
+    wait_for(tab.is_built)
+    tab.ask(c.SetRunning(True))
+    tab.ask(c.SetParameter("alpha", 1.0))
+    tab.page.locator("#op-message").get_by_role("button", name="Show it slowly").wait_for()
+
+
+def test_who_asks_for_less_motion_or_opens_the_page_later_is_offered_the_replay(
+    browser: Browser, server: LabServer
+) -> None:
+    window: ViewportSize = {"width": 1280, "height": 800}
+    tab = Tab(server, browser.new_context(viewport=window, reduced_motion="reduce"), draws=False)
+    blow_up(tab)
+    tab.settle()
+    assert not tab.lab.breakdown.replaying
+    tab.page.emulate_media(reduced_motion="no-preference")
+    tab.reload()
+    tab.page.locator("#op-message").get_by_role("button", name="Show it slowly").wait_for()
+    tab.settle()
+    assert not tab.lab.breakdown.replaying
     tab.page.context.close()

@@ -56,7 +56,8 @@ class ReplayBreakdown(Command):
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         lab.breakdown.begin(lab.session)
-        lab.show_message(lab.words("say.slowly", larger=f"{lab.session.exaggeration:g}"))
+        slowly = lab.words("say.slowly", larger=f"{lab.session.exaggeration:g}")
+        lab.show_message(f"{lab.fault_words()} {slowly}", "replay")
 
 
 @dataclass(frozen=True, slots=True)

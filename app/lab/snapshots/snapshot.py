@@ -227,7 +227,7 @@ class Snapshot:
         remedy: see `Breakdown.remedy`; empty if no robot is stopped.
         grabbed: bench of the robot whose end-point is being pulled, or None.
         message: message to the user (a divergence, a refusal), plain text, or "".
-        message_level: "info", "warning", "error" or "stop".
+        message_level: see `Lab`.
         note: remark on the scale of the drawing, or "".
         key: see `PageKey`.
         wall: a point of the wall's surface [m], and two unit vectors: along the wall in the path's

@@ -7,6 +7,7 @@ import pytest
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.breakdown import LARGER, LASTS, RESTS, SPAN
+from onpath.app.lab.commands import Freeze
 from onpath.app.lab.lab import Lab
 from tests.support.lab import FRAME, do, new_lab, run, take_snapshot
 
@@ -43,6 +44,53 @@ def test_the_last_moments_are_shown_slowly_and_larger(blown_up: Lab) -> None:
     assert any(f"{LARGER:g}" in note for note in notes)
     assert session.exaggeration == 1.0 and session.viewing is None
     assert lab.message == said
+
+
+def test_whatever_its_user_does_ends_it_and_time_goes_on(blown_up: Lab) -> None:
+    lab, session = blown_up, blown_up.session
+    said, running = lab.message, session.running
+    for command, then in (
+        (c.SelectPoint(None), running),
+        (c.SetRunning(), not running),
+        (c.SetParameter("K1", 300.0), running),
+    ):
+        session.running = running
+        do(lab, c.ReplayBreakdown())
+        run(lab, 0.5)
+        assert lab.message.startswith(said) and lab.message_level == "replay"
+        do(lab, command)
+        assert not lab.breakdown.replaying and session.exaggeration == 1.0
+        assert session.viewing is None and session.running is then
+        assert lab.message == said and lab.message_level == "error"
+    session.running = True
+    do(lab, c.ReplayBreakdown(), c.Reset())
+    assert not lab.breakdown.replaying and session.running and lab.message == ""
+
+
+def test_a_teacher_who_freezes_the_lab_stops_it_too(blown_up: Lab) -> None:
+    do(blown_up, c.ReplayBreakdown())
+    run(blown_up, 0.5)
+    shown = take_snapshot(blown_up, 1.0).time
+    do(blown_up, Freeze(True))
+    run(blown_up, 0.5)
+    assert take_snapshot(blown_up, 1.0).time == shown
+
+
+def test_time_goes_on_after_it_as_before(blown_up: Lab) -> None:
+    for running in (True, False):
+        blown_up.session.running = running
+        do(blown_up, c.ReplayBreakdown())
+        assert not blown_up.session.running
+        run(blown_up, LASTS + RESTS + 0.1)
+        assert not blown_up.breakdown.replaying and blown_up.session.running is running
+
+
+def test_the_message_names_the_robot_that_stopped_last(blown_up: Lab) -> None:
+    last = max(r.diverged.time for r in blown_up.session.runs.values() if r.diverged)
+    assert f"{last:.2f} s" in blown_up.message
+    said = blown_up.message
+    blown_up.clear_message()
+    assert blown_up.message == said
 
 
 def test_looking_elsewhere_ends_it(blown_up: Lab) -> None:
