@@ -168,4 +168,5 @@ def _structure(step: Step) -> tuple[object, ...]:
     texts = [block for block in step.blocks if isinstance(block, Text)]
     links = [link.actions for text in texts for link in text.links]
     kinds = [type(block) for block in blocks]
-    return step.kind, step.scene, step.script, tasks, kinds, right, drawn, told, links
+    shown = step.kind, step.optional, step.scene, step.script
+    return *shown, tasks, kinds, right, drawn, told, links

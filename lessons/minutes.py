@@ -2,7 +2,8 @@
 
 The sum of the words at 130 a minute, the runs at their own length, and a fixed time for whatever is
 drawn, chosen, answered or done. Folded texts, hints, and answers to options that are wrong are not
-counted: they need not be read. A formula has as many words as letters and numbers.
+counted: they need not be read. A formula has as many words as letters and numbers. The minutes of a
+lesson are those of its steps that are not optional; those of the others are given separately.
 """
 
 from __future__ import annotations
@@ -60,12 +61,23 @@ def step_minutes(step: Step) -> Minutes:
 def together(parts: Iterable[Minutes]) -> Minutes:
     """The sum of some durations."""
     columns = [(part.reading, part.runs, part.predictions, part.tasks) for part in parts]
-    return Minutes(*map(sum, zip(*columns, strict=True)))
+    return Minutes(*map(sum, zip(*columns, strict=True))) if columns else Minutes()
 
 
-def lesson_minutes(lesson: Lesson) -> int:
-    """Estimated duration of a lesson, in whole minutes."""
-    return max(1, round(together(map(step_minutes, lesson.steps)).total))
+def required_minutes(lesson: Lesson) -> Minutes:
+    """Estimated duration of a lesson without its optional steps."""
+    return together(step_minutes(step) for step in lesson.steps if not step.optional)
+
+
+def optional_minutes(lesson: Lesson) -> Minutes:
+    """Estimated duration of the optional steps of a lesson."""
+    return together(step_minutes(step) for step in lesson.steps if step.optional)
+
+
+def lesson_minutes(lesson: Lesson) -> tuple[int, int]:
+    """Whole minutes of a lesson, and those of its optional steps, which are not among them."""
+    optional = optional_minutes(lesson).total
+    return max(1, round(required_minutes(lesson).total)), round(optional)
 
 
 @singledispatch

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, get_args
 
@@ -13,6 +14,7 @@ from markupsafe import Markup
 
 from onpath.lessons import vocabulary
 from onpath.lessons.action_schema import Script, StepSetup
+from onpath.lessons.completeness import lacks
 from onpath.lessons.formulas import FormulaError, embedded, folded, reader, render
 from onpath.lessons.links import read_link
 from onpath.lessons.problems import LessonError, Problem
@@ -28,6 +30,7 @@ from onpath.lessons.schema import (
     Sketch,
     Step,
     StepKind,
+    StepMark,
     Text,
 )
 from onpath.lessons.task_schema import Task
@@ -36,7 +39,8 @@ from onpath.lessons.toml_blocks import read_checked, read_toml
 LARGEST = 1_000_000
 """Largest size of a lesson file, [B]."""
 KINDS: tuple[str, ...] = get_args(StepKind)
-FENCES = ("scene", "script", "predict", "task", "quiz")
+FENCES = ("step", "scene", "script", "predict", "task", "quiz")
+KNOWN = (*FENCES, "fold")
 HEADING = re.compile(r"(\w+):\s*(.+)")
 FOLD = re.compile(r"fold\b\s*(.*)")
 
@@ -51,12 +55,14 @@ class _Draft:
     blocks: list[Block]
     scene: StepSetup | None = None
     script: Script | None = None
+    optional: bool = False
     broken: bool = False  # whether one of its blocks could not be read
 
     def step(self) -> Step:
         kind: Any = self.kind
         blocks = tuple(self.blocks)
-        return Step(kind, self.title, self.line, blocks, self.scene, self.script)
+        parts = self.scene, self.script, self.optional
+        return Step(kind, self.title, self.line, blocks, *parts)
 
 
 def read_lesson(path: Path) -> Lesson:
@@ -133,9 +139,12 @@ class _Reader:
                 self._fence(drafts[-1], head.info.strip(), head.content, line + 1)
             elif head.type == "fence" and (fold := FOLD.fullmatch(head.info.strip())):
                 self._fold(drafts[-1], fold[1], head.content, line + 1)
+            elif head.type == "fence" and (near := get_close_matches(head.info, KNOWN, 1)):
+                self._complain(line, f"unknown block {head.info.strip()!r}: did you mean {near[0]}")
             else:
                 self._prose(drafts[-1], tokens, line)
-        self._complain_all(1, _missing(drafts))
+        broken = {draft.line for draft in drafts if draft.broken}
+        self._complain_all(1, lacks([draft.step() for draft in drafts], broken))
         return drafts
 
     def _begin(self, heading: str, line: int) -> _Draft:
@@ -150,7 +159,10 @@ class _Reader:
     def _fence(self, draft: _Draft, what: str, content: str, line: int) -> None:
         """Read a fenced block of TOML."""
         before = len(self._problems)
-        if what == "scene":
+        if what == "step":
+            mark = self._checked(content, line, StepMark, lambda _: ())
+            draft.optional = mark is not None and mark.optional
+        elif what == "scene":
             draft.scene = self._checked(content, line, StepSetup, self._scene_faults)
         elif what == "script":
             draft.script = self._checked(content, line, Script, self._script_faults)
@@ -283,26 +295,3 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
 
 def _quiz_faults(quiz: Quiz) -> Iterator[str]:
     return vocabulary.option_faults([option.right for option in quiz.options])
-
-
-def _missing(drafts: list[_Draft]) -> Iterator[str]:
-    """Problems of the lesson as a whole: missing kinds of steps, repeated ids, incomplete steps."""
-    kinds = [draft.kind for draft in drafts]
-    for kind in ("play", "predict", "run", "explain", "task"):
-        if kind not in kinds:
-            yield f"the lesson has no step `# {kind}: …`"
-    ids = [block.id for draft in drafts for block in draft.blocks if isinstance(block, Task)]
-    for repeated in {task for task in ids if ids.count(task) > 1}:
-        yield f"two tasks have the id {repeated!r}"
-    for draft, after in zip(drafts, [*drafts[1:], None], strict=False):
-        if draft.broken:
-            continue
-        has = any(isinstance(block, Choice | Sketch) for block in draft.blocks)
-        if draft.kind == "predict" and not has:
-            yield f"step {draft.title!r} at line {draft.line} has no prediction"
-        if draft.kind == "predict" and (after is None or after.kind != "run"):
-            yield f"step {draft.title!r} at line {draft.line}: a `run` step must follow"
-        if draft.kind == "run" and draft.script is None:
-            yield f"step {draft.title!r} at line {draft.line} has no script"
-        if draft.kind == "task" and not any(isinstance(b, Task) for b in draft.blocks):
-            yield f"step {draft.title!r} at line {draft.line} has no task"

@@ -93,6 +93,16 @@ class Text(msgspec.Struct, frozen=True):
 Block = Text | Choice | Sketch | Task | Quiz
 
 
+class StepMark(Data, frozen=True):
+    """What a block ```step says of its step.
+
+    Attributes:
+        optional: whether it is a side road, which may be left out.
+    """
+
+    optional: bool = False
+
+
 class Step(msgspec.Struct, frozen=True):
     """One page of a lesson.
 
@@ -100,6 +110,7 @@ class Step(msgspec.Struct, frozen=True):
         line: of the file at which it begins.
         scene: state of the lab at the beginning, or None for that of the step before.
         script: actions that the lab performs by itself, or None.
+        optional: whether it may be left out; the lesson's minutes and its end do not count it.
     """
 
     kind: StepKind
@@ -108,6 +119,7 @@ class Step(msgspec.Struct, frozen=True):
     blocks: tuple[Block, ...]
     scene: StepSetup | None = None
     script: Script | None = None
+    optional: bool = False
 
     def predictions(self) -> list[Prediction]:
         """The predictions of this step."""
@@ -170,3 +182,11 @@ class Lesson(msgspec.Struct, frozen=True):
     def tasks(self) -> list[Task]:
         """The tasks of all steps."""
         return [task for step in self.steps for task in step.tasks()]
+
+    def required_tasks(self) -> list[Task]:
+        """The tasks of all steps that are not optional."""
+        return [task for step in self.steps if not step.optional for task in step.tasks()]
+
+    def required_steps(self) -> int:
+        """Number of the last step that is not optional, from 1."""
+        return max((i for i, step in enumerate(self.steps, 1) if not step.optional), default=0)

@@ -74,8 +74,8 @@ def truth_of(lesson: str, step: int, ways: Iterable[Progress]) -> Truth | None:
 
 
 def tasks_passed(way: Progress, lesson: Lesson) -> tuple[int, int]:
-    """Number of passed tasks of a lesson, and number of all its tasks."""
-    tasks, passed = lesson.tasks(), _notes(way, lesson.name).tasks
+    """Number of passed tasks of a lesson, and number of its tasks, without the optional ones."""
+    tasks, passed = lesson.required_tasks(), _notes(way, lesson.name).tasks
     return sum(task.id in passed for task in tasks), len(tasks)
 
 

@@ -81,22 +81,27 @@ class LessonsCommand:
 
 
 def minutes_table(course: Course, steps: bool) -> str:
-    """A line per lesson, and if wanted per step, with the minutes and what takes them."""
-    from onpath.lessons.minutes import Minutes, step_minutes, together
+    """A line per lesson, and if wanted per step, with the minutes and what takes them.
+
+    Those of optional steps are not in the lesson's minutes; they stand in a column of their own.
+    """
+    from onpath.lessons.minutes import Minutes, optional_minutes, required_minutes, step_minutes
 
     def row(name: str, spent: Minutes, *rest: str) -> str:
         parts = (spent.total, spent.reading, spent.runs, spent.predictions, spent.tasks)
         return " ".join([f"{name:32.32s}", *(f"{part:7.1f}" for part in parts), *rest])
 
-    heads = "minutes", "reading", "runs", "predict", "do"
+    heads = "minutes", "reading", "runs", "predict", "do", "optional"
     lines = [" ".join([f"{'':32s}", *(f"{head:>7s}" for head in heads)])]
     for name, versions in course.lessons.items():
         lesson = course.lesson(name, "en")
-        spent = [step_minutes(step) for step in lesson.steps]
-        lines.append(row(name, together(spent), f" {','.join(versions):8s} {lesson.front.title}"))
-        for number, (step, each) in enumerate(zip(lesson.steps, spent, strict=True), 1):
-            if steps:
-                lines.append(row(f"  {number} {step.kind}: {step.title}", each))
+        more, tongues = optional_minutes(lesson).total, ",".join(versions)
+        optional = f"{more:8.1f}" if more else f"{'':8s}"
+        rest = f"{optional} {tongues:8s} {lesson.front.title}"
+        lines.append(row(name, required_minutes(lesson), rest))
+        for number, step in enumerate(lesson.steps if steps else (), 1):
+            marked = [" optional"] if step.optional else []
+            lines.append(row(f"  {number} {step.kind}: {step.title}", step_minutes(step), *marked))
     for name, route in course.routes.items():
         lines.append(f"{name:32.32s} {route.minutes:7.1f} route: {route.text(route.title, 'en')}")
     return "\n".join(lines)

@@ -10,7 +10,7 @@ from onpath.app.lab.step_truth import computed_truth
 from onpath.lessons.action_words import script_words
 from onpath.lessons.benches import robot_names
 from onpath.lessons.course import REFERENCE, Course, read_references
-from onpath.lessons.minutes import Minutes, step_minutes, together
+from onpath.lessons.minutes import Minutes, optional_minutes, required_minutes, step_minutes
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Block, Choice, Lesson, Quiz, Sketch, Step, Text
 from onpath.lessons.task_schema import Task
@@ -52,11 +52,18 @@ class TaughtStep:
 
 @dataclass(frozen=True, slots=True)
 class TaughtLesson:
-    """A lesson as taught; `number` as displayed, `minutes` of all steps together."""
+    """A lesson as taught.
+
+    Attributes:
+        number: as displayed.
+        minutes: of all steps together that are not optional.
+        optional: of the others together.
+    """
 
     number: str
     lesson: Lesson
     minutes: Minutes
+    optional: Minutes
     steps: list[TaughtStep]
 
     def asked(self, *kinds: str) -> list[AskedBlock]:
@@ -86,8 +93,8 @@ def taught_lesson(course: Course, folder: Path, name: str, words: Words) -> Taug
         TaughtStep(i + 1, step, step_minutes(step), _asked(lesson, i, solutions, words))
         for i, step in enumerate(lesson.steps)
     ]
-    total = together(step.minutes for step in steps)
-    return TaughtLesson(course.numbers()[name], lesson, total, steps)
+    spent = required_minutes(lesson), optional_minutes(lesson)
+    return TaughtLesson(course.numbers()[name], lesson, *spent, steps)
 
 
 def _asked(

@@ -94,6 +94,14 @@ class LessonState:
         """Whether the end of the open lesson is shown in place of a step."""
         return self.progress.ended and self.lesson is not None
 
+    def past_optional(self) -> int:
+        """Number of steps from an open optional one to the next that is not; 0 if there is none."""
+        lesson, index = self.lesson, self.index
+        if lesson is None or not lesson.steps[index].optional:
+            return 0
+        left = (i for i, step in enumerate(lesson.steps[index:]) if not step.optional)
+        return next(left, 0)
+
     def prediction(self) -> tuple[str, Prediction] | None:
         """Key and prediction of the open step, from this step or the previous one."""
         lesson = self.lesson

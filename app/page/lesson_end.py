@@ -55,8 +55,9 @@ class EndedPart:
         return [bool(answers.get(key, nothing).times) for key in asked]
 
     def passed(self) -> list[bool]:
-        """Whether each task of these steps is passed."""
+        """Whether each task of these steps is passed, without the optional ones."""
         steps = [self.chapter.lesson.steps[index] for index in self.steps]
+        steps = [step for step in steps if not step.optional]
         return [task.id in self.chapter.notes.tasks for step in steps for task in step.tasks()]
 
 

@@ -150,11 +150,12 @@ def route_line(run: LessonState) -> str:
 def entry(lesson: Lesson, run: LessonState, number: str) -> str:
     """One line of the lesson overview, with the name of the button that follows."""
     notes = run.progress.notes.get(lesson.name)
-    tasks = lesson.tasks()
+    tasks, (minutes, optional) = lesson.required_tasks(), lesson_minutes(lesson)
     done = sum(task.id in notes.tasks for task in tasks) if notes else 0
-    finished = notes is not None and notes.seen >= len(lesson.steps) and done == len(tasks)
+    finished = notes is not None and notes.seen >= lesson.required_steps() and done == len(tasks)
     facts = [
-        run.words("lesson.minutes", minutes=lesson_minutes(lesson)),
+        run.words("lesson.minutes", minutes=minutes),
+        *([run.words("lesson.minutes_optional", minutes=optional)] if optional else []),
         run.words("lesson.tasks", done=done, all=len(tasks)),
     ]
     if lesson.language != run.words.language:

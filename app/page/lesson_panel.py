@@ -279,12 +279,23 @@ class LessonPanel:
                 colour = "gray"
                 label = run.words("lesson.skip" if run.waits else "lesson.next_unseen")
             self._button(label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)
+            if step.optional:
+                self._add_way_past(run)
         lesson = run.lesson
         first = lesson is None or run.beside(-1) == (lesson.name, run.index)
         keys = ["back", "again", "close"][1 if first else 0 :]
         commands = {"back": c.GoToStep(-1), "again": c.BeginStepAnew(), "close": c.CloseLesson()}
         asked = {run.words(f"lesson.{key}"): commands[key] for key in keys}
         self._handles.append(add_buttons(self._gui, "", asked, self._post))
+
+    def _add_way_past(self, run: LessonView) -> None:
+        """A button that leads from an optional step to the next one that is not, or to the end."""
+        past, command = run.past_optional(), c.FinishLesson()
+        label = run.words("lesson.finish")
+        if past:
+            label = run.words("lesson.past_optional", step=run.index + 1 + past)
+            command = c.GoToStep(past)
+        self._button(label, command, "gray", viser.Icon.PLAYER_TRACK_NEXT)
 
     def _html(self, content: str) -> viser.GuiHtmlHandle:
         handle = self._gui.add_html(content)

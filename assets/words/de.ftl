@@ -65,6 +65,9 @@ event-law_any = ein anderes Regelgesetz wählen
 lesson-lessons = Lektionen
 lesson-choose = Lektionen: vorhersagen, probieren, sehen, erklären
 lesson-minutes = { $minutes } min
+lesson-minutes_optional = und { $minutes } min freiwillig
+lesson-optional = freiwillig
+lesson-past_optional = Die freiwilligen Schritte überspringen, zu Schritt { $step }
 lesson-tasks =
     { $all ->
         [one] { $done } von 1 Aufgabe
@@ -747,6 +750,7 @@ guide-goals = Danach können die Lernenden
 guide-misconception = Die Fehlvorstellung
 guide-timing = Schritt
 guide-minutes = Minuten
+guide-and_optional = und { $minutes } freiwillig
 guide-sketch = Vorhersage: eine Kurve
 guide-choice = Vorhersage
 guide-quiz = Frage

@@ -67,6 +67,9 @@ event-law_any = choose another law
 lesson-lessons = Lessons
 lesson-choose = Lessons: predict, try, see, explain
 lesson-minutes = { $minutes } min
+lesson-minutes_optional = and { $minutes } min optional
+lesson-optional = optional
+lesson-past_optional = Past the optional steps, to step { $step }
 lesson-tasks =
     { $all ->
         [one] { $done } of 1 task
@@ -665,6 +668,7 @@ guide-goals = Afterwards the students can
 guide-misconception = The misconception
 guide-timing = Step
 guide-minutes = Minutes
+guide-and_optional = and { $minutes } optional
 guide-sketch = Prediction: a curve
 guide-choice = Prediction
 guide-quiz = Question

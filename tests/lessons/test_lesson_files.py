@@ -70,6 +70,7 @@ def test_a_lesson_is_read(tmp_path: Path) -> None:
         ('kind = "bound"', 'kind = "bond"', "bond"),
         ("below = 5.0", "", "below or above"),
         ('answer = "yes", right = true', 'answer = "yes"', "one of them right"),
+        ("```quiz\n", "```quizz\n", "did you mean quiz"),
         ("(lab:K3=100)", "(lab:K3=1e9)", "K3"),
         ("(lab:K3=100)", "(lab:explode)", "explode"),
         ("(lab:K3=100)", "(http://example.org)", "https://"),
@@ -111,6 +112,26 @@ def test_a_fold_shows_its_title_and_keeps_the_rest(tmp_path: Path) -> None:
 def test_a_lesson_without_one_of_its_parts_is_refused(tmp_path: Path, kind: str) -> None:
     text = LESSON.replace(f"# {kind}: ", "# quiz: ")
     assert any(f"no step `# {kind}" in words for _, words in problems(write_lesson(tmp_path, text)))
+
+
+@pytest.mark.parametrize(
+    ("heading", "said"),
+    [
+        ("# task: Do\n", "no step `# task: …` that is not optional"),
+        ("# predict: Once more\n", "neither of them"),
+        ("# run: See\n", "neither of them"),
+    ],
+)
+def test_the_core_is_not_optional_and_a_prediction_is_shown_by_its_like(
+    tmp_path: Path, heading: str, said: str
+) -> None:
+    optional = "```step\noptional = true\n```\n"
+    text = LESSON.replace(heading, heading + optional, 1)
+    (found,) = problems(write_lesson(tmp_path, text))
+    assert said in found[1]
+    misspelt = text.replace("optional =", "optinal =")
+    ((line, words),) = problems(write_lesson(tmp_path, misspelt))
+    assert "`optinal`" in words and line == line_of("optinal", misspelt)
 
 
 def test_html_is_shown_as_it_is_typed(tmp_path: Path) -> None:

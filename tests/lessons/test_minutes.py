@@ -16,6 +16,8 @@ from onpath.lessons.minutes import (
     WORDS,
     Minutes,
     lesson_minutes,
+    optional_minutes,
+    required_minutes,
     step_minutes,
     together,
     word_count,
@@ -28,6 +30,9 @@ BEFORE = "Which one *waits*?"
 
 def spent(folder: Path, text: str = LESSON) -> Minutes:
     return together(map(step_minutes, read_lesson(write_lesson(folder, text)).steps))
+
+
+OPTIONAL = "```step\noptional = true\n```\n"
 
 
 @pytest.mark.parametrize(
@@ -62,9 +67,29 @@ def test_the_estimate_is_listed_and_on_the_card(
     write_lesson(tmp_path, LESSON.replace("minutes = 1", "minutes = 77"))
     course, found = read_course([tmp_path])
     lesson = course.lesson("01-a", "en")
-    assert found == [] and lesson_minutes(lesson) == round(spent(tmp_path).total)
-    assert f"{lesson_minutes(lesson)} min" in entry(lesson, LessonState(course), "1")
+    assert found == [] and lesson_minutes(lesson) == (round(spent(tmp_path).total), 0)
+    assert f"{lesson_minutes(lesson)[0]} min" in entry(lesson, LessonState(course), "1")
     assert run_command(["lessons", "list", str(tmp_path), "--steps"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert float(lines[1].split()[1]) == pytest.approx(spent(tmp_path).total, abs=0.051)
     assert len(lines) == 2 + len(lesson.steps)
+
+
+def test_optional_steps_are_counted_apart(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole = spent(tmp_path).total
+    write_lesson(tmp_path, LESSON.replace("# quiz: Say\n", f"# quiz: Say\n{OPTIONAL}"))
+    course, found = read_course([tmp_path])
+    lesson = course.lesson("01-a", "en")
+    last = step_minutes(lesson.steps[-1]).total
+    assert found == [] and lesson.steps[-1].optional and last > 0
+    assert required_minutes(lesson).total == pytest.approx(whole - last)
+    assert optional_minutes(lesson).total == pytest.approx(last)
+    assert "optional" in entry(lesson, LessonState(course), "1")
+    assert run_command(["lessons", "list", str(tmp_path), "--steps"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert float(lines[1].split()[1]) == pytest.approx(whole - last, abs=0.051)
+    assert [line.endswith(" optional") for line in lines[2:]] == [
+        step.optional for step in lesson.steps
+    ]
