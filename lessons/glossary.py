@@ -22,13 +22,13 @@ class Entry(Data, frozen=True):
         plain: the lessons' words.
         term: the field's.
         means: a sentence that says what it is.
-        lesson: number of the lesson that explains it.
+        lesson: number of the lesson that explains it, such as 4 or 4b.
     """
 
     plain: Said
     term: Said
     means: Said
-    lesson: Annotated[int, msgspec.Meta(ge=1)]
+    lesson: Annotated[str, msgspec.Meta(pattern=r"^[0-9]+[a-z]?$")]
 
 
 @cache

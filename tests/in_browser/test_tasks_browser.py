@@ -69,14 +69,16 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
         "carry": (Enter("K1", 1600), Enter("K2", 80), Enter("K5", 30), Wait(4)),
     },
     "04-across-and-along": {
-        "no-overshoot": (
-            *(Enter("K4", 100), Enter("K5", 20), RESET),
-            *(Key("w", 6), Wait(1), Key("x"), Wait(2)),
-        ),
         "rail": (Enter("K1", 1600), Enter("K2", 80), RESET, Key("w", 5), Wait(2), Key("x")),
         "spring-board": (
             *(Enter("K1", 100), Enter("K2", 20), Enter("K4", 400), Enter("K5", 40)),
             *(RESET, Key("d", 4), Wait(1), Key("x")),
+        ),
+    },
+    "04b-poles-and-gains": {
+        "no-overshoot": (
+            *(Enter("K4", 100), Enter("K5", 20), RESET),
+            *(Key("w", 6), Wait(1), Key("x"), Wait(2)),
         ),
         "enough": (Enter("K1", 400), Enter("K2", 40), Wait(4)),
     },

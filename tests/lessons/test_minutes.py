@@ -9,7 +9,7 @@ import pytest
 from onpath.app.cli.main import run_command
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.page.lesson_html import entry
-from onpath.lessons.course import read_course
+from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.formulas import to_html
 from onpath.lessons.minutes import (
     MINUTES,
@@ -25,6 +25,8 @@ from onpath.lessons.minutes import (
 from onpath.lessons.parse import read_lesson
 from tests.support.lesson_texts import LESSON, write_lesson
 
+LONGEST = 25.0
+"""Minutes of a lesson at most, in each language."""
 BEFORE = "Which one *waits*?"
 
 
@@ -93,3 +95,14 @@ def test_optional_steps_are_counted_apart(
     assert [line.endswith(" optional") for line in lines[2:]] == [
         step.optional for step in lesson.steps
     ]
+
+
+def test_no_lesson_takes_more_than_25_minutes_without_its_optional_steps() -> None:
+    course, _ = read_course([BUILT_IN])
+    long = {
+        (name, language): required_minutes(lesson).total
+        for name, versions in course.lessons.items()
+        for language, lesson in versions.items()
+        if required_minutes(lesson).total > LONGEST
+    }
+    assert long == {}

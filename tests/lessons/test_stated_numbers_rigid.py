@@ -269,13 +269,13 @@ def test_all_pulls_decay_alike() -> None:
 
 
 def test_swing_is_the_same_with_and_without_the_trip() -> None:
-    stated = said("04", "It swings: #, +#, #, +#, # mm")
-    follower = shown("04", "Two things at once")["follower"]
+    stated = said("04b", "It swings: #, +#, #, +#, # mm")
+    follower = shown("04b", "Two things at once")["follower"]
     assert_stated(stated, [follower.at(2.0, "across"), *turning_points(follower.across[2000:])[:4]])
-    (same,) = said("04", "the two curves are the same to # mm")
+    (same,) = said("04b", "the two curves are the same to # mm")
     apart = {
         robot: float(np.abs(run.across[2000:3990] - run.across[6000:7990]).max())
-        for robot, run in shown("04", "Two things at once").items()
+        for robot, run in shown("04b", "Two things at once").items()
     }
     assert apart["follower"] < value(same) < apart["tracker"]
 
@@ -294,11 +294,13 @@ def test_any_function_that_is_zero_on_the_path_keeps_it_and_returns_in_its_own_w
 
 def test_lab_shows_the_poles_of_the_table() -> None:
     for gains, names in ((("400", "40"), ("K1", "K2")), (("25", "10"), ("K4", "K5"))):
-        table = said("04", f"| {names[0]} = {gains[0]}, {names[1]} = {gains[1]} | #, # |")
+        table = said("04b", f"| {names[0]} = {gains[0]}, {names[1]} = {gains[1]} | #, # |")
         shown_as = channels(FiveBarParameters(task="position", **PD))[names[0] == "K4"].pole_words()
         assert [value(pole) for pole in shown_as.split(", ")] == [value(pole) for pole in table]
-    fast, slow = said("04", "| K1 = 400, K2 = 200 | #, # |")[::-1]
-    sampled, exact = said("04", "a thousand times a second: # instead of #; the others are as here")
+    fast, slow = said("04b", "| K1 = 400, K2 = 200 | #, # |")[::-1]
+    sampled, exact = said(
+        "04b", "a thousand times a second: # instead of #; the others are as here"
+    )
     stated = channels(FiveBarParameters(K2=200, **PD))[0].pole_words().split(", ")
     assert exact == fast
     assert_stated([sampled, slow], [float(pole) for pole in stated])
@@ -306,34 +308,35 @@ def test_lab_shows_the_poles_of_the_table() -> None:
 
 
 def test_gain_and_coarse_encoders() -> None:
-    both = shown("04", "How much gain?")
+    both = shown("04b", "How much gain?")
     stated = said(
-        "04", "the follower is off by up to #, #, #, # mm; the tracker by #, #, #, #. (At # s, when"
+        "04b",
+        "the follower is off by up to #, #, #, # mm; the tracker by #, #, #, #. (At # s, when",
     )
     off = [both[name].largest(a + 0.5, a + 4) for name in ("follower", "tracker") for a in STAGES]
     assert_stated(stated[:8], off)
     first, *later = off[:4]
     still = said(
-        "04", "when the second stage begins, the follower is still # mm off from the first"
+        "04b", "when the second stage begins, the follower is still # mm off from the first"
     )
     assert_stated(still, [both["follower"].largest(4.0, 4.5)])
-    assert_stated(said("04", "In the first stage the follower is up to # mm off"), [first])
-    assert_stated(said("04", "with K1 = 100 it was # mm off"), [first])
-    assert_stated(said("04", "For one stage: # mm. Then # mm and # mm."), later)
-    assert_stated(said("04", "Yes: #, then #, # and # mm. Between"), [first, *later])
-    assert_stated(said("04", "The follower was #, # and # mm off."), later)
+    assert_stated(said("04b", "In the first stage the follower is up to # mm off"), [first])
+    assert_stated(said("04b", "with K1 = 100 it was # mm off"), [first])
+    assert_stated(said("04b", "For one stage: # mm. Then # mm and # mm."), later)
+    assert_stated(said("04b", "Yes: #, then #, # and # mm. Between"), [first, *later])
+    assert_stated(said("04b", "The follower was #, # and # mm off."), later)
 
 
 def test_what_a_step_of_the_encoder_looks_like() -> None:
     step, parameters = TURN / 500, FiveBarParameters()
     held_for = parameters.encoder_filter + 1 / parameters.control_rate
     jump = step / held_for
-    stated = said("04", "looks like a jump of # mrad in # ms, # rad/s")
+    stated = said("04b", "looks like a jump of # mrad in # ms, # rad/s")
     assert_stated(stated, [1e3 * step, 1e3 * held_for, jump])
-    stated = said("04", "Link 1 is # m long, so that is # m/s at the end-point")
+    stated = said("04b", "Link 1 is # m long, so that is # m/s at the end-point")
     assert_stated(stated, [0.2, 0.2 * jump])
     for gain in (40, 200):
-        (asked,) = said("04", f"#\\ \\mathrm{{m/s^2}} & K_2 = {gain}\\")
+        (asked,) = said("04b", f"#\\ \\mathrm{{m/s^2}} & K_2 = {gain}\\")
         assert_stated([asked], [gain * 0.2 * jump])
 
 
@@ -347,7 +350,7 @@ def test_gain_at_rest(place: str) -> None:
     off = [both["follower"].largest(4, 8) for both in rest]
     torque = [float(both["follower"].torque[4000:].max()) for both in rest]
     stated = said(
-        "04",
+        "04b",
         f"at θ = {place}: off by | # mm | # mm | # mm | "
         "| … and torque up to | # N m | # N m | **# N m**",
     )

@@ -105,8 +105,8 @@ def test_times_go_on_through_a_reset(tmp_path: Path, capsys: Capture) -> None:
     ("arguments", "said"),
     [
         (["01-pat-or-timetable", "1"], "did you mean 01-path-or-timetable"),
-        (["1", "99"], "has steps 1 to 10"),
-        (["1", "0"], "has steps 1 to 10"),
+        (["1", "99"], "has steps 1 to 11"),
+        (["1", "0"], "has steps 1 to 11"),
         (["99", "1"], "unknown lesson '99'"),
     ],
 )
