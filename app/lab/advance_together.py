@@ -7,9 +7,9 @@ been simulated, together with those of all other labs.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.models.arrays import Array
@@ -26,8 +26,7 @@ from onpath.models.systems.robots import Robot
 DISTANCE_INTERVAL = 4  # rows between evaluations of the distance, where the loop does not log it
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Ticks:
+class Ticks(Struct, frozen=True, eq=False):
     """The ticks that a lab needs.
 
     Attributes:

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from onpath.app.lab.segments import HistoryCopy, HistoryFrame, Segment, segment_at
 
@@ -68,12 +68,14 @@ class History:
             self.settle()
 
     def settle(self) -> None:
-        """Store the buffered frames, before anything changes that the samples depend on."""
-        if self._waiting:
-            with self._lock:
-                frames, self._waiting = self._waiting, []
-                if frames:  # no other thread has stored them
-                    self._put(frames)
+        """Store the buffered frames, before anything changes that the samples depend on.
+
+        If another thread is storing them, this waits for it.
+        """
+        with self._lock:
+            frames, self._waiting = self._waiting, []
+            if frames:
+                self._put(frames)
 
     def _put(self, frames: Sequence[HistoryFrame]) -> None:
         self._list, samples = None, self._sample(frames)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from operator import is_
+
+from msgspec import Struct
 
 from onpath.app.lab.advance_together import Ticks
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
@@ -18,8 +19,7 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class FramePart:
+class FramePart(Struct, frozen=True, eq=False):
     """Some ticks with the same inputs.
 
     Attributes:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from operator import is_
 
 import numpy as np
+from msgspec import Struct
 
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.paths.curves import Curve
@@ -94,9 +95,8 @@ class Instant:
     sample: np.ndarray
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class HistoryFrame:
-    """One simulated frame.
+class HistoryFrame(Struct, frozen=True, eq=False):
+    """One simulated frame. A msgspec struct, since those are made in a tenth of the time.
 
     Attributes:
         time: at the beginning, [s].

@@ -108,7 +108,7 @@ class Session:
         If that has the same states, both go on from the present one; otherwise they start anew.
         """
         if self.robot.extra_fields:
-            self.history.settle()  # its samples depend on the parameters
+            self.history.settle()  # the samples depend on the parameters
         rise = rise_of(parameters)
         if rise != self.editor.rise:
             self.editor.raise_to(rise)
@@ -118,6 +118,7 @@ class Session:
         robot = self.entry.make(parameters)
         if robot is self.robot:
             return
+        self.history.settle()
         self.robot = self.editor.robot = robot
         if not self.entry.keeps_states(before, parameters):
             self._restart()
@@ -131,6 +132,7 @@ class Session:
         return Belongings(self.parameters, self.editor, start, self.wall)
 
     def _set_up(self, entry: RobotEntry) -> None:
+        self.history.settle()  # a page that is being built in another thread reads it, too
         self.entry = entry
         parameters, editor, start, wall = self.earlier.get(entry.name, Belongings(entry.lab))
         self.parameters: Parameters = parameters

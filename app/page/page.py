@@ -144,7 +144,7 @@ class Page:
         self._overlays = Overlays(*drawn, *how)
         self._parts: list[Part] = []
         self._client.gui.add_html(render("panel/page.html", words=words))
-        self._saying = Saying(self._client.gui, words, self._wanted)
+        self._saying = Saying(self._client.gui, words, self._wanted, self._scene.captions)
         self._parts.append(self._saying)
         self._build_panels(first, words, post)
         own = {"view": self.reset_view, "summary": self._saying.ask_summary}

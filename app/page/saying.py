@@ -30,6 +30,7 @@ class Saying:
 
     Args:
         wanted: the browser's `Preferences`.
+        captions: of the scene, which follows each snapshot first.
     """
 
     def __init__(
@@ -37,11 +38,12 @@ class Saying:
         gui: viser.GuiApi,
         words: Words,
         wanted: Mapping[str, bool],
+        captions: Captions,
     ) -> None:
         self._words, self._wanted = words, wanted
-        self._captions = Captions(words)
+        self._captions = captions
         self._handle = gui.add_html("")
-        self._shown = ""
+        self._shown: tuple[object, ...] = ()
         self._asked, self._summaries, self._summary = False, 0, ""
         self._frame = lru_cache(maxsize=16)(partial(_frame, words))
 
@@ -53,26 +55,28 @@ class Saying:
         """Say what a snapshot says; sends nothing if that has been said."""
         level = snapshot.message_level if snapshot.message else ""
         running = snapshot.running and level != "stop"
-        captions = self._captions.of(snapshot)
+        captions = self._captions.shown
         if self._asked and isinstance(snapshot, PageSnapshot):
             self._asked, self._summaries = False, self._summaries + 1
             self._summary = summary(snapshot, captions, self._words)
-        distances = [1e3 * view.distance for view in snapshot.robots.values()]
-        said = _spoken(snapshot, captions, self._words) if self._wanted["speaks"] else ""
         stopped = bool(snapshot.stopped) and level == "error"
         plays = isinstance(snapshot, PageSnapshot) and snapshot.lesson.playing
+        frame = self._frame(level, running, snapshot.held, stopped, plays)
         remedy = _earlier_settings(snapshot, self._words) if stopped or level == "replay" else ""
-        content = self._frame(level, running, snapshot.held, stopped, plays).format(
+        speaks, tones = self._wanted["speaks"], _tones(snapshot) if self._wanted["sounds"] else ""
+        shown = frame, snapshot.message, captions, snapshot.laws, speaks, tones, remedy
+        if (*shown, self._summaries) == self._shown:
+            return
+        self._shown = *shown, self._summaries
+        content = frame.format(
             message=escape(snapshot.message),
-            spoken=escape(said),
+            spoken=escape(_spoken(snapshot, captions, self._words)) if speaks else "",
             summary=escape(self._summary),
             earlier=escape(remedy),
             number=self._summaries,
-            tones=" ".join(f"{each:.1f}" for each in distances) if self._wanted["sounds"] else "",
+            tones=tones,
         )
-        if content != self._shown:
-            self._shown = content
-            update_gui(self._handle, "content", content)
+        update_gui(self._handle, "content", content)
 
 
 def _frame(words: Words, level: str, running: bool, held: bool, stopped: bool, plays: bool) -> str:
@@ -87,6 +91,11 @@ def _frame(words: Words, level: str, running: bool, held: bool, stopped: bool, p
     """
     shown = {"level": level, "running": running, "held": held, "stopped": stopped}
     return render("panel/saying.html", **shown, plays=plays, words=words)
+
+
+def _tones(snapshot: Snapshot) -> str:
+    """The distances of all robots from the path, [mm]."""
+    return " ".join(f"{1e3 * view.distance:.1f}" for view in snapshot.robots.values())
 
 
 def _spoken(snapshot: Snapshot, captions: dict[str, str], words: Words) -> str:

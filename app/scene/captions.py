@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import hypot
 
 import numpy as np
 
@@ -23,16 +24,22 @@ class Captions:
 
     While a robot is held back, its caption has the largest distance since then: that of one that is
     torn off swings to and fro.
+
+    Attributes:
+        shown: the captions for the latest snapshot, by bench.
     """
 
     def __init__(self, words: Words) -> None:
         self._words = words
         self._before = dict[str, float]()  # `max_distance` when a robot was first seen held back
         self._largest = dict[str, float]()  # distance since then
+        self.shown = dict[str, str]()
 
-    def of(self, snapshot: Snapshot) -> dict[str, str]:
+    def follow(self, snapshot: Snapshot) -> dict[str, str]:
         """The captions for a snapshot, by bench; call it with one snapshot after the other."""
-        return {bench: self._of(bench, view, snapshot) for bench, view in snapshot.robots.items()}
+        views = snapshot.robots.items()
+        self.shown = {bench: self._of(bench, view, snapshot) for bench, view in views}
+        return self.shown
 
     def _of(self, bench: str, view: RobotView, snapshot: Snapshot) -> str:
         is_held = bench in snapshot.held_back
@@ -58,10 +65,10 @@ class Captions:
 
 def is_at_end(view: RobotView, path: np.ndarray) -> bool:
     """Whether a robot rests at an end of an open path; `path` are samples of it, shape (n, 3)."""
-    ends = path[[0, -1]]
-    if np.array_equal(*ends) or abs(view.speed) > STILL:
+    if abs(view.speed) > STILL:
         return False
-    return bool(np.linalg.norm(ends - view.end, axis=1).min() < NEAR)
+    ends = path[[0, -1]]
+    return not np.array_equal(*ends) and bool(np.linalg.norm(ends - view.end, axis=1).min() < NEAR)
 
 
 def _kind(view: RobotView, is_held: bool, distance: float) -> str:
@@ -69,7 +76,7 @@ def _kind(view: RobotView, is_held: bool, distance: float) -> str:
     by_clock, is_off = law_named(view.law).by_clock, distance >= OFF
     if is_held:
         return ("torn_off" if is_off else "held") if by_clock else "off" if is_off else "waits"
-    if np.linalg.norm(view.force) > PULLED:
+    if hypot(*view.force.tolist()) > PULLED:
         return "pulled"
     if not is_off:
         return ""

@@ -77,7 +77,8 @@ class ForceLabel:
     """
 
     def __init__(self, scene: viser.SceneApi, stage: Stage, bench: str, words: Words) -> None:
-        self._words, self._at = words, np.full(3, np.inf)
+        self._words = words
+        self._at: np.ndarray | None = None
         self._base = stage.bases[bench]
         self._within = stage.low[0] + WIDE / 2, stage.high[0] - WIDE / 2
         self._text = ChangingText(scene, f"/force_labels/{bench}", np.zeros(3))
@@ -86,9 +87,9 @@ class ForceLabel:
         """Show a force [N] on an end-point at `tip`, shape (3,), in the robot's frame [m]."""
         if force <= FORCE_SHOWN:
             self._text.show("")
-            self._at = np.full(3, np.inf)
+            self._at = None
             return
-        if not np.linalg.norm(tip - self._at) < STAYS:
+        if self._at is None or np.linalg.norm(tip - self._at) >= STAYS:
             self._at = tip.copy()
             low, high = path[:, 2].min(), path[:, 2].max()
             above = tip[2] > (low + high) / 2

@@ -7,6 +7,7 @@ from functools import lru_cache
 from math import prod, sqrt
 
 import numpy as np
+from msgspec import Struct
 
 from onpath.app.lab.snapshots.snapshot import Counts, Motion
 from onpath.app.scene.stage import Stage
@@ -18,8 +19,7 @@ OF_BARS = ("bars", "quaternions", "lengths")
 """Fields with one row for each bar: first the links of all robots, then the pieces of strips."""
 
 
-@dataclass(frozen=True, slots=True)
-class Poses:
+class Poses(Struct, frozen=True, eq=False):
     """Poses of everything that moves, for all robots, in the world.
 
     Attributes:

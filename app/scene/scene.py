@@ -59,6 +59,7 @@ class Scene:
 
     Attributes:
         mouse: what the mouse does on end-points and control points.
+        captions: what each robot is doing, as shown over it.
     """
 
     def __init__(
@@ -81,7 +82,7 @@ class Scene:
         )
         self._start = StartNodes(client.scene, self._origins, pointer, hooks.on_start_moved)
         self._freehand: Freehand | None = None
-        self._captions = Captions(words)
+        self.captions = Captions(words)
         self._zone: viser.BatchedMeshHandle | None = None
 
     @property
@@ -122,7 +123,7 @@ class Scene:
 
     def update_traces(self, snapshot: Snapshot) -> None:
         """Redraws traces, titles, markers, force labels and a stroke; called at 5 to 10 Hz."""
-        self._titles.show(snapshot.laws, self._captions.of(snapshot))
+        self._titles.show(snapshot.laws, self.captions.follow(snapshot))
         self._machine.update_laws(snapshot.laws)
         self._machine.update_traces([snapshot.robots[bench] for bench in self._benches])
         self._contacts.update(snapshot)

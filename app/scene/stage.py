@@ -249,7 +249,7 @@ class Titles:
 
     def __init__(self, scene: viser.SceneApi, stage: Stage, words: Words = ENGLISH) -> None:
         self._words, self._laws = words, dict[str, str]()
-        self._titles = dict[str, str]()
+        self._titles, self._captions = dict[str, str](), dict[str, str]()
         self._texts = {
             bench: [
                 ChangingText(scene, f"/titles/{bench}/{part}", base + stage.title, size, below)
@@ -258,8 +258,11 @@ class Titles:
             for bench, base in stage.bases.items()
         }
 
-    def show(self, laws: dict[str, str], captions: Mapping[str, str]) -> None:
+    def show(self, laws: dict[str, str], captions: dict[str, str]) -> None:
         """Show law and caption of each bench; sends nothing if they are shown already."""
+        if laws == self._laws and captions == self._captions:
+            return
+        self._captions = captions
         if laws != self._laws:
             self._laws, self._titles = laws, bench_titles(laws, self._words)
         for bench, title in self._titles.items():

@@ -79,10 +79,10 @@ class StartNodes:
 
     def draw(self, start: np.ndarray) -> None:
         """Draw a start, see `Snapshot.start`; sends nothing if it is drawn already."""
-        if start is self._start or not len(start) or np.array_equal(start, self._start):
+        if start is self._start or not len(start):
             return
-        self._start = start
-        if self._ball is not None and self._arrows is not None:
+        is_drawn, self._start = np.array_equal(start, self._start), start
+        if not is_drawn and self._ball is not None and self._arrows is not None:
             update_node(self._ball, batched_positions=self._places)
             update_node(self._arrows, points=self._ways)
             if self._arrows.visible != self._moves:

@@ -53,9 +53,11 @@ class WallNodes:
 
     def draw(self, wall: np.ndarray) -> None:
         """Draw a wall, see `Snapshot.wall`; sends nothing if it is drawn already."""
-        if wall is self._wall or np.array_equal(wall, self._wall):
+        if wall is self._wall:
             return
-        self._wall = wall
+        is_drawn, self._wall = np.array_equal(wall, self._wall), wall
+        if is_drawn:
+            return
         if not len(wall):
             for node in self._nodes:
                 node.remove()

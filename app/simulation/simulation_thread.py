@@ -17,10 +17,12 @@ from onpath.app.common.error_log import log_error
 from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import DisplayRate
+from onpath.models.systems.parameters import TICK
 
 log = logging.getLogger(__name__)
 
-FRAME = 1 / 60  # [s]
+FRAMES = 60  # per second
+FRAME = 1 / FRAMES  # [s]
 FORGETTING = 1 / 600  # low-pass gain of the computing time of a lab's commands, per frame
 FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; when further behind, the schedule restarts
@@ -84,16 +86,20 @@ class ScheduledLab:
         self.used += taken - FORGETTING * self.used
         return taken
 
-    def frame(self, seconds: float) -> Frame:
-        """Simulate a frame of this length; see `advance_together`.
+    def frame(self, seconds: float, length: float = FRAME) -> Frame:
+        """Simulate a frame; see `advance_together`.
 
         Simulated time is paused while nobody looks.
+
+        Args:
+            seconds: that have passed since the last one, for the measured speed.
+            length: of the frame at the usual rate, see `frame_length`, [s].
         """
         session = self.session
         if self.view is None:
             return
         before = session.time
-        yield from self.lab.frame(session.rate * FRAME)
+        yield from self.lab.frame(session.rate * length)
         if session.running and not self.lab.frozen:
             self._simulated += session.time - before - self._simulated * FADING
             self._passed += seconds - self._passed * FADING
@@ -188,11 +194,21 @@ class SimulationThread:
         """
         labs = self._labs
         apply_commands(labs)
-        advance_together([lab.frame(seconds) for lab in labs], log_error)
+        length = frame_length(count)
+        advance_together([lab.frame(seconds, length) for lab in labs], log_error)
         begun = self._clock()
         _do(lambda lab: lab.show(count, stride), labs)
         _do(ScheduledLab.send, labs)
         return self._clock() - begun
+
+
+def frame_length(count: int) -> float:
+    """Length of the frame with this number, in whole ticks, [s]; 60 frames are a second.
+
+    Labs of the usual rate thus always need equally many ticks, so that they are advanced together.
+    """
+    end, begin = ((number * round(1 / TICK)) // FRAMES for number in (count + 1, count))
+    return (end - begin) * TICK
 
 
 def apply_commands(labs: list[ScheduledLab]) -> None:

@@ -28,6 +28,8 @@ ADVANCED = ["speed_profile", "profile_period", "ramp", "task", "target"]
 ADVANCED += ["K3", "tracker_integral", "K4", "across"]
 
 LAST_OF_MODEL = "error_b2"
+Channels = dict[str, tuple[Channel, ...] | Message]
+"""The channels of laws, or why there are none, by whose they are."""
 
 
 class GainsPanel:
@@ -70,8 +72,9 @@ class GainsPanel:
         self._shown = now
         for widgets in self._widgets:
             widgets.follow(snapshot)
-        self._settling.content = "\n\n".join(lines_of_poles(snapshot, self._words))
-        self._picture.content = pole_picture(_channels(snapshot, self._words), self._words)
+        channels = channels_by_owner(snapshot, self._words)
+        self._settling.content = "\n\n".join(lines_of_poles(channels, self._words))
+        self._picture.content = pole_picture(channels, self._words)
 
 
 def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
@@ -81,23 +84,21 @@ def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
     on_press(button, lambda: post(Identify()))
 
 
-def _channels(snapshot: PageSnapshot, words: Words) -> dict[str, tuple[Channel, ...] | Message]:
-    """What the laws' channels do by whose they are, those with the same gains once."""
-    found, titles = (
-        dict[str, tuple[Channel, ...] | Message](),
-        bench_titles(snapshot.run.laws, words),
-    )
+def channels_by_owner(snapshot: PageSnapshot, words: Words) -> Channels:
+    """The channels of the laws by whose they are, those with the same gains once."""
+    found, titles = Channels(), bench_titles(snapshot.run.laws, words)
+    parameters = parameters_of(snapshot)
     for bench, law in snapshot.run.laws.items():
-        channels = channels_of(law, parameters_of(snapshot), snapshot.places.of.get(bench))
+        channels = channels_of(law, parameters, snapshot.places.of.get(bench))
         own = bench in snapshot.places.of or is_text(law) or isinstance(channels, Message)
         found[titles[bench] if own else ""] = channels
     return found
 
 
-def lines_of_poles(snapshot: PageSnapshot, words: Words) -> list[str]:
+def lines_of_poles(found: Channels, words: Words) -> list[str]:
     """A line of Markdown for each channel of the laws, or why a law has none."""
     lines = list[str]()
-    for whose, channels in _channels(snapshot, words).items():
+    for whose, channels in found.items():
         if isinstance(channels, Message):
             lines.append(f"**{whose}:** {words.sentence(channels)}")
             continue

@@ -43,6 +43,7 @@ class LawPanel:
             use = partial(self._use, bench)
             self._boxes[bench] = OwnLawBox(gui, words, bench, self._laws[bench], use)
         self._just_changed: set[str] = set()
+        self._shown: tuple[dict[str, str], dict[str, str]] | None = None
         self._sentences = gui.add_html(self._said())
         about = gui.add_button(words("laws.about"), color="gray", icon=viser.Icon.HELP)
         on_menu_press(about, self._open_help)
@@ -55,6 +56,10 @@ class LawPanel:
         while the user goes on typing; only one that comes from elsewhere changes the box.
         """
         run, late, self._just_changed = snapshot.run, self._just_changed, set[str]()
+        now = None if late else (run.laws, run.law_refusals)
+        if now is not None and now == self._shown:
+            return
+        self._shown = now
         for bench, menu in self._menus.items():
             law = run.laws[bench]
             if law != self._laws[bench] and not self._was_asked(bench, law):

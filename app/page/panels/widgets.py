@@ -188,6 +188,7 @@ class ParameterWidgets:
     ) -> None:
         self._handles: dict[str, Any] = {}
         self._just_changed: set[str] = set()
+        self._followed: ParameterValues = {}
         self._post, self._words = post, words
         self._specs = specs(ROBOTS[first.key.robot].parameters)
         for name in names:
@@ -198,12 +199,15 @@ class ParameterWidgets:
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's values where they differ."""
         for name, handle in self._handles.items():
+            value = snapshot.parameters[name]
             if name in self._just_changed:
                 self._just_changed.discard(name)
-                continue
-            shown = self._shown(name, snapshot.parameters)
-            if handle.value != shown:
-                handle.value = shown
+                self._followed.pop(name, None)
+            elif value != self._followed.get(name):
+                self._followed[name] = value
+                shown = self._shown(name, snapshot.parameters)
+                if handle.value != shown:
+                    handle.value = shown
 
     def _change(self, name: str, value: Any) -> None:
         self._just_changed.add(name)

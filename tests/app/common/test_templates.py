@@ -28,6 +28,7 @@ from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.page import lesson_html, saying
 from onpath.app.page.panels.flexible_panel import alpha_bar
 from onpath.app.page.preferences import DEFAULTS
+from onpath.app.scene.captions import Captions
 from onpath.assets import asset_path
 from onpath.lessons.checks import Verdict
 from onpath.lessons.course import BUILT_IN, Course, read_course
@@ -163,7 +164,7 @@ def shown(words: Words, text: str) -> str:
     gui: Any = SimpleNamespace(add_html=lambda content: None)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(saying, "update_gui", lambda handle, name, content: sent.append(content))
-        saying.Saying(gui, words, DEFAULTS).follow(snapshot)  # type: ignore[arg-type]
+        saying.Saying(gui, words, DEFAULTS, Captions(words)).follow(snapshot)  # type: ignore[arg-type]
     return sent[0]
 
 

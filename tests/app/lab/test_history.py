@@ -17,6 +17,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.history import COARSE, LONGEST, MOST, RECENT, SECONDS, History
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.segments import HistoryFrame, Input, Inputs, Segment
+from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, RIGHT
@@ -344,3 +345,21 @@ def test_a_robot_that_had_diverged_stands_still_again_and_one_that_had_not_runs(
     assert (
         lab.session.runs[FOLLOWER].diverged is None and lab.session.runs[FOLLOWER].distance < 1e-3
     )
+
+
+@pytest.mark.parametrize("robot", ["flexible", "two_link_arm"])
+def test_a_page_may_be_built_while_the_robot_is_changed(
+    robot: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another thread reads the samples when the new robot is there and its run has not begun."""
+    lab = new_lab(0.1)
+    restart, seen = Session._restart, list[np.ndarray]()
+
+    def read_first(session: Session) -> None:
+        seen.append(session.history.samples(0.0, 1.0, 100)[1])
+        restart(session)
+
+    monkeypatch.setattr(Session, "_restart", read_first)
+    size = lab.session.sample_layout.size
+    do(lab, c.ChooseRobot(robot))
+    assert [samples.shape[2] for samples in seen] == [size] and len(seen[0])

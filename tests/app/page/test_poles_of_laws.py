@@ -9,7 +9,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page.panels.gains_panel import lines_of_poles
+from onpath.app.page.panels.gains_panel import channels_by_owner, lines_of_poles
 from onpath.lessons.words import Words
 from onpath.models.control.benches import LEFT, RIGHT
 from tests.support.lab import FRAME, do, new_lab, run
@@ -27,11 +27,16 @@ def taken_after(seconds: float, *commands: c.Command) -> tuple[PageSnapshot, Pag
     return first, take_page_snapshot(lab, 1.0, first)
 
 
+def lines(snapshot: PageSnapshot, words: Words) -> list[str]:
+    """What the panel says of the poles."""
+    return lines_of_poles(channels_by_owner(snapshot, words), words)
+
+
 @pytest.mark.parametrize("language", ["en", "de"])
 def test_each_law_has_its_own_poles_and_the_place_where_they_vary(language: str) -> None:
     words = Words(language)
     snapshot, _ = taken_after(0.0, c.SetParameter("tracker_integral", "on"))
-    contour_across, contour_along, wire_across, wire_along = lines_of_poles(snapshot, words)
+    contour_across, contour_along, wire_across, wire_along = lines(snapshot, words)
     for bench, line in ((LEFT, contour_across), (RIGHT, wire_along)):
         degrees = np.degrees(snapshot.places.of[bench].theta) % 360
         assert f"θ = {degrees:.0f}°" in line
@@ -77,4 +82,4 @@ def test_places_are_data_that_can_be_sent() -> None:
     again = from_bytes(to_bytes(snapshot))
     assert isinstance(again, PageSnapshot)
     words = Words("en")
-    assert lines_of_poles(again, words) == lines_of_poles(snapshot, words)
+    assert lines(again, words) == lines(snapshot, words)

@@ -18,10 +18,10 @@ from tests.support.lab import FOLLOWER, TRACKER, do, new_lab, run
 
 def seen(lab: Lab, captions: Captions, seconds: float) -> dict[str, str]:
     """The captions at the end of some seconds, shown ten times a second."""
-    said = captions.of(take_page_snapshot(lab, 1.0))
+    said = captions.follow(take_page_snapshot(lab, 1.0))
     for _ in range(round(10 * seconds)):
         run(lab, 0.1)
-        said = captions.of(take_page_snapshot(lab, 1.0))
+        said = captions.follow(take_page_snapshot(lab, 1.0))
     return said
 
 
@@ -59,7 +59,7 @@ def test_a_second_hold_is_measured_anew() -> None:
     do(lab, c.Hold(False))
     seen(lab, captions, 4.0)
     do(lab, c.Hold(True))
-    assert number(captions.of(take_page_snapshot(lab, 1.0))[TRACKER]) < 5
+    assert number(captions.follow(take_page_snapshot(lab, 1.0))[TRACKER]) < 5
 
 
 def test_only_the_robot_that_is_held_back_is_said_to_be() -> None:
@@ -75,7 +75,7 @@ def test_a_stopped_robot_is_said_to_be_stopped_also_where_the_lab_is_shown_elsew
     run(lab, 0.5)
     shown = from_bytes(to_bytes(take_page_snapshot(lab, 1.0)))
     assert isinstance(shown, Snapshot)
-    assert captions.of(shown)[FOLLOWER] == "stopped"
+    assert captions.follow(shown)[FOLLOWER] == "stopped"
 
 
 def test_nothing_is_spoken_of_robots_that_have_no_caption() -> None:

@@ -20,6 +20,7 @@ from onpath.app.simulation.simulation_thread import (
     ScheduledLab,
     SimulationThread,
     apply_commands,
+    frame_length,
 )
 from tests.support.lab import FRAME, new_lab
 
@@ -314,3 +315,21 @@ def test_long_work_for_many_labs_takes_a_part_of_each_frame_and_no_other_lab_wai
     assert honest.begun[1:] == list(range(honest.begun[1], frames + 1)) and honest.begun[1] < 60
     turns = [len(lab.lab.begun) for lab in labs[:-1]]
     assert min(turns) > 0 and max(turns) <= 2 * min(turns) + 2  # all get their turn
+
+
+def test_labs_that_began_at_different_frames_need_equally_many_ticks() -> None:
+    """So that they are advanced together; and 60 frames are a second to the last bit."""
+    labs = dict[ScheduledLab, list[int]]()
+    for count in range(120):
+        if count in (0, 1, 2, 13, 59):
+            lab = ScheduledLab(new_lab())
+            lab.view = Screen(Clock(1.0), 0, 0.0)
+            labs[lab] = []
+        for lab, needed in labs.items():
+            frame = lab.frame(FRAME, frame_length(count))
+            ticks = next(frame)
+            needed.append(ticks.count)
+            frame.close()
+    longest = max(labs.values(), key=len)
+    assert all(needed == longest[-len(needed) :] for needed in labs.values())
+    assert sum(longest[:60]) == sum(longest[7:67]) == 1000
