@@ -171,7 +171,7 @@ class LivePlot:
             update_gui(self._handle, "data", self._empty)
             return
         values = snapshot.plots.values[since:, :, self._lines].astype(float) * self._scale
-        lines = np.vstack([times, values.reshape(len(times), -1).T])
+        lines = np.array([times, *values.reshape(len(times), -1).T])  # each line in succession
         finite = lines if np.isfinite(lines).all() else np.nan_to_num(lines)
         update_gui(self._handle, "data", tuple(finite))
 

@@ -4,43 +4,35 @@ viser takes 60 µs for every assignment to a property, wakes its event loop for 
 then waits for more of them; for twenty browsers that is more than one core. Here all messages of a
 frame are one write, issued for all browsers together (`FrameChannel`). Several properties of a node
 are one message (`update_node`). What moves in every frame (`NodeGroup`) makes no messages at all:
-its numbers follow a template. This uses private parts of viser, which tests pin.
+its numbers follow a template (frame_packing.py). This uses private parts of viser, which tests pin.
 """
 
 from __future__ import annotations
 
 import asyncio
-import struct
-import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
-from itertools import chain
 from threading import get_ident
 from typing import Any
 from weakref import WeakKeyDictionary
 
-import msgspec
 import numpy as np
 import viser
 from viser import _messages
-from viser.infra import Message, _infra
-from viser.infra._messages import wire_field_names
+from viser.infra import Message
 from websockets.asyncio.server import ServerConnection
 from websockets.protocol import State
 
-from onpath.app.viser_adapter.compression import compress, stored_head
+from onpath.app.viser_adapter.frame_packing import (
+    GroupForm,
+    GroupUpdate,
+    Templates,
+    expanded,
+    packed,
+)
 
-Templates = dict[tuple[object, ...], bytes]
-UPDATES = {
-    kind: wire_field_names(kind)
-    for kind in (_messages.SceneNodeUpdateMessage, _messages.GuiUpdateMessage)
-}
 MOST_UNSENT = 1 << 16  # [B] unsent; beyond it, viser's queue merges outdated messages
-MOST_TEMPLATES = 32  # for one browser; some five are in use
-SMALL = 2048  # [B] of a frame without its arrays, up to which it is not compressed
-_DTYPES = {np.dtype(kind): np.dtype(kind).str for kind in (np.float32, np.float64)}  # .str is slow
 _ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[FrameChannel]] = WeakKeyDictionary()
 """Channels with pending messages, by the event loop that sends them."""
 
@@ -74,34 +66,17 @@ class NodeGroup:
         self._api = properties[0][0]._impl.api
         channel = getattr(self._api._websock_interface.queue_message, "__self__", None)
         self._channel = channel if isinstance(channel, FrameChannel) else None
-        self.properties = [(handle._impl.name, name, own) for handle, name, own in properties]
-        self.owner: str = self._api._owner_id
+        named = [(handle._impl.name, name, own) for handle, name, own in properties]
+        self._form = GroupForm(named, self._api._owner_id)
 
     def update(self, numbers: np.ndarray) -> None:
         """Set all properties; `numbers` is float32 and must not be modified afterwards."""
-        update = GroupUpdate(self, numbers)
+        update = GroupUpdate(self._form, numbers)
         if self._channel is not None:
             self._channel._take(update)
             return
         for message in update.messages():
             self._api._queue_scene_message(message)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class GroupUpdate:
-    """The update of a group; stands for `messages`."""
-
-    group: NodeGroup
-    numbers: np.ndarray
-    excluded_self_client: None = None
-
-    def messages(self) -> list[Message]:
-        """The same as viser's messages, one for each node."""
-        updates = dict[str, dict[str, Any]]()
-        for node, name, own in self.group.properties:
-            updates.setdefault(node, {})[name] = self.numbers[own]
-        owner = self.group.owner
-        return [_messages.SceneNodeUpdateMessage(*each, owner=owner) for each in updates.items()]
 
 
 def update_gui(handle: Any, name: str, value: str | tuple[np.ndarray, ...]) -> None:
@@ -133,7 +108,7 @@ class FrameChannel:
         self._collector: int | None = None
         self.frames = 0
         self._messages: list[Message | GroupUpdate] = []
-        self._templates: Templates = {}
+        self._templates = Templates()
         self._queue = partial(type(connection).queue_message, connection)
         connection.queue_message = self._take  # of an earlier channel too, if there was one
 
@@ -169,7 +144,7 @@ class FrameChannel:
             self._enqueue(message)
 
     def _enqueue(self, *messages: Message | GroupUpdate) -> None:
-        for message in _expanded(messages):
+        for message in expanded(messages):
             self._queue(message)
 
     def _packed(self) -> tuple[list[Message | GroupUpdate], bytes]:
@@ -195,101 +170,3 @@ class FrameChannel:
 def _write(frames: list[tuple[FrameChannel, list[Message | GroupUpdate], bytes]]) -> None:
     for channel, messages, data in frames:
         channel.write(messages, data)
-
-
-def _wire(message: Message, arrays: list[memoryview]) -> dict[str, Any]:
-    """A message as viser serialises it, but faster for those of `update_node` and `update_gui`."""
-    kind, known = type(message), len(arrays)
-    if kind not in UPDATES:
-        return message.as_serializable_dict(arrays)
-    fields = {name: getattr(message, name) for name in UPDATES[kind]}
-    try:
-        fields["updates"] = {k: _told(value, arrays) for k, value in fields["updates"].items()}
-    except TypeError:
-        del arrays[known:]
-        return message.as_serializable_dict(arrays)
-    fields["type"] = kind.__name__
-    return fields
-
-
-def _told(value: Any, arrays: list[memoryview]) -> Any:
-    """A value as it is serialised; arrays are appended to `arrays`.
-
-    Raises:
-        TypeError: the value needs viser's own serialisation.
-    """
-    kind = type(value)
-    if kind in (str, bool, int, float):
-        return value
-    if kind is tuple:
-        return [_told(each, arrays) for each in value]
-    if kind is not np.ndarray or not value.flags.c_contiguous:
-        raise TypeError(kind)
-    arrays.append(value.data)
-    dtype = _DTYPES.get(value.dtype) or value.dtype.str
-    return {"__binary_index": len(arrays) - 1, "dtype": dtype}
-
-
-def _expanded(messages: Iterable[Message | GroupUpdate]) -> list[Message]:
-    """The messages, each group replaced by viser's messages for its nodes."""
-    ways = (m.messages() if isinstance(m, GroupUpdate) else [m] for m in messages)
-    return [message for some in ways for message in some]
-
-
-def _form(message: Message | GroupUpdate) -> object:
-    """Everything but the numbers in an update of a node's arrays; None for other messages."""
-    if isinstance(message, GroupUpdate):
-        return message.group
-    if type(message) is not _messages.SceneNodeUpdateMessage:
-        return None
-    form: list[object] = [message.name, message.owner]
-    for name, value in message.updates.items():
-        if type(value) is not np.ndarray or not value.flags.c_contiguous:
-            return None
-        form += name, value.dtype, value.nbytes
-    return tuple(form)
-
-
-def _arrays(message: Any) -> Iterable[np.ndarray]:
-    """The arrays in the update of a node or a group."""
-    if isinstance(message, GroupUpdate):
-        numbers = message.numbers
-        return [numbers[own] for _, _, own in message.group.properties]
-    return message.updates.values()
-
-
-def packed(messages: Sequence[Message | GroupUpdate], templates: Templates) -> bytes:
-    """Messages as viser sends them: lengths, msgpack in a zstd frame, then the raw arrays.
-
-    Most frames differ from an earlier one only in the arrays and in the time, which stands last.
-
-    Args:
-        templates: earlier frames up to the time, by the forms of their messages.
-    """
-    arrays: list[Any] = []
-    forms = tuple(map(_form, messages))
-    head, time_sent = templates.get(forms), struct.pack(">d", time.perf_counter())
-    if head is not None:
-        arrays += chain.from_iterable(map(_arrays, messages))
-    else:
-        wire = [_wire(message, arrays) for message in _expanded(messages)]
-        lengths = [array.nbytes for array in arrays]
-        window = {"messages": wire, "binaryBufferLengths": lengths, "timestampSec": 0.0}
-        inner = msgspec.msgpack.encode(window)[: -len(time_sent)]
-        size = len(inner) + len(time_sent)
-        if size > SMALL:
-            head, time_sent = _started(size, compress(inner + time_sent)), b""
-        else:
-            head = _started(size, stored_head(size) + inner, len(time_sent))
-            if None not in forms:
-                if len(templates) >= MOST_TEMPLATES:  # nodes come and go
-                    templates.clear()
-                templates[forms] = head
-    parts: list[Any] = [head, time_sent]
-    _infra._append_aligned_buffers(parts, arrays, len(head) + len(time_sent))
-    return b"".join(parts)
-
-
-def _started(size: int, outer: bytes, missing: int = 0) -> bytes:
-    """The beginning of a frame: both lengths, and the compressed msgpack but its last bytes."""
-    return size.to_bytes(8, "little") + (len(outer) + missing).to_bytes(8, "little") + outer

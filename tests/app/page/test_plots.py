@@ -26,6 +26,7 @@ def test_a_reset_empties_the_plot(monkeypatch: pytest.MonkeyPatch) -> None:
     do(lab, c.Hold(True))
     run(lab, 0.5)
     plot.follow(take_page_snapshot(lab, 1.0))
+    assert all(line.flags.c_contiguous for line in shown[-1])  # as frames send arrays fastest
     assert shown[-1][0][-1] > 0.4 and max(line.max() for line in shown[-1][1:]) > 1.0
     do(lab, c.Reset())
     plot.follow(take_page_snapshot(lab, 1.0))

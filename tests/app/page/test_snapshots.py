@@ -26,7 +26,8 @@ from onpath.app.page.page import Page
 from onpath.app.page.page_context import ClassSeat, PageContext
 from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.server.lab_server import LabServer
-from onpath.app.viser_adapter.frame_channel import FrameChannel, GroupUpdate
+from onpath.app.viser_adapter.frame_channel import FrameChannel
+from onpath.app.viser_adapter.frame_packing import GroupUpdate
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.schema import Sketch
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
