@@ -184,20 +184,18 @@ class History:
         """Rows to keep: all recent ones, and older ones unless they merge into the previous one."""
         if self._begin == self._end:
             return np.zeros(0, dtype=int)
-        inside, inputs = slice(self._begin, self._end), self._columns["inputs"]
-        times, ticks = (self._columns[name][inside].tolist() for name in ("time", "ticks"))
-        kept, joined = list[int](), 0
-        for row, (time, more) in enumerate(zip(times, ticks, strict=True), self._begin):
-            joins = kept and time < times[-1] - RECENT and inputs[row] is inputs[kept[-1]]
-            if not joins or joined + more > COARSE or self._jumps(row):
+        inside = slice(self._begin, self._end)
+        columns = [self._columns[name][inside].tolist() for name in ("time", "ticks", "inputs")]
+        recent = columns[0][-1] - RECENT
+        kept, joined, ended, first = list[int](), 0, np.inf, None
+        for row, (time, more, inputs) in enumerate(zip(*columns, strict=True), self._begin):
+            goes_on = inputs is first and abs(time - ended) < 1e-6  # no gap between them
+            if not goes_on or time >= recent or joined + more > COARSE:
                 kept.append(row)
-                joined = 0
+                joined, first = 0, inputs
             joined += more
+            ended = time + more * inputs.dt
         return np.array(kept)
-
-    def _jumps(self, row: int) -> bool:
-        """Whether there is a gap between a row and the previous one."""
-        return abs(self._columns["time"][row] - self._ends(row - 1)) > 1e-6
 
     def _ends(self, row: int) -> float:
         """Time at which a row ends, [s]."""
