@@ -225,7 +225,7 @@ class Lab:
     def clear_message(self) -> None:
         """Clear the message, or show again why robots are stopped."""
         self.show_message("")
-        if said := self.fault_words():
+        if said := self.fault_words("say.stopped"):
             self.show_message(said, "error")
 
     def remark(self, message: str) -> None:
@@ -241,18 +241,19 @@ class Lab:
             self.show_message(self.words.sentence(refusals.pop(0)), "warning")
         if faults:
             faults.clear()
-            self.show_message(self.fault_words(), "error")
+            self.show_message(self.fault_words("say.stopped"), "error")
 
-    def fault_words(self) -> str:
-        """Which robot has stopped last, when and why; empty if none has."""
+    def fault_words(self, key: str, **more: str) -> str:
+        """Which robot has stopped last, when and why, in the words of a key; empty if none has."""
         found = {n: r.diverged for n, r in self.session.runs.items() if r.diverged is not None}
         if not found:
             return ""
         name, fault = max(found.items(), key=lambda each: each[1].time)
         titles = bench_titles(self.session.laws, self.words)
         return self.words(
-            "say.stopped",
+            key,
             robot=titles[name],
             time=f"{fault.time:.2f}",
             reason=self.words.sentence(fault.reason),
+            **more,
         )

@@ -42,10 +42,12 @@ const boxesOverScene = (() => {
     const bottom = Math.min(scene.bottom, sheet?.getBoundingClientRect().top ?? scene.bottom);
     let above = innerHeight - bottom + 12;
     for (const each of document.querySelectorAll(BOX)) {
+      const onTop = each.dataset.place === "top";  // what it speaks of is below it
+      each.style.top = onTop ? `${scene.top + 8}px` : "auto";
       each.style.left = `${scene.left + scene.width / 2}px`;
-      each.style.bottom = `${above}px`;
+      each.style.bottom = onTop ? "auto" : `${above}px`;
       each.style.maxWidth = `${Math.min(scene.width - 24, 560)}px`;
-      above += each.offsetHeight && each.offsetHeight + 8;
+      if (!onTop) above += each.offsetHeight && each.offsetHeight + 8;
     }
   }
 

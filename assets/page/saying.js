@@ -6,6 +6,7 @@
   const AGAIN = 8000;  // [ms], between announcements that differ in their numbers only
   const REST = 1500;  // [ms], between any two
 
+  const upright = matchMedia("(max-width: 36em), (max-aspect-ratio: 4/5)");
   const text = document.createElement("span");
   const cross = document.createElement("button");
   const region = document.createElement("div");
@@ -47,6 +48,7 @@
   function show(said, level) {
     text.textContent = said;
     box.dataset.level = level;
+    box.dataset.place = level === "replay" && upright.matches ? "top" : "bottom";
     box.hidden = said === "";
     boxesOverScene.place();
   }

@@ -707,7 +707,7 @@ help-text =
 ## Was das Labor von selbst sagt
 
 say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen hilft.
-say-slowly = Du siehst die letzten Augenblicke, langsam; ein Glied, das sich biegt, ist { $larger }-fach gebogen gezeichnet.
+say-slowly = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam; Biegung { $larger }-fach gezeichnet.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.

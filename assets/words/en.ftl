@@ -700,7 +700,7 @@ worksheet-learnt = What I thought before, and think now:
 ## What the lab says by itself
 
 say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset brings it back.
-say-slowly = You see its last moments, slowly; a link that bends is drawn bent { $larger } times as much.
+say-slowly = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly; bending is drawn { $larger } times as large.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.

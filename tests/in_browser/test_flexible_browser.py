@@ -136,11 +136,11 @@ def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
     tab.ask(c.SetParameter("alpha", 1.0))
     message = tab.page.locator("#op-message")
     wait_for(lambda: tab.lab.breakdown.replaying)  # by itself
-    message.get_by_text("drawn bent 5 times as much").wait_for()
+    message.get_by_text("drawn 5 times as large").wait_for()
     expect(message).to_contain_text(str(UNSTABLE))
-    expect(message.get_by_role("button", name="Reset as it is")).to_be_visible()
     message.get_by_role("button", name="Stop showing it").click()
     wait_for(lambda: not tab.lab.breakdown.replaying)
+    expect(message.get_by_role("button", name="Reset as it is")).to_be_visible()
     message.get_by_role("button", name="Show it slowly").click()
     wait_for(lambda: tab.lab.breakdown.replaying)
     tab.page.keyboard.press("Escape")

@@ -56,8 +56,8 @@ class ReplayBreakdown(Command):
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         lab.breakdown.begin(lab.session)
-        slowly = lab.words("say.slowly", larger=f"{lab.session.exaggeration:g}")
-        lab.show_message(f"{lab.fault_words()} {slowly}", "replay")
+        larger = f"{lab.session.exaggeration:g}"
+        lab.show_message(lab.fault_words("say.slowly", larger=larger), "replay")
 
 
 @dataclass(frozen=True, slots=True)
