@@ -328,6 +328,9 @@ aim-theta_ref = zielt auf seinen Bezugspunkt
 page-scene = Zwei Roboter, die einer Bahn folgen, von vorn gesehen. Was sie tun, wird laufend angesagt; die Tasten des Labors stehen unter „Hilfe und Tasten“.
 page-keys = Alle Befehle
 page-viewer = Einstellungen der Anzeige
+number-none = „{ $typed }“ ist keine Zahl. Der Wert ist noch { $value }; 0,5 und 1e9 sind Zahlen.
+number-changed = „{ $typed }“ ist hier nicht möglich: Jetzt ist es { $value }.
+number-empty = Ein leeres Feld behält seinen Wert: { $value }.
 
 spoken-running = Läuft.
 spoken-paused = Pause.

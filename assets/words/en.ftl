@@ -276,6 +276,9 @@ aim-theta_ref = aims at its reference point
 page-scene = Two robots that follow a path, seen from the front. What they do is said as it happens; the keys of the lab are under “Help and keys”.
 page-keys = All commands
 page-viewer = Settings of the viewer
+number-none = “{ $typed }” is not a number. The value is still { $value }; 0.5 and 1e9 are numbers.
+number-changed = “{ $typed }” is not possible here: it is { $value } now.
+number-empty = An empty box keeps its value: { $value }.
 
 spoken-running = Running.
 spoken-paused = Paused.

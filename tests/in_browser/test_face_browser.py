@@ -13,6 +13,7 @@ pytest.importorskip("playwright")
 from playwright.sync_api import Browser, ViewportSize, expect
 
 from onpath.app.lab import commands as c
+from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.first_minute import INVITATIONS
 from onpath.app.server.lab_server import LabServer
 from tests.support.axe import violations
@@ -249,3 +250,128 @@ def test_axe_finds_nothing_serious_in_a_lesson(browser: Browser, server: LabServ
     wait_for(tab.is_built)
     assert violations(tab) == []
     tab.page.context.close()
+
+
+# Number boxes.
+
+TYPED, WRONG = "#op-typed", "#op-wrong"
+
+
+def retype(tab: Tab, label: str, text: str) -> None:
+    """Replace what is in a number box, key by key."""
+    tab.settle()
+    tab.focus(tab.number(label))
+    tab.page.keyboard.press("Control+A")
+    tab.page.keyboard.type(text)
+
+
+def gain(tab: Tab) -> float:
+    return tab.session.parameters.K1
+
+
+def test_a_number_may_be_written_with_a_power_of_ten(tab: Tab) -> None:
+    retype(tab, "K1 across", "6e2")
+    expect(tab.page.locator(TYPED)).to_have_value("6e2")
+    tab.page.keyboard.press("Enter")
+    wait_for(lambda: gain(tab) == 600)
+    expect(tab.number("K1 across")).to_have_value("600")
+    expect(tab.page.locator(TYPED)).to_be_hidden()
+    expect(tab.page.locator(WRONG)).to_be_hidden()
+
+
+def test_a_number_beyond_the_limits_is_not_changed_without_a_word(tab: Tab) -> None:
+    wrong = tab.page.locator(WRONG)
+    for typed in ("1e9", "99999"):
+        retype(tab, "K1 across", typed)
+        tab.page.keyboard.press("Enter")
+        expect(wrong).to_contain_text(f"“{typed}” is not possible here: it is 2500 now")
+        expect(tab.number("K1 across")).to_have_attribute("aria-invalid", "true")
+        wait_for(lambda: gain(tab) == 2500)
+        retype(tab, "K1 across", "400")
+        expect(wrong).to_be_hidden()
+        tab.page.keyboard.press("Enter")
+        wait_for(lambda: gain(tab) == 400)
+    tab.blur()
+
+
+def test_what_is_no_number_stays_and_is_called_so(tab: Tab) -> None:
+    typed, wrong = tab.page.locator(TYPED), tab.page.locator(WRONG)
+    for leave in ("Enter", "Tab"):
+        retype(tab, "K1 across", "fast")
+        tab.page.keyboard.press(leave)
+        expect(wrong).to_contain_text("“fast” is not a number. The value is still 400")
+        expect(typed).to_have_value("fast")
+        expect(typed).to_have_attribute("aria-invalid", "true")
+        assert violations(tab) == []
+        assert gain(tab) == 400
+        tab.focus(typed)
+        tab.page.keyboard.press("Escape")
+        expect(typed).to_be_hidden()
+        expect(wrong).to_be_hidden()
+        expect(tab.number("K1 across")).to_have_value("400")
+    tab.blur()
+
+
+def test_an_emptied_box_gets_its_value_back(tab: Tab) -> None:
+    box, wrong = tab.number("K1 across"), tab.page.locator(WRONG)
+    retype(tab, "K1 across", "")
+    tab.page.keyboard.press("Delete")
+    expect(tab.page.locator(TYPED)).to_have_value("")
+    tab.page.keyboard.press("Tab")
+    expect(wrong).to_contain_text("An empty box keeps its value: 400")
+    expect(box).to_have_value("400")
+    box.fill("")  # as by a keyboard on a screen
+    box.blur()
+    expect(wrong).to_contain_text("An empty box keeps its value: 400")
+    expect(box).to_have_value("400")
+    assert gain(tab) == 400
+    tab.blur()
+
+
+def test_a_number_counts_when_it_is_complete(tab: Tab) -> None:
+    seen = set[float]()
+    retype(tab, "K1 across", "50")
+    tab.settle()
+    seen.add(gain(tab))
+    tab.page.keyboard.type("0")
+    tab.page.keyboard.press("Backspace")
+    tab.page.keyboard.type("5")
+    tab.settle()
+    seen.add(gain(tab))
+    assert seen == {400}
+    tab.page.keyboard.press("Tab")
+    wait_for(lambda: gain(tab) == 505)
+    tab.ask(c.SetParameter("K1", 400.0))
+    tab.blur()
+
+
+# The first hold.
+
+WATCH_PANEL = """() => {
+    const buttons = [...document.querySelectorAll("button")]
+    const button = buttons.find((each) => each.textContent.includes("Hold both back"))
+    window.moved = 0
+    window.bars = 0
+    const top = button.getBoundingClientRect().top
+    const look = () => {
+        window.moved = Math.max(window.moved, Math.abs(button.getBoundingClientRect().top - top))
+        window.bars += document.querySelectorAll('[role="progressbar"]').length
+        requestAnimationFrame(look)
+    }
+    look()
+}"""
+
+
+def test_the_first_hold_moves_nothing_in_the_panel(browser: Browser) -> None:
+    """Its loop is compiled meanwhile."""
+    server = LabServer("127.0.0.1", 0, LoopCache())
+    tab = visit(browser, server)
+    tab.page.evaluate(WATCH_PANEL)
+    tab.button("Hold both back").click()
+    wait_for(lambda: len(tab.session.grips.held) == 2)
+    time = tab.session.time
+    wait_for(lambda: tab.session.time > time + 1)
+    tab.settle()
+    assert tab.page.evaluate("[moved, bars]") == [0, 0]
+    tab.page.context.close()
+    server.stop()
