@@ -55,7 +55,7 @@ class LessonPanel:
         self._handles: list[Any] = []
         self._tasks: list[tuple[Task, viser.GuiHtmlHandle]] = []
         self._chart: PredictionChart | None = None
-        self._board: SketchAnswer | None = None
+        self._sketching: SketchAnswer | None = None
         self._draft = c.Predict()
         self._busy, self._version, self._reading = False, -1, -1
         self._panel = None
@@ -86,7 +86,7 @@ class LessonPanel:
                 handle.content = content
         if self._chart is not None and run.playing:
             self._chart.show(run.truth)
-        board = self._board  # another thread may remove it
+        board = self._sketching  # another thread may remove it
         if board is not None:
             board.draw()
 
@@ -105,9 +105,9 @@ class LessonPanel:
         for handle in self._handles:
             handle.remove()
         self._handles, self._tasks, self._chart = [], [], None
-        if self._board is not None:
-            self._board.remove()
-            self._board = None
+        if self._sketching is not None:
+            self._sketching.remove()
+            self._sketching = None
 
     def _build(self, run: LessonView) -> None:
         self._version = run.version
@@ -236,7 +236,7 @@ class LessonPanel:
             commit.disabled = False
             said.content = page.remark(words("lesson.drawn"))
 
-        self._board = SketchAnswer(self._client, self._scene, block, run, drawn)
+        self._sketching = SketchAnswer(self._client, self._scene, block, run, drawn)
 
     def _add_run(self, run: LessonView) -> None:
         """The prediction next to the measured result, and the button that runs the experiment."""

@@ -17,6 +17,7 @@ from onpath.app.scene import meshes
 from onpath.app.scene.captions import Captions
 from onpath.app.scene.contact_nodes import ContactNodes
 from onpath.app.scene.freehand import Freehand
+from onpath.app.scene.hand_nodes import HandNodes
 from onpath.app.scene.mouse import Mouse, SceneCallbacks
 from onpath.app.scene.path_nodes import PathNodes
 from onpath.app.scene.pointer import Pointer
@@ -100,6 +101,7 @@ class Scene:
             self._client.scene, self._stage, motion.counts, snapshot.laws, poses
         )
         self._contacts = ContactNodes(self._client.scene, self._stage, self._words)
+        self._hands = HandNodes(self._client.scene, self._stage)
         self.mouse.connect_grips(self._machine.grips)
         self._notes = [
             ChangingText(self._client.scene, f"/notes/{name}", base + self._stage.note)
@@ -114,7 +116,10 @@ class Scene:
         Non-finite poses are not drawn.
         """
         self.mouse.motion = motion
-        self._machine.update(poses_of(self._stage, motion))
+        poses = poses_of(self._stage, motion)
+        self._machine.update(poses)
+        if self._hands.pulled:
+            self._hands.move(poses["tips"])
         if self._path is None or motion.path.version != self._path.version:
             self._path = motion.path
             self._path_nodes.draw(motion.path)
@@ -127,6 +132,7 @@ class Scene:
         self._machine.update_laws(snapshot.laws)
         self._machine.update_traces([snapshot.robots[bench] for bench in self._benches])
         self._contacts.update(snapshot)
+        self._hands.show(snapshot)
         freehand = self._freehand  # another thread may end the stroke
         drawing = self.is_drawing
         if freehand is not None:

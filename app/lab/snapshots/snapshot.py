@@ -226,6 +226,7 @@ class Snapshot:
         stopped: benches of the robots that have diverged by then and stand still.
         remedy: see `Breakdown.remedy`; empty if no robot is stopped.
         grabbed: bench of the robot whose end-point is being pulled, or None.
+        pulled: benches of the robots at which a hand pulls now; empty while the past is viewed.
         message: message to the user (a divergence, a refusal), plain text, or "".
         message_level: see `Lab`.
         note: remark on the scale of the drawing, or "".
@@ -250,6 +251,7 @@ class Snapshot:
     wall: np.ndarray = field(default_factory=_nothing)
     start: np.ndarray = field(default_factory=_nothing)
     held_back: tuple[str, ...] = ()
+    pulled: tuple[str, ...] = ()
     brakes: dict[str, np.ndarray] = field(default_factory=dict)
     stopped: tuple[str, ...] = ()
     remedy: dict[str, float | int | str] = field(default_factory=dict)

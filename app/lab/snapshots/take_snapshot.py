@@ -122,6 +122,7 @@ def _scene(lab: Lab, achieved: float, before: PageSnapshot | None, student: int)
         "wall": drawn_wall(session),
         "start": _drawn_start(session),
         "held_back": tuple(bench for bench in session.runs if bench in session.grips.held),
+        "pulled": _pulled(session),
         "brakes": drawn_brakes(session),
         "stopped": _stopped(session, time),
         "remedy": lab.breakdown.remedy(session),
@@ -130,6 +131,14 @@ def _scene(lab: Lab, achieved: float, before: PageSnapshot | None, student: int)
 
 def _drawn_start(session: Session) -> Array:
     return drawn_start(session.robot, session.editor.curve, session.start)
+
+
+def _pulled(session: Session) -> tuple[str, ...]:
+    """`Snapshot.pulled`."""
+    hands = session.grips.hands
+    if not hands or session.viewing is not None:
+        return ()
+    return tuple(bench for bench in session.runs if bench in hands)
 
 
 def _stopped(session: Session, time: float) -> tuple[str, ...]:

@@ -127,8 +127,10 @@ def test_an_endless_sketch_too(page: Page) -> None:
     for _ in range(step):
         page.lab.post(c.GoToStep(step))
     wait_for(lambda: page.shown("/board/sheet"))
-    (board,) = wait_for(lambda: [p._board for p in page.view.page._parts if hasattr(p, "_board")])
-    page.scribble("/board/sheet", lambda k: board._board._world(0.3 * sideways(k)[None])[0])
+    parts = page.view.page._parts
+    (drawing,) = wait_for(lambda: [p._sketching for p in parts if hasattr(p, "_sketching")])
+    board = drawing._board
+    page.scribble("/board/sheet", lambda k: board._world(0.3 * sideways(k)[None])[0])
     page.assert_bounded()
     page.end()
     drawn = len(page.told)
