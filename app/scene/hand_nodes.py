@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 ARC = 10
 """Points of a round end."""
+SMALLER = 0.85
+"""So that the path is seen beside the hand."""
 Place = tuple[float, float]
 """x and z from the end-point [m]."""
 
@@ -56,8 +58,7 @@ class HandNodes:
 def hand() -> Mesh:
     """A hand that comes from below and takes what is at the origin between thumb and finger."""
     palm = _finger((0.034, -0.030), (0.050, -0.046), 0.017, 0.016, (-0.046, -0.024))
-    wrist = _finger((0.050, -0.046), (0.072, -0.068), 0.0125, 0.0125, (-0.043, -0.027))
-    cuff = _finger((0.070, -0.066), (0.078, -0.074), 0.0165, 0.0165, (-0.047, -0.023))
+    wrist = _finger((0.050, -0.046), (0.074, -0.070), 0.0125, 0.0135, (-0.043, -0.027))
     thumb = _finger((0.024, -0.036), (0.004, -0.006), 0.0085, 0.0055, (-0.042, -0.026))
     index = _finger((0.040, -0.020), (0.027, 0.004), 0.0075, 0.0068, (-0.042, -0.028))
     pointed = _finger((0.027, 0.004), (0.006, 0.004), 0.0068, 0.0052, (-0.042, -0.028))
@@ -65,7 +66,7 @@ def hand() -> Mesh:
         _finger((0.046, -0.024), (0.046 + right, -0.024 + up), 0.0072, 0.0064, (-0.040, -0.026))
         for right, up in ((-0.004, 0.030), (0.009, 0.027), (0.019, 0.017))
     ]
-    return crisp(*others, palm, wrist, cuff, thumb, index, pointed)
+    return crisp(*others, palm, wrist, thumb, index, pointed)
 
 
 def _finger(
@@ -80,4 +81,4 @@ def _finger(
         return centre + radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
     outline = np.concatenate([arc(b, last, along + half), arc(a, first, along + np.pi + half)])
-    return extruded(outline, *layers, 0.0022)
+    return extruded(SMALLER * outline, *layers, 0.0022)
