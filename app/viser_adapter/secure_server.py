@@ -15,14 +15,14 @@ import threading
 import time
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
-from functools import cache, partial
+from functools import partial
 from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
 import viser
 import websockets.asyncio.server
-from viser import _gui_api, _gui_handles, _icons, _scene_api, _viser
+from viser import _gui_api, _gui_handles, _scene_api, _viser
 from viser import _messages as wire
 from viser.infra import WebsockClientConnection
 from websockets.asyncio.server import ServerConnection
@@ -43,6 +43,7 @@ from onpath.app.viser_adapter.request_filter import (
 )
 from onpath.app.viser_adapter.secure_connection import SecureConnection, UnfinishedMessages
 from onpath.app.viser_adapter.sockets import PortInUse, listen, listen_unix
+from onpath.app.viser_adapter.viser_caches import keep_what_is_constant
 
 __all__ = ["Limits", "PortInUse", "harden", "make_server"]
 
@@ -86,8 +87,8 @@ def make_server(
         OSError: the address cannot be bound.
     """
     connections = ConnectionLimits(limits, Proxies(trusted_proxies))
-    _cache_icons()
     share_compressors()
+    keep_what_is_constant()
     logging.getLogger("websockets.server").addFilter(_is_news)
     if listener is None:
         listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
@@ -99,14 +100,6 @@ def make_server(
     harden(server, limits=limits)
     door.open = True
     return server
-
-
-def _cache_icons() -> None:
-    """Cache viser's icons, which it reads from an archive for every button, 25 ms each."""
-    if not hasattr(_icons.svg_from_icon, "cache_info"):
-        cached: Any = cache(_icons.svg_from_icon)
-        for module in (_icons, _gui_api, _gui_handles):
-            setattr(module, "svg_from_icon", cached)  # noqa: B010, the module's own function
 
 
 def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
