@@ -20,7 +20,8 @@ def keep_what_is_constant() -> None:
     """Let viser evaluate the hints of each class once, and open its archive of icons once."""
     handle: Any = _assignable_props_api.AssignablePropsBase
     handle._prop_hints = property(lambda self: evaluated_hints(type(self._impl.props)))
-    for module in (_gui_api, _gui_handles):
+    modules: list[Any] = [_gui_api, _gui_handles]
+    for module in modules:
         module.svg_from_icon = icon_svg
 
 
