@@ -185,17 +185,17 @@ class History:
         if self._begin == self._end:
             return np.zeros(0, dtype=int)
         inside = slice(self._begin, self._end)
-        columns = [self._columns[name][inside].tolist() for name in ("time", "ticks", "inputs")]
-        recent = columns[0][-1] - RECENT
-        kept, joined, ended, first = list[int](), 0, np.inf, None
-        for row, (time, more, inputs) in enumerate(zip(*columns, strict=True), self._begin):
-            goes_on = inputs is first and abs(time - ended) < 1e-6  # no gap between them
-            if not goes_on or time >= recent or joined + more > COARSE:
-                kept.append(row)
-                joined, first = 0, inputs
-            joined += more
-            ended = time + more * inputs.dt
-        return np.array(kept)
+        times, ticks, inputs = (self._columns[n][inside] for n in ("time", "ticks", "inputs"))
+        ends = times + ticks * np.array([each.dt for each in inputs])
+        joins = (inputs[1:] == inputs[:-1]) & (np.abs(times[1:] - ends[:-1]) < 1e-6)
+        joins &= times[1:] < times[-1] - RECENT
+        kept, joined, last = np.ones(len(times), dtype=bool), 0, -1
+        for row in (1 + np.flatnonzero(joins)).tolist():
+            joined = joined if row == last + 1 else int(ticks[row - 1])
+            last, together = row, joined + int(ticks[row])
+            kept[row] = together > COARSE
+            joined = int(ticks[row]) if kept[row] else together
+        return self._begin + np.flatnonzero(kept)
 
     def _ends(self, row: int) -> float:
         """Time at which a row ends, [s]."""
