@@ -13,7 +13,7 @@ import msgspec
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem
 from onpath.lessons.routes import Route, read_routes
-from onpath.lessons.schema import Lesson, Sketch, Step, Text
+from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Sketch, Step, Text
 from onpath.lessons.task_schema import Reference, Task
 from onpath.lessons.vocabulary import script_faults
 from onpath.lessons.words import DEFAULT
@@ -158,9 +158,11 @@ def _structure(step: Step) -> tuple[object, ...]:
     """The parts of a step that are the same in all languages."""
     tasks = [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()]
     blocks = [block for block in step.blocks if not isinstance(block, Text | Task)]
-    right = [[o.right for o in block.options] for block in blocks if not isinstance(block, Sketch)]
+    right = [[o.right for o in b.options] for b in blocks if isinstance(b, Choice | Quiz)]
+    asked = [(b.why, len(b.reasons)) for b in step.predictions()]
+    checked = [(b.number, b.tolerance) for b in blocks if isinstance(b, NumberQuestion)]
     drawn = [
-        msgspec.structs.replace(b, question="", usual="", answer="", ask="")
+        msgspec.structs.replace(b, question="", usual="", answer="", ask="", reasons=())
         for b in blocks
         if isinstance(b, Sketch)
     ]
@@ -169,4 +171,4 @@ def _structure(step: Step) -> tuple[object, ...]:
     links = [link.actions for text in texts for link in text.links]
     kinds = [type(block) for block in blocks]
     shown = step.kind, step.optional, step.scene, step.script
-    return *shown, tasks, kinds, right, drawn, told, links
+    return *shown, tasks, kinds, right, drawn, told, links, asked, checked

@@ -14,13 +14,31 @@ from dataclasses import dataclass
 from functools import singledispatch
 from html import unescape
 
-from onpath.lessons.schema import Block, Choice, Lesson, Quiz, Sketch, Step, Text
+from onpath.lessons.schema import (
+    Block,
+    Choice,
+    Lesson,
+    NumberQuestion,
+    OpenQuestion,
+    Quiz,
+    Sketch,
+    Step,
+    Text,
+)
 from onpath.lessons.task_schema import Task
 
 WORDS = 130
 """Words read in a minute."""
-MINUTES = {"play": 2.0, "sketch": 1.0, "choice": 0.5, "quiz": 0.5, "task": 3.0}
-"""Assumed time for trying freely, a sketch, a choice, a question and a task, beyond reading."""
+MINUTES = {
+    "play": 2.0,
+    "sketch": 1.0,
+    "choice": 0.5,
+    "quiz": 0.5,
+    "task": 3.0,
+    "numberquestion": 1.0,
+    "openquestion": 1.0,
+}
+"""Assumed time for each kind of what a student does, beyond reading."""
 FOLDED = re.compile(r"<details>.*?</details>", re.DOTALL)
 TAG = re.compile(r"<[^>]*>")
 
@@ -48,7 +66,7 @@ def word_count(html: str) -> int:
 
 def step_minutes(step: Step) -> Minutes:
     """Estimated duration of a step: its text, its run, and what the student does in it."""
-    asked = [block for block in step.blocks if isinstance(block, Sketch | Choice | Quiz)]
+    asked = [block for block in step.blocks if not isinstance(block, Text | Task)]
     tried = MINUTES["play"] if step.kind == "play" else 0.0
     return Minutes(
         reading=sum(word_count(text) for block in step.blocks for text in _read(block)) / WORDS,
@@ -93,14 +111,21 @@ def _(block: Text) -> list[str]:
 
 @_read.register
 def _(block: Sketch) -> list[str]:
-    return [block.question]
+    return [block.question, *block.reasons]
+
+
+@_read.register(NumberQuestion)
+@_read.register(OpenQuestion)
+def _(block: NumberQuestion | OpenQuestion) -> list[str]:
+    return [block.question, block.answer]
 
 
 @_read.register(Choice)
 @_read.register(Quiz)
 def _(block: Choice | Quiz) -> list[str]:
     right = [option.answer for option in block.options if option.right]
-    return [block.question, *(option.text for option in block.options), *right]
+    reasons = block.reasons if isinstance(block, Choice) else ()
+    return [block.question, *(option.text for option in block.options), *right, *reasons]
 
 
 @_read.register

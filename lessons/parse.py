@@ -21,13 +21,13 @@ from onpath.lessons.problems import LessonError, Problem
 from onpath.lessons.rendered import rendered
 from onpath.lessons.schema import (
     Block,
-    Choice,
     Front,
     LabLink,
     Lesson,
+    NumberQuestion,
+    OpenQuestion,
     Prediction,
     Quiz,
-    Sketch,
     Step,
     StepKind,
     StepMark,
@@ -39,7 +39,7 @@ from onpath.lessons.toml_blocks import read_checked, read_toml
 LARGEST = 1_000_000
 """Largest size of a lesson file, [B]."""
 KINDS: tuple[str, ...] = get_args(StepKind)
-FENCES = ("step", "scene", "script", "predict", "task", "quiz")
+FENCES = ("step", "scene", "script", "predict", "task", "quiz", "number", "open")
 KNOWN = (*FENCES, "fold")
 HEADING = re.compile(r"(\w+):\s*(.+)")
 FOLD = re.compile(r"fold\b\s*(.*)")
@@ -166,16 +166,18 @@ class _Reader:
             draft.scene = self._checked(content, line, StepSetup, self._scene_faults)
         elif what == "script":
             draft.script = self._checked(content, line, Script, self._script_faults)
-        elif what == "predict":
-            read: Any = self._checked(content, line, Prediction, vocabulary.prediction_faults)
-            self._add(draft, read, line)
-        elif what == "task":
-            self._add(draft, self._checked(content, line, Task, self._task_faults), line)
         else:
-            self._add(draft, self._checked(content, line, Quiz, _quiz_faults), line)
+            kinds: dict[str, tuple[Any, Callable[[Any], Iterable[str]]]] = {
+                "predict": (Prediction, vocabulary.prediction_faults),
+                "task": (Task, self._task_faults),
+                "quiz": (Quiz, _quiz_faults),
+                "number": (NumberQuestion, vocabulary.number_faults),
+                "open": (OpenQuestion, lambda _: ()),
+            }
+            self._add(draft, self._checked(content, line, *kinds[what]), line)
         draft.broken |= len(self._problems) > before
 
-    def _add(self, draft: _Draft, block: Choice | Sketch | Task | Quiz | None, line: int) -> None:
+    def _add(self, draft: _Draft, block: Block | None, line: int) -> None:
         if block is None:
             return
         try:

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 
 MOST_POINTS = 200
+MOST_TEXT = 1000
+"""Longest answer in own words, [characters]."""
 Index = Annotated[int, msgspec.Meta(ge=0, le=1000)]
 Key = Annotated[str, msgspec.Meta(max_length=80)]
+Written = Annotated[str, msgspec.Meta(max_length=MOST_TEXT)]
+Sure = Literal["", "guessing", "fairly", "certain"]
+"""How sure a student is of a prediction; empty if it was not said."""
+SURENESS: tuple[Sure, ...] = ("guessing", "fairly", "certain")
 Points = Annotated[tuple[float, ...], msgspec.Meta(max_length=MOST_POINTS)]
 
 
@@ -19,11 +25,17 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Attributes:
         option: index of the option, or None.
         times, values: points of a sketch, [s] and in the quantity's unit.
+        sure: how sure the student is.
+        reason: index of the chosen reason, or None.
+        why: the student's reason in own words.
     """
 
     option: Index | None = None
     times: Points = ()
     values: Points = ()
+    sure: Sure = ""
+    reason: Index | None = None
+    why: Written = ""
 
     @property
     def skipped(self) -> bool:
@@ -50,7 +62,9 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         played: steps whose script has been run.
         tasks: ids of passed tasks -> best value so far, or 0 for tasks without one.
         hints: number of hints shown, by task.
-        quiz: chosen options, by step.
+        quiz: chosen options, by step and block.
+        numbers: answers that are numbers, by step and block.
+        written: answers in own words, by step and block.
     """
 
     step: Index = 0
@@ -61,6 +75,8 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     tasks: dict[Key, float] = {}
     hints: dict[Key, Index] = {}
     quiz: dict[Key, Index] = {}
+    numbers: dict[Key, float] = {}
+    written: dict[Key, Written] = {}
 
 
 class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -91,7 +107,7 @@ def read_progress(data: object) -> Progress:
     """
     progress = msgspec.convert(data, Progress)
     for notes in progress.notes.values():
-        numbers = [*notes.tasks.values()]
+        numbers = [*notes.tasks.values(), *notes.numbers.values()]
         for answer in notes.answers.values():
             numbers += [*answer.times, *answer.values]
             if len(answer.times) != len(answer.values):

@@ -8,7 +8,7 @@ from typing import Any
 from msgspec.structs import replace
 
 from onpath.lessons.formulas import to_html
-from onpath.lessons.schema import Choice, Front, Option, Quiz, Sketch
+from onpath.lessons.schema import Choice, Front, NumberQuestion, OpenQuestion, Option, Quiz, Sketch
 from onpath.lessons.task_schema import Task
 
 
@@ -42,6 +42,12 @@ def _(part: Choice) -> Choice:
 @rendered.register
 def _(part: Quiz) -> Quiz:
     return replace(_html(part, "question"), options=_options(part))
+
+
+@rendered.register(NumberQuestion)
+@rendered.register(OpenQuestion)
+def _(part: NumberQuestion | OpenQuestion) -> NumberQuestion | OpenQuestion:
+    return _html(part, "question", "answer")
 
 
 @rendered.register

@@ -35,11 +35,15 @@ class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
 
     Attributes:
         ask: for the teacher, what to ask the class before it is seen.
+        reasons: from which the student may choose one.
+        why: whether the student is asked for a reason in own words.
     """
 
     question: str
     options: tuple[Option, ...]
     ask: str = ""
+    reasons: tuple[str, ...] = ()
+    why: bool = False
 
 
 class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
@@ -53,6 +57,7 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
         usual: for the teacher, what students usually draw.
         answer: for the teacher, what the true curve is like, and why.
         ask: for the teacher, what to ask the class before it is seen.
+        reasons, why: as in `Choice`.
     """
 
     question: str
@@ -64,6 +69,8 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
     usual: str = ""
     answer: str = ""
     ask: str = ""
+    reasons: tuple[str, ...] = ()
+    why: bool = False
 
 
 Prediction = Choice | Sketch
@@ -74,6 +81,37 @@ class Quiz(Data, frozen=True):
 
     question: str
     options: tuple[Option, ...]
+
+
+class NumberQuestion(Data, frozen=True):
+    """A question whose answer is a number, which is checked.
+
+    Attributes:
+        number: the right one, in `unit`.
+        tolerance: largest deviation that is accepted, in `unit`.
+        answer: shown to whoever has answered.
+    """
+
+    question: str
+    number: float
+    tolerance: float
+    answer: str
+    unit: str = ""
+
+    def accepts(self, given: float) -> bool:
+        """Whether a number is right, up to rounding."""
+        return abs(given - self.number) <= self.tolerance * (1 + 1e-9)
+
+
+class OpenQuestion(Data, frozen=True):
+    """A question that is answered in own words; the answer is kept, and not marked.
+
+    Attributes:
+        answer: a model answer, shown to whoever has answered.
+    """
+
+    question: str
+    answer: str
 
 
 class LabLink(msgspec.Struct, frozen=True):
@@ -90,7 +128,7 @@ class Text(msgspec.Struct, frozen=True):
     links: tuple[LabLink, ...] = ()
 
 
-Block = Text | Choice | Sketch | Task | Quiz
+Block = Text | Choice | Sketch | Task | Quiz | NumberQuestion | OpenQuestion
 
 
 class StepMark(Data, frozen=True):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterable
-from typing import Any, TypeVar
+from difflib import get_close_matches
+from typing import Any, TypeVar, get_args
 
 import msgspec
 
@@ -24,10 +25,26 @@ def read_toml(content: str, line: int, kind: type[T], complain: Complain) -> T |
         place = re.search(r"at line (\d+)", str(error))
         complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}")
     except msgspec.ValidationError as error:
-        complain(line_of(str(error), content, line), str(error))
+        complain(line_of(str(error), content, line), f"{error}{_near_field(str(error), kind)}")
     except RecursionError:
         complain(line, "nested too deeply")
     return None
+
+
+def _near_field(error: str, kind: Any) -> str:
+    """The known field whose name is nearest to the unknown one of an error, as a suggestion."""
+    unknown = re.search(r"unknown field `(.+?)`", error)
+    near = get_close_matches(unknown[1], sorted(_fields(kind)), 1) if unknown else []
+    return f"; did you mean {near[0]}?" if near else ""
+
+
+def _fields(kind: Any) -> set[str]:
+    """Names of all fields of a type, and of the types in it."""
+    names = {name for part in get_args(kind) for name in _fields(part)}
+    if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
+        for field in msgspec.structs.fields(kind):
+            names |= {field.encode_name} | _fields(field.type)
+    return names
 
 
 def read_checked(

@@ -8,7 +8,7 @@ from typing import get_args
 
 from onpath.lessons.action_schema import Action, Laws, Script, StepSetup, Value
 from onpath.lessons.record import PLOTS, QUANTITIES
-from onpath.lessons.schema import Prediction, Sketch
+from onpath.lessons.schema import NumberQuestion, Prediction, Sketch
 from onpath.lessons.task_schema import Bound, Check, Compare, Event, EventName, Order, Setting, Task
 from onpath.models.closed_loop.simulation import check_level_set, raised
 from onpath.models.control.benches import BENCHES, checked_laws
@@ -78,6 +78,10 @@ def action_faults(action: Action, robot: str) -> Iterator[str]:
 
 def prediction_faults(prediction: Prediction) -> Iterator[str]:
     """The faults of a prediction."""
+    if prediction.reasons and prediction.why:
+        yield "why = true: reasons are given, so own words are not asked for"
+    if len(prediction.reasons) == 1 or not all(map(str.strip, prediction.reasons)):
+        yield "reasons: two or more are needed, none of them empty"
     if isinstance(prediction, Sketch):
         yield from _one_of(prediction.quantity, QUANTITIES, "quantity")
         if not 0 < prediction.seconds <= LONGEST:
@@ -87,6 +91,16 @@ def prediction_faults(prediction: Prediction) -> Iterator[str]:
             yield f"top = {high:g} must be above bottom = {low:g}, both within ±{HIGHEST:g}"
     else:
         yield from option_faults([option.right for option in prediction.options])
+
+
+def number_faults(question: NumberQuestion) -> Iterator[str]:
+    """The faults of a question whose answer is a number."""
+    if not abs(question.number) <= HIGHEST:
+        yield f"number = {question.number:g}: within ±{HIGHEST:g}"
+    if not 0 < question.tolerance <= HIGHEST:
+        yield f"tolerance = {question.tolerance:g}: above 0, and at most {HIGHEST:g}"
+    elif question.number and question.tolerance >= abs(question.number):
+        yield f"tolerance = {question.tolerance:g}: 0 would be accepted as {question.number:g}"
 
 
 def option_faults(right: list[bool]) -> Iterator[str]:

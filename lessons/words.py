@@ -44,6 +44,11 @@ class Words:
         """The text of a key, or a default."""
         return self(key) if key in self._plain or key in self._catalogue else default
 
+    def number(self, value: float, digits: int = 4) -> str:
+        """A number with so many significant digits, with the decimal point of the language."""
+        text = f"{float(f'{value:.{digits}g}') + 0.0:g}"
+        return text.replace("-", "−").replace(".", self("report.point"))
+
     def sentence(self, said: Message | Exception) -> str:
         """The text of a message or an error; an error without a code is not translated."""
         message = said.message if isinstance(said, Coded) else said

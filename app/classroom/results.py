@@ -13,9 +13,20 @@ from onpath.app.common.visible_text import is_visible
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Answer, Notes, Progress, Truth
-from onpath.lessons.schema import Choice, Lesson, Prediction, Quiz, Sketch
+from onpath.lessons.schema import (
+    Choice,
+    Lesson,
+    NumberQuestion,
+    OpenQuestion,
+    Prediction,
+    Quiz,
+    Sketch,
+)
 
-HEADER = ("number", "nickname", "lesson", "step", "kind", "item", "result", "right", "value")
+HEADER = (
+    *("number", "nickname", "lesson", "step", "kind", "item", "result", "right", "value"),
+    *("sure", "why"),
+)
 FORMULA = frozenset("=+-@|%\u2212\u2795\u2796\ua78a\U0001f7f0")
 """Beginnings of a formula, also as minus, heavy or short sign; other widths and sizes by NFKC."""
 
@@ -92,24 +103,35 @@ def class_csv(members: Iterable[Member], course: Course, language: str) -> bytes
             if name in course.lessons:
                 for row in _rows(course.lesson(name, language), notes):
                     cells = (member.number, member.name, name, *row)
-                    writer.writerow([_harmless(cell) for cell in cells])
+                    rest = ("",) * (len(HEADER) - len(cells))
+                    writer.writerow([_harmless(cell) for cell in (*cells, *rest)])
     return b"\xef\xbb\xbf" + file.getvalue().encode()  # UTF-8 mark for spreadsheets
 
 
 def _rows(lesson: Lesson, notes: Notes) -> Iterator[tuple[object, ...]]:
-    """Rows of step, kind, item, result, correctness and value."""
+    """Rows of step, kind, item, result, correctness and value; of predictions also the last two."""
     for index, step in enumerate(lesson.steps):
         for prediction in step.predictions():
             answer = notes.answers.get(str(index))
-            yield index + 1, "prediction", step.title, *_answered(prediction, answer)
+            told = _told(prediction, answer)
+            yield index + 1, "prediction", step.title, *_answered(prediction, answer), *told
         for task in step.tasks():
             best = notes.tasks.get(task.id)
             passed, value = best is not None, best if task.best and best is not None else ""
             yield index + 1, "task", task.id, "passed" if passed else "open", int(passed), value
         for number, block in enumerate(step.blocks):
-            chosen = notes.quiz.get(f"{index}.{number}")
+            key = f"{index}.{number}"
             if isinstance(block, Quiz):
-                yield index + 1, "question", step.title, *_chosen(block, chosen)
+                chosen = _chosen(block, notes.quiz.get(key))
+                yield index + 1, "question", step.title, *chosen
+            elif isinstance(block, NumberQuestion):
+                given = notes.numbers.get(key)
+                right = "" if given is None else int(block.accepts(given))
+                result = "open" if given is None else "number"
+                yield index + 1, "number", step.title, result, right, "" if given is None else given
+            elif isinstance(block, OpenQuestion):
+                text = notes.written.get(key, "")
+                yield index + 1, "words", step.title, "words" if text else "open", "", text
 
 
 def _answered(prediction: Prediction, answer: Answer | None) -> tuple[object, object, object]:
@@ -121,6 +143,15 @@ def _answered(prediction: Prediction, answer: Answer | None) -> tuple[object, ob
         points = zip(answer.times, answer.values, strict=True)
         return "sketch", "", " ".join(f"{t:g}:{v:g}" for t, v in points)
     return _chosen(prediction, answer.option)
+
+
+def _told(prediction: Prediction, answer: Answer | None) -> tuple[object, object]:
+    """How sure the student is, and the chosen reason by its letter, or one in own words."""
+    if answer is None or answer.skipped:
+        return "", ""
+    if answer.reason is not None and answer.reason < len(prediction.reasons):
+        return answer.sure, LETTERS[answer.reason]
+    return answer.sure, answer.why
 
 
 def _chosen(block: Choice | Quiz, option: int | None) -> tuple[object, object, object]:

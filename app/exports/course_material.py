@@ -12,7 +12,17 @@ from onpath.lessons.benches import robot_names
 from onpath.lessons.course import REFERENCE, Course, read_references
 from onpath.lessons.minutes import Minutes, optional_minutes, required_minutes, step_minutes
 from onpath.lessons.progress import Truth
-from onpath.lessons.schema import Block, Choice, Lesson, Quiz, Sketch, Step, Text
+from onpath.lessons.schema import (
+    Block,
+    Choice,
+    Lesson,
+    NumberQuestion,
+    OpenQuestion,
+    Quiz,
+    Sketch,
+    Step,
+    Text,
+)
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
@@ -20,10 +30,10 @@ from onpath.models.systems.catalogue import ROBOTS
 
 @dataclass(frozen=True, slots=True)
 class AskedBlock:
-    """A prediction, a question or a task, with what it takes to answer it.
+    """A prediction, a question of any kind or a task, with what it takes to answer it.
 
     Attributes:
-        kind: "sketch", "choice", "quiz" or "task".
+        kind: "sketch", "choice", "quiz", "number", "open" or "task".
         key: lesson, step and place in the step; unique in the course.
         step: its number, from 1.
         axes: of a sketch, nothing drawn, as an image for a page.
@@ -112,6 +122,9 @@ def _asked(
             asked.append(AskedBlock(type(block).__name__.lower(), key, index + 1, block))
         elif isinstance(block, Task):
             asked.append(AskedBlock("task", key, index + 1, block, solution=solutions[block.id]))
+        elif isinstance(block, NumberQuestion | OpenQuestion):
+            kind = "number" if isinstance(block, NumberQuestion) else "open"
+            asked.append(AskedBlock(kind, key, index + 1, block))
         else:
             assert isinstance(block, Text)
     return asked

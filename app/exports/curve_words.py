@@ -16,8 +16,7 @@ from onpath.lessons.words import Words
 
 def number(value: float, words: Words) -> str:
     """Format a number with three digits in the style of a language."""
-    text = f"{float(f'{value:.3g}') + 0.0:g}"
-    return text.replace("-", "−").replace(".", words("report.point"))
+    return words.number(value, 3)
 
 
 def curve_words(

@@ -11,14 +11,21 @@ from datetime import datetime
 from onpath.app.common.access_codes import shown
 from onpath.app.common.templates import render
 from onpath.app.exports.curve_words import curve_words, number
-from onpath.app.exports.report_facts import Chapter, chapters, predictions, quizzes
+from onpath.app.exports.report_facts import (
+    Chapter,
+    chapters,
+    numbers,
+    open_questions,
+    predictions,
+    quizzes,
+)
 from onpath.app.exports.report_plot import draw_prediction
 from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import robot_names
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Prediction, Quiz, Sketch
+from onpath.lessons.schema import NumberQuestion, OpenQuestion, Prediction, Quiz, Sketch
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import DEFAULT, Words
 
@@ -64,6 +71,8 @@ class ChapterRecord:
         foreign: whether the lesson is unavailable in the student's language.
         tasks: each with the message of a passed task, otherwise empty.
         questions: each with the index of the option chosen, if any.
+        numbers: questions, each with the number that was answered, if any.
+        written: questions, each with the student's words; empty if there are none.
     """
 
     chapter: Chapter
@@ -72,6 +81,8 @@ class ChapterRecord:
     predictions: list[AskedPrediction]
     tasks: list[tuple[Task, str]]
     questions: list[tuple[Quiz, int | None]]
+    numbers: list[tuple[NumberQuestion, float | None]]
+    written: list[tuple[OpenQuestion, str]]
 
 
 def report(run: LessonState, code: str, made: datetime) -> bytes:
@@ -109,6 +120,8 @@ def _record(chapter: Chapter, words: Words) -> ChapterRecord:
         [_asked(chapter, key, block, words) for key, block in asked.items()],
         [(task, _passed(task, notes.tasks.get(task.id), words)) for task in tasks],
         [(quiz, notes.quiz.get(key)) for key, quiz in quizzes(lesson).items()],
+        [(block, notes.numbers.get(key)) for key, block in numbers(lesson).items()],
+        [(block, notes.written.get(key, "")) for key, block in open_questions(lesson).items()],
     )
 
 

@@ -4,14 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from msgspec.structs import replace
 
 from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.progress import Answer, Notes, Truth
-from onpath.lessons.schema import Choice, Lesson, Prediction, Quiz, Sketch
+from onpath.lessons.schema import (
+    Choice,
+    Lesson,
+    NumberQuestion,
+    OpenQuestion,
+    Prediction,
+    Quiz,
+    Sketch,
+)
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,12 +80,23 @@ def predictions(lesson: Lesson) -> dict[str, Prediction]:
 
 def quizzes(lesson: Lesson) -> dict[str, Quiz]:
     """Quizzes by note key: step and block."""
-    return {
-        f"{i}.{j}": block
-        for i, step in enumerate(lesson.steps)
-        for j, block in enumerate(step.blocks)
-        if isinstance(block, Quiz)
-    }
+    return _of_kind(lesson, Quiz)
+
+
+def numbers(lesson: Lesson) -> dict[str, NumberQuestion]:
+    """Questions whose answer is a number, by note key: step and block."""
+    return _of_kind(lesson, NumberQuestion)
+
+
+def open_questions(lesson: Lesson) -> dict[str, OpenQuestion]:
+    """Questions that are answered in own words, by note key: step and block."""
+    return _of_kind(lesson, OpenQuestion)
+
+
+def _of_kind(lesson: Lesson, kind: type[T]) -> dict[str, T]:
+    steps = enumerate(lesson.steps)
+    blocks = [(f"{i}.{j}", each) for i, step in steps for j, each in enumerate(step.blocks)]
+    return {key: block for key, block in blocks if isinstance(block, kind)}
 
 
 def fitting(lesson: Lesson, notes: Notes) -> tuple[Notes, int]:
@@ -89,6 +110,10 @@ def fitting(lesson: Lesson, notes: Notes) -> tuple[Notes, int]:
         "quiz": _kept(
             notes.quiz, lambda k, i: k in questions and 0 <= i < len(questions[k].options)
         ),
+        "numbers": _kept(
+            notes.numbers, lambda k, given: k in numbers(lesson) and bool(np.isfinite(given))
+        ),
+        "written": _kept(notes.written, lambda k, _: k in open_questions(lesson)),
     }
     strange = sum(len(getattr(notes, name)) - len(kept[name]) for name in kept)
     return replace(notes, seen=min(notes.seen, len(lesson.steps)), **kept), strange
@@ -101,6 +126,8 @@ def _kept(notes: dict[str, Any], fits: Callable[[str, Any], bool]) -> dict[str, 
 def _answers(prediction: Prediction, answer: Answer) -> bool:
     if answer.skipped:
         return True
+    if answer.reason is not None and answer.reason >= len(prediction.reasons):
+        return False
     if isinstance(prediction, Sketch):
         return answer.option is None and _are_curves(answer.times, answer.values)
     return answer.option is not None and 0 <= answer.option < len(prediction.options)

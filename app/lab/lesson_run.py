@@ -9,13 +9,13 @@ from typing import Any, Protocol
 
 from msgspec.structs import replace
 
+from onpath.app.lab.answers import kept_answer
 from onpath.app.lab.lesson_record import Beginning, Trace, record_of
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
-from onpath.app.lab.sketches import sketched
 from onpath.lessons.checks import Verdict, judge, statistic
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Answer, Progress, Truth
@@ -183,11 +183,7 @@ class LessonRun(LessonState):
         if found is None:
             raise CodedError("lesson.nothing_to_predict")
         _, prediction = found
-        if isinstance(prediction, Sketch):
-            answer = sketched(prediction, answer)
-        elif answer.option is not None and answer.option >= len(prediction.options):
-            raise CodedError("lesson.no_such_option")
-        self.note_answer(answer)
+        self.note_answer(kept_answer(prediction, answer))
         self._lock(session)
         self.version += 1
 

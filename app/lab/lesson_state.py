@@ -9,10 +9,19 @@ from typing import Any
 
 from msgspec.structs import replace
 
+from onpath.app.lab.answers import kept_number, kept_text
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.routes import Route
-from onpath.lessons.schema import Lesson, Prediction, Quiz, Step
+from onpath.lessons.schema import (
+    Block,
+    Lesson,
+    NumberQuestion,
+    OpenQuestion,
+    Prediction,
+    Quiz,
+    Step,
+)
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError, Message
 
@@ -153,11 +162,38 @@ class LessonState:
         Raises:
             ValueError: there is no such quiz or option.
         """
-        step = self.step
-        quiz = step.blocks[block] if step and block in range(len(step.blocks)) else None
+        quiz = self._block(block)
         if not isinstance(quiz, Quiz) or option not in range(len(quiz.options)):
             raise CodedError("lesson.no_such_option")
         self.note(quiz={**self.notes.quiz, f"{self.index}.{block}": option})
+
+    def answer_number(self, block: int, given: float) -> None:
+        """Answer a question with a number; `block` is its index among the open step's blocks.
+
+        Raises:
+            ValueError: there is no such question, or it is no number.
+        """
+        if not isinstance(self._block(block), NumberQuestion):
+            raise CodedError("lesson.no_such_option")
+        number = kept_number(given)
+        self.note(numbers={**self.notes.numbers, f"{self.index}.{block}": number})
+
+    def answer_in_words(self, block: int, typed: str) -> None:
+        """Answer an open question, or take the answer back with an empty one.
+
+        Raises:
+            ValueError: there is no such question.
+        """
+        if not isinstance(self._block(block), OpenQuestion):
+            raise CodedError("lesson.no_such_option")
+        key, text = f"{self.index}.{block}", kept_text(typed)
+        others = {k: kept for k, kept in self.notes.written.items() if k != key}
+        self.note(written={**others, **({key: text} if text else {})})
+
+    def _block(self, block: int) -> Block | None:
+        """A block of the open step, or None."""
+        step = self.step
+        return step.blocks[block] if step and block in range(len(step.blocks)) else None
 
     def set_language(self, language: str) -> None:
         """Set the language of texts and interface."""

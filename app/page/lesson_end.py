@@ -11,7 +11,14 @@ import viser
 from onpath.app.common.palette import BORDER
 from onpath.app.common.templates import render
 from onpath.app.exports.curve_words import curve_words
-from onpath.app.exports.report_facts import Chapter, chapters, predictions, quizzes
+from onpath.app.exports.report_facts import (
+    Chapter,
+    chapters,
+    numbers,
+    open_questions,
+    predictions,
+    quizzes,
+)
 from onpath.app.lab import commands as c
 from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.panels.widgets import Post, add_buttons, on_press
@@ -108,7 +115,8 @@ class LessonEnd:
         self._html("lesson/takeaway.html", learnt=learnt)
         for part in parts:
             self._add_predictions(part)
-        self._html("lesson/end_rest.html", parts=parts, quizzes=quizzes, run=run)
+        asked = {"quizzes": quizzes, "numbers": numbers, "open_questions": open_questions}
+        self._html("lesson/end_rest.html", parts=parts, run=run, **asked)
 
     def _add_ways_on(self, report: Callable[[], None]) -> None:
         """Buttons: the next lesson, the record, back, and the free lab."""

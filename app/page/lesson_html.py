@@ -10,9 +10,19 @@ from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.checks import Verdict
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.option_order import LETTERS
+from onpath.lessons.progress import Answer
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.routes import Route
-from onpath.lessons.schema import Choice, Lesson, Quiz, Sketch, Step
+from onpath.lessons.schema import (
+    Choice,
+    Lesson,
+    NumberQuestion,
+    OpenQuestion,
+    Prediction,
+    Quiz,
+    Sketch,
+    Step,
+)
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import Words
 
@@ -81,6 +91,23 @@ def question(
         revealed=revealed,
         words=words,
     )
+
+
+def number_question(block: NumberQuestion, given: float | None, words: Words) -> str:
+    """A question whose answer is a number and, once it is given, whether it is right, and why."""
+    shown = {"title": block.question, "colour": AZURE.hex, "block": block, "given": given}
+    return render("lesson/number.html", words=words, **shown)
+
+
+def open_question(block: OpenQuestion, text: str, words: Words) -> str:
+    """A question that is answered in own words and, once it is, a model answer."""
+    shown = {"title": block.question, "colour": AZURE.hex, "block": block, "text": text}
+    return render("lesson/open.html", words=words, **shown)
+
+
+def told(block: Prediction, answer: Answer | None, words: Words) -> str:
+    """How sure the student is of a prediction, and why; empty if neither was said."""
+    return render("lesson/beside.html", block=block, answer=answer, words=words).strip()
 
 
 def task(block: Task, verdicts: list[Verdict], run: LessonState) -> str:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Coroutine
 from typing import Any
 
-import numpy as np
 import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
+from onpath.app.page.answer_boxes import AnswerBox, PredictionForm, add_letters
 from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.lesson_end import LessonEnd
 from onpath.app.page.lesson_view import LessonView
@@ -18,8 +18,16 @@ from onpath.app.page.panels.widgets import Post, add_buttons, on_press
 from onpath.app.page.sketch_answer import SketchAnswer
 from onpath.app.scene.scene import Scene
 from onpath.lessons.course import Course
-from onpath.lessons.option_order import LETTERS
-from onpath.lessons.schema import Choice, Prediction, Quiz, Sketch, Step, Text
+from onpath.lessons.schema import (
+    Choice,
+    NumberQuestion,
+    OpenQuestion,
+    Prediction,
+    Quiz,
+    Sketch,
+    Step,
+    Text,
+)
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import Words
 
@@ -56,7 +64,7 @@ class LessonPanel:
         self._tasks: list[tuple[Task, viser.GuiHtmlHandle]] = []
         self._chart: PredictionChart | None = None
         self._sketching: SketchAnswer | None = None
-        self._draft = c.Predict()
+        self._typed: dict[str, Any] = {}  # question -> what is typed; see `AnswerBox`
         self._busy, self._version, self._reading = False, -1, -1
         self._panel = None
         if tab is None:
@@ -154,9 +162,29 @@ class LessonPanel:
             key = f"{run.index}.{number}"
             chosen, order = run.notes.quiz.get(key), run.order(block, key)
             self._html(page.question(block, order, chosen, chosen is not None, run.words))
-            self._add_letters(order, lambda at: self._post(c.AnswerQuiz(number, order[at])))
+            answered = add_letters(
+                self._gui, order, lambda at, _: self._post(c.AnswerQuiz(number, at))
+            )
+            self._handles.append(answered)
         elif isinstance(block, Choice | Sketch):
             self._add_prediction(block, run)
+        elif isinstance(block, NumberQuestion | OpenQuestion):
+            self._add_question(number, block, run)
+
+    def _add_question(
+        self, place: int, block: NumberQuestion | OpenQuestion, run: LessonView
+    ) -> None:
+        """A question that is answered with a number, or in own words."""
+        key, words = f"{run.index}.{place}", run.words
+        box = AnswerBox(self._gui, words, self._post, place, f"{run.progress.lesson} {key}")
+        if isinstance(block, NumberQuestion):
+            given = run.notes.numbers.get(key)
+            self._html(page.number_question(block, given, words))
+            self._handles += box.add_number(block, given or 0.0, self._typed)
+        else:
+            text = run.notes.written.get(key, "")
+            self._html(page.open_question(block, text, words))
+            self._handles += box.add_text(text, self._typed)
 
     def _add_task(self, task: Task, run: LessonView) -> None:
         verdicts = run.verdicts.get(task.id, [])
@@ -171,9 +199,10 @@ class LessonPanel:
         if isinstance(block, Sketch):
             self._html(page.asked(block))
             if answer is None:
-                self._add_sketching(block, run)
+                self._add_form(block, run)
             else:
                 self._add_let_happen(run)
+                self._add_told(block, run)
                 self._add_chart(block, run)
             return
         chosen, order = answer.option if answer else None, run.order(block)
@@ -181,15 +210,9 @@ class LessonPanel:
             self._add_let_happen(run)
         self._html(page.question(block, order, chosen, False, run.words))
         if answer is None:
-            commit = self._commit_button()
-
-            def choose(place: int) -> None:
-                self._draft = c.Predict(option=order[place])
-                commit.label = f"{run.words('lesson.commit')}: {LETTERS[place]}"
-                commit.disabled = False
-
-            letters = self._add_letters(order, choose)
-            commit.order = letters.order + 0.5
+            self._add_form(block, run)
+        else:
+            self._add_told(block, run)
 
     def _add_let_happen(self, run: LessonView) -> None:
         """After a prediction: what to do next, which assets/page/steps.js brings into view."""
@@ -206,37 +229,15 @@ class LessonPanel:
         on_press(button, let_happen)
         self._handles.append(button)
 
-    def _commit_button(self) -> viser.GuiButtonHandle:
-        commit = self._gui.add_button(self._words("lesson.commit"), icon=viser.Icon.LOCK)
-        commit.disabled = True
-        self._draft = c.Predict()
-        on_press(commit, lambda: self._post(self._draft))
-        self._handles.append(commit)
-        return commit
+    def _add_form(self, block: Prediction, run: LessonView) -> None:
+        form = PredictionForm(self._client, self._scene, block, run, self._post)
+        self._handles += form.handles
+        self._sketching = form.sketching
 
-    def _add_letters(self, order: tuple[int, ...], act: Callable[[int], None]) -> Any:
-        """A button for each place of an option.
-
-        Args:
-            act: is given the place.
-        """
-        places = {letter: place for place, letter in enumerate(LETTERS[: len(order)])}
-        group = add_buttons(self._gui, "", places, act)
-        self._handles.append(group)
-        return group
-
-    def _add_sketching(self, block: Sketch, run: LessonView) -> None:
-        """The button that submits the sketch, and what it is drawn with."""
-        words = self._words
-        said = self._html(page.remark(words("lesson.draw_first")))
-        commit = self._commit_button()
-
-        def drawn(times: np.ndarray, values: np.ndarray) -> None:
-            self._draft = c.Predict(None, tuple(times.tolist()), tuple(values.tolist()))
-            commit.disabled = False
-            said.content = page.remark(words("lesson.drawn"))
-
-        self._sketching = SketchAnswer(self._client, self._scene, block, run, drawn)
+    def _add_told(self, block: Prediction, run: LessonView) -> None:
+        """How sure the student was, and why, if it was said."""
+        if said := page.told(block, run.answer(), run.words):
+            self._html(said)
 
     def _add_run(self, run: LessonView) -> None:
         """The prediction next to the measured result, and the button that runs the experiment."""
@@ -259,6 +260,7 @@ class LessonPanel:
         elif truth is not None and not run.playing:
             chosen = answer.option if answer else None
             self._html(page.question(block, run.order(block), chosen, True, run.words))
+        self._add_told(block, run)
 
     def _add_chart(self, block: Sketch, run: LessonView) -> None:
         answer = run.answer()

@@ -87,6 +87,7 @@ lesson-finish = Fertig
 lesson-locked = Lege dich erst links auf eine Vorhersage fest, oder überspringe sie.
 lesson-nothing_to_predict = hier gibt es nichts vorherzusagen
 lesson-no_such_option = diese Antwort gibt es nicht
+lesson-no_number = das ist keine Zahl
 lesson-again = Neu aufbauen
 lesson-play = Geschehen lassen
 lesson-read = Ohne das weiterlesen
@@ -126,6 +127,25 @@ kind-quiz = Frage
 
 language-en = English
 language-de = Deutsch
+
+## Antworten neben einer Vorhersage, und Antworten, die eine Zahl oder ein Text sind
+
+answer-how_sure = Wie sicher bist du? (freiwillig)
+answer-sure = Wie sicher du warst:
+answer-why = Deine Begründung:
+answer-because = Warum? (freiwillig)
+answer-not_said = keine Angabe
+answer-number = Deine Antwort:
+answer-words = Du hast geschrieben:
+answer-model = So könnte man antworten:
+answer-type_number = Deine Zahl
+answer-type_unit = Deine Zahl [{ $unit }]
+answer-type_words = Deine Antwort, mit eigenen Worten
+answer-check = Prüfen
+answer-keep = Antwort behalten
+sure-guessing = geraten
+sure-fairly = ziemlich sicher
+sure-certain = ganz sicher
 
 ## Das Ende einer Lektion
 
@@ -757,6 +777,10 @@ guide-and_optional = und { $minutes } freiwillig
 guide-sketch = Vorhersage: eine Kurve
 guide-choice = Vorhersage
 guide-quiz = Frage
+guide-number = Frage, eine Zahl
+guide-within = { $number } { $unit }, auf { $tolerance } { $unit } genau
+guide-open = Frage, mit eigenen Worten
+guide-reasons = Begründungen zur Wahl:
 guide-task = Aufgabe
 guide-ask = Zu fragen, bevor man es sieht:
 guide-usual = Meist wird gezeichnet:

@@ -89,6 +89,7 @@ lesson-finish = Finish
 lesson-locked = First commit to a prediction on the left, or skip it.
 lesson-nothing_to_predict = there is nothing to predict here
 lesson-no_such_option = there is no such answer
+lesson-no_number = this is not a number
 lesson-again = Set up again
 lesson-play = Let it happen
 lesson-read = Read on without it
@@ -128,6 +129,25 @@ kind-quiz = Question
 
 language-en = English
 language-de = Deutsch
+
+## Answers beside a prediction, and answers that are a number or a text
+
+answer-how_sure = How sure are you? (optional)
+answer-sure = You were:
+answer-why = Your reason:
+answer-because = Why? (optional)
+answer-not_said = not said
+answer-number = Your answer:
+answer-words = You wrote:
+answer-model = A model answer:
+answer-type_number = Your number
+answer-type_unit = Your number [{ $unit }]
+answer-type_words = Your answer, in your own words
+answer-check = Check
+answer-keep = Keep my answer
+sure-guessing = guessing
+sure-fairly = fairly sure
+sure-certain = certain
 
 ## The end of a lesson
 
@@ -675,6 +695,10 @@ guide-and_optional = and { $minutes } optional
 guide-sketch = Prediction: a curve
 guide-choice = Prediction
 guide-quiz = Question
+guide-number = Question, a number
+guide-within = { $number } { $unit }, within { $tolerance } { $unit }
+guide-open = Question, in own words
+guide-reasons = Reasons to choose from:
 guide-task = Task
 guide-ask = Ask before it is seen:
 guide-usual = Students usually draw:

@@ -12,6 +12,8 @@ from onpath.app.lab.commands.forces import (
 from onpath.app.lab.commands.laws import ChooseLaw, TypeLaw
 from onpath.app.lab.commands.lessons import (
     Act,
+    AnswerInWords,
+    AnswerNumber,
     AnswerQuiz,
     BeginStepAnew,
     CloseLesson,
@@ -66,6 +68,8 @@ __all__ = [
     "TURN",
     "Act",
     "AddPoint",
+    "AnswerInWords",
+    "AnswerNumber",
     "AnswerQuiz",
     "BeginStepAnew",
     "ChooseLaw",

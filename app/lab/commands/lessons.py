@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from onpath.app.lab.commands.scripts import commands_of, player_of
 from onpath.app.lab.lab import Command, Lab
 from onpath.lessons.action_schema import Action
-from onpath.lessons.progress import Answer
+from onpath.lessons.progress import Answer, Sure
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,15 +63,23 @@ class GoToStep(Command):
 
 @dataclass(frozen=True, slots=True)
 class Predict(Command):
-    """Submit a prediction: an option or a curve; with neither, skip it."""
+    """Submit a prediction: an option or a curve; with neither, skip it.
+
+    Attributes:
+        sure, reason, why: as in `Answer`.
+    """
 
     option: int | None = None
     times: tuple[float, ...] = ()
     values: tuple[float, ...] = ()
+    sure: Sure = ""
+    reason: int | None = None
+    why: str = ""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        lab.lessons.predict(Answer(self.option, self.times, self.values), lab.session)
+        told = self.sure, self.reason, self.why
+        lab.lessons.predict(Answer(self.option, self.times, self.values, *told), lab.session)
         lab.show_message("")  # that a prediction is missing
 
 
@@ -116,6 +124,30 @@ class AnswerQuiz(Command):
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         lab.lessons.answer_quiz(self.block, self.option)
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerNumber(Command):
+    """Answer a question with a number; `block` is its index in the step."""
+
+    block: int
+    given: float
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.answer_number(self.block, self.given)
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerInWords(Command):
+    """Answer an open question; `block` is its index in the step."""
+
+    block: int
+    typed: str
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.lessons.answer_in_words(self.block, self.typed)
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,7 +33,16 @@ from onpath.assets import asset_path
 from onpath.lessons.checks import Verdict
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.progress import Answer, Notes, Progress
-from onpath.lessons.schema import Choice, Lesson, Option, Quiz, Sketch, Text
+from onpath.lessons.schema import (
+    Choice,
+    Lesson,
+    NumberQuestion,
+    OpenQuestion,
+    Option,
+    Quiz,
+    Sketch,
+    Text,
+)
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import ENGLISH, Words, languages
 from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
@@ -254,12 +263,20 @@ def pieces(run: LessonRun, words: Words) -> Iterator[str]:
             yield lesson_html.task(block, [Verdict(True, "a"), Verdict(False, "b")], run)
         elif isinstance(block, Sketch):
             yield lesson_html.asked(block)
+        elif isinstance(block, NumberQuestion):
+            for number in (None, block.number, -block.number - 1):
+                yield lesson_html.number_question(block, number, words)
+        elif isinstance(block, OpenQuestion):
+            for text in ("", "<b>"):
+                yield lesson_html.open_question(block, text, words)
         else:
             for chosen in (None, *range(len(block.options))):
                 yield lesson_html.question(
                     block, tuple(range(len(block.options))), chosen, True, words
                 )
         if isinstance(block, Choice | Sketch):
+            why = Answer(option=0, sure="certain", reason=0 if block.reasons else None, why="<b>")
+            yield lesson_html.told(block, why, words)
             sketch = Answer(times=(0.0, 1.0), values=(0.0, 1.0))
             ways = [Progress(notes={lesson.name: Notes(answers={str(run.index): sketch})})]
             found = distribution(block, lesson.name, run.index, ways)

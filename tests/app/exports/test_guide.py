@@ -15,7 +15,7 @@ from onpath.assets.messages import languages
 from onpath.lessons.action_schema import Action, Laws, Script
 from onpath.lessons.action_words import script_words
 from onpath.lessons.course import BUILT_IN, Course, read_course
-from onpath.lessons.schema import Block, Choice, Quiz, Sketch
+from onpath.lessons.schema import Block, Choice, NumberQuestion, OpenQuestion, Quiz, Sketch, Text
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -35,7 +35,7 @@ def asked(name: str, language: str) -> Iterator[tuple[str, Block]]:
     """Every prediction, question and task of a lesson with its key."""
     for index, step in enumerate(course().lesson(name, language).steps):
         for place, block in enumerate(step.blocks):
-            if isinstance(block, Choice | Sketch | Quiz | Task):
+            if not isinstance(block, Text):
                 yield f"{name}.{index}.{place}", block
 
 
@@ -45,9 +45,11 @@ def texts(block: Block) -> list[str]:
         return [block.text, block.passed]
     if isinstance(block, Sketch):
         return [block.question, block.usual, block.answer, block.ask, "data:image/svg+xml"]
+    if isinstance(block, NumberQuestion | OpenQuestion):
+        return [block.question, block.answer]
     assert isinstance(block, Choice | Quiz)
     told = [text for option in block.options for text in (option.text, option.answer)]
-    return [block.question, *told, getattr(block, "ask", "")]
+    return [block.question, *told, getattr(block, "ask", ""), *getattr(block, "reasons", ())]
 
 
 @in_every_language
@@ -96,6 +98,8 @@ def test_a_worksheet_asks_everything_once_and_only_its_key_answers(
             assert "data:image/svg+xml" in sheet[each] and drawn > empty  # no curve to copy
         elif isinstance(block, Task):
             assert block.passed in answers[each] and block.passed not in page
+        elif isinstance(block, NumberQuestion | OpenQuestion):
+            assert block.answer in answers[each] and block.answer not in page
         else:
             assert isinstance(block, Choice | Quiz)
             (right,) = [option for option in block.options if option.right]

@@ -58,7 +58,17 @@ PAGE = sorted(
 )
 KEYS_MADE = (
     *("start.", "run.direction"),
-    *("quantity.", "stat.", "during.", "event.", "robot.", "kind.", "language.", "report."),
+    *(
+        "quantity.",
+        "stat.",
+        "during.",
+        "event.",
+        "robot.",
+        "kind.",
+        "language.",
+        "report.",
+        "sure.",
+    ),
     *("caption.", "invite.", "spoken."),
     *("bench.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),

@@ -1,0 +1,60 @@
+"""Converts what a student answers to the form that is stored."""
+
+from __future__ import annotations
+
+import math
+import unicodedata
+
+from msgspec.structs import replace
+
+from onpath.app.common.visible_text import is_visible, without_surplus_marks
+from onpath.app.lab.sketches import sketched
+from onpath.lessons.progress import MOST_TEXT, SURENESS, Answer
+from onpath.lessons.schema import Prediction, Sketch
+from onpath.models.errors import CodedError
+
+
+def kept_answer(prediction: Prediction, answer: Answer) -> Answer:
+    """The answer to a prediction; a skipped one has neither confidence nor reason.
+
+    Raises:
+        ValueError: no such option or reason, or the sketch is no curve.
+    """
+    if answer.skipped:
+        return Answer()
+    kept = sketched(prediction, answer) if isinstance(prediction, Sketch) else answer
+    if not isinstance(prediction, Sketch) and answer.option not in range(len(prediction.options)):
+        raise CodedError("lesson.no_such_option")
+    if answer.reason is not None and answer.reason not in range(len(prediction.reasons)):
+        raise CodedError("lesson.no_such_option")
+    return replace(
+        kept,
+        sure=answer.sure if answer.sure in SURENESS else "",
+        reason=answer.reason,
+        why=kept_text(answer.why) if prediction.why else "",
+    )
+
+
+def kept_number(given: object) -> float:
+    """An answer that is a number.
+
+    Raises:
+        ValueError: it is not a finite number.
+    """
+    if isinstance(given, bool) or not isinstance(given, float | int) or not math.isfinite(given):
+        raise CodedError("lesson.no_number")
+    return float(given)
+
+
+def kept_text(typed: object) -> str:
+    """An answer in own words: at most MOST_TEXT characters that can be seen, and spaces."""
+    text = without_surplus_marks(unicodedata.normalize("NFC", str(typed)[: 4 * MOST_TEXT]))
+    kept = (each if is_visible(each) else _space(each) for each in text)
+    return "".join(kept)[:MOST_TEXT].strip()
+
+
+def _space(character: str) -> str:
+    """A space or a new line for one that cannot be seen, or nothing."""
+    if character == "\n":
+        return character
+    return " " if character.isspace() else ""

@@ -1,0 +1,49 @@
+"""Answers beside a prediction, a number and a text, typed into the page of a real browser."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser
+
+from onpath.app.lab import commands as c
+from onpath.app.server.lab_server import LabServer
+from onpath.lessons.progress import Answer
+from tests.support.browser import Tab, wait_for
+
+WAITS, POLES = "01b-let-the-clock-wait", "04b-poles-and-gains"
+
+
+def test_how_sure_why_a_number_and_a_text_are_typed_and_kept(
+    browser: Browser, server: LabServer
+) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 1000})
+    tab = Tab(server, context, draws=False)
+    run = tab.lab.lessons
+    tab.ask(c.TakeStep(WAITS, 5))
+    tab.page.get_by_role("heading", name="Nobody touches them").wait_for()
+    tab.page.get_by_role("button", name="A", exact=True).click()
+    for label, option in (("How sure", "certain"), ("Why?", "Only a point that jumps")):
+        tab.page.get_by_label(label).first.click()
+        tab.page.get_by_role("option", name=option).click()
+    tab.press("Commit to this prediction: A")
+    wait_for(lambda: "5" in run.notes.answers)
+    answer = run.notes.answers["5"]
+    assert (answer.sure, answer.reason) == ("certain", 0) and answer != Answer()
+    tab.page.get_by_text("You were: certain").wait_for()
+    tab.ask(c.TakeStep(POLES, 3))
+    tab.page.get_by_label("Your number [1/s]").fill("60")
+    tab.press("Check")
+    wait_for(lambda: list(run.notes.numbers.values()) == [60.0])
+    tab.page.get_by_text("Both poles are then at −30 per second").wait_for()
+    tab.ask(c.TakeStep(WAITS, 8))
+    tab.page.get_by_label("Your answer, in your own words").fill("It waits. <b>So</b> what?")
+    tab.ask(c.ShowHint("throw-it-off"))  # builds the page anew
+    tab.page.get_by_text("what would be a larger jump", exact=False).first.wait_for()
+    tab.press("Keep my answer")
+    wait_for(lambda: list(run.notes.written.values()) == ["It waits. <b>So</b> what?"])
+    tab.page.get_by_text("A model answer").wait_for()
+    assert tab.errors == []
+    context.close()
