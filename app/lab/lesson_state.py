@@ -103,13 +103,18 @@ class LessonState:
         """Whether the end of the open lesson is shown in place of a step."""
         return self.progress.ended and self.lesson is not None
 
-    def past_optional(self) -> int:
-        """Number of steps from an open optional one to the next that is not; 0 if there is none."""
+    def past_optional(self) -> int | None:
+        """Number of steps to the next one that is not optional, if the very next one is optional.
+
+        None if it is not, or is not on the route; 0 if only optional ones are left.
+        """
         lesson, index = self.lesson, self.index
-        if lesson is None or not lesson.steps[index].optional:
-            return 0
-        left = (i for i, step in enumerate(lesson.steps[index:]) if not step.optional)
-        return next(left, 0)
+        after = () if lesson is None else lesson.steps[index + 1 :]
+        if lesson is None or not after or not after[0].optional:
+            return None
+        if self.beside(1) != (lesson.name, index + 1):
+            return None
+        return next((i for i, step in enumerate(after, 1) if not step.optional), 0)
 
     def prediction(self) -> tuple[str, Prediction] | None:
         """Key and prediction of the open step, from this step or the previous one."""

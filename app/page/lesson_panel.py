@@ -281,8 +281,7 @@ class LessonPanel:
                 colour = "gray"
                 label = run.words("lesson.skip" if run.waits else "lesson.next_unseen")
             self._button(label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)
-            if step.optional:
-                self._add_way_past(run)
+            self._add_way_past(run)
         lesson = run.lesson
         first = lesson is None or run.beside(-1) == (lesson.name, run.index)
         keys = ["back", "again", "close"][1 if first else 0 :]
@@ -291,8 +290,10 @@ class LessonPanel:
         self._handles.append(add_buttons(self._gui, "", asked, self._post))
 
     def _add_way_past(self, run: LessonView) -> None:
-        """A button that leads from an optional step to the next one that is not, or to the end."""
+        """A button that leads past the optional steps that come next, or to the end."""
         past, command = run.past_optional(), c.FinishLesson()
+        if past is None:
+            return
         label = run.words("lesson.finish")
         if past:
             label = run.words("lesson.past_optional", step=run.index + 1 + past)

@@ -149,16 +149,16 @@ def test_finish_shows_own_curves_what_to_take_away_and_the_next_lesson(tab: Tab)
     wait_for_heading(tab, "What you predicted, and what happened")
     assert tab.button("Open lesson 1b: Let the clock wait").is_visible()
     tab.press("Back")
-    wait_for_heading(tab, "Push it off, and let it come back")
+    wait_for_heading(tab, "Thirty times as far")
 
 
 def test_the_free_lab_is_unchanged(tab: Tab) -> None:
     tab.page.get_by_role("button", name="Free lab").click()
-    tab.page.get_by_role("heading", name="Push it off").wait_for(state="detached")
+    tab.page.get_by_role("heading", name="Thirty times").wait_for(state="detached")
     wait_for(lambda: tab.lab.lessons.lesson is None)
     usual = tab.session.entry.lab
     wait_for(lambda: tab.session.parameters == replace(usual, **GENTLE))
     tab.press("Lessons")
     tab.page.get_by_role("button", name="Go on with lesson 1: ").wait_for()
-    tab.page.get_by_text(re.compile("[12] of 3 tasks")).wait_for()
+    tab.page.get_by_text(re.compile("[12] of 2 tasks")).wait_for()
     tab.page.keyboard.press("Escape")
