@@ -69,10 +69,10 @@ class Mirror(ScheduledLab):
         """See `ScheduledLab.achieved`."""
         return self._now.achieved
 
-    def frame(self, seconds: float) -> Frame:
+    def frame(self, seconds: float, length: float = FRAME) -> Frame:
         """Advance by one frame; see `ScheduledLab.frame`."""
         self._take_over_due()
-        self._owed += self._step()
+        self._owed += self._step(length)
         while self._coming and self._runs():
             if not (yield from self._run_towards(self._coming[0])):
                 return
@@ -97,13 +97,13 @@ class Mirror(ScheduledLab):
             self._coming.popleft()
             return False
 
-    def _step(self) -> float:
+    def _step(self, length: float) -> float:
         """Simulated time of this frame, [s]; the further behind, the longer."""
         if not self._coming:
             return 0.0
         rate = self.session.rate
         behind = (self._coming[-1].time - self.session.time) / (BEHIND * rate)
-        return FRAME * rate * float(np.clip(1 + GAIN * (behind - 1), 0.5, 2.0))
+        return length * rate * float(np.clip(1 + GAIN * (behind - 1), 0.5, 2.0))
 
     def _is_due(self, new: Moment) -> bool:
         old = self._taken
