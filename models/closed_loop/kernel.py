@@ -92,15 +92,13 @@ class Kernel:
         return ca.Function("block", [state, settings, table], results)
 
     def tick(self) -> ca.Function:
-        """One tick, for a compiler, as one scalar graph.
+        """One tick, for a compiler: (state, settings, table @ basis) -> (state, log row).
 
-        (state, settings, curve table) -> (state, log row), with the fields that this loop changes
+        The state is the fields that this loop changes.
         """
-        state = ca.SX.sym("state", self.changed)
-        settings = ca.SX.sym("settings", self.settings.size)
-        table = ca.SX.sym("curve", *self.table_shape)
-        after, row, _ = self.advance(state, settings, table @ self.basis(state, settings))
-        return ca.Function("onpath_tick", [state, settings, table], [after, row])
+        inputs = [ca.SX.sym(f"input{i}", *self.advance.size_in(i)) for i in range(3)]
+        after, row, _ = self.advance(*inputs)
+        return ca.Function("onpath_tick", inputs, [after, row])
 
 
 def build_kernel(

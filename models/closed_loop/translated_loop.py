@@ -1,14 +1,15 @@
 """Compiles a kernel to machine code in this process, with LLVM.
 
-The scalar instructions of a tick are translated one by one to LLVM's intermediate language. Each
-rounds exactly as in CasADi's virtual machine, so that both loops agree bit by bit.
+The scalar instructions of a tick are translated one by one to LLVM's intermediate language. The
+product of the curve's table with its basis functions, up to half of all operations, is made of
+vector instructions, which sum the rows of the table side by side. Each operation rounds exactly as
+in CasADi's virtual machine, and sums are taken in its order, so that both loops agree bit by bit.
 """
 
 from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from math import prod
 
 import casadi as ca
 
@@ -48,6 +49,8 @@ declare double @tanh(double)
 define internal void @one_robot(ptr noalias %settings, ptr noalias %curve, ptr noalias %state,
                                 ptr noalias %log, i64 %ticks) {{
 before:
+  %basis = alloca [{basis} x double], align 64
+  %values = alloca [{values} x double], align 64
   %any = icmp sgt i64 %ticks, 0
   br i1 %any, label %tick, label %after
 tick:
@@ -95,23 +98,33 @@ def translate(kernel: Kernel) -> str:
         NotImplementedError: the tick contains an operation without a translation; the message names
             it.
     """
-    tick = instructions(kernel.tick(), ("%state", "%settings", "%curve"), ("%state", "%row"))
+    given = "%state", "%settings"
+    rows, terms = kernel.table_shape
+    columns = kernel.advance.size_in(2)[1]
+    tick = instructions(kernel.basis, given, ("%basis",), "b")
+    tick += [line for k in range(columns) for line in _product(rows, terms, k)]
+    tick += instructions(kernel.tick(), (*given, "%values"), ("%state", "%row"), "v")
     return _LOOP.format(
+        basis=terms * columns,
+        values=rows * columns,
         settings=kernel.settings.size,
-        curve=prod(kernel.table_shape),
+        curve=rows * terms,
         state=kernel.state.size,
         log=kernel.log.size,
         tick="\n  ".join(tick),
     )
 
 
-def instructions(function: ca.Function, inputs: Sequence[str], outputs: Sequence[str]) -> list[str]:
+def instructions(
+    function: ca.Function, inputs: Sequence[str], outputs: Sequence[str], prefix: str
+) -> list[str]:
     """LLVM instructions for an SX function.
 
     All inputs are read before any output is written, so that an output may overwrite an input.
 
     Args:
         inputs, outputs: names of pointers to dense matrices, stored by columns.
+        prefix: of the names of all values.
 
     Raises:
         NotImplementedError: see `translate`.
@@ -120,7 +133,7 @@ def instructions(function: ca.Function, inputs: Sequence[str], outputs: Sequence
     values = dict[int, str]()  # what the function's registers hold
     for i in range(function.n_instructions()):
         code, into = function.instruction_id(i), function.instruction_output(i)
-        operands, v = function.instruction_input(i), f"%v{i}"
+        operands, v = function.instruction_input(i), f"%{prefix}{i}"
         if code == ca.OP_CONST:
             values[into[0]] = _literal(function.instruction_constant(i))
         elif code == ca.OP_INPUT:
@@ -134,6 +147,34 @@ def instructions(function: ca.Function, inputs: Sequence[str], outputs: Sequence
             works.append(_operation(code).format(*given, v=v))
             values[into[0]] = v
     return [*reads, *works, *writes]
+
+
+def _product(rows: int, terms: int, column: int) -> list[str]:
+    """LLVM instructions for a column of %values, the table %curve times that of %basis.
+
+    The interpreter, too, begins with 0 and adds the terms in their order.
+    """
+    vector, v = f"<{rows} x double>", f"%sum{column}"
+    lines, total = list[str](), "zeroinitializer"
+    for k in range(terms):
+        row, factor, each = f"{v}.row{k}", f"{v}.factor{k}", f"{v}.each{k}"
+        lines += [
+            _place(row, "%curve", rows * k),
+            f"{row} = load {vector}, ptr {row}.at, align 8",
+            _place(factor, "%basis", terms * column + k),
+            f"{factor} = load double, ptr {factor}.at",
+            f"{each}.first = insertelement {vector} poison, double {factor}, i64 0",
+            f"{each} = shufflevector {vector} {each}.first, {vector} poison,"
+            f" <{rows} x i32> zeroinitializer",
+            f"{v}.term{k} = fmul {vector} {row}, {each}",
+            f"{v}.{k} = fadd {vector} {total}, {v}.term{k}",
+        ]
+        total = f"{v}.{k}"
+    return [
+        *lines,
+        _place(v, "%values", rows * column),
+        f"store {vector} {total}, ptr {v}.at, align 8",
+    ]
 
 
 def _place(v: str, matrix: str, index: int) -> str:

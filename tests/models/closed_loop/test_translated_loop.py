@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -15,14 +16,16 @@ import pytest
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import InterpretedLoop
-from onpath.models.closed_loop.simulation import kernel_of
+from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of
 from onpath.models.closed_loop.translated_loop import OPERATIONS, translate, translate_loop
-from onpath.models.control.laws.registry import NAMES
+from onpath.models.control.laws.registry import LAWS, NAMES
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import TABLE_SHAPE, TERMS, circle
+from onpath.models.paths.space_curves import saddle
+from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
-from onpath.models.systems.robots import Robot
+from onpath.models.systems.robots import Robot, RobotEntry
 
 NUMBERS = [0.0, -0.0, 1.0, -1.0, 0.3, -2.5, 1e3, 5e-324, 1e300, np.inf, -np.inf, np.nan]
 PLANTS = ("unit_modes", "lagrangian")
@@ -81,6 +84,27 @@ def test_every_loop_of_every_robot_can_be_translated(
         assert "onpath_run" in translate(kernel_of(rigid_five_bar(), kind))
         for plant, law in product(PLANTS, ("redefined", "composite")):
             assert translate(kernel_of(flexible(plant), replace(kind, law=law)))
+
+
+@pytest.mark.parametrize("entry", ROBOTS.values(), ids=lambda entry: entry.name)
+def test_no_law_takes_a_third_more_operations_than_path_following(entry: RobotEntry) -> None:
+    robot, curve = entry.make(entry.parameters()), circle(0.05)
+    curves = [curve] if robot.frame.space is None else [curve, saddle(curve, 0.02)]
+    for path in curves:
+        kinds = (
+            kind_of(name, entry.parameters(), path, FREE)
+            for name, law in LAWS.items()
+            if law.suits(robot.system)
+        )
+        counts = {kind.controller: operations(kernel_of(robot, kind)) for kind in kinds}
+        most = {"velocity_field": 2.0}
+        for name, count in counts.items():
+            assert count <= most.get(name, 1.3) * counts["path_following"], (name, path)
+
+
+def operations(kernel: Kernel) -> int:
+    """Of a compiled tick; the rows of the curve's table are summed side by side."""
+    return len(re.findall(r" = (?:fadd|fsub|fmul|fdiv|fneg|fcmp|call) ", translate(kernel)))
 
 
 def test_llvm_is_loaded_only_where_it_is_needed() -> None:
