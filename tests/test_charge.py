@@ -14,7 +14,7 @@ from tests.support.checkout import ROOT
 
 TOLD = sorted(
     file
-    for pattern in ("*.md", "*.py", "*.toml", "*.svg")
+    for pattern in ("*.md", "*.py", "*.toml", "*.svg", "*.ftl", "*.html", "*.js")
     for folder in ("app", "assets", "lessons", "models")
     for file in (ROOT / folder).rglob(pattern)
 )

@@ -19,7 +19,7 @@ from onpath.app.lab.setups.setup import Setup
 from onpath.app.storage.lab_state import LabState, keep, put_back
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.models.closed_loop.simulation import FREE
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.benches import BENCHES, RIGHT
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import changed
 from tests.support.lab import do, run, store
@@ -174,6 +174,15 @@ MEDDLING = (
     asked(c.MoveHand(0.02, 0.01)),
     asked(c.SetRunning(True)),
     asked(c.SetRunning(True), c.LookAt(0.05)),
+    asked(c.SetRunning(True), c.LookAt(0.05), c.GoOn()),
+    asked(*(c.ChooseLaw(bench, "waiting_clock") for bench in BENCHES)),
+    asked(c.TypeLaw(RIGHT, "across = -300*xi - 30*dxi; along = -5*dtheta")),
+    asked(c.SetWall(True), c.PlaceWall(0.04, 0.01, 0.3)),
+    asked(c.SetHoldDirection("both"), c.Hold(True)),
+    asked(c.SetStart("beside", 0.01), c.SetStart("clock_offset", 0.1), c.Reset()),
+    asked(c.SetParameter("speed_profile", "sine"), c.SetParameter("ramp", 3.0)),
+    asked(c.SetParameter("tracker_integral", "on"), c.SetParameter("K3", 500.0)),
+    asked(c.SetExaggeration(5.0), c.Pulse()),
 )
 meddling = st.sampled_from(MEDDLING)
 ways = st.one_of(
@@ -197,13 +206,25 @@ def test_there_and_back_through_a_lesson_while_meddling(name: str) -> None:
     last = len(COURSE.lesson(name, "en").steps) - 1
     places = [0]
     for by in (1, -1):
-        for turn in range(2 * last):
-            lab = MEDDLING[turn % len(MEDDLING)](lab)
+        for _ in range(2 * last):
+            lab = MEDDLING[len(places) % len(MEDDLING)](lab)
             lab = turned(by)(lab)
             places.append(lab.lessons.index)
             if lab.lessons.index == (last if by > 0 else 0):
                 break
     assert sorted(set(places)) == list(range(last + 1)) and places[-1] == 0
+
+
+@pytest.mark.parametrize("meddle", MEDDLING)
+@pytest.mark.parametrize("way", [set_up_again, turned(1), turned(-1), left_and_opened])
+def test_whatever_was_done_nothing_of_it_is_left(
+    meddle: Callable[[Lab], Lab], way: Callable[[Lab], Lab]
+) -> None:
+    lab = pushed(("05-invariance", 1))(new_lab())
+    do(lab, c.Predict(), c.PlayStep())
+    lab = meddle(lab)
+    assert lab.message_level != "warning", lab.message
+    way(lab)
 
 
 def test_what_a_step_keeps_is_what_the_step_before_has(
