@@ -57,11 +57,8 @@ def test_a_step_opens_at_its_top(tab: Tab) -> None:
     wait_for(lambda: is_seen(tab, 5))
     before = 5
     for index, name in ((6, "Next"), (5, "Back"), (6, "Next")):
-        tab.button(name).scroll_into_view_if_needed()
-        # again and again, since a step that is still being built goes back to its top
-        wait_for(
-            lambda before=before: tab.page.evaluate(SCROLL, 1e6) > 0 and not is_seen(tab, before)
-        )
+        tab.wait_until_built()
+        assert tab.page.evaluate(SCROLL, 1e6) > 0 and not is_seen(tab, before)
         tab.button(name).click()
         wait_for(lambda index=index: is_seen(tab, index))
         assert tab.page.evaluate(SCROLL, None) == 0

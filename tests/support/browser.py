@@ -22,6 +22,7 @@ from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import page_key
 from onpath.app.page.first_minute import INVITATIONS, KEPT_AS
+from onpath.app.page.lesson_panel import LessonPanel
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_feed import LabFeed
@@ -300,12 +301,20 @@ class Tab:
         feed = self.scheduled.view  # a teacher's page is another view than the first one
         if not isinstance(feed, LabFeed) or not feed.page.is_ready:
             return False
-        return isinstance(feed.page, TeacherView) or feed.page._built == (page_key(self.lab),)
+        if isinstance(feed.page, TeacherView):
+            return True
+        panels = [part for part in feed.page._parts if isinstance(part, LessonPanel)]
+        shown = all(panel._version == self.lab.lessons.version for panel in panels)
+        return shown and feed.page._built == (page_key(self.lab),)
 
-    def press(self, name: str) -> None:
-        """Press a button once the page is built; one of the page before would do nothing."""
+    def wait_until_built(self) -> None:
+        """Return when the browser has the whole page; a button of the page before does nothing."""
         wait_for(self.is_built)
         self.answer()
+
+    def press(self, name: str) -> None:
+        """Press a button once the page is built."""
+        self.wait_until_built()
         self.button(name).click()
 
     def button(self, name: str) -> Locator:
