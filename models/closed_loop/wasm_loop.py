@@ -1,0 +1,140 @@
+"""Translates kernels and other CasADi functions to WebAssembly, for pages without a server.
+
+The scalar instructions are translated one by one, like those of `translated_loop.py`. Each rounds
+exactly as in CasADi's virtual machine, except for sin, cos, log and tanh, which are the browser's
+and may differ in the last bit.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+
+import casadi as ca
+
+from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.wasm_module import MATHEMATICS, Part, WasmFunction, wasm_module
+
+DOUBLE = 8  # bytes
+OPERATIONS = {
+    ca.OP_ADD: "0 1 f64.add",
+    ca.OP_SUB: "0 1 f64.sub",
+    ca.OP_MUL: "0 1 f64.mul",
+    ca.OP_DIV: "0 1 f64.div",
+    ca.OP_NEG: "0 f64.neg",
+    ca.OP_INV: "=1 0 f64.div",
+    ca.OP_SQ: "0 0 f64.mul",
+    ca.OP_TWICE: "0 0 f64.add",
+    ca.OP_SQRT: "0 f64.sqrt",
+    ca.OP_SIN: "0 sin",
+    ca.OP_COS: "0 cos",
+    ca.OP_LOG: "0 log",
+    ca.OP_TANH: "0 tanh",
+    ca.OP_FABS: "0 f64.abs",
+    ca.OP_FLOOR: "0 f64.floor",
+    ca.OP_FMIN: "0 1 0 1 f64.le 1 1 f64.ne i32.or select",
+    ca.OP_FMAX: "0 1 1 0 f64.le 1 1 f64.ne i32.or select",
+    ca.OP_LT: "0 1 f64.lt f64.convert_i32_u",
+    ca.OP_LE: "0 1 f64.le f64.convert_i32_u",
+    ca.OP_EQ: "0 1 f64.eq f64.convert_i32_u",
+    ca.OP_NE: "0 1 f64.ne f64.convert_i32_u",
+    ca.OP_NOT: "0 =0 f64.eq f64.convert_i32_u",
+    ca.OP_IF_ELSE_ZERO: "1 =0 0 =0 f64.ne select",
+}
+"""Stack code of each operation: 0 and 1 are its operands, =x a constant. fmin and fmax return the
+other operand of a NaN, and the first of equal ones."""
+_CODES = {code: text.split() for code, text in OPERATIONS.items()}
+
+
+def wasm_of(functions: Mapping[str, ca.Function], loops: Mapping[str, Kernel]) -> bytes:
+    """A module of functions on doubles in memory.
+
+    A function takes the addresses of its inputs, then of its outputs, all dense matrices stored by
+    columns. A loop takes (state, settings, curve table, log, ticks): it advances the state and
+    writes a row of the log for each of the ticks. It needs the state's leading `Kernel.changed`
+    numbers only, and at least one tick.
+
+    Raises:
+        NotImplementedError: an operation has no translation; the message names it.
+    """
+    own = [_translated(name, function) for name, function in functions.items()]
+    for name, kernel in loops.items():
+        tick = _translated(f"{name}.tick", kernel.tick())
+        own += [tick, _repeated(name, len(MATHEMATICS) + len(own), kernel.log.size)]
+    return wasm_module(own)
+
+
+def _translated(name: str, function: ca.Function) -> WasmFunction:
+    """All inputs are read before any output is written, so that an output may overwrite one.
+
+    What is used once is computed where it is used; everything else in a local variable.
+    """
+    inputs = function.n_in()
+    pointers, uses = inputs + function.n_out(), _uses(function)
+    values, body = dict[int, list[Part]](), list[Part]()
+    results, stores, numbers = list[Part](), list[Part](), 0
+    for i in range(function.n_instructions()):
+        code, into = function.instruction_id(i), function.instruction_output(i)
+        operands = function.instruction_input(i)
+        if code == ca.OP_CONST:
+            values[into[0]] = [("f64.const", function.instruction_constant(i))]
+            continue
+        if code == ca.OP_OUTPUT:
+            results += [("local.get", inputs + into[0]), *values[operands[0]]]
+            stores.append(("f64.store", DOUBLE * into[1]))
+            continue
+        if code == ca.OP_INPUT:
+            found: list[Part] = [("local.get", operands[0]), ("f64.load", DOUBLE * operands[1])]
+        else:
+            found = _filled(code, [values[operand] for operand in operands])
+        if uses[i] > 1:
+            place, numbers = pointers + numbers, numbers + 1
+            body += [*found, ("local.set", place)]
+            found = [("local.get", place)]
+        values[into[0]] = found
+    return WasmFunction(name, pointers, numbers, [*body, *results, *reversed(stores)])
+
+
+def _filled(code: int, operands: list[list[Part]]) -> list[Part]:
+    """The stack code of an operation on operands."""
+    result = list[Part]()
+    for word in _code_of(code):
+        if word.isdigit():
+            result += operands[int(word)]
+        elif word[0] == "=":
+            result.append(("f64.const", float(word[1:])))
+        else:
+            called = word in MATHEMATICS
+            result.append(("call", MATHEMATICS.index(word)) if called else word)
+    return result
+
+
+def _uses(function: ca.Function) -> Counter[int]:
+    """How often the result of each instruction is needed, by its number."""
+    made, uses = dict[int, int](), Counter[int]()  # made: by which instruction each register was
+    for i in range(function.n_instructions()):
+        code, operands = function.instruction_id(i), function.instruction_input(i)
+        if code == ca.OP_OUTPUT:
+            uses[made[operands[0]]] += 1
+            continue
+        if code not in (ca.OP_CONST, ca.OP_INPUT):
+            uses.update(made[operands[int(word)]] for word in _code_of(code) if word.isdigit())
+        made[function.instruction_output(i)[0]] = i
+    return uses
+
+
+def _code_of(code: int) -> Iterable[str]:
+    if code not in _CODES:
+        names = (name for name, value in vars(ca).items() if value == code and name[:3] == "OP_")
+        raise NotImplementedError(f"{next(names, code)} has no translation to WebAssembly")
+    return _CODES[code]
+
+
+def _repeated(name: str, tick: int, row: int) -> WasmFunction:
+    """Calls the function `tick` again and again, as `wasm_of` says of loops."""
+    state, settings, curve, log, ticks = (("local.get", i) for i in range(5))
+    each = [state, settings, curve, state, log, ("call", tick)]
+    on = [log, ("i32.const", DOUBLE * row), "i32.add", ("local.set", 3)]
+    count = [ticks, ("i32.const", 1), "i32.sub", ("local.set", 4)]
+    again = [ticks, ("i32.const", 0), "i32.gt_s", ("br_if", 0)]
+    return WasmFunction(name, 5, 0, ["loop", *each, *on, *count, *again, "end"])
