@@ -59,9 +59,18 @@ def wasm_of(functions: Mapping[str, ca.Function], loops: Mapping[str, Kernel]) -
     """
     own = [_translated(name, function) for name, function in functions.items()]
     for name, kernel in loops.items():
-        tick = _translated(f"{name}.tick", kernel.tick())
+        tick = _translated(f"{name}.tick", _tick(kernel))
         own += [tick, _repeated(name, len(MATHEMATICS) + len(own), kernel.log.size)]
     return wasm_module(own)
+
+
+def _tick(kernel: Kernel) -> ca.Function:
+    """(state, settings, curve table) -> (state, log row), with the curve's product in it."""
+    names = "state", "settings", "curve"
+    shapes = kernel.advance.size_in(0), kernel.advance.size_in(1), kernel.table_shape
+    state, settings, table = (ca.SX.sym(n, *s) for n, s in zip(names, shapes, strict=True))
+    after, row, _ = kernel.advance(state, settings, table @ kernel.basis(state, settings))
+    return ca.Function("tick", [state, settings, table], [after, row])
 
 
 def _translated(name: str, function: ca.Function) -> WasmFunction:
