@@ -32,6 +32,7 @@ from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.scene.tones import DARK, LIGHT
 from onpath.app.viser_adapter.frame_channel import FrameChannel
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
@@ -137,7 +138,8 @@ class Page:
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
         self._built = self._key(first)
-        self._scene = Scene(self._client, stage_of(robot), _hooks(post, robot), words)
+        stage = stage_of(robot, DARK if self._desk.dark else LIGHT)
+        self._scene = Scene(self._client, stage, _hooks(post, robot), words)
         self._scene.build(first)
         drawn = self._client.scene, self._scene.stage, robot
         how = self._switches, self._rebuilds.submit, self._is_phone

@@ -35,6 +35,7 @@ class PageContext:
         keeps: whether labs persist across server restarts.
         enter: opens the lab of a code; raises ValueError with a message.
         seat: the lab's place in the class, or None without a class.
+        dark: whether the browser asks for dark pages.
     """
 
     code: str
@@ -43,3 +44,4 @@ class PageContext:
     keeps: bool
     enter: Callable[[str], None]
     seat: ClassSeat | None = None
+    dark: bool = False

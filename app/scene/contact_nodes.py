@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from viser import transforms
 
-from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.stage import ChangingText, Stage, add_copies
@@ -37,6 +36,7 @@ class ContactNodes:
 
     def __init__(self, scene: viser.SceneApi, stage: Stage, words: Words) -> None:
         self._scene, self._bases, self._words = scene, stage.bases, words
+        self._metal = stage.tones.metal
         self._brakes = dict[str, np.ndarray]()
         self._guides: list[viser.BatchedMeshHandle] = []
         self._labels = {bench: ForceLabel(scene, stage, bench, words) for bench in stage.bases}
@@ -64,7 +64,7 @@ class ContactNodes:
                 f"/brakes/{bench}",
                 meshes.guide() if slides else meshes.clamp(),
                 (self._bases[bench] + place)[None],
-                palette.MOTOR,
+                self._metal,
             )
             node.batched_wxyzs = transforms.SO3.from_matrix(turn).wxyz[None]
             self._guides.append(node)

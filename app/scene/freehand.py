@@ -40,7 +40,7 @@ class Freehand:
         self._plane, self._box = stage.path_plane, stage.reachable
         self._on_stroke = on_stroke
         self._base = self._bases[0]  # of the robot in front of which the stroke is drawn
-        look = (palette.INK, 0.003)
+        look = (stage.tones.line, 0.003)
         self._line = SketchLine(scene, "/freehand/line", look, CLOSEST, self._before_the_robot)
         self.active = True
         sheet = meshes.sheet(*stage.sheet)

@@ -11,6 +11,7 @@ from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import PathView
 from onpath.app.scene import meshes
 from onpath.app.scene.stage import add_copies
+from onpath.app.scene.tones import LIGHT, Tones
 
 if TYPE_CHECKING:
     import viser
@@ -28,6 +29,7 @@ class PathNodes:
         bases: origins of the robots' frames in the world, shape (k, 3), [m].
         connect: called with every new node of the control points, to add callbacks. Its
             instances are all points of the first robot, then all of the next.
+        tones: colours of the path and of its points.
     """
 
     def __init__(
@@ -35,7 +37,9 @@ class PathNodes:
         scene: viser.SceneApi,
         bases: np.ndarray,
         connect: Callable[[viser.BatchedMeshHandle], None],
+        tones: Tones = LIGHT,
     ) -> None:
+        self._tones = tones
         self._scene = scene
         self._bases = bases
         self._connect = connect
@@ -58,13 +62,13 @@ class PathNodes:
         segments = self._everywhere(pieces).reshape(-1, 2, 3)
         if self._curve is None:
             self._curve = self._scene.add_line_segments(
-                "/path/curve", segments, palette.PATH.rgb, thickness=CURVE_THICKNESS
+                "/path/curve", segments, self._tones.path.rgb, thickness=CURVE_THICKNESS
             )
         else:
             self._curve.points = segments.astype(np.float32)
 
     def _draw_points(self, path: PathView) -> None:
-        one = np.tile(palette.CONTROL_POINT.linear, (len(path.control_points), 1))
+        one = np.tile(self._tones.point.linear, (len(path.control_points), 1))
         if path.selected is not None and path.selected < len(one):
             one[path.selected] = palette.SELECTED.linear
         positions = self._everywhere(path.control_points)

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import END, Motion
 from onpath.app.scene.label_geometry import axes_of, label_function
 from onpath.app.scene.stage import Stage, add_text
@@ -48,6 +47,7 @@ class RobotLabels:
         letters: float = LETTERS,
     ) -> None:
         self._robot, self._letters = robot, letters
+        self._tones = stage.tones
         self._origins = stage.origins
         labels = label_function(robot, motion.counts.bars)
         self._names, self._function = labels.names, Buffered(labels.function)
@@ -62,7 +62,7 @@ class RobotLabels:
             self._texts.append(add_text(scene, f"/show/labels/{name}", text, at, letters))
         if len(lines):
             self._arcs = scene.add_line_segments(
-                "/show/arcs", lines, palette.SLATE.rgb, thickness=LINE
+                "/show/arcs", lines, stage.tones.arc.rgb, thickness=LINE
             )
             self._nodes.append(self._arcs)
         self._add_axes(scene)
@@ -101,7 +101,7 @@ class RobotLabels:
         arrows = scene.add_arrows(
             "/show/axes",
             everywhere,
-            palette.INK.linear,
+            self._tones.line.linear,
             shaft_radius=0.0014,
             head_radius=0.005,
             head_length=0.013,

@@ -34,10 +34,10 @@ RING = ((0.85, 0.06, 0.85), (0.55, 0.06, 0.55))
 DOT = ((0.62, 0.06, 0.62), (0.42, 0.06, 0.42))
 
 
-def fading(colour: palette.Colour, count: int = TRACE_SEGMENTS) -> np.ndarray:
-    """Linear colours from nearly white to `colour` along a trace, shape (count, 2, 3), uint8."""
+def fading(colour: palette.Colour, wall: palette.Colour, count: int = TRACE_SEGMENTS) -> np.ndarray:
+    """Linear colours from nearly `wall` to `colour` along a trace, shape (count, 2, 3), uint8."""
     shares = 0.92 * (1.0 - np.linspace(0.0, 1.0, count + 1))
-    line = np.stack([colour.toward(palette.WHITE, share).linear for share in shares])
+    line = np.stack([colour.toward(wall, share).linear for share in shares])
     return np.stack([line[:-1], line[1:]], axis=1)
 
 
@@ -77,11 +77,12 @@ def part_looks(
     return [*sizes, PEN, *discs, *[EXTRA] * extras], [c.linear for c in colours]
 
 
-def _add_traces(scene: viser.SceneApi, benches: list[str]) -> viser.LineSegmentsHandle:
+def _add_traces(scene: viser.SceneApi, stage: Stage) -> viser.LineSegmentsHandle:
+    wall = stage.tones.wall
     return scene.add_line_segments(
         "/traces",
-        np.zeros((TRACE_SEGMENTS * len(benches), 2, 3)),
-        np.concatenate([fading(palette.OF_BENCH[bench]) for bench in benches]),
+        np.zeros((TRACE_SEGMENTS * len(stage.bases), 2, 3)),
+        np.concatenate([fading(palette.OF_BENCH[bench], wall) for bench in stage.bases]),
         thickness=0.006,
     )
 
@@ -165,7 +166,7 @@ class RobotNodes:
             np.stack([palette.OF_BENCH[bench].linear for bench in bases]),
             opacity=0.22,
         )
-        self._traces = _add_traces(scene, list(bases))
+        self._traces = _add_traces(scene, stage)
         self._trace_origins = _trace_origins(stage.origins)
         self._traced = self._trace_origins
         self._add_force(scene, stage)
@@ -253,7 +254,7 @@ class RobotNodes:
         self._arrows = scene.add_arrows(
             "/force",
             np.zeros((len(self._bases), 2, 3)),
-            palette.FORCE.linear,
+            stage.tones.force.linear,
             shaft_radius=0.0032,
             head_radius=0.0085,
             head_length=0.018,

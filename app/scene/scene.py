@@ -77,9 +77,16 @@ class Scene:
         hooks, pointer = hooks or SceneCallbacks(), Pointer(stage)
         self.mouse = Mouse(stage, pointer, hooks)
         self._path: PathView | None = None
-        self._path_nodes = PathNodes(client.scene, self._origins, self.mouse.connect_points)
+        self._path_nodes = PathNodes(
+            client.scene, self._origins, self.mouse.connect_points, stage.tones
+        )
         self._wall = WallNodes(
-            client.scene, self._origins, pointer, hooks.on_wall_moved, hooks.on_wall_turned
+            client.scene,
+            self._origins,
+            pointer,
+            hooks.on_wall_moved,
+            hooks.on_wall_turned,
+            stage.tones,
         )
         self._start = StartNodes(client.scene, self._origins, pointer, hooks.on_start_moved)
         self._freehand: Freehand | None = None

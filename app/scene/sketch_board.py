@@ -15,6 +15,7 @@ from onpath.app.common import palette
 from onpath.app.scene.pointer_projection import intersect_ray_plane
 from onpath.app.scene.sketch_line import SketchLine
 from onpath.app.scene.stage import Stage
+from onpath.app.scene.tones import Tones
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch
 
@@ -56,7 +57,7 @@ class SketchBoard:
         )
         handle = scene.add_image(
             "/board/sheet",
-            _picture(sketch, title),
+            _picture(sketch, title, stage.tones),
             float(self._size[0]),
             float(self._size[1]),
             format="png",
@@ -123,18 +124,20 @@ class SketchBoard:
         return np.clip(place, -0.5 * self._inner, 0.5 * self._inner)
 
 
-def _picture(sketch: Sketch, title: str) -> np.ndarray:
+def _picture(sketch: Sketch, title: str, tones: Tones) -> np.ndarray:
     """The empty axes, shape (rows, columns, 3), uint8, its lowest row first."""
-    figure = Figure(figsize=(9.0, 9.0 * FORM), dpi=PIXELS / 9.0)
+    ink, sheet = tones.line.hex, tones.wall.hex
+    figure = Figure(figsize=(9.0, 9.0 * FORM), dpi=PIXELS / 9.0, facecolor=sheet)
     canvas = FigureCanvasAgg(figure)
     high = MARGIN / FORM
-    axes = figure.add_axes((MARGIN, high, 1 - 2 * MARGIN, 1 - 2 * high))
+    axes = figure.add_axes((MARGIN, high, 1 - 2 * MARGIN, 1 - 2 * high), facecolor=sheet)
     axes.set(xlim=(0.0, sketch.seconds), ylim=(sketch.bottom, sketch.top))
-    axes.set_title(title, fontsize=21, pad=12)
-    axes.set_xlabel("t [s]", fontsize=16, labelpad=1)
-    axes.set_ylabel(f"[{QUANTITIES[sketch.quantity]}]", fontsize=16, labelpad=1)
-    axes.tick_params(labelsize=15)
-    axes.grid(color=palette.PATH.toward(palette.WHITE, 0.7).hex)
+    axes.set_title(title, fontsize=21, pad=12, color=ink)
+    axes.set_xlabel("t [s]", fontsize=16, labelpad=1, color=ink)
+    axes.set_ylabel(f"[{QUANTITIES[sketch.quantity]}]", fontsize=16, labelpad=1, color=ink)
+    axes.tick_params(labelsize=15, colors=ink)
+    axes.grid(color=tones.path.toward(tones.wall, 0.7).hex)
+    axes.spines[["left", "bottom"]].set_color(ink)
     axes.spines[["top", "right"]].set_visible(False)
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[::-1, :, :3].copy()  # the scene's y axis points up

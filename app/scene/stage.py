@@ -12,6 +12,7 @@ import numpy as np
 from onpath.app.common import palette
 from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.pointer_projection import Box, DragPlane
+from onpath.app.scene.tones import LIGHT, Tones
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.laws.registry import law_named
@@ -49,6 +50,7 @@ class Stage:
         sheet: low and high corner (x, z), and y, of the sheet for a freehand stroke.
         motors: joints that are drawn as motors.
         parts: fixed parts, with colours.
+        tones: colours that depend on the background.
     """
 
     bases: dict[str, np.ndarray]
@@ -66,6 +68,7 @@ class Stage:
     sheet: tuple[tuple[float, float], tuple[float, float], float]
     motors: tuple[int, ...]
     parts: Callable[[], list[tuple[str, Mesh, palette.Colour]]]
+    tones: Tones = LIGHT
 
     @property
     def origins(self) -> np.ndarray:
@@ -163,9 +166,9 @@ def build_stage(scene: viser.SceneApi, stage: Stage) -> None:
         fade_strength=1.6,
         cell_size=0.05,
         section_size=0.2,
-        cell_color=palette.GRID.rgb,
-        section_color=palette.GRID.toward(palette.INK, 0.08).rgb,
-        plane_color=palette.FLOOR.rgb,
+        cell_color=stage.tones.cells.rgb,
+        section_color=stage.tones.sections.rgb,
+        plane_color=stage.tones.floor.rgb,
         plane_opacity=1.0,
         shadow_opacity=0.5,
         position=stage.origins.mean(0) + [0.0, 0.0, stage.floor],

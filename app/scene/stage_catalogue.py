@@ -11,6 +11,7 @@ from onpath.app.common import palette
 from onpath.app.scene import meshes
 from onpath.app.scene.pointer_projection import DragPlane
 from onpath.app.scene.stage import Stage
+from onpath.app.scene.tones import LIGHT, Tones
 from onpath.models.arrays import Array
 from onpath.models.control.benches import LEFT, RIGHT
 from onpath.models.paths.curve_faults import LEAST_MARGIN
@@ -29,8 +30,8 @@ Parts = list[tuple[str, meshes.Mesh, palette.Colour]]
 
 
 @lru_cache(maxsize=64)
-def stage_of(robot: Robot) -> Stage:
-    """The stage of a robot."""
+def stage_of(robot: Robot, tones: Tones = LIGHT) -> Stage:
+    """The stage of a robot, with the colours of a light or of a dark scene."""
     drawing = robot.drawing
     low, high = (np.array(corner) for corner in drawing.box or _box(robot))
     floor = min(-meshes.FLOOR_DEPTH, float(low[2]) + 0.02)
@@ -56,7 +57,8 @@ def stage_of(robot: Robot) -> Stage:
         sheet=drawing.sheet
         or ((low[0] + 0.01, floor - 0.01), (high[0] - 0.01, high[2] - 0.1), -0.06),
         motors=drawing.motors,
-        parts=lambda: _parts(drawing, floor),
+        parts=lambda: _parts(drawing, floor, tones),
+        tones=tones,
     )
 
 
@@ -86,14 +88,14 @@ def _box(robot: Robot) -> tuple[Array, Array]:
     return low - [ASIDE, THIN, 0.0], high + [ASIDE, THIN, ABOVE]
 
 
-def _parts(drawing: Drawing, floor: float) -> Parts:
+def _parts(drawing: Drawing, floor: float, tones: Tones) -> Parts:
     """Fixed parts that support the robot."""
     if drawing.base == "pedestal":
         return [
-            ("pedestal", meshes.pedestal(), palette.FRAME),
-            ("turntable", meshes.turntable(), palette.MOTOR),
+            ("pedestal", meshes.pedestal(), tones.frame),
+            ("turntable", meshes.turntable(), tones.metal),
         ]
     return [
-        ("base", meshes.base(-floor), palette.FRAME),
-        ("motors", meshes.motors(), palette.MOTOR),
+        ("base", meshes.base(-floor), tones.frame),
+        ("motors", meshes.motors(), tones.metal),
     ]

@@ -12,6 +12,7 @@ from onpath.app.common import palette
 from onpath.app.scene import meshes
 from onpath.app.scene.pointer import DragByOffset, Pointer
 from onpath.app.scene.stage import add_copies
+from onpath.app.scene.tones import LIGHT, Tones
 from onpath.app.viser_adapter.frame_channel import update_node
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ class WallNodes:
         pointer: where the mouse is.
         on_move: called with the new place of the wall's middle, shape (3,), in the robot's frame.
         on_turn: called with one of `ENDS` and the place at which it must point, shape (3,).
+        tones: the colour of its hatches.
     """
 
     def __init__(
@@ -45,7 +47,9 @@ class WallNodes:
         pointer: Pointer,
         on_move: Callable[[np.ndarray], None],
         on_turn: Callable[[int, np.ndarray], None],
+        tones: Tones = LIGHT,
     ) -> None:
+        self._tones = tones
         self._scene, self._origins, self._pointer = scene, origins, pointer
         self._drag, self._on_move, self._on_turn = DragByOffset(pointer), on_move, on_turn
         self._nodes: list[viser.BatchedMeshHandle] = []
@@ -73,7 +77,8 @@ class WallNodes:
         body = add_copies(
             self._scene, "/wall/body", meshes.wall_body(), places, palette.STEEL, opacity=0.35
         )
-        lines = add_copies(self._scene, "/wall/lines", meshes.wall_lines(), places, palette.INK)
+        ink = self._tones.line
+        lines = add_copies(self._scene, "/wall/lines", meshes.wall_lines(), places, ink)
         ends = add_copies(
             self._scene, "/wall/ends", meshes.ball(KNOB), knobs, palette.SELECTED, shadow=False
         )

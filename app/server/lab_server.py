@@ -48,7 +48,9 @@ from onpath.lessons.problems import LessonError
 from onpath.models.systems.catalogue import FIVE_BAR
 
 log = logging.getLogger(__name__)
+DARK_KEY = "dark"  # whether the browser asks for dark pages; see assets/page/dark.js
 STORAGE_KEY = "onpath_sessions"
+ASKED = [STORAGE_KEY, TEACHER_KEY, DARK_KEY]  # of every browser that comes
 MOST_CLIENTS = 64
 
 
@@ -103,10 +105,10 @@ class LabServer:
         self._class: ClassService | None = None
         if classroom is not None:
             self._class = ClassService(classroom, self.sessions, records, self._keeper)
-        self._views: dict[int, LabFeed] = {}
+        self._views, self._dark = dict[int, LabFeed](), set[int]()  # and clients with dark pages
         self._newcomers, self._onlookers = BuildQueue(self.server), TabVisibilities(self.server)
         set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.lab)))
-        self._arrivals = Arrivals(self.server, [STORAGE_KEY, TEACHER_KEY], self._connected)
+        self._arrivals = Arrivals(self.server, ASKED, self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self._start()
 
@@ -150,6 +152,8 @@ class LabServer:
     def _connected(self, client: viser.ClientHandle, kept: Kept, address: str) -> None:
         if self._class is not None:
             self._class.greet(client, kept[TEACHER_KEY])
+        if kept[DARK_KEY] == "yes":
+            self._dark.add(client.client_id)
         teaches = self._class and self._class.teaches(client.client_id)
         enter = partial(self._entered, client, kept[STORAGE_KEY])
         self._room.admit(client, enter, address, always=bool(teaches))
@@ -189,7 +193,8 @@ class LabServer:
         seat = service.seat(client, code, reopen) if service else None
         teaching = service.teaching(client, lab, reopen) if service else None
         post, keeps = lab.post, self._records is not None and not self._records.warning
-        desk = PageContext(code, post, self._course, keeps, enter, seat)
+        dark = number in self._dark
+        desk = PageContext(code, post, self._course, keeps, enter, seat, dark)
         nickname = partial(service.nickname, code) if service else str
         first = take_page_snapshot(lab, 1.0, nickname=nickname())
         if teaching is None:
@@ -224,6 +229,7 @@ class LabServer:
 
     def _disconnected(self, client: viser.ClientHandle) -> None:
         self._onlookers.forget(client.client_id)
+        self._dark.discard(client.client_id)
         self.sessions.leave(client.client_id)
         if self._class is not None:
             self._class.gone(client.client_id)

@@ -1,0 +1,26 @@
+// A dark page for whoever asks for one: viser's own, by what it offers to pages that embed it, and
+// dark labels in the scene, whose colours are in its shaders. The lab, which draws the rest of the
+// scene, reads the same place; see DARK_KEY in app/server/lab_server.py.
+(() => {
+  "use strict";
+
+  const KEPT_AS = "viser-user:dark";
+  const SHADES = [
+    ["gl_FragColor = vec4(0.0, 0.0, 0.0, a);", "gl_FragColor = vec4(0.93, 0.94, 0.96, a);"],
+    ["gl_FragColor = vec4(1.0, 1.0, 1.0, 0.85 * vAlpha);",
+      "gl_FragColor = vec4(0.09, 0.11, 0.14, 0.8 * vAlpha);"],
+  ];
+
+  const dark = matchMedia("(prefers-color-scheme: dark)").matches;
+  try {
+    localStorage.setItem(KEPT_AS, dark ? "yes" : "no");
+  } catch {}  // a browser that keeps nothing has a light scene
+  if (!dark) return;
+
+  window.__VISER_EMBED_CONFIG__ = { darkMode: true };
+  const context = WebGL2RenderingContext.prototype, shaderSource = context.shaderSource;
+  context.shaderSource = function (shader, source) {
+    for (const [light, shade] of SHADES) source = source.replace(light, shade);
+    return shaderSource.call(this, shader, source);
+  };
+})();

@@ -1,0 +1,159 @@
+"""Whoever asks for dark pages gets them: the page, the scene, and what can be read on both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("playwright")
+
+from PIL import Image
+from playwright.sync_api import Browser, expect
+
+from onpath.app.classroom.local_classroom import LocalClassroom
+from onpath.app.common.access_codes import shown
+from onpath.app.lab import commands as c
+from onpath.app.lab.commands import TakeStep
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.server.lab_server import LabServer
+from tests.support.axe import violations
+from tests.support.browser import Tab, wait_for
+
+LESSON = "01-path-or-timetable"
+FOLDERS = (
+    *("Advanced", "Realism", "Path editor", "Show", "Wall", "Start"),
+    *("Look back", "Keep and share", "Export", "More plots"),
+)
+SIZES = {"desk": (1280, 800), "telephone": (390, 844)}
+
+
+def visit(browser: Browser, server: LabServer, size: str = "desk", **options: Any) -> Tab:
+    width, height = SIZES[size]
+    draws = options.pop("draws", False)
+    scheme = options.pop("scheme", "dark")
+    context = browser.new_context(
+        viewport={"width": width, "height": height}, color_scheme=scheme, **options
+    )
+    return Tab(server, context, draws=draws)
+
+
+@pytest.fixture(scope="module")
+def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
+    tab = visit(browser, server)
+    yield tab
+    assert tab.errors == []
+    tab.page.context.close()
+
+
+@pytest.fixture(scope="module")
+def drawn(browser: Browser, server: LabServer) -> Iterator[dict[str, Tab]]:
+    """A light and a dark page on which triangles are drawn, too."""
+    tabs = {s: visit(browser, server, draws=True, scheme=s) for s in ("light", "dark")}
+    for tab in tabs.values():
+        tab.ask(c.SetRunning(False))
+        tab.settle()
+    yield tabs
+    for tab in tabs.values():
+        tab.page.context.close()
+
+
+def brightness(tab: Tab, low: tuple[float, float], high: tuple[float, float]) -> np.ndarray:
+    """Brightness of a part of the scene, given by shares of its size, from 0 to 1."""
+    box = tab._canvas()
+    clip = {
+        "x": box["x"] + low[0] * box["width"],
+        "y": box["y"] + low[1] * box["height"],
+        "width": (high[0] - low[0]) * box["width"],
+        "height": (high[1] - low[1]) * box["height"],
+    }
+    picture = Image.open(BytesIO(tab.page.screenshot(clip=clip))).convert("L")  # type: ignore[arg-type]
+    return np.asarray(picture) / 255.0
+
+
+def test_the_scene_has_a_dark_wall_and_a_dark_ground(drawn: dict[str, Tab]) -> None:
+    wall, ground = ((0.02, 0.02), (0.98, 0.1)), ((0.02, 0.95), (0.98, 0.99))
+    for place in (wall, ground):
+        assert np.median(brightness(drawn["light"], *place)) > 0.8
+        assert np.median(brightness(drawn["dark"], *place)) < 0.2
+
+
+def test_titles_in_the_scene_are_light_on_dark(drawn: dict[str, Tab]) -> None:
+    title = (0.05, 0.12), (0.95, 0.27)
+    for scheme, tab in drawn.items():
+        seen = brightness(tab, *title)
+        assert (np.median(seen) < 0.2) == (scheme == "dark")
+        assert seen.max() > 0.75 and seen.min() < 0.3
+
+
+def test_a_board_to_sketch_on_is_dark(drawn: dict[str, Tab]) -> None:
+    for scheme, tab in drawn.items():
+        tab.ask(TakeStep(LESSON, 1))
+        tab.page.get_by_role("heading", name="Draw what the tracker does").wait_for()
+        tab.settle()
+        wait_for(
+            lambda tab=tab, scheme=scheme: (
+                (np.median(brightness(tab, (0.2, 0.3), (0.8, 0.7))) < 0.2) == (scheme == "dark")
+            )
+        )
+
+
+def test_the_page_is_dark_and_nothing_on_it_is_hard_to_read(tab: Tab) -> None:
+    expect(tab.page.locator("html")).to_have_attribute("data-mantine-color-scheme", "dark")
+    for folder in FOLDERS:
+        tab.open(folder)
+    assert violations(tab) == []
+
+
+@pytest.mark.parametrize("name", ["Help and keys", "Language, display", "Robot…", "Lessons"])
+def test_a_dark_dialog_can_be_read(tab: Tab, name: str) -> None:
+    tab.press(name)
+    dialog = tab.page.get_by_role("dialog")
+    dialog.get_by_role("button", name="Close", exact=True).wait_for()
+    assert violations(tab) == []
+    tab.page.keyboard.press("Escape")
+    dialog.wait_for(state="hidden")
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_every_step_of_a_dark_lesson_can_be_read(
+    browser: Browser, server: LabServer, size: str
+) -> None:
+    tab = visit(browser, server, size)
+    tab.ask(c.OpenLesson(LESSON), c.SetRunning(False))
+    lesson = tab.lab.lessons.lesson
+    assert lesson is not None
+    found = dict[str, list[list[str]]]()
+    for index, step in enumerate(lesson.steps):
+        tab.ask(TakeStep(LESSON, index))
+        tab.page.get_by_role("heading", name=step.title).wait_for()
+        tab.settle()
+        if broken := violations(tab):
+            found[step.title] = broken
+    assert found == {}
+    assert tab.errors == []
+    tab.page.context.close()
+
+
+def test_a_dark_teachers_page_can_be_read(browser: Browser) -> None:
+    room = LocalClassroom()
+    server = LabServer("127.0.0.1", 0, LoopCache(), classroom=room)
+    tab = visit(browser, server)
+    tab.open("Teacher…")
+    tab.field("Teacher's key").fill(shown(room.key))
+    tab.press("Open the teacher's page")
+    tab.page.get_by_text(room.code.upper()).or_(tab.page.get_by_text(room.code)).first.wait_for()
+    wait_for(tab.is_built)
+    assert violations(tab) == []
+    tab.page.context.close()
+    server.stop()
+
+
+def test_plots_can_be_read_with_the_users_own_colours(browser: Browser, server: LabServer) -> None:
+    tab = visit(browser, server, scheme="light", forced_colors="active")
+    behind = "plot => getComputedStyle(plot).backgroundColor"
+    assert tab.page.locator(".uplot").first.evaluate(behind) == "rgb(255, 255, 255)"
+    tab.page.context.close()
