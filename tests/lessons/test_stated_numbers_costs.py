@@ -198,7 +198,11 @@ def test_tracker_is_closer_from_the_second_lap_on() -> None:
     off = [follower.largest(1, 4), tracker.largest(1, 4)]
     assert_stated(said("08", "| full speed, from 1 s | # mm | # mm |"), off)
     assert off[1] < off[0]
-    stated = said("08", "begins by cutting the corner, and gets up to # mm off")
+    stated = said(
+        "08",
+        "From the second lap on, the *tracker* is a little closer. (In the first lap it begins by"
+        " cutting the corner, and gets up to # mm off.)",
+    )
     assert_stated(stated, [tracker.largest(0, 1)])
 
 

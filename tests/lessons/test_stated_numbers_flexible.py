@@ -13,9 +13,8 @@ from onpath.models.studies.experiments import experiments, run
 from onpath.models.systems.flexible_five_bar import HOME
 from onpath.models.systems.flexible_links import load_links
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
-from tests.lessons.test_stated_numbers_invariance import stated_in_readme
 from tests.support.one_robot import FOLLOWER, TRACKER, Driven, at, largest
-from tests.support.stated_numbers import agrees, assert_stated, said, value
+from tests.support.stated_numbers import agrees, assert_stated, said, stated_in_readme, value
 
 LESSON, LINKS = "07", load_links()
 SPEED = 2.0  # [rad/s], as the lesson's scenes have it

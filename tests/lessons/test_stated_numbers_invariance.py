@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from functools import cache
 
 import casadi as ca
@@ -11,7 +10,6 @@ import pytest
 
 from onpath.models.arrays import Array
 from onpath.models.studies.experiments import experiments, run
-from tests.support.checkout import ROOT
 from tests.support.one_robot import (
     FAST,
     FOLLOWER,
@@ -23,18 +21,9 @@ from tests.support.one_robot import (
     largest,
     most_and_rest,
 )
-from tests.support.stated_numbers import NUMBER, assert_stated, said, value
+from tests.support.stated_numbers import assert_stated, said, stated_in_readme, value
 
 LESSON = "05"
-READMES = (ROOT / "README.md", ROOT / "models" / "studies" / "README.md")
-
-
-def stated_in_readme(sentence: str) -> list[str]:
-    """As `said`, of the README and of that of the studies."""
-    text = " ".join(" ".join(file.read_text(encoding="utf-8") for file in READMES).split())
-    found = re.findall(NUMBER.join(map(re.escape, sentence.split("#"))), text)
-    assert len(found) == 1, f"{len(found)} times: {sentence}"
-    return [found[0]] if isinstance(found[0], str) else list(found[0])
 
 
 # Commands do not take it off ----------------------------------------------------------------------

@@ -11,8 +11,7 @@ from onpath.models.systems.beam import beam_modes
 from onpath.models.systems.flexible_five_bar import HOME
 from onpath.models.systems.flexible_links import load_links
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
-from tests.lessons.test_stated_numbers_invariance import stated_in_readme
-from tests.support.stated_numbers import agrees, assert_stated, said
+from tests.support.stated_numbers import agrees, assert_stated, said, stated_in_readme
 
 LESSON, LINKS = "07", load_links()
 

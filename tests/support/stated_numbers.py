@@ -24,8 +24,10 @@ from onpath.lessons.parse import read_lesson
 from onpath.lessons.schema import Lesson
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
+from tests.support.checkout import ROOT
 from tests.support.lab import replayed, run, store
 
+READMES = (ROOT / "README.md", ROOT / "models" / "studies" / "README.md")
 NUMBER = r"([−-]?\d+(?:[.,]\d+)?)"
 
 
@@ -50,6 +52,14 @@ def said(lesson: str, sentence: str) -> list[str]:
     pattern = NUMBER.join(map(re.escape, sentence.split("#")))
     found = re.findall(pattern, " ".join(text(lesson).split()))
     assert len(found) == 1, f"{len(found)} times in lesson {lesson}: {sentence}"
+    return [found[0]] if isinstance(found[0], str) else list(found[0])
+
+
+def stated_in_readme(sentence: str) -> list[str]:
+    """As `said`, of the README and of that of the studies."""
+    text = " ".join(" ".join(file.read_text(encoding="utf-8") for file in READMES).split())
+    found = re.findall(NUMBER.join(map(re.escape, sentence.split("#"))), text)
+    assert len(found) == 1, f"{len(found)} times: {sentence}"
     return [found[0]] if isinstance(found[0], str) else list(found[0])
 
 
