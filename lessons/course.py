@@ -10,6 +10,7 @@ from pathlib import Path
 
 import msgspec
 
+from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem
 from onpath.lessons.routes import Route, read_routes
@@ -32,18 +33,24 @@ class Course:
     Attributes:
         lessons: name -> language -> lesson.
         routes: name -> route.
+        tests: name -> language -> lesson; the concept test before and after the course, or nothing.
     """
 
     lessons: dict[str, dict[str, Lesson]]
     routes: dict[str, Route] = field(default_factory=dict[str, Route])
+    tests: dict[str, dict[str, Lesson]] = field(default_factory=dict[str, dict[str, Lesson]])
+
+    def has(self, name: str) -> bool:
+        """Whether there is a lesson or a test of this name."""
+        return name in self.lessons or name in self.tests
 
     def lesson(self, name: str, language: str) -> Lesson:
-        """A lesson in a language; failing that in English, failing that in any language.
+        """A lesson or test in a language; failing that in English, failing that in any language.
 
         Raises:
             KeyError: there is no such lesson.
         """
-        versions = self.lessons[name]
+        versions = self.lessons[name] if name in self.lessons else self.tests[name]
         return versions.get(language) or versions.get(DEFAULT) or next(iter(versions.values()))
 
     def numbers(self) -> dict[str, str]:
@@ -71,6 +78,7 @@ def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
     """All valid lessons in some folders, and the problems of the others."""
     lessons: dict[str, dict[str, Lesson]] = {}
     routes: dict[str, Route] = {}
+    tests: dict[str, dict[str, Lesson]] = {}
     problems: list[Problem] = []
     for folder in folders:
         found = sorted({file.parent for file in folder.glob("*/*.md") if file.stem != "README"})
@@ -80,13 +88,15 @@ def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
         for home in found:
             versions, wrong = read_versions(home)
             problems += wrong
-            if versions and home.name in lessons:
+            if home.name == FOLDER:
+                tests = both_tests(versions) or tests
+            elif versions and home.name in lessons:
                 problems.append(Problem(str(home), 1, f"a second lesson {home.name!r}"))
             elif versions:
                 lessons[home.name] = versions
         read = read_routes(folder, lessons)
         routes, problems = {**read.routes, **routes}, problems + read.problems
-    return Course(lessons, routes), sorted(problems)
+    return Course(lessons, routes, tests), sorted(problems)
 
 
 def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
@@ -106,7 +116,8 @@ def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
         first, *others = versions.values()
         for other in others:
             problems += _differences(first, other, home / f"{other.language}.md")
-        problems += read_references(first, home / REFERENCE)[1]
+        if home.name != FOLDER:
+            problems += read_references(first, home / REFERENCE)[1]
     return versions, problems
 
 
@@ -159,6 +170,7 @@ def _structure(step: Step) -> tuple[object, ...]:
     tasks = [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()]
     blocks = [block for block in step.blocks if not isinstance(block, Text | Task)]
     right = [[o.right for o in b.options] for b in blocks if isinstance(b, Choice | Quiz)]
+    aims = [bool(b.misconception) for b in blocks if isinstance(b, Quiz)]
     asked = [(b.why, len(b.reasons)) for b in step.predictions()]
     checked = [(b.number, b.tolerance) for b in blocks if isinstance(b, NumberQuestion)]
     drawn = [
@@ -171,4 +183,4 @@ def _structure(step: Step) -> tuple[object, ...]:
     links = [link.actions for text in texts for link in text.links]
     kinds = [type(block) for block in blocks]
     shown = step.kind, step.optional, step.scene, step.script
-    return *shown, tasks, kinds, right, drawn, told, links, asked, checked
+    return *shown, tasks, kinds, right, drawn, told, links, asked, checked, aims

@@ -15,6 +15,7 @@ from markupsafe import Markup
 from onpath.lessons import vocabulary
 from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.completeness import lacks
+from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
 from onpath.lessons.formulas import FormulaError, embedded, folded, reader, render
 from onpath.lessons.links import read_link
 from onpath.lessons.problems import LessonError, Problem
@@ -144,7 +145,9 @@ class _Reader:
             else:
                 self._prose(drafts[-1], tokens, line)
         broken = {draft.line for draft in drafts if draft.broken}
-        self._complain_all(1, lacks([draft.step() for draft in drafts], broken))
+        steps = [draft.step() for draft in drafts]
+        is_test = self._path.parent.name == FOLDER
+        self._complain_all(1, lacks_of_test(steps) if is_test else lacks(steps, broken))
         return drafts
 
     def _begin(self, heading: str, line: int) -> _Draft:

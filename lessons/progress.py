@@ -65,6 +65,7 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         quiz: chosen options, by step and block.
         numbers: answers that are numbers, by step and block.
         written: answers in own words, by step and block.
+        handed_in: whether a test has been handed in, after which its answers do not change.
     """
 
     step: Index = 0
@@ -77,6 +78,7 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     quiz: dict[Key, Index] = {}
     numbers: dict[Key, float] = {}
     written: dict[Key, Written] = {}
+    handed_in: bool = False
 
 
 class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -41,7 +41,7 @@ def _(part: Choice) -> Choice:
 
 @rendered.register
 def _(part: Quiz) -> Quiz:
-    return replace(_html(part, "question"), options=_options(part))
+    return replace(_html(part, "question", "misconception"), options=_options(part))
 
 
 @rendered.register(NumberQuestion)

@@ -77,10 +77,15 @@ Prediction = Choice | Sketch
 
 
 class Quiz(Data, frozen=True):
-    """A question at the end of a lesson."""
+    """A question at the end of a lesson, or of the concept test.
+
+    Attributes:
+        misconception: for the teacher, the false belief at which a question of the test aims.
+    """
 
     question: str
     options: tuple[Option, ...]
+    misconception: str = ""
 
 
 class NumberQuestion(Data, frozen=True):

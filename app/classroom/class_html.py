@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -14,12 +14,13 @@ from onpath.app.common.palette import AMBER, GREEN, GREY, OF_BENCH, SLATE
 from onpath.app.common.templates import render
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import ROLES, robot_names
+from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import MOST_POINTS as MOST_OF_TRUTH
 from onpath.lessons.progress import Progress, Truth
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Choice, Prediction, Sketch
+from onpath.lessons.schema import Choice, Prediction, Quiz, Sketch
 from onpath.lessons.thinning import peaks
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS
@@ -69,11 +70,13 @@ def _row(member: Member, course: Course, now: float, words: Words) -> MemberLine
 
 def _place(way: Progress, course: Course, words: Words) -> tuple[str, str, str]:
     """A student's lesson, step and tasks."""
-    if way.lesson not in course.lessons:
+    if not course.has(way.lesson):
         return words("class.free"), "", ""
     lesson = course.lesson(way.lesson, words.language)
     index = min(way.notes[way.lesson].step if way.lesson in way.notes else 0, len(lesson.steps) - 1)
     done, wanted = tasks_passed(way, lesson)
+    if way.lesson in course.tests:
+        return titles_of_tests(course, words)[way.lesson], "", ""
     number = course.numbers()[way.lesson]
     return (
         f"{number}. {lesson.front.title}",
@@ -97,18 +100,9 @@ def prediction_view(
         large: whether to use large type for a projector.
         laws: control laws under which the prediction is put to the test.
     """
-    given = sum(found.counts) + len(found.sketches)
-    facts = words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
+    facts = given_line(found, words)
     if isinstance(block, Choice):
-        return render(
-            "class/choices.html",
-            block=block,
-            options=list(zip(LETTERS, block.options, found.counts, strict=False)),
-            most=max(1, *found.counts),
-            revealed=revealed,
-            facts=facts,
-            large=large,
-        )
+        return choices_view(block, [("", found)], revealed, words, large)
     robots = robot_names(laws, words)
     lines, names = _sketches(block, found, truth if revealed else None, words, robots)
     return render(
@@ -125,6 +119,37 @@ def prediction_view(
         facts=facts,
         large=large,
     )
+
+
+def choices_view(
+    block: Choice | Quiz,
+    rounds: Sequence[tuple[str, Distribution]],
+    revealed: bool,
+    words: Words,
+    large: bool = False,
+) -> str:
+    """The options with how many have chosen them, without names; several rounds side by side.
+
+    Args:
+        rounds: title and answers of each round in which the question was asked.
+    """
+    said = [(title, found.counts, given_line(found, words)) for title, found in rounds]
+    return render(
+        "class/choices.html",
+        block=block,
+        options=list(zip(LETTERS, block.options, strict=False)),
+        rounds=said,
+        most=max(1, *(count for _, found in rounds for count in found.counts)),
+        revealed=revealed,
+        facts=said[0][2] if len(said) == 1 else "",
+        large=large,
+    )
+
+
+def given_line(found: Distribution, words: Words) -> str:
+    """How many have answered, skipped, and not answered yet."""
+    given = sum(found.counts) + len(found.sketches)
+    return words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
 
 
 @dataclass(frozen=True, slots=True)

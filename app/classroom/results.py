@@ -90,10 +90,18 @@ def tasks_passed(way: Progress, lesson: Lesson) -> tuple[int, int]:
     return sum(task.id in passed for task in tasks), len(tasks)
 
 
-def class_csv(members: Iterable[Member], course: Course, language: str) -> bytes:
+def class_csv(
+    members: Iterable[Member],
+    course: Course,
+    language: str,
+    without_names: Iterable[tuple[object, ...]] = (),
+) -> bytes:
     """One row per student and prediction, task or question of the opened lessons.
 
     Text that a spreadsheet would interpret as a formula is prefixed with an apostrophe.
+
+    Args:
+        without_names: more rows, which follow the others; see `rows_without_names`.
     """
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\r\n")
@@ -102,10 +110,15 @@ def class_csv(members: Iterable[Member], course: Course, language: str) -> bytes
         for name, notes in member.progress.notes.items():
             if name in course.lessons:
                 for row in _rows(course.lesson(name, language), notes):
-                    cells = (member.number, member.name, name, *row)
-                    rest = ("",) * (len(HEADER) - len(cells))
-                    writer.writerow([_harmless(cell) for cell in (*cells, *rest)])
+                    writer.writerow(_cells(member.number, member.name, name, *row))
+    for row in without_names:
+        writer.writerow(_cells(*row))
     return b"\xef\xbb\xbf" + file.getvalue().encode()  # UTF-8 mark for spreadsheets
+
+
+def _cells(*cells: object) -> list[object]:
+    """A row of the CSV, with empty cells at its end."""
+    return [_harmless(cell) for cell in (*cells, *("",) * (len(HEADER) - len(cells)))]
 
 
 def _rows(lesson: Lesson, notes: Notes) -> Iterator[tuple[object, ...]]:

@@ -99,7 +99,7 @@ class LessonRun(LessonState):
         Raises:
             ValueError: there is no such lesson or step.
         """
-        if name not in self.course.lessons:
+        if not self.course.has(name):
             raise unknown_name(name, list(self.course.lessons), "lesson")
         lesson = self.course.lesson(name, self.progress.language)
         if index not in range(len(lesson.steps)):
@@ -140,8 +140,9 @@ class LessonRun(LessonState):
         self.version += 1
 
     def finish(self) -> None:
-        """Show the end of the open lesson."""
+        """Show the end of the open lesson; a test is handed in."""
         if self.lesson is not None:
+            self.note(**({"handed_in": True} if self.is_test else {}))
             self.progress = replace(self.progress, ended=True)
             self.version += 1
 
@@ -149,10 +150,10 @@ class LessonRun(LessonState):
         """Go to another step; a pending prediction is skipped when going forward.
 
         If the step then demonstrates the answer, only the prediction is skipped. After the last
-        step comes the end, and before the end the last step.
+        step comes the end, and before the end the last step. A test ends only by being handed in.
         """
         lesson = self.lesson
-        if lesson is None:
+        if lesson is None or (self.is_test and (self.ended or (by > 0 and self.at_end))):
             return
         if self.ended or (by > 0 and self.at_end and not self.waits):
             self.finish() if by > 0 else self._go(self.index, lab)
@@ -266,6 +267,8 @@ class LessonRun(LessonState):
         """Begin a step, in a lab that is set up."""
         lesson = self.lesson
         assert lesson is not None
+        if self.notes.handed_in:
+            self.progress = replace(self.progress, ended=True)
         self.note(step=index, seen=max(self.notes.seen, index + 1))
         lab.session.editor.forget_edits()  # an undo would bring the path of another step back
         self._begin_again(lab, lesson.scene_at(index).running)
@@ -280,8 +283,8 @@ class LessonRun(LessonState):
         self._lock(session)
 
     def _lock(self, session: Session) -> None:
-        """Stop time until a prediction has been made or skipped."""
-        if self.waits:
+        """Stop time while it must not run."""
+        if self.locked is not None:
             session.running = False
 
     def _note_truth(self, session: Session) -> None:

@@ -48,7 +48,7 @@ class LessonState:
     def lesson(self) -> Lesson | None:
         """The open lesson, or None."""
         name = self.progress.lesson
-        if name not in self.course.lessons:
+        if not self.course.has(name):
             return None
         return self.course.lesson(name, self.progress.language)
 
@@ -64,7 +64,7 @@ class LessonState:
 
     def left_at(self, name: str) -> int:
         """Index of the step of a lesson that was last open; 0 if there is no such lesson."""
-        if name not in self.course.lessons:
+        if not self.course.has(name):
             return 0
         last = len(self.course.lesson(name, self.progress.language).steps) - 1
         return min(self.progress.notes.get(name, Notes()).step, last)
@@ -77,7 +77,9 @@ class LessonState:
 
     @property
     def route(self) -> Route | None:
-        """The route that is followed, or None."""
+        """The route that is followed, or None; a test is on none."""
+        if self.is_test:
+            return None
         return self.course.routes.get(self.progress.route)
 
     def beside(self, by: int) -> tuple[str, int]:
@@ -143,12 +145,21 @@ class LessonState:
         return self.prediction() is not None and self.answer() is None
 
     @property
+    def is_test(self) -> bool:
+        """Whether the open lesson is the concept test, before or after the course."""
+        return self.progress.lesson in self.course.tests
+
+    @property
     def locked(self) -> Message | None:
-        """Why time must not run (a prediction is pending); None if it may."""
+        """Why time must not run (a prediction is pending, or a test is open); None if it may."""
+        if self.is_test and not self.notes.handed_in:
+            return Message("test.locked")
         return Message("lesson.locked") if self.waits else None
 
     def check_unlocked(self) -> None:
         """Raise ValueError if time must not run; see `locked`."""
+        if self.is_test and not self.notes.handed_in:
+            raise CodedError("test.locked")
         if self.waits:
             raise CodedError("lesson.locked")
 
@@ -165,8 +176,10 @@ class LessonState:
         """Choose an option of a quiz, given its index among the open step's blocks.
 
         Raises:
-            ValueError: there is no such quiz or option.
+            ValueError: there is no such quiz or option, or the test has been handed in.
         """
+        if self.notes.handed_in:
+            raise CodedError("test.over")
         quiz = self._block(block)
         if not isinstance(quiz, Quiz) or option not in range(len(quiz.options)):
             raise CodedError("lesson.no_such_option")

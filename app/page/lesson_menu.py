@@ -9,9 +9,12 @@ import viser
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
+from onpath.app.page.concept_test.entry import entry_of_test
 from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.widgets import Post, on_menu_press, on_press
+from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
+from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 
@@ -34,6 +37,7 @@ class LessonMenu:
     def _open(self) -> Callable[[], None]:
         run, gui = self._run, self._gui
         with dialog(gui, self._words, run.words("lesson.choose")) as close:
+            self._add_test(BEFORE, close)
             for name, number in run.course.numbers().items():
                 lesson = run.course.lesson(name, run.words.language)
                 begun = name in run.progress.notes
@@ -44,12 +48,24 @@ class LessonMenu:
                     hint=lesson.front.title,
                 )
                 on_press(open_it, self._then(close, c.OpenLesson(name)))
+            self._add_test(AFTER, close)
             for name, route in run.course.routes.items():
                 gui.add_html(page.route_entry(route, run))
                 title = route.text(route.title, run.words.language)
                 follow = gui.add_button(run.words("route.follow"), color="gray", hint=title)
                 on_press(follow, self._then(close, c.FollowRoute(name)))
         return close
+
+    def _add_test(self, name: str, close: Callable[[], None]) -> None:
+        """The concept test before or after the course, if there is one."""
+        if name not in self._course.tests:
+            return
+        run, gui = self._run, self._gui
+        gui.add_html(entry_of_test(name, run))
+        opens = gui.add_button(
+            run.words("test.open"), color="gray", hint=titles_of_tests(run.course, run.words)[name]
+        )
+        on_press(opens, self._then(close, c.OpenLesson(name)))
 
     def _chosen(self, close: Callable[[], None], command: c.Command) -> None:
         close()

@@ -11,6 +11,8 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
 from onpath.app.page.answer_boxes import AnswerBox, PredictionForm, add_letters
+from onpath.app.page.concept_test.end import ConceptTestEnd
+from onpath.app.page.concept_test.entry import answered_line
 from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.lesson_end import LessonEnd
 from onpath.app.page.lesson_view import LessonView
@@ -127,7 +129,8 @@ class LessonPanel:
             self._panel.set_width(width)
         with self._tab:
             if run.ended:
-                self._handles += LessonEnd(self._gui, run, self._post, self._report).handles
+                end = ConceptTestEnd if run.is_test else LessonEnd
+                self._handles += end(self._gui, run, self._post, self._report).handles
                 return
             self._html(page.heading(lesson, step, run))
             if run.index == 0 and (aims := page.aims(lesson, run.words)):
@@ -161,7 +164,8 @@ class LessonPanel:
         elif isinstance(block, Quiz):
             key = f"{run.index}.{number}"
             chosen, order = run.notes.quiz.get(key), run.order(block, key)
-            self._html(page.question(block, order, chosen, chosen is not None, run.words))
+            told = chosen is not None and not run.is_test
+            self._html(page.question(block, order, chosen, told, run.words))
             answered = add_letters(
                 self._gui, order, lambda at, _: self._post(c.AnswerQuiz(number, at))
             )
@@ -272,8 +276,11 @@ class LessonPanel:
 
     def _add_ways(self, step: Step, run: LessonView) -> None:
         """Navigation buttons: back, next, restore the set-up, close."""
+        if run.is_test:
+            self._html(page.remark(answered_line(run)))
         if run.at_end:
-            self._button(run.words("lesson.finish"), c.FinishLesson(), None, viser.Icon.CHECK)
+            label = run.words("test.hand_in" if run.is_test else "lesson.finish")
+            self._button(label, c.FinishLesson(), None, viser.Icon.CHECK)
         else:
             unseen = step.script is not None and not run.has_played()
             label, colour = run.words("lesson.next"), "gray" if run.shows_next else None
@@ -284,7 +291,7 @@ class LessonPanel:
             self._add_way_past(run)
         lesson = run.lesson
         first = lesson is None or run.beside(-1) == (lesson.name, run.index)
-        keys = ["back", "again", "close"][1 if first else 0 :]
+        keys = [*([] if first else ["back"]), *([] if run.is_test else ["again"]), "close"]
         commands = {"back": c.GoToStep(-1), "again": c.BeginStepAnew(), "close": c.CloseLesson()}
         asked = {run.words(f"lesson.{key}"): commands[key] for key in keys}
         self._handles.append(add_buttons(self._gui, "", asked, self._post))

@@ -203,6 +203,35 @@ full-network = Alle { $places } Plätze für ein Netz sind besetzt; die übrigen
 coming-title = Einen Augenblick
 coming-text = Viele kommen gerade auf einmal. Dein Labor öffnet sich in ein paar Sekunden.
 
+test-title_before = Vor dem Kurs: { $title }
+test-title_after = Nach dem Kurs: { $title }
+test-open = Test öffnen
+test-open_name = Test öffnen: { $title }
+test-hand_in = Abgeben
+test-handed_in = abgegeben
+test-answered = { $part } von { $all } beantwortet. Bis du abgibst, kannst du deine Antworten ändern.
+test-locked = In einem Test steht das Labor still.
+test-over = Der Test ist schon abgegeben.
+test-thanks = Abgegeben. Danke.
+test-later = Was richtig ist, und warum, erfährst du, wenn du den Test nach dem Kurs abgegeben hast.
+test-score = { $part } von { $all } richtig
+test-before = Vor dem Kurs
+test-after = Nach dem Kurs
+test-chosen_before = Vorher:
+test-chosen_after = Nachher:
+test-none = keine Antwort
+test-students = { $count ->
+        [0] Noch hat niemand beide Tests abgegeben.
+        [one] 1 Lernender hat beide Tests abgegeben. In einer so kleinen Klasse lässt sich erraten, wer gemeint ist.
+       *[other] { $count } Lernende haben beide Tests abgegeben.
+    }
+test-means = Richtige Antworten: vorher { $before } %, nachher { $after } %.
+test-gain = Normierter Lernzuwachs: { $gain }
+test-gain_means = Diesen Anteil dessen, was die Klasse vorher nicht wusste, hat sie gelernt: (nachher − vorher) / (100 % − vorher).
+test-gain_none = Normierter Lernzuwachs: nicht definiert, denn vorher waren alle Antworten richtig.
+test-waiting = { $part } von { $all } haben den Test vor dem Kurs abgegeben, { $after } den danach.
+test-number = Nr.
+test-aims = Was die falschen Antworten sagen
 class-title = Klasse
 class-code = Klassencode
 class-code_hint = Er steht auf der Leinwand

@@ -205,6 +205,35 @@ full-network = All { $places } places for one network are taken; the rest is kep
 coming-title = One moment
 coming-text = Many people are connecting at once. Your lab opens in a few seconds.
 
+test-title_before = Before the course: { $title }
+test-title_after = After the course: { $title }
+test-open = Open the test
+test-open_name = Open the test: { $title }
+test-hand_in = Hand in
+test-handed_in = handed in
+test-answered = { $part } of { $all } answered. You can change your answers until you hand in.
+test-locked = In a test the lab stands still.
+test-over = The test has been handed in.
+test-thanks = Handed in. Thank you.
+test-later = What is right, and why, is told when you have handed in the test after the course.
+test-score = { $part } of { $all } right
+test-before = Before the course
+test-after = After the course
+test-chosen_before = Before:
+test-chosen_after = After:
+test-none = no answer
+test-students = { $count ->
+        [0] Nobody has handed in both tests yet.
+        [one] 1 student has handed in both tests. In a class this small it may be known who is meant.
+       *[other] { $count } students have handed in both tests.
+    }
+test-means = Right answers: { $before } % before, { $after } % after.
+test-gain = Normalised gain: { $gain }
+test-gain_means = Of what the class did not know before, it has learnt this share: (after − before) / (100 % − before).
+test-gain_none = Normalised gain: not defined, since all answers were right before.
+test-waiting = { $part } of { $all } have handed in the test before the course, { $after } the one after it.
+test-number = No.
+test-aims = What the wrong answers say
 class-title = Class
 class-code = Class code
 class-code_hint = Shown on the projector

@@ -7,18 +7,19 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.classroom import class_html as page
-from onpath.app.classroom.results import class_csv, distribution, prediction_at, truth_of
+from onpath.app.classroom.concept_test_results import rows_without_names
+from onpath.app.classroom.results import class_csv
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.lab.step_truth import computed_truth
 from onpath.app.page.panels.dialog import mark_closing
 from onpath.app.page.panels.route_sender import RouteSender
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
+from onpath.app.page.teaching.class_answers import ClassAnswers
+from onpath.lessons.concept_test.concept_test import BEFORE
+from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
-from onpath.lessons.progress import Truth
-from onpath.lessons.schema import Lesson
 from onpath.lessons.words import Words
 
 WIDTH, WIDE = 480, 1280  # [px]; wide for a projector
@@ -48,7 +49,7 @@ class TeacherPanel:
         self._teaching, self._class, self._chosen = teaching, teaching.classroom, teaching.chosen
         self._course, self._words, self._post = course, words, post
         self._next, self._busy = 0.0, False
-        self._computed: dict[tuple[str, int], Truth | None] = {}
+        self._answers = ClassAnswers(course, words, teaching)
         self._codes: list[viser.GuiHtmlHandle] = []
         self._large = teaching.progress().presenting
         panel = self._gui.add_panel(order=0)
@@ -82,7 +83,7 @@ class TeacherPanel:
             _show(self._still, note(still) if still else "")
             self._show_standing()
             if self._course.lessons:
-                _show(self._prediction, self._prediction_view())
+                _show(self._prediction, self._answers.view(self._large))
         finally:
             self._busy = False
 
@@ -137,7 +138,7 @@ class TeacherPanel:
 
     def _build_predictions(self) -> None:
         words, gui, chosen = self._words, self._gui, self._chosen
-        if chosen.lesson not in self._course.lessons:
+        if not self._course.has(chosen.lesson):
             chosen.lesson, chosen.step = next(iter(self._course.lessons)), 0
         lessons, steps = self._lessons(), self._steps()
         own = next(label for label, name in lessons.items() if name == chosen.lesson)
@@ -161,12 +162,14 @@ class TeacherPanel:
         on_press(push, self._push_step)
 
     def _lessons(self) -> dict[str, str]:
-        """Lesson names by title."""
+        """Names of lessons and tests by title."""
         course, language = self._course, self._words.language
-        return {
+        lessons = {
             f"{number}. {course.lesson(name, language).front.title}": name
             for name, number in course.numbers().items()
         }
+        tests = {title: name for name, title in titles_of_tests(course, self._words).items()}
+        return {**lessons, **tests}
 
     def _steps(self) -> list[str]:
         lesson = self._course.lesson(self._chosen.lesson, self._words.language)
@@ -208,31 +211,6 @@ class TeacherPanel:
         said = self._words("class.sent", count=len(self._class.members()))
         self._sent.content = note(said)
 
-    def _prediction_view(self) -> str:
-        words, chosen = self._words, self._chosen
-        lesson = self._course.lesson(chosen.lesson, words.language)
-        found = prediction_at(lesson, min(chosen.step, len(lesson.steps) - 1))
-        if found is None:
-            return note(words("class.no_prediction"))
-        at, block = found
-        ways = [member.progress for member in self._class.members().values()]
-        truth = truth_of(chosen.lesson, at, [*ways, self._teaching.progress()])
-        if truth is None and chosen.revealed:
-            truth = self._truth_at(lesson, at)
-        counted = distribution(block, chosen.lesson, at, ways)
-        view = page.prediction_view(
-            block, counted, truth, chosen.revealed, words, self._large, lesson.laws_shown(at)
-        )
-        missing = chosen.revealed and not counted.counts and truth is None
-        return view + note(words("class.no_truth")) if missing else view
-
-    def _truth_at(self, lesson: Lesson, at: int) -> Truth | None:
-        """What happens, computed once if nobody has run it."""
-        key = lesson.name, at
-        if key not in self._computed:
-            self._computed[key] = computed_truth(lesson, at)
-        return self._computed[key]
-
     # Export and deletion
 
     def _build_record(self) -> None:
@@ -250,8 +228,11 @@ class TeacherPanel:
         )
 
     def _export(self) -> None:
-        members = self._class.members().values()
-        data = class_csv(members, self._course, self._words.language)
+        members, course, language = self._class.members(), self._course, self._words.language
+        ways = [(session, member.progress) for session, member in members.items()]
+        test = course.lesson(BEFORE, language) if course.tests else None
+        tests = rows_without_names(test, ways, self._class.code) if test else ()
+        data = class_csv(members.values(), course, language, tests)
         self._client.send_file_download("onpath-class.csv", data, save_immediately=True)
 
     def _end(self) -> None:

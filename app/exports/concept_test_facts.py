@@ -1,0 +1,60 @@
+"""A student's own answers to the concept test, which are told once both tests are handed in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from onpath.app.lab.lesson_state import LessonState
+from onpath.lessons.concept_test.concept_test import (
+    AFTER,
+    BEFORE,
+    chosen_in,
+    notes_of,
+    questions,
+    right_in,
+)
+from onpath.lessons.schema import Lesson, Quiz
+
+
+@dataclass(frozen=True, slots=True)
+class ToldQuestion:
+    """A question with the options chosen before and after the course, None where there is none."""
+
+    block: Quiz
+    before: int | None
+    after: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class ToldTests:
+    """What a student is told of the concept test.
+
+    Attributes:
+        scores: number of right answers, before and after the course; None if not handed in.
+        questions: empty until the test after the course has been handed in.
+    """
+
+    lesson: Lesson
+    scores: tuple[int | None, int | None]
+    questions: list[ToldQuestion]
+
+    @property
+    def count(self) -> int:
+        """Number of questions."""
+        return len(questions(self.lesson))
+
+
+def told_tests(run: LessonState) -> ToldTests | None:
+    """What is told; None if the course has no test, or none has been handed in."""
+    if not run.course.tests:
+        return None
+    lesson = run.course.lesson(BEFORE, run.progress.language)
+    before, after = (notes_of(run.progress, name) for name in (BEFORE, AFTER))
+    if before is None and after is None:
+        return None
+    blocks = list(questions(lesson).values())
+    nothing: list[int | None] = [None] * len(blocks)
+    chosen = [chosen_in(lesson, notes) if notes else nothing for notes in (before, after)]
+    asked = [ToldQuestion(*each) for each in zip(blocks, *chosen, strict=True)] if after else []
+    right = [sum(right_in(lesson, notes)) if notes else None for notes in (before, after)]
+    return ToldTests(lesson, (right[0], right[1]), asked)

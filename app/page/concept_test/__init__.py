@@ -1,0 +1,1 @@
+"""The concept test on a student's page."""

@@ -1,0 +1,43 @@
+"""The end of the concept test: thanks, and after the second one what is right, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import viser
+
+from onpath.app.common.palette import AZURE
+from onpath.app.common.templates import render
+from onpath.app.exports.concept_test_facts import told_tests
+from onpath.app.lab import commands as c
+from onpath.app.page.panels.widgets import Post, add_buttons
+from onpath.lessons.concept_test.titles import titles_of_tests
+
+if TYPE_CHECKING:
+    from onpath.app.page.lesson_view import LessonView
+
+
+class ConceptTestEnd:
+    """The widgets of the end of a test, added to the container that is open.
+
+    Args:
+        report: requests the record of all lessons.
+
+    Attributes:
+        handles: all of them, each with `remove`.
+    """
+
+    def __init__(
+        self, gui: viser.GuiApi, run: LessonView, post: Post, report: Callable[[], None]
+    ) -> None:
+        words, told = run.words, told_tests(run)
+        title = titles_of_tests(run.course, words)[run.progress.lesson]
+        shown = {"run": run, "title": title, "told": told, "colour": AZURE.hex}
+        content = render("lesson/test_end.html", words=words, **shown)
+        ways: dict[str, Callable[[], None]] = {
+            words("end.record"): report,
+            words("lesson.close"): lambda: post(c.CloseLesson()),
+        }
+        buttons = add_buttons(gui, "", ways, lambda act: act())
+        self.handles: list[Any] = [gui.add_html(content), buttons]

@@ -1,0 +1,34 @@
+"""The concept test in the overview of the lessons, and how much of it is answered."""
+
+from __future__ import annotations
+
+from onpath.app.common.templates import render
+from onpath.app.lab.lesson_state import LessonState
+from onpath.lessons.concept_test.concept_test import chosen_in
+from onpath.lessons.concept_test.titles import titles_of_tests
+from onpath.lessons.minutes import lesson_minutes
+from onpath.lessons.progress import Notes
+
+
+def entry_of_test(name: str, run: LessonState) -> str:
+    """A test in the lesson overview; it names the button that follows."""
+    lesson, words = run.course.lesson(name, run.words.language), run.words
+    notes = run.progress.notes.get(name, Notes())
+    minutes = words("lesson.minutes", minutes=lesson_minutes(lesson)[0])
+    title = titles_of_tests(run.course, words)[name]
+    return render(
+        "lesson/test_entry.html",
+        front=lesson.front,
+        title=title,
+        facts=[minutes, *([words("test.handed_in")] if notes.handed_in else [])],
+        finished=notes.handed_in,
+        name=words("test.open_name", title=title),
+    )
+
+
+def answered_line(run: LessonState) -> str:
+    """How many questions of the open test are answered."""
+    assert run.lesson is not None
+    chosen = chosen_in(run.lesson, run.notes)
+    part = sum(option is not None for option in chosen)
+    return run.words("test.answered", part=part, all=len(chosen))

@@ -1,0 +1,66 @@
+"""What the teacher's page shows of a step: the class's answers, without names."""
+
+from __future__ import annotations
+
+from onpath.app.classroom import class_html as page
+from onpath.app.classroom.concept_test_results import gain_view, item_distribution, question_at
+from onpath.app.classroom.results import distribution, prediction_at, truth_of
+from onpath.app.lab.step_truth import computed_truth
+from onpath.app.page.panels.widgets import note
+from onpath.app.page.teacher_context import TeacherContext
+from onpath.lessons.concept_test.concept_test import TESTS
+from onpath.lessons.course import Course
+from onpath.lessons.progress import Progress, Truth
+from onpath.lessons.schema import Lesson
+from onpath.lessons.words import Words
+
+
+class ClassAnswers:
+    """The answers to what the teacher has chosen to look at."""
+
+    def __init__(self, course: Course, words: Words, teaching: TeacherContext) -> None:
+        self._course, self._words, self._teaching = course, words, teaching
+        self._computed: dict[tuple[str, int], Truth | None] = {}
+
+    def view(self, large: bool) -> str:
+        """The answers to the prediction of the chosen step, or to a question of a test."""
+        chosen = self._teaching.chosen
+        lesson = self._course.lesson(chosen.lesson, self._words.language)
+        index = min(chosen.step, len(lesson.steps) - 1)
+        ways = [member.progress for member in self._teaching.classroom.members().values()]
+        if chosen.lesson in self._course.tests:
+            return self._test(lesson, index, ways, large)
+        return self._prediction(lesson, index, ways, large)
+
+    def _test(self, test: Lesson, index: int, ways: list[Progress], large: bool) -> str:
+        """A question of the test, answered before and after the course, and the class's gain."""
+        words, revealed = self._words, self._teaching.chosen.revealed
+        rounds = [
+            (words(title), item_distribution(test, index, name, ways))
+            for name, title in zip(TESTS, ("test.before", "test.after"), strict=True)
+        ]
+        asked = page.choices_view(question_at(test, index), rounds, revealed, words, large)
+        return gain_view(test, ways, revealed, words, large) + asked
+
+    def _prediction(self, lesson: Lesson, index: int, ways: list[Progress], large: bool) -> str:
+        words, revealed = self._words, self._teaching.chosen.revealed
+        found = prediction_at(lesson, index)
+        if found is None:
+            return note(words("class.no_prediction"))
+        at, block = found
+        truth = truth_of(lesson.name, at, [*ways, self._teaching.progress()])
+        if truth is None and revealed:
+            truth = self._truth_at(lesson, at)
+        counted = distribution(block, lesson.name, at, ways)
+        view = page.prediction_view(
+            block, counted, truth, revealed, words, large, lesson.laws_shown(at)
+        )
+        missing = revealed and not counted.counts and truth is None
+        return view + note(words("class.no_truth")) if missing else view
+
+    def _truth_at(self, lesson: Lesson, at: int) -> Truth | None:
+        """What happens, computed once if nobody has run it."""
+        key = lesson.name, at
+        if key not in self._computed:
+            self._computed[key] = computed_truth(lesson, at)
+        return self._computed[key]

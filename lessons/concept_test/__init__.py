@@ -1,0 +1,1 @@
+"""The concept test, and what a class gains between its two sittings."""

@@ -1,0 +1,127 @@
+"""The concept test in a lab: opened, answered, handed in, and what the student is told."""
+
+from __future__ import annotations
+
+import json
+from datetime import UTC, datetime
+from typing import Any
+
+import msgspec
+import pytest
+
+from onpath.app.exports.concept_test_facts import told_tests
+from onpath.app.exports.report import report
+from onpath.app.lab import commands as c
+from onpath.app.lab.commands import TakeStep
+from onpath.app.lab.lab import Lab
+from onpath.app.page.concept_test import end
+from onpath.app.storage.lab_state import keep, put_back
+from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
+from onpath.lessons.course import BUILT_IN, read_course
+from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.lab import do, run, store
+
+COURSE = read_course([BUILT_IN])[0]
+ASKED = questions(COURSE.lesson(BEFORE, "en"))
+LESSON = "01-path-or-timetable"
+
+
+def lab_with_lessons() -> Lab:
+    return Lab(store(), FIVE_BAR, COURSE)
+
+
+def sit(lab: Lab, name: str, option: int = 0) -> None:
+    """Open a test, choose the same option everywhere, and hand in."""
+    do(lab, c.OpenLesson(name))
+    for index, key in enumerate(ASKED):
+        if index:
+            do(lab, c.GoToStep(1))
+        do(lab, c.AnswerQuiz(int(key.partition(".")[2]), option))
+    do(lab, c.FinishLesson())
+
+
+def test_nothing_moves_while_a_test_is_open() -> None:
+    lab = lab_with_lessons()
+    do(lab, c.OpenLesson(BEFORE), c.SetRunning(True))
+    assert "test" in lab.message
+    run(lab, 0.5)
+    assert lab.session.time == 0 and not lab.session.running
+    do(lab, c.CloseLesson())
+    run(lab, 0.5)
+    assert lab.session.time > 0
+
+
+def test_an_answer_can_be_changed_until_the_test_is_handed_in_and_not_after_it() -> None:
+    lab = lab_with_lessons()
+    do(lab, c.OpenLesson(BEFORE), c.AnswerQuiz(1, 2), c.AnswerQuiz(1, 0))
+    assert lab.lessons.notes.quiz == {"0.1": 0}
+    do(lab, c.FinishLesson(), c.AnswerQuiz(1, 2))
+    assert lab.lessons.notes.quiz == {"0.1": 0} and "handed in" in lab.message
+    do(lab, c.CloseLesson(), c.OpenLesson(BEFORE))
+    assert lab.lessons.ended and lab.lessons.notes.handed_in
+    do(lab, c.GoToStep(-1), c.BeginStepAnew())
+    assert lab.lessons.ended
+
+
+def test_the_keys_do_not_hand_in() -> None:
+    lab = lab_with_lessons()
+    do(lab, c.OpenLesson(BEFORE), *[c.GoToStep(1)] * 20)
+    assert lab.lessons.index == 11 and not lab.lessons.ended and not lab.lessons.notes.handed_in
+
+
+def test_what_is_right_is_told_after_the_second_test_only() -> None:
+    lab = lab_with_lessons()
+    assert told_tests(lab.lessons) is None
+    sit(lab, BEFORE)
+    told = told_tests(lab.lessons)
+    assert told is not None and told.scores == (3, None) and told.questions == []
+    page = report(lab.lessons, "", datetime(2026, 1, 1, tzinfo=UTC)).decode()
+    assert not any(str(o.answer) in page for b in ASKED.values() for o in b.options)
+    assert "3 of 12" not in page
+    do(lab, c.CloseLesson())
+    sit(lab, AFTER, 1)
+    told = told_tests(lab.lessons)
+    assert told is not None and told.scores == (3, 3) and len(told.questions) == 12
+    page = report(lab.lessons, "", datetime(2026, 1, 1, tzinfo=UTC)).decode()
+    for block in ASKED.values():
+        assert str(next(o.answer for o in block.options if o.right)) in page
+    assert page.count("3 of 12") == 2
+
+
+@pytest.mark.parametrize("language", COURSE.languages())
+def test_the_end_of_a_test_tells_no_score_before_the_second(language: str) -> None:
+    lab, shown = lab_with_lessons(), list[str]()
+    do(lab, c.SetLanguage(language))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(end, "add_buttons", lambda *_: None)
+        gui: Any = type("Gui", (), {"add_html": lambda _, html: shown.append(html)})()
+        for name in (BEFORE, AFTER):
+            sit(lab, name)
+            end.ConceptTestEnd(gui, lab.lessons, lab.post, lambda: None)  # type: ignore[arg-type]
+    right = [
+        str(next(o.answer for o in b.options if o.right))
+        for b in questions(COURSE.lesson(BEFORE, language)).values()
+    ]
+    assert not any(text in shown[0] for text in right)
+    assert all(text in shown[1] for text in right)
+
+
+def test_the_teacher_sends_a_test_and_a_route_goes_on_after_it() -> None:
+    lab = lab_with_lessons()
+    do(lab, c.FollowRoute("1-lab-90-minutes"), TakeStep(BEFORE, 0))
+    assert lab.lessons.is_test and lab.lessons.route is None
+    do(lab, c.GoToStep(1))
+    assert lab.lessons.index == 1
+    do(lab, TakeStep(LESSON, 0))
+    assert lab.lessons.route is not None and lab.lessons.locked is None
+
+
+def test_an_open_test_and_one_that_is_handed_in_are_kept() -> None:
+    lab, states = lab_with_lessons(), list[Any]()
+    sit(lab, BEFORE)
+    do(lab, c.OpenLesson(AFTER), c.AnswerQuiz(1, 2))
+    keep(lab, lambda state: states.append(json.loads(msgspec.json.encode(state()))))
+    other = lab_with_lessons()
+    put_back(other, states[0])
+    assert other.lessons.progress == lab.lessons.progress
+    assert other.lessons.locked is not None and not other.session.running

@@ -1,0 +1,69 @@
+"""The concept test on a student's page: opened from the overview or by the teacher, handed in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+import pytest
+
+from onpath.app.lab.commands import TakeStep
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.server.lab_server import LabServer
+from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
+from onpath.lessons.course import BUILT_IN, read_course
+from onpath.lessons.option_order import option_order
+from onpath.lessons.words import ENGLISH
+from tests.support import waiting
+from tests.support.student import Student
+
+COURSE = read_course([BUILT_IN])[0]
+wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that would hang
+TEST = COURSE.lesson(BEFORE, "en")
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopCache(), COURSE)
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def student(server: LabServer) -> Iterator[Student]:
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+        student.open()
+        student.read(lambda: student.code)
+        yield student
+
+
+def test_both_tests_are_in_the_overview_and_open_from_it(
+    server: LabServer, student: Student
+) -> None:
+    lab = wait_for(lambda: server.sessions.find(student.code)).scheduled.lab
+    student.set(ENGLISH("lesson.lessons"), True)
+    title = TEST.front.title
+    for key in ("test.title_before", "test.title_after"):
+        student.read(lambda key=key: student.sees(ENGLISH(key, title=title)))
+    assert student.count(ENGLISH("test.open")) == 2
+    student.set(ENGLISH("test.open"), True)  # the one that was added last
+    wait_for(lambda: lab.lessons.progress.lesson == AFTER)
+
+
+def test_a_student_answers_is_told_nothing_and_hands_in(
+    server: LabServer, student: Student
+) -> None:
+    lab = wait_for(lambda: server.sessions.find(student.code)).scheduled.lab
+    lab.post(TakeStep(BEFORE, 11))
+    block = questions(TEST)["11.0"]
+    order = option_order(4, f"{BEFORE} 11.0", student.code)
+    wrong = next(place for place, at in enumerate(order) if not block.options[at].right)
+    student.read(lambda: student.sees(str(block.question)))
+    student.set("ABCD"[wrong], "ABCD"[wrong])
+    wait_for(lambda: lab.lessons.notes.quiz.get("11.0") == order[wrong])
+    student.read(lambda: student.sees(ENGLISH("test.answered", part=1, all=12)))
+    assert not any(student.sees(str(option.answer)) for option in block.options)
+    assert not student.sees(ENGLISH("lesson.not_quite")) and not student.sees("✗")
+    student.set(ENGLISH("test.hand_in"), True)
+    student.read(lambda: student.sees(ENGLISH("test.later")))
+    assert lab.lessons.notes.handed_in
