@@ -44,3 +44,16 @@ def test_no_file_says_so(file: Path) -> None:
 )
 def test_it_would_be_noticed(charge: str) -> None:
     assert CHARGE.search(charge)
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_lesson_7_asks_which_normalisation_makes_them_those_of_lagrange(language: str) -> None:
+    """The answers are tested in test_flexible_five_bar: the integral 1, l / 4 and 1 / ρ."""
+    text = (ROOT / "lessons/course/07-flexible-link" / f"{language}.md").read_text("utf-8")
+    options = re.findall(r'\{ text = "(.*?)",( right = true,)? answer', text)
+    asked = {option: bool(right) for option, right in options if "varphi" in option}
+    assert {option.split("$")[1]: right for option, right in asked.items()} == {
+        r"\\int\\varphi^2\\,ds = 1": False,
+        r"\\varphi(\\ell) = 1": False,
+        r"\\rho\\int\\varphi^2\\,ds = 1": True,
+    }
