@@ -17,7 +17,7 @@ from onpath.app.page.sketch_answer import SketchAnswer
 from onpath.app.scene.scene import Scene
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import SURENESS
-from onpath.lessons.schema import Choice, NumberQuestion, Prediction, Sketch
+from onpath.lessons.schema import Choice, NumberQuestion, Prediction
 from onpath.lessons.words import Words
 
 
@@ -75,14 +75,13 @@ class PredictionForm:
         else:
             self._said = gui.add_html(page.remark(words("lesson.draw_first")))
             self.handles.append(self._said)
+            self.sketching = SketchAnswer(client, scene, block, run, self._drawn)
         beside = SureAndWhy(gui, block, words)
         commit = gui.add_button(words("lesson.commit"), icon=viser.Icon.LOCK)
         commit.disabled = True
         on_press(commit, lambda: post(beside.beside(self._draft)))
         self._commit = commit
         self.handles += [*beside.handles, commit]
-        if isinstance(block, Sketch):
-            self.sketching = SketchAnswer(client, scene, block, run, self._drawn)
 
     def _chosen(self, option: int, letter: str) -> None:
         self._draft = c.Predict(option=option)

@@ -118,6 +118,7 @@ def test_a_dark_dialog_can_be_read(tab: Tab, name: str) -> None:
     dialog.wait_for(state="hidden")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("size", SIZES)
 def test_every_step_of_a_dark_lesson_can_be_read(
     browser: Browser, server: LabServer, size: str
