@@ -65,6 +65,8 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         quiz: chosen options, by step and block.
         numbers: answers that are numbers, by step and block.
         written: answers in own words, by step and block.
+        asked_again: predictions that the teacher has asked again, after a discussion, by step.
+        second: the answers to those.
         handed_in: whether a test has been handed in, after which its answers do not change.
     """
 
@@ -78,6 +80,8 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     quiz: dict[Key, Index] = {}
     numbers: dict[Key, float] = {}
     written: dict[Key, Written] = {}
+    asked_again: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
+    second: dict[Key, Answer] = {}
     handed_in: bool = False
 
 
@@ -110,7 +114,7 @@ def read_progress(data: object) -> Progress:
     progress = msgspec.convert(data, Progress)
     for notes in progress.notes.values():
         numbers = [*notes.tasks.values(), *notes.numbers.values()]
-        for answer in notes.answers.values():
+        for answer in (*notes.answers.values(), *notes.second.values()):
             numbers += [*answer.times, *answer.values]
             if len(answer.times) != len(answer.values):
                 raise ValueError("a sketch with more times than values, or fewer")

@@ -93,18 +93,23 @@ def prediction_view(
     words: Words,
     large: bool = False,
     laws: Mapping[str, str] = DEFAULT_LAWS,
+    second: Distribution | None = None,
 ) -> str:
     """The answers of the class without names, and the truth once revealed.
 
     Args:
         large: whether to use large type for a projector.
         laws: control laws under which the prediction is put to the test.
+        second: the answers after a discussion, beside the others; None if it was asked once.
     """
-    facts = given_line(found, words)
+    rounds = [("", found)]
+    if second is not None:
+        rounds = [(words("class.first"), found), (words("class.second"), second)]
     if isinstance(block, Choice):
-        return choices_view(block, [("", found)], revealed, words, large)
-    robots = robot_names(laws, words)
-    lines, names = _sketches(block, found, truth if revealed else None, words, robots)
+        return choices_view(block, rounds, revealed, words, large)
+    robots, seen = robot_names(laws, words), truth if revealed else None
+    drawn = [_sketches(block, each, seen, words, robots) for _, each in rounds]
+    told = [(title, given_line(each, words)) for title, each in rounds]
     return render(
         "class/sketches.html",
         block=block,
@@ -114,9 +119,9 @@ def prediction_view(
         left=LEFT,
         floor=FLOOR,
         marks=_marks(block),
-        lines=lines,
-        names=names,
-        facts=facts,
+        plots=[(title, lines, said) for (title, said), (lines, _) in zip(told, drawn, strict=True)],
+        names=drawn[0][1],
+        facts=told[0][1] if len(told) == 1 else "",
         large=large,
     )
 
@@ -144,6 +149,12 @@ def choices_view(
         facts=said[0][2] if len(said) == 1 else "",
         large=large,
     )
+
+
+def hidden_view(block: Prediction, found: Distribution, words: Words, large: bool = False) -> str:
+    """The question, and how many have answered it."""
+    facts = given_line(found, words)
+    return render("class/prediction.html", block=block, facts=facts, large=large)
 
 
 def given_line(found: Distribution, words: Words) -> str:

@@ -111,7 +111,7 @@ def push_text(push: Push | None) -> str:
     if push is None:
         return ""
     if isinstance(push, TakeStep):
-        kept = {"lesson": push.lesson, "step": push.step, "route": push.route}
+        kept = {"lesson": push.lesson, "step": push.step, "route": push.route, "again": push.again}
         return msgspec.json.encode(kept).decode()
     return msgspec.json.encode({"setup": to_data(push.setup)}).decode()
 

@@ -59,15 +59,21 @@ def prediction_at(lesson: Lesson, index: int) -> tuple[int, Prediction] | None:
 
 
 def distribution(
-    prediction: Prediction, lesson: str, step: int, ways: Sequence[Progress]
+    prediction: Prediction,
+    lesson: str,
+    step: int,
+    ways: Sequence[Progress],
+    again: bool = False,
 ) -> Distribution:
     """Count the answers of the class.
 
     Args:
         step: index of the step that asks the prediction.
         ways: progress of all students.
+        again: whether to count the second answers, after a discussion, instead of the first ones.
     """
-    answers = [_notes(way, lesson).answers.get(str(step)) for way in ways]
+    notes = [_notes(way, lesson) for way in ways]
+    answers = [(own.second if again else own.answers).get(str(step)) for own in notes]
     given = [answer for answer in answers if answer is not None]
     options = range(len(prediction.options)) if isinstance(prediction, Choice) else ()
     return Distribution(
@@ -76,6 +82,11 @@ def distribution(
         skipped=sum(answer.skipped for answer in given),
         waiting=len(answers) - len(given),
     )
+
+
+def is_asked_again(lesson: str, step: int, ways: Iterable[Progress]) -> bool:
+    """Whether a prediction has been asked a second time in the class."""
+    return any(str(step) in _notes(way, lesson).asked_again for way in ways)
 
 
 def truth_of(lesson: str, step: int, ways: Iterable[Progress]) -> Truth | None:
@@ -128,6 +139,10 @@ def _rows(lesson: Lesson, notes: Notes) -> Iterator[tuple[object, ...]]:
             answer = notes.answers.get(str(index))
             told = _told(prediction, answer)
             yield index + 1, "prediction", step.title, *_answered(prediction, answer), *told
+            if str(index) in notes.asked_again:
+                second = notes.second.get(str(index))
+                told = _told(prediction, second)
+                yield index + 1, "second", step.title, *_answered(prediction, second), *told
         for task in step.tasks():
             best = notes.tasks.get(task.id)
             passed, value = best is not None, best if task.best and best is not None else ""

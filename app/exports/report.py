@@ -52,6 +52,7 @@ class AskedPrediction:
     Attributes:
         step: index of the step that asks.
         chosen: index of the option chosen, if any.
+        second: the answer after a discussion, if it was asked again.
         figure: figure of a sketch, if there is anything to draw.
     """
 
@@ -61,6 +62,7 @@ class AskedPrediction:
     truth: Truth | None
     chosen: int | None
     figure: SketchFigure | None
+    second: Answer | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +134,8 @@ def _asked(chapter: Chapter, key: str, block: Prediction, words: Words) -> Asked
     names = robot_names(chapter.lesson.laws_shown(int(key)), words)
     figure = _figure(block, answer, truth, words, names) if isinstance(block, Sketch) else None
     chosen = answer.option if answer else None
-    return AskedPrediction(int(key), block, answer, truth, chosen, figure)
+    second = chapter.notes.second.get(key)
+    return AskedPrediction(int(key), block, answer, truth, chosen, figure, second)
 
 
 def _passed(task: Task, best: float | None, words: Words) -> str:

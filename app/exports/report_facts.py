@@ -105,6 +105,7 @@ def fitting(lesson: Lesson, notes: Notes) -> tuple[Notes, int]:
     tasks = {task.id for task in lesson.tasks()}
     kept: dict[str, dict[str, Any]] = {
         "answers": _kept(notes.answers, lambda k, a: k in asked and _answers(asked[k], a)),
+        "second": _kept(notes.second, lambda k, a: k in asked and _answers(asked[k], a)),
         "truths": _kept(notes.truths, lambda k, t: k in asked and _is_true_of(asked[k], t)),
         "tasks": _kept(notes.tasks, lambda k, best: k in tasks and bool(np.isfinite(best))),
         "quiz": _kept(

@@ -135,9 +135,28 @@ class LessonState:
         return self.step is not None and self.step.kind == kind
 
     def answer(self) -> Answer | None:
-        """Answer to the open step's prediction, or None."""
-        found = self.prediction()
-        return None if found is None else self.notes.answers.get(found[0])
+        """Answer to the open step's prediction, the latest one, or None while one is awaited."""
+        found, notes = self.prediction(), self.notes
+        if found is None:
+            return None
+        return (notes.second if found[0] in notes.asked_again else notes.answers).get(found[0])
+
+    def first_answer(self) -> Answer | None:
+        """The answer before a discussion, if the open step's prediction is asked again; or None."""
+        found, notes = self.prediction(), self.notes
+        again = found is not None and found[0] in notes.asked_again
+        return notes.answers.get(found[0]) if found is not None and again else None
+
+    def ask_again(self) -> None:
+        """Ask the open step's prediction a second time; who has not answered has skipped it."""
+        if (found := self.prediction()) is None:
+            return
+        key, notes = found[0], self.notes
+        self.note(
+            answers={key: Answer(), **notes.answers},
+            asked_again=tuple(dict.fromkeys((*notes.asked_again, key))),
+            second={k: answer for k, answer in notes.second.items() if k != key},
+        )
 
     @property
     def waits(self) -> bool:
@@ -225,10 +244,13 @@ class LessonState:
         self.version += 1
 
     def note_answer(self, answer: Answer) -> None:
-        """Store the answer to the open step's prediction."""
-        found = self.prediction()
+        """Store the answer to the open step's prediction, the second one if it is asked again."""
+        found, notes = self.prediction(), self.notes
         assert found is not None
-        self.note(answers={**self.notes.answers, found[0]: answer})
+        if found[0] in notes.asked_again:
+            self.note(second={**notes.second, found[0]: answer})
+        else:
+            self.note(answers={**notes.answers, found[0]: answer})
 
     def note(self, **changes: Any) -> None:
         """Change the saved notes on the open lesson."""

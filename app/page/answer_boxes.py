@@ -16,8 +16,8 @@ from onpath.app.page.panels.widgets import Post, add_buttons, on_press, on_user_
 from onpath.app.page.sketch_answer import SketchAnswer
 from onpath.app.scene.scene import Scene
 from onpath.lessons.option_order import LETTERS
-from onpath.lessons.progress import SURENESS
-from onpath.lessons.schema import Choice, NumberQuestion, Prediction
+from onpath.lessons.progress import SURENESS, Answer
+from onpath.lessons.schema import Choice, NumberQuestion, Prediction, Sketch
 from onpath.lessons.words import Words
 
 
@@ -70,6 +70,8 @@ class PredictionForm:
         self.handles: list[Any] = []
         self._draft, self._words = c.Predict(), words
         self.sketching: SketchAnswer | None = None
+        if (first := run.first_answer()) is not None:
+            self.handles.append(gui.add_html(page.remark(_discuss(block, first, run))))
         if isinstance(block, Choice):
             self.handles.append(add_letters(gui, run.order(block), self._chosen))
         else:
@@ -92,6 +94,14 @@ class PredictionForm:
         self._draft = c.Predict(None, tuple(times.tolist()), tuple(values.tolist()))
         self._commit.disabled = False
         self._said.content = page.remark(self._words("lesson.drawn"))
+
+
+def _discuss(block: Prediction, first: Answer, run: LessonView) -> str:
+    """That a prediction is asked again, with the letter that the student chose first."""
+    if isinstance(block, Sketch) or first.option not in range(len(block.options)):
+        return run.words("lesson.discuss")
+    letter = LETTERS[run.order(block).index(first.option)]
+    return run.words("lesson.discuss_letter", letter=letter)
 
 
 def add_letters(

@@ -16,12 +16,14 @@ class TeacherChoices:
 
     Attributes:
         lesson, step: where the displayed prediction is asked.
+        shown: whether the answers are shown, and not only how many there are.
         revealed: whether the truth is shown as well.
         followed: session code of the student whose lab is shown; empty for the teacher's own lab.
     """
 
     lesson: str = ""
     step: int = 0
+    shown: bool = True
     revealed: bool = False
     followed: str = ""
 

@@ -53,19 +53,26 @@ class TakeStep(Command):
 
     Attributes:
         route: that is followed from there; empty for that which the student follows.
+        again: whether the prediction of the step is asked once more, after a discussion.
     """
 
     from_teacher: ClassVar[bool] = True
     lesson: str
     step: int
     route: str = ""
+    again: bool = False
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         run = lab.lessons
         elsewhere = run.lesson is not None and run.progress.lesson != self.lesson
         run.open_at(self.lesson, self.step, lab, self.route)
-        lab.show_message(run.words("class.step_elsewhere" if elsewhere else "class.step"))
+        said = "class.step_elsewhere" if elsewhere else "class.step"
+        if self.again:
+            run.ask_again()
+            run.begin_anew(lab)
+            said = "class.step_again"
+        lab.show_message(run.words(said))
         _tell(lab)
 
 

@@ -16,6 +16,7 @@ from onpath.app.page.panels.dialog import mark_closing
 from onpath.app.page.panels.route_sender import RouteSender
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
+from onpath.app.page.teaching.ask_again import AskAgain
 from onpath.app.page.teaching.class_answers import ClassAnswers
 from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.concept_test.titles import titles_of_tests
@@ -149,6 +150,7 @@ class TeacherPanel:
         )
         push = gui.add_button(words("class.push_step"), icon=viser.Icon.SEND)
         self._sent = gui.add_html("")
+        AskAgain(gui, words, self._course, self._teaching, self._look_again)
         RouteSender(gui, words, self._course, self._class)
         reveal = gui.add_checkbox(words("class.truth"), chosen.revealed)
         large = gui.add_checkbox(words("lesson.presenting"), self._large)

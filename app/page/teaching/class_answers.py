@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.concept_test_results import gain_view, item_distribution, question_at
-from onpath.app.classroom.results import distribution, prediction_at, truth_of
+from onpath.app.classroom.results import (
+    distribution,
+    is_asked_again,
+    prediction_at,
+    truth_of,
+)
 from onpath.app.lab.step_truth import computed_truth
 from onpath.app.page.panels.widgets import note
 from onpath.app.page.teacher_context import TeacherContext
@@ -52,9 +57,13 @@ class ClassAnswers:
         if truth is None and revealed:
             truth = self._truth_at(lesson, at)
         counted = distribution(block, lesson.name, at, ways)
-        view = page.prediction_view(
-            block, counted, truth, revealed, words, large, lesson.laws_shown(at)
-        )
+        second = None
+        if is_asked_again(lesson.name, at, ways):
+            second = distribution(block, lesson.name, at, ways, again=True)
+        if not self._teaching.chosen.shown:
+            return page.hidden_view(block, second or counted, words, large)
+        laws = lesson.laws_shown(at)
+        view = page.prediction_view(block, counted, truth, revealed, words, large, laws, second)
         missing = revealed and not counted.counts and truth is None
         return view + note(words("class.no_truth")) if missing else view
 
