@@ -174,7 +174,11 @@ class Page:
             tabs = gui.add_tab_group()
             own = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
         course = self._desk.course
-        self._parts.append(StepControls(gui, own, words, course, controls, change, first))
+        build = controls.of_step if tab is None else controls.run_of_step
+        self._parts.append(StepControls(gui, own, words, course, build, change, first))
+        if tab is not None:  # with the text that speaks of them
+            listed = gui, tab, words, course, controls.listed_by_step, change, first
+            self._parts.append(StepControls(*listed, pinned=True))
         if not first.key.presenting:
             with tabs.add_tab(words("lesson.all_controls"), viser.Icon.ADJUSTMENTS_HORIZONTAL):
                 self._parts += controls.everything(first)

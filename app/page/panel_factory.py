@@ -80,21 +80,32 @@ class PanelFactory:
         return [part for name in ALL for part in self._add(name, first)]
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Build the run panel and the controls listed by a lesson's step."""
+        """Build the run panel, the controls and the plot of a lesson's step."""
+        parts = self._add("hold", first) + self.listed_by_step(scene, first)
+        return parts + self.plot_of_step(scene, first)
+
+    def run_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
+        """Build the run panel and the plot of a lesson's step."""
+        return self._add("hold", first) + self.plot_of_step(scene, first)
+
+    def listed_by_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
+        """Build the controls listed by a lesson's step."""
         self._scene.mouse.path_first = "editor" in scene.controls
-        parts = list(self._add("hold", first))
-        known = first.parameters
+        parts, known = list[Part](), first.parameters
         parameters = [name for name in scene.controls if name in known]
         if parameters:
             parts.append(ParameterWidgets(self._gui, self._words, self._post, parameters, first))
         for name in scene.controls:
             if name not in known and name != "hold":
                 parts += self._add(name, first)
-        if scene.plot:
-            plot = MORE[scene.plot]
-            if plot.field in dict(first.key.fields):
-                parts.append(LivePlot(self._gui, self._words, first.key.fields, plot, height=200))
         return parts
+
+    def plot_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
+        """Build the plot of a lesson's step, if it has one."""
+        plot = MORE[scene.plot] if scene.plot else None
+        if plot is None or plot.field not in dict(first.key.fields):
+            return []
+        return [LivePlot(self._gui, self._words, first.key.fields, plot, height=200)]
 
     def show(self) -> Part:
         """Build the folder "Show" alone, open."""

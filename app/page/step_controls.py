@@ -6,12 +6,19 @@ from collections.abc import Callable
 
 import viser
 
+from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.panel_factory import PanelFactory, Part
+from onpath.app.page.lesson_view import NO_SETUP, LessonView
+from onpath.app.page.panel_factory import Part
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
+
+LAST = 1e9
+"""Order of a folder that comes after all that is added later."""
+
+Build = Callable[[StepSetup, PageSnapshot], list[Part]]
+"""Adds the widgets of a set-up."""
 
 
 class StepControls:
@@ -19,6 +26,8 @@ class StepControls:
 
     Args:
         change: changes widgets in another thread; see `RebuildThread.change`.
+        pinned: whether the folder stays at the lower edge of a page that is scrolled, and is left
+            out when it would be empty; see assets/page/style.css.
     """
 
     def __init__(
@@ -27,12 +36,14 @@ class StepControls:
         tab: viser.GuiTabHandle,
         words: Words,
         course: Course,
-        controls: PanelFactory,
+        build: Build,
         change: Callable[[Callable[[], None]], None],
         first: PageSnapshot,
+        pinned: bool = False,
     ) -> None:
-        self._gui, self._controls, self._change = gui, controls, change
+        self._gui, self._build, self._change = gui, build, change
         self._tab, self._words, self._course = tab, words, course
+        self._pinned = pinned
         self._folder: viser.GuiFolderHandle | None = None
         self._scene: StepSetup | None = None
         self._parts: list[Part] = []
@@ -50,12 +61,19 @@ class StepControls:
     def _fill(self, scene: StepSetup, first: PageSnapshot) -> None:
         if self._folder is not None:
             self._folder.remove()
+            self._folder = None
         self._scene = scene
+        if self._pinned and not set(scene.controls) - {"hold"}:
+            return
         with self._tab:
-            self._folder = self._gui.add_folder(self._words("lesson.controls"))
+            order = LAST if self._pinned else None
+            self._folder = self._gui.add_folder(self._words("lesson.controls"), order=order)
         with self._folder:
-            self._parts = self._controls.of_step(scene, first)
+            self._parts = self._build(scene, first)
+            if self._pinned:
+                self._gui.add_html(render("panel/pinned.html"))
 
     def _setup_of(self, snapshot: PageSnapshot) -> StepSetup:
         """Set-up of the open step."""
-        return LessonView(self._course, self._words, snapshot.lesson).setup
+        view = LessonView(self._course, self._words, snapshot.lesson)
+        return NO_SETUP if self._pinned and view.ended else view.setup
