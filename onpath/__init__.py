@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from onpath.app.notebook.figure import figure as figure
     from onpath.app.notebook.run import Run as Run
     from onpath.app.notebook.simulate import circle as circle
     from onpath.app.notebook.simulate import ellipse as ellipse
@@ -31,6 +32,7 @@ __all__ = (
     "Run",
     "circle",
     "ellipse",
+    "figure",
     "laws",
     "parameters",
     "paths",
@@ -45,8 +47,12 @@ def __getattr__(name: str) -> Any:
     """Public names, imported when they are first used: `import onpath` alone is quick."""
     if name not in __all__:
         raise AttributeError(f"module 'onpath' has no attribute {name!r}")
+    if name == "figure":
+        globals()[name] = import_module("onpath.app.notebook.figure").figure
+        return globals()[name]
     module = import_module("onpath.app.notebook.simulate")
-    globals().update({each: getattr(module, each) for each in __all__})
+    others = (each for each in __all__ if each != "figure")
+    globals().update({each: getattr(module, each) for each in others})
     return globals()[name]
 
 

@@ -13,6 +13,7 @@ import tyro
 
 from onpath.app.cli.compare import CompareCommand
 from onpath.app.cli.experiment import ExperimentCommand, ZeroDynamicsCommand
+from onpath.app.cli.export import ExportCommand
 from onpath.app.cli.figure import FigureCommand
 from onpath.app.cli.identify import IdentifyCommand
 from onpath.app.cli.lessons import LessonsCommand
@@ -26,6 +27,7 @@ COMMANDS = (
     "identify",
     "zero-dynamics",
     "lessons",
+    "export",
     "bench",
     "forget",
 )
@@ -143,6 +145,7 @@ def _parse(
     | IdentifyCommand
     | ZeroDynamicsCommand
     | LessonsCommand
+    | ExportCommand
     | BenchCommand
     | Forget
 ):
@@ -157,6 +160,7 @@ def _parse(
                 | Annotated[IdentifyCommand, tyro.conf.subcommand("identify")]
                 | Annotated[ZeroDynamicsCommand, tyro.conf.subcommand("zero-dynamics")]
                 | Annotated[LessonsCommand, tyro.conf.subcommand("lessons")]
+                | Annotated[ExportCommand, tyro.conf.subcommand("export")]
                 | Annotated[BenchCommand, tyro.conf.subcommand("bench")]
                 | Annotated[Forget, tyro.conf.subcommand("forget")],
                 prog="onpath",

@@ -3,7 +3,8 @@
 Colours are those of the palette, but for where a page in the dark has others: see
 assets/page/style.css.
 
-`Markup` is only made in `phrase` and, from a lesson's markdown, in `lessons.formulas`.
+`Markup` is only made in `phrase`, from a lesson's markdown in `lessons.formulas`, and for the
+script, the style and the data of a figure.
 """
 
 from __future__ import annotations

@@ -1260,3 +1260,10 @@ error-not_the_key = das ist nicht der Schlüssel der Lehrkraft
 error-not_the_class_code = das ist nicht der Klassencode auf der Leinwand
 error-class_full = diese Klasse ist voll
 error-no_nickname = ein Spitzname hat mindestens ein Zeichen
+
+## A figure without a server
+
+standalone-path = Bahn
+standalone-plot = Abstand von der Bahn [mm] über der Zeit [s]
+standalone-scene = Der Roboter unter dem Gesetz { $law }, von der Seite gezeichnet
+standalone-no_script = Diese Abbildung braucht JavaScript.

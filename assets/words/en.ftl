@@ -982,3 +982,10 @@ error-not_the_key = this is not the teacher's key
 error-not_the_class_code = this is not the class code on the projector
 error-class_full = this class is full
 error-no_nickname = a nickname has at least one character
+
+## A figure without a server
+
+standalone-path = Path
+standalone-plot = Distance to the path [mm] over time [s]
+standalone-scene = The robot under the law { $law }, drawn from the side
+standalone-no_script = This figure needs JavaScript.

@@ -1,0 +1,53 @@
+"""`onpath export`: pages that need no server."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import tyro
+
+from onpath.app.cli.experiment import assignments
+
+
+@dataclass(frozen=True)
+class ExportCommand:
+    """Write a page that needs no server: it opens from a folder, a web server or an iframe."""
+
+    what: Annotated[Literal["figure"], tyro.conf.Positional]
+    """One or two robots that can be held back, pulled, paused and reset."""
+    file: Annotated[Path, tyro.conf.Positional]
+    """The .html file to write."""
+    robot: str = "five_bar"
+    """Name of the robot."""
+    law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """A control law; give it twice for two robots. By default tracking beside path following."""
+    path: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """A path, such as circle or "ellipse 0.07 0.04"; repeat for more to choose from."""
+    slider: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """A parameter that readers may change; repeat for more. By default the speed and gains."""
+    set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """Set any parameter of the robot as name=value; repeat for more."""
+    title: str = ""
+    """Title above the figure."""
+    language: str = "en"
+    """Language of the page."""
+
+    def run(self) -> None:
+        """Write the page, and print its size."""
+        from onpath.app.exports.standalone.figure_choice import SLIDERS
+        from onpath.app.notebook.figure import PATHS, figure
+        from onpath.models.control.benches import DEFAULT_LAWS
+
+        written = figure(
+            self.file,
+            self.robot,
+            self.law or tuple(DEFAULT_LAWS.values()),
+            self.path or PATHS,
+            sliders=self.slider or SLIDERS,
+            title=self.title,
+            language=self.language,
+            **dict(assignments(self.set)),
+        )
+        print(f"{written}: {written.stat().st_size / 1e3:.0f} kB, needs no server")

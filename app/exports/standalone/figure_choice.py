@@ -1,0 +1,156 @@
+"""What a figure shows: robot, laws, paths, parameters, and which of them its readers may change."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from onpath.app.common.gentle import GENTLE
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.simulation import (
+    FREE,
+    check_level_set,
+    first_state,
+    kernel_of,
+    kind_of,
+    raised,
+    settings_vector,
+)
+from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
+from onpath.models.control.laws.registry import law_name, law_named
+from onpath.models.errors import CodedError
+from onpath.models.paths.curves import Curve
+from onpath.models.studies.experiments import check_path
+from onpath.models.systems.catalogue import ROBOTS, RobotEntry
+from onpath.models.systems.parameter_specs import unknown_name
+from onpath.models.systems.parameters import Parameters, changed, specs
+from onpath.models.systems.robots import Robot
+
+SLIDERS = ("speed", "K1", "K2", "K3", "K5")
+
+
+@dataclass(frozen=True)
+class FigureChoice:
+    """A figure.
+
+    Attributes:
+        robot: name in the catalogue.
+        laws: of the benches, from left to right: one or two.
+        paths: name -> curve; it begins with the first one.
+        parameters: of the robot, the laws and the task.
+        sliders: names of parameters that readers may change; each is a number of the settings.
+    """
+
+    robot: str
+    laws: tuple[str, ...]
+    paths: Mapping[str, Curve]
+    parameters: Parameters
+    sliders: tuple[str, ...] = SLIDERS
+
+    @property
+    def entry(self) -> RobotEntry:
+        """The entry in the catalogue."""
+        return ROBOTS[self.robot]
+
+    @property
+    def machine(self) -> Robot:
+        """The robot with these parameters."""
+        return self.entry.make(self.parameters)
+
+    def kind(self, law: str, curve: Curve) -> Kind:
+        """The kind of a bench's loop."""
+        return kind_of(law, self.parameters, raised(curve, self.parameters))
+
+    def kernel(self, law: str, curve: Curve) -> Kernel:
+        """The loop of a bench on a path."""
+        return kernel_of(self.machine, self.kind(law, curve))
+
+    def start(self, law: str, curve: Curve) -> Array:
+        """The first state of a bench: at rest on the path at θ = 0."""
+        robot, curve = self.machine, raised(curve, self.parameters)
+        lift = robot.frame.lift
+        start = robot.rest(lift(curve.at(np.array(0.0))))
+        return first_state(robot, self.kernel(law, curve), curve, start)
+
+    def settings(self, law: str, curve: Curve, parameters: Parameters | None = None) -> Array:
+        """The settings of a bench, with nothing in its way."""
+        own = parameters or self.parameters
+        kernel = self.kernel(law, curve)
+        return settings_vector(self.machine, kernel, own, raised(curve, own), FREE)
+
+
+def chosen(
+    robot: str,
+    laws: Sequence[str] = tuple(DEFAULT_LAWS.values()),
+    paths: Mapping[str, Curve] | None = None,
+    values: Mapping[str, Any] | None = None,
+    sliders: Sequence[str] = SLIDERS,
+) -> FigureChoice:
+    """Check a choice; the robot starts as gently as in a new lab.
+
+    Raises:
+        ValueError: an unknown name, a value out of range, a path that the robot cannot follow, or
+            a parameter that a slider of a page cannot set.
+    """
+    if robot not in ROBOTS:
+        raise unknown_name(robot, list(ROBOTS), "robot")
+    if not 1 <= len(laws) <= len(BENCHES):
+        raise ValueError(f"laws: expected one or two, got {len(laws)}")
+    entry = ROBOTS[robot]
+    parameters = entry.lab
+    for name, value in (GENTLE | dict(values or {})).items():
+        parameters = changed(parameters, name, value)
+    if parameters.speed_profile != "constant":
+        raise ValueError("speed_profile: a figure has a constant speed")
+    figure = FigureChoice(
+        robot, tuple(map(law_name, laws)), dict(paths or {}), parameters, tuple(sliders)
+    )
+    _check(figure)
+    return figure
+
+
+def _check(figure: FigureChoice) -> None:
+    robot = figure.machine
+    if not figure.paths:
+        raise ValueError("paths: expected at least one")
+    for law in figure.laws:
+        if not law_named(law).suits(robot.system):
+            raise CodedError("error.law_does_not_suit", law=law_named(law).label)
+    for curve in figure.paths.values():
+        check_path(robot, raised(curve, figure.parameters))
+        check_level_set(figure.parameters, curve)
+    for name in figure.sliders:
+        _check_slider(figure, name)
+
+
+def _check_slider(figure: FigureChoice, name: str) -> None:
+    """A slider puts its value into the settings, and changes nothing else.
+
+    Raises:
+        ValueError: it would have to change more.
+    """
+    known = specs(type(figure.parameters))
+    if name not in known:
+        raise unknown_name(name, list(known))
+    spec = known[name]
+    for law in figure.laws:
+        for curve in figure.paths.values():
+            for value in (spec.low, spec.high) if not spec.options else ():
+                parameters = dataclasses.replace(figure.parameters, **{name: value})
+                kernel = figure.kernel(law, curve)
+                wanted = figure.settings(law, curve)
+                if name in kernel.settings.slices:
+                    wanted[kernel.settings.slices[name]] = value
+                if kind_of(law, parameters, curve) == kind_of(
+                    law, figure.parameters, curve
+                ) and np.array_equal(wanted, figure.settings(law, curve, parameters)):
+                    continue
+                raise ValueError(f"sliders: {name} cannot be changed in a figure")
+    if spec.options:
+        raise ValueError(f"sliders: {name} cannot be changed in a figure")

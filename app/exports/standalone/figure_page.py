@@ -1,0 +1,54 @@
+"""A figure as one HTML file: it needs no server, no network and no other file."""
+
+from __future__ import annotations
+
+import json
+from base64 import b64encode
+from hashlib import sha256
+
+from markupsafe import Markup
+
+from onpath.app.common.palette import OF_BENCH
+from onpath.app.common.templates import render
+from onpath.app.exports.standalone.figure_choice import FigureChoice
+from onpath.app.exports.standalone.figure_data import figure_data
+from onpath.assets import asset_path
+from onpath.lessons.benches import law_label
+from onpath.lessons.words import Words
+from onpath.models.control.benches import LEFT, RIGHT
+
+POLICY = (
+    "default-src 'none'; script-src '{script}' 'wasm-unsafe-eval'; style-src '{style}'; "
+    "base-uri 'none'; form-action 'none'"
+)
+"""The page's Content-Security-Policy, with the hashes of its script and style: no request, no eval
+but WebAssembly, no other script."""
+
+
+def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
+    """The page of a figure; the same choice gives the same page.
+
+    Args:
+        title: above the figure; may be empty.
+    """
+    script = asset_path("standalone/figure.js").read_text("utf-8")
+    style = asset_path("standalone/figure.css").read_text("utf-8")
+    colours = f"--first: {OF_BENCH[LEFT].hex}; --second: {OF_BENCH[RIGHT].hex}"
+    style = f":root {{ {colours}; }}\n{style}"
+    data = json.dumps(figure_data(figure, words, title), ensure_ascii=False, separators=(",", ":"))
+    names = " / ".join(law_label(law, words) for law in figure.laws)
+    return render(
+        "standalone/figure.html",
+        language=words.language,
+        title=title or f"OnPath: {names}",
+        policy=POLICY.format(script=_hash(script), style=_hash(style)),
+        style=Markup(style),
+        no_script=words("standalone.no_script"),
+        data=Markup(data.replace("<", "\\u003c")),
+        script=Markup(script),
+    )
+
+
+def _hash(text: str) -> str:
+    """As a Content-Security-Policy names an inline script or style."""
+    return "sha256-" + b64encode(sha256(text.encode()).digest()).decode()

@@ -1,0 +1,81 @@
+"""`onpath.figure`: one or two robots on a page that needs no server."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from onpath.app.common.atomic_file import check_writable, whole_file
+from onpath.app.exports.standalone.figure_choice import SLIDERS, chosen
+from onpath.app.exports.standalone.figure_page import figure_page
+from onpath.assets.messages import languages
+from onpath.lessons.words import Words
+from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.path_design import presets
+from onpath.models.studies.path_text import curve_from_text
+
+PATHS = ("circle", "ellipse", "rounded square", "clover")
+
+
+def figure(
+    file: str | Path,
+    robot: str = "five_bar",
+    laws: Sequence[str] = tuple(DEFAULT_LAWS.values()),
+    paths: Sequence[str] | Mapping[str, Curve | str] = PATHS,
+    *,
+    sliders: Sequence[str] = SLIDERS,
+    title: str = "",
+    language: str = "en",
+    **parameters: Any,
+) -> Path:
+    """Write a page with one or two robots that can be held back, pulled, paused and reset.
+
+    It is one file of about 0.2 MB, makes no network request, and opens from anywhere: a folder, a
+    web server, an iframe. Its loops are those of `onpath.simulate`, as WebAssembly.
+
+    Args:
+        file: to write, such as "figure.html".
+        robot: one of `onpath.robots()`.
+        laws: one or two of `onpath.laws()`, or laws of one's own.
+        paths: to choose from, the first one at the beginning: names of `onpath.paths()` or texts as
+            `onpath.simulate` takes them, or a name for each path.
+        sliders: names of `onpath.parameters(robot)` that readers may change.
+        title: above the figure.
+        language: of the page.
+        parameters: as in `onpath.simulate`; the speed is that of a new lab if not given.
+
+    Returns:
+        The file.
+
+    Raises:
+        ValueError: an unknown name or an invalid value, or the file cannot be written.
+
+    >>> import onpath, tempfile, pathlib
+    >>> folder = pathlib.Path(tempfile.mkdtemp())
+    >>> page = onpath.figure(folder / "held.html", paths=["circle"], K1=900)
+    >>> 1e5 < page.stat().st_size < 1.5e6
+    True
+    """
+    path = Path(file)
+    check_writable(path)
+    if language not in languages():
+        raise ValueError(f"language {language}: there are {', '.join(languages())}")
+    if isinstance(laws, str):
+        laws = [laws]
+    if isinstance(paths, str):
+        paths = [paths]
+    named = paths if isinstance(paths, Mapping) else {name: name for name in paths}
+    curves = {name: _curve(each) for name, each in named.items()}
+    choice = chosen(robot, laws, curves, parameters, sliders)
+    with whole_file(path) as scratch:
+        scratch.write_text(figure_page(choice, Words(language), title), encoding="utf-8")
+    return path
+
+
+def _curve(path: Curve | str) -> Curve:
+    if isinstance(path, Curve):
+        return path
+    known = presets()
+    return known[path].curve if path in known else curve_from_text(path)

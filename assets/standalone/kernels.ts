@@ -1,0 +1,60 @@
+// The functions of the WebAssembly module, and the memory on which they work.
+
+type Exported = (...places: number[]) => void
+
+const DOUBLE = 8 // bytes
+const PAGES = 32 // of 64 KiB
+
+/** Vectors are named by the number of their first double in `numbers`. */
+export class Kernels {
+    readonly numbers: Float64Array
+    private end = 0
+
+    private constructor(
+        private readonly exported: Record<string, Exported>,
+        memory: WebAssembly.Memory,
+    ) {
+        this.numbers = new Float64Array(memory.buffer)
+    }
+
+    static async from(text: string): Promise<Kernels> {
+        const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0))
+        const memory = new WebAssembly.Memory({ initial: PAGES })
+        const { sin, cos, log, tanh } = Math
+        const { instance } = await WebAssembly.instantiate(bytes, {
+            Math: { memory, sin, cos, log, tanh },
+        })
+        return new Kernels(instance.exports as unknown as Record<string, Exported>, memory)
+    }
+
+    /** Room for so many numbers. */
+    room(count: number): number {
+        const place = this.end
+        this.end += count
+        if (this.end > this.numbers.length) throw new Error("the page's memory is full")
+        return place
+    }
+
+    /** Room for a vector, with its values. */
+    put(values: ArrayLike<number>): number {
+        const place = this.room(values.length)
+        this.numbers.set(values, place)
+        return place
+    }
+
+    /** Call a function on vectors. */
+    call(name: string, ...places: number[]): void {
+        this.function(name)(...places.map(place => DOUBLE * place))
+    }
+
+    /** Call a loop: see `wasm_of` in models/closed_loop/wasm_loop.py. */
+    loop(name: string, vectors: [number, number, number, number], ticks: number): void {
+        this.function(name)(...vectors.map(place => DOUBLE * place), ticks)
+    }
+
+    private function(name: string): Exported {
+        const found = this.exported[name]
+        if (!found) throw new Error(`the module has no ${name}`)
+        return found
+    }
+}

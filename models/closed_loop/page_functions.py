@@ -1,0 +1,171 @@
+"""What a page without a server computes besides closed loops: geometry, distance, hand and brake.
+
+CasADi functions, which `wasm_loop.py` translates, so that such a page holds no mathematics. Places
+in the picture are (right, up), [m], seen from far away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import casadi as ca
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.paths.projection import LocalCurve, basis
+from onpath.models.systems.robots import FASTEST_JOINT, Robot
+
+GRID = 128
+"""Points of the path from which the search for the closest one begins."""
+REFINEMENTS = 4
+MOST = 1e6
+"""Angles [rad] and deflections [m] beyond this are not finite."""
+Lift = Callable[[ca.SX, bool], ca.SX]
+
+
+def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
+    """The functions for a robot on paths of a kind.
+
+    All points y are those of the output space, (p, 1), [m]; `table` is `Curve.table`, `grid` has
+    `grid_of` as columns.
+
+        picture: q -> ends of the bars, (2, 2 n), begin and end as columns; joints (2, m)
+        tip: q -> y of the actual end-point
+        place: y -> where it is in the picture, (2, 1)
+        arrow: (y, force on it) -> the end of the arrow in the picture
+        aim: (table, θ) -> σ(θ) in the picture
+        distance: (table, grid, y, guess of θ) -> Euclidean distance to the path, [m]
+        brake: (table, y, θ) -> the unit tangent at θ, (p, 1), see `brake_at`
+        fault: (q, v) -> 1 where a number is not finite or a joint too fast, else 0
+        hand: (y, from, to) -> y moved in the path's plane as the picture's point moves
+    """
+    system = robot.system
+    q, y = ca.SX.sym("q", system.n), ca.SX.sym("y", system.p)
+    seen, offset = view_of(robot)
+    bars, joints = robot.skeleton(q, ca.SX(1))
+    table, theta = ca.SX.sym("table", *kind.table_shape), ca.SX.sym("theta")
+    lift = _lift(robot, kind)
+    place = ca.Function("place", [y], [_placed(robot, y, seen) + offset])
+    local = LocalCurve.from_values(theta, kind.closed, table @ basis(theta, kind.closed))
+    tangent = lift(local.first, True)
+    force = ca.SX.sym("force", system.p)
+    tip = ca.vec(ca.densify(bars))[-3:]  # in the robot's frame
+    return {
+        "picture": ca.Function("picture", [q], [_dense(seen @ bars), _dense(seen @ joints)]),
+        "tip": ca.Function("tip", [q], [_dense(_unplaced(robot, tip))]),
+        "place": place,
+        "arrow": ca.Function("arrow", [y, force], [place(y + robot.drawing.force_scale * force)]),
+        "aim": ca.Function("aim", [table, theta], [place(lift(local.sigma, False))]),
+        "distance": _distance(kind, lift, table, y),
+        "brake": ca.Function("brake", [table, y, theta], [tangent / ca.norm_2(tangent)]),
+        "fault": _fault(system.n),
+        "hand": _hand(robot, kind, seen, y),
+    }
+
+
+def grid_of(robot: Robot, curve_points: Array) -> Array:
+    """The argument `grid` of `distance`: points of the path in the output space, (n, p)."""
+    return np.ascontiguousarray(robot.frame.lift(curve_points))
+
+
+def view_of(robot: Robot) -> tuple[ca.DM, ca.DM]:
+    """The direction of view: (2, 3) from the robot's frame to the picture; and `place` of y = 0.
+
+    A robot that moves in the vertical plane is seen at right angles to it.
+    """
+    drawing, flat = robot.drawing, robot.system.p == 2
+    up, turn = (0.0, 0.0) if flat else (drawing.elevation, drawing.azimuth)
+    right = [np.cos(turn), np.sin(turn), 0.0]
+    above = [-np.sin(turn) * np.sin(up), np.cos(turn) * np.sin(up), np.cos(up)]
+    seen = ca.DM([right, above])
+    return seen, seen @ ca.DM(robot.place(np.zeros(robot.system.p)))
+
+
+def _affine(robot: Robot) -> tuple[ca.DM, ca.DM]:
+    """(3, p) and (3, 1): `Robot.place` is affine."""
+    p = robot.system.p
+    origin = robot.place(np.zeros(p))
+    return ca.DM((robot.place(np.eye(p)) - origin).T), ca.DM(origin)
+
+
+def _placed(robot: Robot, vector: ca.SX, seen: ca.DM) -> ca.SX:
+    """A vector of the output space in the picture."""
+    return ca.densify((seen @ _affine(robot)[0]) @ vector)
+
+
+def _unplaced(robot: Robot, point: ca.SX) -> ca.SX:
+    """`Robot.unplace`: the columns of the affine map are orthonormal."""
+    linear, origin = _affine(robot)
+    return linear.T @ (point - origin)
+
+
+def _lift(robot: Robot, kind: Kind) -> Lift:
+    """From coordinates of the curve to the output space; vectors with `rate`."""
+    frame = robot.frame.space if kind.space and robot.frame.space else robot.frame
+    plane, size = frame.at(ca.SX(ca.DM(list(frame.numbers)))), kind.table_shape[0] // 4
+    zeta = ca.SX.zeros(robot.system.p - size, 1)
+    return lambda z, rate: plane.join(z, zeta, rate)
+
+
+def _distance(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX) -> ca.Function:
+    """The smaller one of the distances that are found from the guess and from the grid."""
+    grid, guess = ca.SX.sym("grid", y.numel(), GRID), ca.SX.sym("guess")
+    span = 2 * np.pi / (GRID if kind.closed else GRID - 1)
+    squared = ca.sum1((grid - ca.repmat(y, 1, GRID)) ** 2)
+    best, nearest = squared[0], ca.SX(-np.pi)
+    for i in range(1, GRID):
+        nearest = ca.if_else(squared[i] < best, -np.pi + i * span, nearest)
+        best = ca.fmin(best, squared[i])
+    improve = partial(_improved, kind, lift, table, y)
+    found = ca.fmin(improve(guess), improve(nearest))
+    if not kind.closed:
+        for end in (-np.pi, np.pi):
+            found = ca.fmin(found, _beyond(lift, table, y, end))
+    return ca.Function("distance", [table, grid, y, guess], [found], {"cse": True})
+
+
+def _beyond(lift: Lift, table: ca.SX, y: ca.SX, end: float) -> ca.SX:
+    """Distance to the half-line by which an open curve goes on from an end."""
+    local = LocalCurve.from_values(ca.SX(end), False, table @ basis(ca.SX(end), False))
+    gap, away = y - lift(local.sigma, False), np.sign(end) * lift(local.first, True)
+    return ca.norm_2(gap - ca.fmax(ca.dot(gap, away), 0) / ca.dot(away, away) * away)
+
+
+def _improved(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX, theta: ca.SX) -> ca.SX:
+    """The distance at a local minimum near θ.
+
+    Newton's method for (σ - y) · σ' = 0, as in `onpath.models.paths.distance`.
+    """
+    for _ in range(REFINEMENTS):
+        local = LocalCurve.from_values(theta, kind.closed, table @ basis(theta, kind.closed))
+        gap, first = lift(local.sigma, False) - y, lift(local.first, True)
+        squared = ca.dot(first, first)
+        slope = ca.fmax(squared + ca.dot(gap, lift(local.second, True)), 0.2 * squared)
+        theta = theta - ca.fmin(ca.fmax(ca.dot(gap, first) / slope, -0.1), 0.1)
+    local = LocalCurve.from_values(theta, kind.closed, table @ basis(theta, kind.closed))
+    return ca.norm_2(lift(local.sigma, False) - y)
+
+
+def _fault(n: int) -> ca.Function:
+    """See `first_fault`."""
+    q, v = ca.SX.sym("q", n), ca.SX.sym("v", n)
+    good = ca.fabs(v[0]) <= FASTEST_JOINT
+    for x, most in [(q[i], MOST) for i in range(n)] + [(v[i], FASTEST_JOINT) for i in range(1, n)]:
+        good = ca.fmin(good, ca.fabs(x) <= most)
+    return ca.Function("fault", [q, v], [ca.if_else(good, 0, 1)])
+
+
+def _hand(robot: Robot, kind: Kind, seen: ca.DM, y: ca.SX) -> ca.Function:
+    """See `page_functions`; also on a space curve the hand moves in the path's plane."""
+    frame = robot.frame
+    plane, zeta = frame.at(ca.SX(ca.DM(list(frame.numbers)))), ca.SX.zeros(robot.system.p - 2, 1)
+    axes = ca.horzcat(*(plane.join(ca.SX(ca.DM(e)), zeta, True) for e in ([1, 0], [0, 1])))
+    begin, end = ca.SX.sym("begin", 2), ca.SX.sym("end", 2)
+    moved = axes @ (ca.inv(_placed(robot, axes, seen)) @ (end - begin))
+    return ca.Function("hand", [y, begin, end], [_dense(y + moved)])
+
+
+def _dense(matrix: ca.SX) -> ca.SX:
+    return ca.densify(matrix)
