@@ -3,12 +3,13 @@
 Colours are those of the palette, but for where a page in the dark has others: see
 assets/page/style.css.
 
-`Markup` is only made in `phrase`, from a lesson's markdown in `lessons.formulas`, and for the
-script, the style and the data of a figure.
+`Markup` is only made in `phrase`, `inlined` and `json_block` and, from a lesson's markdown, in
+`lessons.formulas`.
 """
 
 from __future__ import annotations
 
+import json
 import re
 from functools import cache
 from types import SimpleNamespace
@@ -64,3 +65,14 @@ def phrase(words: Words, key: str, /, **values: object) -> Markup:
     said = words(key, **plain, **{mark[1:-1]: mark for mark in marks})
     pieces = re.split("(" + "|".join(marks) + ")", said) if marks else [said]
     return Markup().join(marks.get(piece, escape(piece)) for piece in pieces)
+
+
+def inlined(asset: str) -> Markup:
+    """A script or style of ours, to stand in a page as it is."""
+    return Markup(asset_path(asset).read_text("utf-8"))
+
+
+def json_block(data: object) -> Markup:
+    """Data for a block of a page that is read as JSON; no text in it can end the block."""
+    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
+    return Markup(text.replace("<", "\\u003c"))

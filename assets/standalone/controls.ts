@@ -103,12 +103,13 @@ export class Controls {
     private slider(slider: SliderData, number: number): HTMLElement {
         const { data } = this.simulation
         const input = made("input", "")
-        const shown = made("output", "")
+        const shown = made("span", "value")
         const unit = slider.unit ? ` ${slider.unit}` : ""
         const show = () => {
-            shown.value = input.value.replace("-", "−").replace(".", data.words["point"] ?? ".") + unit
-            input.setAttribute("aria-valuetext", shown.value)
+            shown.textContent = input.value.replace("-", "−").replace(".", data.words["point"] ?? ".") + unit
+            input.setAttribute("aria-valuetext", shown.textContent)
         }
+        shown.setAttribute("aria-hidden", "true")
         input.type = "range"
         input.min = String(slider.low)
         input.max = String(slider.high)

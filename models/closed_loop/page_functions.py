@@ -59,7 +59,7 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
         "arrow": ca.Function("arrow", [y, force], [place(y + robot.drawing.force_scale * force)]),
         "aim": ca.Function("aim", [table, theta], [place(lift(local.sigma, False))]),
         "distance": _distance(kind, lift, table, y),
-        "brake": ca.Function("brake", [table, y, theta], [tangent / ca.norm_2(tangent)]),
+        "brake": ca.Function("brake", [table, y, theta], [tangent / _length(tangent)]),
         "fault": _fault(system.n),
         "hand": _hand(robot, kind, seen, y),
     }
@@ -113,7 +113,7 @@ def _distance(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX) -> ca.Function:
     """The smaller one of the distances that are found from the guess and from the grid."""
     grid, guess = ca.SX.sym("grid", y.numel(), GRID), ca.SX.sym("guess")
     span = 2 * np.pi / (GRID if kind.closed else GRID - 1)
-    squared = ca.sum1((grid - ca.repmat(y, 1, GRID)) ** 2)
+    squared = ca.sum1((grid - y @ ca.DM.ones(1, GRID)) ** 2)
     best, nearest = squared[0], ca.SX(-np.pi)
     for i in range(1, GRID):
         nearest = ca.if_else(squared[i] < best, -np.pi + i * span, nearest)
@@ -123,14 +123,14 @@ def _distance(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX) -> ca.Function:
     if not kind.closed:
         for end in (-np.pi, np.pi):
             found = ca.fmin(found, _beyond(lift, table, y, end))
-    return ca.Function("distance", [table, grid, y, guess], [found], {"cse": True})
+    return ca.Function("distance", [table, grid, y, guess], ca.cse([found]))
 
 
 def _beyond(lift: Lift, table: ca.SX, y: ca.SX, end: float) -> ca.SX:
     """Distance to the half-line by which an open curve goes on from an end."""
     local = LocalCurve.from_values(ca.SX(end), False, table @ basis(ca.SX(end), False))
     gap, away = y - lift(local.sigma, False), np.sign(end) * lift(local.first, True)
-    return ca.norm_2(gap - ca.fmax(ca.dot(gap, away), 0) / ca.dot(away, away) * away)
+    return _length(gap - ca.fmax(ca.dot(gap, away), 0) / ca.dot(away, away) * away)
 
 
 def _improved(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX, theta: ca.SX) -> ca.SX:
@@ -145,7 +145,7 @@ def _improved(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX, theta: ca.SX) -> c
         slope = ca.fmax(squared + ca.dot(gap, lift(local.second, True)), 0.2 * squared)
         theta = theta - ca.fmin(ca.fmax(ca.dot(gap, first) / slope, -0.1), 0.1)
     local = LocalCurve.from_values(theta, kind.closed, table @ basis(theta, kind.closed))
-    return ca.norm_2(lift(local.sigma, False) - y)
+    return _length(lift(local.sigma, False) - y)
 
 
 def _fault(n: int) -> ca.Function:
@@ -165,6 +165,10 @@ def _hand(robot: Robot, kind: Kind, seen: ca.DM, y: ca.SX) -> ca.Function:
     begin, end = ca.SX.sym("begin", 2), ca.SX.sym("end", 2)
     moved = axes @ (ca.inv(_placed(robot, axes, seen)) @ (end - begin))
     return ca.Function("hand", [y, begin, end], [_dense(y + moved)])
+
+
+def _length(vector: ca.SX) -> ca.SX:
+    return ca.sqrt(ca.dot(vector, vector))
 
 
 def _dense(matrix: ca.SX) -> ca.SX:

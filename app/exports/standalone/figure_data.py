@@ -96,7 +96,7 @@ def _sizes(figure: FigureChoice, kernel: Kernel) -> dict[str, int]:
 
 def _benches(figure: FigureChoice, words: Words) -> list[dict[str, Any]]:
     names = BENCHES if len(figure.laws) > 1 else (RIGHT,)
-    laws = dict(zip(names, figure.laws, strict=True))
+    laws: dict[str, str] = dict(zip(names, figure.laws, strict=True))
     titles = bench_titles(laws, words)
     return [
         {

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from base64 import b64encode
 from hashlib import sha256
 
-from markupsafe import Markup
-
-from onpath.app.common.palette import OF_BENCH
-from onpath.app.common.templates import render
+from onpath.app.common.templates import inlined, json_block, render
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.figure_data import figure_data
-from onpath.assets import asset_path
 from onpath.lessons.benches import law_label
 from onpath.lessons.words import Words
-from onpath.models.control.benches import LEFT, RIGHT
 
 POLICY = (
     "default-src 'none'; script-src '{script}' 'wasm-unsafe-eval'; style-src '{style}'; "
@@ -31,21 +25,17 @@ def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
     Args:
         title: above the figure; may be empty.
     """
-    script = asset_path("standalone/figure.js").read_text("utf-8")
-    style = asset_path("standalone/figure.css").read_text("utf-8")
-    colours = f"--first: {OF_BENCH[LEFT].hex}; --second: {OF_BENCH[RIGHT].hex}"
-    style = f":root {{ {colours}; }}\n{style}"
-    data = json.dumps(figure_data(figure, words, title), ensure_ascii=False, separators=(",", ":"))
+    script, style = inlined("standalone/figure.js"), inlined("standalone/figure.css")
     names = " / ".join(law_label(law, words) for law in figure.laws)
     return render(
         "standalone/figure.html",
         language=words.language,
         title=title or f"OnPath: {names}",
         policy=POLICY.format(script=_hash(script), style=_hash(style)),
-        style=Markup(style),
+        style=style,
         no_script=words("standalone.no_script"),
-        data=Markup(data.replace("<", "\\u003c")),
-        script=Markup(script),
+        data=json_block(figure_data(figure, words, title)),
+        script=script,
     )
 
 

@@ -219,7 +219,9 @@ def test_a_run_tells_what_happened() -> None:
     assert run.summary()["diverged"] is True
 
 
-@pytest.mark.parametrize("module", ["onpath", "onpath.app.notebook.simulate"])
+@pytest.mark.parametrize(
+    "module", ["onpath", "onpath.app.notebook.simulate", "onpath.app.notebook.figure"]
+)
 def test_examples_in_docstrings_do_what_they_show(module: str) -> None:
     failed, tried = doctest.testmod(importlib.import_module(module))
     assert tried > 2 and failed == 0

@@ -1,0 +1,120 @@
+"""A figure's page as a file: what is in it, and what is refused. Browser tests see it move."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import onpath
+from onpath.app.cli.main import run_command
+from onpath.app.exports.standalone.figure_choice import chosen
+from onpath.app.exports.standalone.figure_page import figure_page
+from onpath.assets import asset_path
+from onpath.lessons.words import ENGLISH, Words
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.page_functions import GRID, grid_of, page_functions
+from onpath.models.closed_loop.simulation import brake_at, kind_of, raised
+from onpath.models.paths.distance import path_distance
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
+
+CURVES = {name: presets()[name].curve for name in ("circle", "clover", "segment")}
+LINES = 1200
+
+
+def numbers(function: Any, *arguments: Any) -> Array:
+    return np.array(function(*arguments)).ravel(order="F")
+
+
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_what_a_page_computes_is_what_the_lab_computes(robot: str, name: str) -> None:
+    entry, rng = ROBOTS[robot], np.random.default_rng(1)
+    machine = entry.make(entry.lab)
+    curve = raised(CURVES[name], entry.lab)
+    kind = kind_of("path_following", entry.lab, curve)
+    functions = page_functions(machine, kind)
+    table = curve.table().reshape(kind.table_shape, order="F")
+    grid = grid_of(machine, curve.at(curve.sample(GRID))).T
+    theta = rng.uniform(-4, 4, 60)
+    y = machine.frame.lift(curve.at(theta)) + rng.normal(0, 0.015, (60, machine.system.p))
+    expected = path_distance(machine.frame, curve, y)
+    found = [numbers(functions["distance"], table, grid, each, rng.uniform(-3, 3)) for each in y]
+    np.testing.assert_allclose(np.concatenate(found), expected, atol=1e-5)
+    assert np.median(np.abs(np.concatenate(found) - expected)) < 1e-12
+    q = machine.rest(machine.frame.lift(curve.at(np.array(0.4))))
+    tip, end = numbers(functions["tip"], q), machine.endpoint(q)
+    np.testing.assert_allclose(tip, end, atol=1e-15)
+    seen = numbers(functions["place"], end)
+    np.testing.assert_allclose(np.array(functions["picture"](q)[0])[:, -1], seen, atol=1e-15)
+    brake = numbers(functions["brake"], table, end, 0.4)
+    np.testing.assert_allclose(brake, brake_at(machine, curve, end, 0.4)[1], atol=1e-14)
+    moved = numbers(functions["hand"], end, seen, seen + [0.01, -0.02])
+    np.testing.assert_allclose(numbers(functions["place"], moved), seen + [0.01, -0.02], atol=1e-15)
+    v = np.zeros(machine.system.n)
+    assert [
+        numbers(functions["fault"], q, v)[0],
+        numbers(functions["fault"], q, v + np.nan)[0],
+    ] == [0, 1]
+    assert numbers(functions["fault"], q, v + 101)[0] == 1
+
+
+def test_a_page_is_small_the_same_every_time_and_names_no_other_place(tmp_path: Path) -> None:
+    page = figure_page(chosen("five_bar", paths=CURVES), ENGLISH)
+    assert page == figure_page(chosen("five_bar", paths=CURVES), ENGLISH)
+    assert len(page.encode()) < 300_000
+    assert not re.findall(r"(?:src|href|url)\s*[=(]|https?:|import\(", page)
+
+
+def test_texts_of_the_author_are_texts(tmp_path: Path) -> None:
+    title = "</script><script>alert(1)</script>{{ x }}"
+    page = figure_page(chosen("five_bar", paths=CURVES), Words("de"), title)
+    assert page.count("<script") == 2 and page.count("</script>") == 2
+    (data,) = re.findall(r'id="data">(.*?)</script>', page, re.DOTALL)
+    assert json.loads(data)["title"] == title
+
+
+def test_what_cannot_be_a_figure_is_refused_in_a_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target = str(tmp_path / "a.html")
+    wrong = [
+        (["--robot", "five"], "five_bar"),
+        (["--law", "path_folowing"], "path_following"),
+        (["--law", "set_point"] * 3, "one or two"),
+        (["--path", "figure of eight"], ""),
+        (["--set", "K1=nothing"], "K1"),
+        (["--slider", "torque_limit"], "cannot be changed in a figure"),
+        (["--slider", "task"], "cannot be changed in a figure"),
+        (["--set", "speed_profile=sine"], "constant speed"),
+        (["--language", "xx"], "en"),
+    ]
+    for arguments, hint in wrong:
+        assert run_command(["export", "figure", target, *arguments]) == 2, arguments
+        said = capsys.readouterr().err
+        assert said.count("\n") == 1 and hint in said and not list(tmp_path.iterdir())
+    assert run_command(["export", "figure", str(tmp_path / "no" / "a.html")]) == 2
+
+
+def test_one_law_and_paths_of_one_s_own(tmp_path: Path) -> None:
+    paths = {"my oval": onpath.ellipse(0.06, 0.03), "line": "segment"}
+    law = "across = -K1*xi - K2*dxi; along = 9*(5 - dtheta)"
+    page = onpath.figure(tmp_path / "a.html", laws=law, paths=paths, title="Mine").read_text(
+        "utf-8"
+    )
+    assert "my oval" in page and "<title>Mine</title>" in page
+
+
+def test_what_runs_was_built_from_these_sources() -> None:
+    """After a change: cd assets/standalone; npm ci; npm run build."""
+    sources = sorted(asset_path("standalone").glob("*.ts"))
+    text = b"".join(file.read_bytes() for file in sources)
+    built = asset_path("standalone/figure.js").read_text("utf-8")
+    assert built.splitlines()[0] == f"// sources: {hashlib.sha256(text).hexdigest()}"
+    assert text.count(b"\n") <= LINES

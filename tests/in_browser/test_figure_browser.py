@@ -1,0 +1,224 @@
+"""A figure's page in Chromium, opened from its file: it moves, and it moves as in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import onpath
+from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen
+from onpath.app.exports.standalone.figure_page import figure_page
+from onpath.lessons.words import ENGLISH, Words
+from onpath.models.paths.path_design import presets
+from tests.support.axe import RUN, SCRIPT
+from tests.support.browser import THREE_FRAMES
+from tests.support.figure_runs import Act, PythonFigure
+from tests.support.waiting import wait_for
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+WAIT = 60.0  # [s]
+
+LAWS = ("trajectory_tracking", "path_following")
+PATHS = ("circle", "clover", "segment")
+CLOSE = 1e-12
+REFUSED = """async () => {
+    const tried = []
+    await new Promise(done => setTimeout(() => {  // what is evaluated by a tool may use eval
+        try { eval("1"); tried.push("eval") } catch {}
+        done()
+    }))
+    try { await fetch("https://example.org/"); tried.push("fetch") } catch {}
+    const script = document.createElement("script")
+    script.textContent = "window.injected = true"
+    document.body.append(script)
+    const picture = new Image()
+    await new Promise(done => {
+        picture.onload = () => done(tried.push("picture"))
+        picture.onerror = done
+        picture.src = "data:image/gif;base64,R0lGODlhAQABAAAAACw="
+    })
+    return [...tried, ...(window.injected ? ["script"] : [])]
+}"""
+ACT = """([what, value]) => {
+    const {simulation} = onpath
+    if (what === "advance") onpath.advance(value)
+    else if (what === "set") simulation.set(...value)
+    else simulation[what](value)
+}"""
+LOGGED = "onpath.simulation.benches.map(bench => [...bench.logged()])"
+DISTANCES = "onpath.simulation.benches.map(bench => bench.distance)"
+
+
+def choice(robot: str = "five_bar") -> FigureChoice:
+    return chosen(robot, LAWS, {name: presets()[name].curve for name in PATHS})
+
+
+class Opened:
+    """A figure's page that was opened from a file."""
+
+    def __init__(self, browser: Browser, file: Path, width: int = 900) -> None:
+        self.page: Page = browser.new_page(viewport={"width": width, "height": 800})
+        self.requests, self.complaints = list[str](), list[str]()
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("console", lambda message: self.complaints.append(message.text))
+        self.page.goto(file.as_uri())
+        self.page.wait_for_function("window.onpath")
+
+    def number(self, what: str) -> Any:
+        return self.page.evaluate(what)
+
+    def press(self, name: str) -> None:
+        self.page.get_by_role("button", name=name, exact=True).click()
+
+    def do(self, *acts: Act) -> None:
+        for act in acts:
+            self.page.evaluate(ACT, list(act))
+
+
+def written(folder: Path, words: Words = ENGLISH, robot: str = "five_bar") -> Path:
+    file = folder / f"{robot}.{words.language}.html"
+    file.write_text(figure_page(choice(robot), words), encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="module")
+def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Opened]:
+    opened = Opened(browser, written(tmp_path_factory.mktemp("figures")))
+    opened.press("Pause")
+    yield opened
+    opened.page.close()
+
+
+def test_it_moves_by_itself_and_asks_nobody_for_anything(browser: Browser, tmp_path: Path) -> None:
+    file = written(tmp_path)
+    opened = Opened(browser, file)
+    wait_for(lambda: opened.number("onpath.simulation.time") > 0.3, WAIT)
+    assert opened.requests == [file.as_uri()]
+    assert opened.complaints == []
+    assert opened.number(REFUSED) == []  # from now on it complains
+    opened.page.close()
+
+
+def test_held_back_the_tracker_is_torn_off_and_the_follower_waits(opened: Opened) -> None:
+    opened.press("Reset")
+    opened.do(("advance", 2000))
+    opened.press("Hold both back")
+    opened.press("Pause")  # holding lets it run
+    opened.do(("advance", 2000))
+    tracker, follower = opened.number("onpath.simulation.benches.map(bench => bench.most)")
+    assert tracker > 0.04 and follower < 0.003
+    wait_for(lambda: "waits" in opened.page.get_by_role("status").inner_text(), WAIT)
+    assert "torn off" in opened.page.get_by_role("status").inner_text()
+    opened.press("Let both go")
+    opened.press("Pause")
+    opened.do(("advance", 3000))
+    assert max(opened.number(DISTANCES)) < 1e-3
+
+
+def acts() -> st.SearchStrategy[list[Act]]:
+    coordinate = st.floats(-0.03, 0.03)
+    each = (
+        st.tuples(st.just("advance"), st.integers(1, 600)),
+        st.tuples(st.just("hold"), st.booleans()),
+        st.tuples(st.just("set"), st.tuples(st.just(0), st.floats(-4, 4))),
+        st.tuples(st.just("set"), st.tuples(st.just(1), st.floats(100, 900))),
+        st.tuples(st.just("choose"), st.integers(0, len(PATHS) - 1)),
+        st.tuples(st.just("reset"), st.none()),
+        st.tuples(st.just("pull"), st.one_of(st.none(), st.tuples(coordinate, coordinate))),
+    )
+    return st.lists(st.one_of(each), min_size=3, max_size=12).map(
+        lambda found: [("choose", 0), ("set", [0, 2.0]), ("set", [1, 400.0]), *found]
+    )
+
+
+@settings(
+    max_examples=12,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+@given(acts())
+def test_the_same_inputs_give_the_trajectory_of_python(opened: Opened, script: list[Act]) -> None:
+    python = PythonFigure(choice())
+    for act in (*script, ("advance", 1000)):
+        opened.do(act)
+        python.act(act)
+        if act[0] == "advance":
+            found = np.array(opened.number(LOGGED))
+            np.testing.assert_allclose(found, np.array(python.rows()), rtol=0, atol=CLOSE)
+            expected = [bench.distance() for bench in python.benches]
+            np.testing.assert_allclose(opened.number(DISTANCES), expected, atol=1e-5)
+
+
+def test_it_is_the_run_of_simulate(opened: Opened) -> None:
+    opened.do(("choose", 0), ("set", [0, 2.0]), ("set", [1, 400.0]), ("advance", 1000))
+    opened.do(("hold", True), ("advance", 1000), ("hold", False), ("advance", 1000))
+    found = np.array(opened.number(LOGGED))
+    for law, row in zip(LAWS, found, strict=True):
+        run = onpath.simulate(law=law, hold=(1, 2), duration=3, speed=2, ramp=4)
+        end = np.concatenate([run.q[-1], run.v[-1], run.y[-1]])
+        np.testing.assert_allclose(row[: len(end)], end, rtol=0, atol=CLOSE)
+
+
+@pytest.mark.parametrize("robot", ["flexible", "spatial_arm", "two_link_arm"])
+def test_every_robot_follows(browser: Browser, tmp_path: Path, robot: str) -> None:
+    opened = Opened(browser, written(tmp_path, robot=robot))
+    opened.press("Pause")
+    opened.do(("reset", None), ("advance", 3000))
+    python = PythonFigure(choice(robot))
+    python.act(("advance", 3000))
+    np.testing.assert_allclose(opened.number(LOGGED), python.rows(), rtol=0, atol=CLOSE)
+    assert max(opened.number(DISTANCES)) < 1e-3 and opened.complaints == []
+    opened.page.close()
+
+
+def test_a_tip_is_dragged_with_the_mouse(opened: Opened) -> None:
+    opened.do(("choose", 0), ("set", [0, 0.0]), ("advance", 500))
+    opened.page.evaluate(THREE_FRAMES)
+    box = opened.page.locator("canvas").nth(1).bounding_box()
+    assert box
+    x, y = opened.number("onpath.views[1].pixel(onpath.simulation.benches[1].tip())")
+    mouse = opened.page.mouse
+    mouse.move(box["x"] + x, box["y"] + y)
+    mouse.down()
+    mouse.move(box["x"] + x, box["y"] + y - 30, steps=3)
+    opened.do(("advance", 1000))
+    pulled = opened.number("onpath.simulation.benches.map(bench => bench.tip())")
+    mouse.up()
+    opened.do(("advance", 3000))
+    free = opened.number("onpath.simulation.benches.map(bench => bench.tip())")
+    assert all(up[1] > down[1] + 0.001 for up, down in zip(pulled, free, strict=True))
+
+
+def test_keys_and_names_are_the_lab_s(browser: Browser, tmp_path: Path) -> None:
+    opened = Opened(browser, written(tmp_path, Words("de")), width=390)
+    page = opened.page
+    page.keyboard.press(" ")
+    assert not opened.number("onpath.running")
+    page.keyboard.press("h")
+    assert opened.number("onpath.simulation.held") and opened.number("onpath.running")
+    assert page.get_by_role("button", name="Beide loslassen").is_visible()
+    speed = page.get_by_role("slider", name="Tempo")
+    speed.focus()
+    speed.press("ArrowRight")
+    assert opened.number("onpath.simulation.values[0]") == pytest.approx(2.1)
+    assert page.locator("html").get_attribute("lang") == "de"
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.close()
+
+
+def test_axe_finds_nothing_serious(browser: Browser, tmp_path: Path) -> None:
+    context = browser.new_context(bypass_csp=True)  # which would refuse axe, too
+    page = context.new_page()
+    page.goto(written(tmp_path).as_uri())
+    page.wait_for_function("window.onpath")
+    page.add_script_tag(path=SCRIPT)
+    assert page.evaluate(RUN) == []
+    context.close()

@@ -1,0 +1,101 @@
+"""What a figure's page does, done by Python's own loops: the oracle of assets/standalone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from onpath.app.exports.standalone.figure_choice import FigureChoice
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.page_functions import view_of
+from onpath.models.closed_loop.simulation import FREE, brake_at, raised, settings_vector
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.distance import path_distance
+
+Act = tuple[str, Any]
+"""("advance", ticks), ("hold", on), ("set", (slider, value)), ("choose", path), ("reset", None),
+("pull", metres to the right and up in the picture, or None)."""
+
+
+class PythonBench:
+    """One robot of a figure."""
+
+    def __init__(self, figure: FigureChoice, law: str, curve: Curve) -> None:
+        self.figure, self.law = figure, law
+        self.robot, self.parameters = figure.machine, figure.parameters
+        self.begin(curve)
+
+    def begin(self, curve: Curve) -> None:
+        """Begin anew on a path."""
+        self.given, self.curve = curve, raised(curve, self.figure.parameters)
+        self.kernel = self.figure.kernel(self.law, curve)
+        self.loop = InterpretedLoop(self.kernel)
+        self.state, self.push = self.figure.start(self.law, curve), FREE
+        self.row = np.zeros(self.kernel.log.size)
+        self.y = self.robot.endpoint(self.kernel.state.unpack(self.state)["q"])
+        self.grabbed = self.y
+
+    def advance(self, ticks: int) -> None:
+        """Simulate."""
+        settings = settings_vector(self.robot, self.kernel, self.parameters, self.curve, self.push)
+        self.state, rows = self.loop.run(self.state, settings, self.curve.table(), ticks)
+        self.row = rows[-1]
+        self.y = self.kernel.log.unpack(self.row)["y"]
+
+    def hold(self, on: bool) -> None:
+        """Hold it where it is, along its path."""
+        fields = self.kernel.state.unpack(self.state)
+        y, theta = self.robot.endpoint(fields["q"]), float(fields["theta"][0])
+        brake = brake_at(self.robot, self.curve, y, theta) if on else None
+        self.push = replace(self.push, hold=brake)
+
+    def pull(self, by: tuple[float, float] | None) -> None:
+        """Pull its tip by a way in the picture of a robot in the vertical plane."""
+        assert np.array(view_of(self.robot)[0]).tolist() == [[1, 0, 0], [0, 0, 1]]
+        if by is None or self.push.hand is None:
+            self.grabbed = self.y
+        self.push = replace(self.push, hand=None if by is None else self.grabbed + np.array(by))
+
+    def distance(self) -> float:
+        """From the end-point of the last row to the path, by global search, [m]."""
+        return float(path_distance(self.robot.frame, self.curve, self.y[None])[0])
+
+
+class PythonFigure:
+    """All robots of a figure, which starts on its first path."""
+
+    def __init__(self, figure: FigureChoice) -> None:
+        self.figure, self.held = figure, False
+        self.curve = next(iter(figure.paths.values()))
+        self.benches = [PythonBench(figure, law, self.curve) for law in figure.laws]
+
+    def act(self, act: Act) -> None:
+        """Do what a reader does."""
+        what, value = act
+        if what == "advance":
+            for bench in self.benches:
+                bench.advance(value)
+        elif what == "hold" and value != self.held:
+            self.held = value
+            for bench in self.benches:
+                bench.hold(value)
+        elif what == "set":
+            name = self.figure.sliders[value[0]]
+            for bench in self.benches:
+                bench.parameters = replace(bench.parameters, **{name: value[1]})
+        elif what == "pull":
+            for bench in self.benches:
+                bench.pull(value)
+        elif what in ("choose", "reset"):
+            if what == "choose":
+                self.curve = list(self.figure.paths.values())[value]
+            self.held = False
+            for bench in self.benches:
+                bench.begin(self.curve)
+
+    def rows(self) -> list[Array]:
+        """The last row of each log."""
+        return [bench.row for bench in self.benches]
