@@ -116,6 +116,7 @@ def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
         first, *others = versions.values()
         for other in others:
             problems += _differences(first, other, home / f"{other.language}.md")
+            versions[other.language] = msgspec.structs.replace(other, keys=first.keys)
         if home.name != FOLDER:
             problems += read_references(first, home / REFERENCE)[1]
     return versions, problems

@@ -17,6 +17,7 @@ from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.completeness import lacks
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
 from onpath.lessons.formulas import FormulaError, embedded, folded, reader, render
+from onpath.lessons.kept.option_keys import keys_of
 from onpath.lessons.links import read_link
 from onpath.lessons.problems import LessonError, Problem
 from onpath.lessons.rendered import rendered
@@ -105,7 +106,8 @@ class _Reader:
         steps = self._steps(body, first)
         if not self._problems and front is not None:
             name, language = self._path.parent.name, self._path.stem
-            return Lesson(name, language, front, tuple(draft.step() for draft in steps))
+            made = tuple(draft.step() for draft in steps)
+            return Lesson(name, language, front, made, keys_of(made))
         raise LessonError(self._problems)
 
     def _front(self) -> tuple[Front | None, int]:

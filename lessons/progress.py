@@ -67,6 +67,8 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         written: answers in own words, by step and block.
         asked_again: predictions that the teacher has asked again, after a discussion, by step.
         second: the answers to those.
+        marks: keys of the chosen options; see `lessons.kept`.
+        unknown: where something was chosen that cannot be known, since the lesson has changed.
         handed_in: whether a test has been handed in, after which its answers do not change.
     """
 
@@ -82,6 +84,8 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     written: dict[Key, Written] = {}
     asked_again: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
     second: dict[Key, Answer] = {}
+    marks: dict[Key, Key] = {}
+    unknown: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
     handed_in: bool = False
 
 

@@ -8,6 +8,7 @@ from typing import Any
 from msgspec.structs import replace
 
 from onpath.lessons.formulas import to_html
+from onpath.lessons.kept.option_keys import fingerprint
 from onpath.lessons.schema import Choice, Front, NumberQuestion, OpenQuestion, Option, Quiz, Sketch
 from onpath.lessons.task_schema import Task
 
@@ -61,6 +62,11 @@ def _html(part: Any, *names: str) -> Any:
 
 def _options(part: Choice | Quiz) -> tuple[Option, ...]:
     return tuple(
-        Option(to_html(option.text), to_html(option.answer), option.right)
+        Option(
+            text=to_html(option.text),
+            answer=to_html(option.answer),
+            right=option.right,
+            key=option.key or fingerprint(option.text),
+        )
         for option in part.options
     )

@@ -23,11 +23,13 @@ class Option(Data, frozen=True):
         text: as shown.
         answer: the response to a student who chooses it.
         right: whether it is correct.
+        key: tells it from the others when the lesson has changed; see `lessons.kept.option_keys`.
     """
 
     text: str
     answer: str
     right: bool = False
+    key: str = ""
 
 
 class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
@@ -200,12 +202,14 @@ class Lesson(msgspec.Struct, frozen=True):
     Attributes:
         name: of its folder.
         language: two letters.
+        keys: of what can be chosen, the same in all languages; see `lessons.kept.option_keys`.
     """
 
     name: str
     language: str
     front: Front
     steps: tuple[Step, ...]
+    keys: dict[str, tuple[str, ...]] = {}
 
     def scene_at(self, index: int) -> StepSetup:
         """The complete setup of a step, independent of how the student got there."""

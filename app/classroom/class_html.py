@@ -158,9 +158,10 @@ def hidden_view(block: Prediction, found: Distribution, words: Words, large: boo
 
 
 def given_line(found: Distribution, words: Words) -> str:
-    """How many have answered, skipped, and not answered yet."""
+    """How many have answered, skipped, and not answered yet, and how many answers are lost."""
     given = sum(found.counts) + len(found.sketches)
-    return words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
+    said = words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
+    return f"{said} {words('class.earlier', count=found.earlier)}" if found.earlier else said
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from onpath.app.classroom.classroom import Member
 from onpath.app.common.visible_text import is_visible
 from onpath.lessons.course import Course
+from onpath.lessons.kept.option_keys import second_key
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Answer, Notes, Progress, Truth
 from onpath.lessons.schema import (
@@ -27,6 +28,8 @@ HEADER = (
     *("number", "nickname", "lesson", "step", "kind", "item", "result", "right", "value"),
     *("sure", "why"),
 )
+EARLIER = "unknown", "", ""
+"""Result, correctness and value of a choice of which the options have changed since."""
 FORMULA = frozenset("=+-@|%\u2212\u2795\u2796\ua78a\U0001f7f0")
 """Beginnings of a formula, also as minus, heavy or short sign; other widths and sizes by NFKC."""
 
@@ -39,6 +42,7 @@ class Distribution:
         counts: number of answers per option; empty for a sketch.
         sketches: the sketched curves.
         skipped: number of students who skipped it.
+        earlier: number of answers that cannot be known, since the lesson has changed.
         waiting: number of students who have not answered.
     """
 
@@ -46,6 +50,7 @@ class Distribution:
     sketches: tuple[Answer, ...]
     skipped: int
     waiting: int
+    earlier: int = 0
 
 
 def prediction_at(lesson: Lesson, index: int) -> tuple[int, Prediction] | None:
@@ -72,15 +77,17 @@ def distribution(
         ways: progress of all students.
         again: whether to count the second answers, after a discussion, instead of the first ones.
     """
-    notes = [_notes(way, lesson) for way in ways]
-    answers = [(own.second if again else own.answers).get(str(step)) for own in notes]
+    notes, key = [_notes(way, lesson) for way in ways], str(step)
+    lost = sum((second_key(key) if again else key) in own.unknown for own in notes)
+    answers = [(own.second if again else own.answers).get(key) for own in notes]
     given = [answer for answer in answers if answer is not None]
     options = range(len(prediction.options)) if isinstance(prediction, Choice) else ()
     return Distribution(
         counts=tuple(sum(answer.option == option for answer in given) for option in options),
         sketches=tuple(answer for answer in given if answer.times),
-        skipped=sum(answer.skipped for answer in given),
+        skipped=sum(answer.skipped for answer in given) - lost,
         waiting=len(answers) - len(given),
+        earlier=lost,
     )
 
 
@@ -137,12 +144,14 @@ def _rows(lesson: Lesson, notes: Notes) -> Iterator[tuple[object, ...]]:
     for index, step in enumerate(lesson.steps):
         for prediction in step.predictions():
             answer = notes.answers.get(str(index))
-            told = _told(prediction, answer)
-            yield index + 1, "prediction", step.title, *_answered(prediction, answer), *told
+            told, earlier = _told(prediction, answer), str(index) in notes.unknown
+            result = EARLIER if earlier else _answered(prediction, answer)
+            yield index + 1, "prediction", step.title, *result, *told
             if str(index) in notes.asked_again:
                 second = notes.second.get(str(index))
-                told = _told(prediction, second)
-                yield index + 1, "second", step.title, *_answered(prediction, second), *told
+                told, earlier = _told(prediction, second), second_key(str(index)) in notes.unknown
+                result = EARLIER if earlier else _answered(prediction, second)
+                yield index + 1, "second", step.title, *result, *told
         for task in step.tasks():
             best = notes.tasks.get(task.id)
             passed, value = best is not None, best if task.best and best is not None else ""
@@ -151,6 +160,7 @@ def _rows(lesson: Lesson, notes: Notes) -> Iterator[tuple[object, ...]]:
             key = f"{index}.{number}"
             if isinstance(block, Quiz):
                 chosen = _chosen(block, notes.quiz.get(key))
+                chosen = EARLIER if key in notes.unknown else chosen
                 yield index + 1, "question", step.title, *chosen
             elif isinstance(block, NumberQuestion):
                 given = notes.numbers.get(key)

@@ -53,6 +53,7 @@ class AskedPrediction:
         step: index of the step that asks.
         chosen: index of the option chosen, if any.
         second: the answer after a discussion, if it was asked again.
+        earlier: whether the answer cannot be known, since the lesson has changed.
         figure: figure of a sketch, if there is anything to draw.
     """
 
@@ -63,6 +64,7 @@ class AskedPrediction:
     chosen: int | None
     figure: SketchFigure | None
     second: Answer | None = None
+    earlier: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +75,7 @@ class ChapterRecord:
         counts: completed and total steps, tasks, predictions, correct choices.
         foreign: whether the lesson is unavailable in the student's language.
         tasks: each with the message of a passed task, otherwise empty.
-        questions: each with the index of the option chosen, if any.
+        questions: each with the index of the option chosen, if any, and whether it is unknown.
         numbers: questions, each with the number that was answered, if any.
         written: questions, each with the student's words; empty if there are none.
     """
@@ -83,7 +85,7 @@ class ChapterRecord:
     foreign: bool
     predictions: list[AskedPrediction]
     tasks: list[tuple[Task, str]]
-    questions: list[tuple[Quiz, int | None]]
+    questions: list[tuple[Quiz, int | None, bool]]
     numbers: list[tuple[NumberQuestion, float | None]]
     written: list[tuple[OpenQuestion, str]]
 
@@ -110,7 +112,7 @@ def report(run: LessonState, code: str, made: datetime) -> bytes:
 
 def _record(chapter: Chapter, words: Words) -> ChapterRecord:
     lesson, notes, chosen = chapter.lesson, chapter.notes, chapter.chosen()
-    made = sum(not answer.skipped for answer in notes.answers.values())
+    made = sum(not a.skipped or key in notes.unknown for key, a in notes.answers.items())
     asked, tasks = predictions(lesson), lesson.tasks()
     return ChapterRecord(
         chapter,
@@ -123,7 +125,10 @@ def _record(chapter: Chapter, words: Words) -> ChapterRecord:
         lesson.language == DEFAULT != words.language,
         [_asked(chapter, key, block, words) for key, block in asked.items()],
         [(task, _passed(task, notes.tasks.get(task.id), words)) for task in tasks],
-        [(quiz, notes.quiz.get(key)) for key, quiz in quizzes(lesson).items()],
+        [
+            (quiz, notes.quiz.get(key), key in notes.unknown)
+            for key, quiz in quizzes(lesson).items()
+        ],
         [(block, notes.numbers.get(key)) for key, block in numbers(lesson).items()],
         [(block, notes.written.get(key, "")) for key, block in open_questions(lesson).items()],
     )
@@ -135,7 +140,8 @@ def _asked(chapter: Chapter, key: str, block: Prediction, words: Words) -> Asked
     figure = _figure(block, answer, truth, words, names) if isinstance(block, Sketch) else None
     chosen = answer.option if answer else None
     second = chapter.notes.second.get(key)
-    return AskedPrediction(int(key), block, answer, truth, chosen, figure, second)
+    earlier = key in chapter.notes.unknown
+    return AskedPrediction(int(key), block, answer, truth, chosen, figure, second, earlier)
 
 
 def _passed(task: Task, best: float | None, words: Words) -> str:

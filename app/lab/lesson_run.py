@@ -18,6 +18,7 @@ from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
 from onpath.lessons.checks import Verdict, judge, statistic
 from onpath.lessons.course import Course
+from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.progress import Answer, Progress, Truth
 from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson, Prediction, Sketch
@@ -113,7 +114,7 @@ class LessonRun(LessonState):
 
     def resume(self, progress: Progress, before: Setup | None, lab: LessonLab) -> None:
         """Restore saved progress, in a lab that has been restored."""
-        self.progress, self.before = progress, before
+        self.progress, self.before = of_today(self.course, progress), before
         self.words = Words(progress.language)
         self.version += 1
         if self.lesson is not None:

@@ -11,6 +11,8 @@ from msgspec.structs import replace
 
 from onpath.app.lab.answers import kept_number, kept_text
 from onpath.lessons.course import Course
+from onpath.lessons.kept.known_choices import mark_of, marks_of
+from onpath.lessons.kept.option_keys import second_key
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.routes import Route
 from onpath.lessons.schema import (
@@ -156,6 +158,7 @@ class LessonState:
             answers={key: Answer(), **notes.answers},
             asked_again=tuple(dict.fromkeys((*notes.asked_again, key))),
             second={k: answer for k, answer in notes.second.items() if k != key},
+            unknown=tuple(each for each in notes.unknown if each != second_key(key)),
         )
 
     @property
@@ -202,7 +205,9 @@ class LessonState:
         quiz = self._block(block)
         if not isinstance(quiz, Quiz) or option not in range(len(quiz.options)):
             raise CodedError("lesson.no_such_option")
-        self.note(quiz={**self.notes.quiz, f"{self.index}.{block}": option})
+        assert self.lesson is not None
+        key = f"{self.index}.{block}"
+        self._note_chosen(key, mark_of(self.lesson, key, option), "quiz", option)
 
     def answer_number(self, block: int, given: float) -> None:
         """Answer a question with a number; `block` is its index among the open step's blocks.
@@ -245,12 +250,32 @@ class LessonState:
 
     def note_answer(self, answer: Answer) -> None:
         """Store the answer to the open step's prediction, the second one if it is asked again."""
-        found, notes = self.prediction(), self.notes
-        assert found is not None
-        if found[0] in notes.asked_again:
-            self.note(second={**notes.second, found[0]: answer})
-        else:
-            self.note(answers={**notes.answers, found[0]: answer})
+        found, lesson = self.prediction(), self.lesson
+        assert found is not None and lesson is not None
+        key, again = found[0], found[0] in self.notes.asked_again
+        marks = marks_of(lesson, key, answer, again)
+        self._note_chosen(key, marks, "second" if again else "answers", answer)
+
+    def is_earlier(self, key: str = "") -> bool:
+        """Whether something was chosen that cannot be known, since the lesson has changed.
+
+        Args:
+            key: of a quiz in the notes; without one, the open step's prediction is meant.
+        """
+        notes, found = self.notes, self.prediction()
+        key = key or (found[0] if found else "")
+        own = second_key(key) if key in notes.asked_again else key
+        return own in notes.unknown
+
+    def _note_chosen(self, key: str, marks: dict[str, str], kind: str, chosen: object) -> None:
+        """Store what was chosen, in the notes of a kind, and by what it is found again."""
+        notes = self.notes
+        own = second_key(key) if kind == "second" else key
+        self.note(
+            **{kind: {**getattr(notes, kind), key: chosen}},
+            marks={**notes.marks, **marks},
+            unknown=tuple(each for each in notes.unknown if each != own),
+        )
 
     def note(self, **changes: Any) -> None:
         """Change the saved notes on the open lesson."""

@@ -75,12 +75,14 @@ def question(
     chosen: int | None,
     revealed: bool,
     words: Words,
+    earlier: bool = False,
 ) -> str:
     """A question with lettered options and, once revealed, the correct one and the explanation.
 
     Args:
         order: the options' indices in the order in which they are shown; see `option_order`.
         chosen: index of the student's answer; None when there is none.
+        earlier: whether the answer cannot be known, since the options have changed.
     """
     return render(
         "lesson/question.html",
@@ -89,6 +91,7 @@ def question(
         options=[(LETTERS[place], block.options[i]) for place, i in enumerate(order)],
         own=None if chosen is None else block.options[chosen],
         revealed=revealed,
+        earlier=earlier,
         words=words,
     )
 
@@ -105,9 +108,14 @@ def open_question(block: OpenQuestion, text: str, words: Words) -> str:
     return render("lesson/open.html", words=words, **shown)
 
 
-def told(block: Prediction, answer: Answer | None, words: Words) -> str:
-    """How sure the student is of a prediction, and why; empty if neither was said."""
-    return render("lesson/beside.html", block=block, answer=answer, words=words).strip()
+def told(block: Prediction, answer: Answer | None, words: Words, earlier: bool = False) -> str:
+    """How sure the student is of a prediction, and why; empty if neither was said.
+
+    Args:
+        earlier: whether the answer cannot be known, since the question has changed.
+    """
+    shown = {"block": block, "answer": answer, "earlier": earlier}
+    return render("lesson/beside.html", words=words, **shown).strip()
 
 
 def task(block: Task, verdicts: list[Verdict], run: LessonState) -> str:

@@ -165,7 +165,7 @@ class LessonPanel:
             key = f"{run.index}.{number}"
             chosen, order = run.notes.quiz.get(key), run.order(block, key)
             told = chosen is not None and not run.is_test
-            self._html(page.question(block, order, chosen, told, run.words))
+            self._html(page.question(block, order, chosen, told, run.words, run.is_earlier(key)))
             answered = add_letters(
                 self._gui, order, lambda at, _: self._post(c.AnswerQuiz(number, at))
             )
@@ -212,7 +212,7 @@ class LessonPanel:
         chosen, order = answer.option if answer else None, run.order(block)
         if answer is not None:
             self._add_let_happen(run)
-        self._html(page.question(block, order, chosen, False, run.words))
+        self._html(page.question(block, order, chosen, False, run.words, run.is_earlier()))
         if answer is None:
             self._add_form(block, run)
         else:
@@ -240,7 +240,8 @@ class LessonPanel:
 
     def _add_told(self, block: Prediction, run: LessonView) -> None:
         """How sure the student was, and why, if it was said."""
-        if said := page.told(block, run.answer(), run.words):
+        earlier = isinstance(block, Sketch) and run.is_earlier()
+        if said := page.told(block, run.answer(), run.words, earlier):
             self._html(said)
 
     def _add_run(self, run: LessonView) -> None:
@@ -257,13 +258,14 @@ class LessonPanel:
         if run.waits:
             self._html(page.remark(run.words("lesson.predict_before"), italic=True))
         block, answer = found[1], run.answer()
-        if answer is not None and answer.skipped:
+        if answer is not None and answer.skipped and not run.is_earlier():
             self._html(page.remark(run.words("lesson.skipped"), italic=True))
         if isinstance(block, Sketch):
             self._add_chart(block, run)
         elif truth is not None and not run.playing:
             chosen = answer.option if answer else None
-            self._html(page.question(block, run.order(block), chosen, True, run.words))
+            order, earlier = run.order(block), run.is_earlier()
+            self._html(page.question(block, order, chosen, True, run.words, earlier))
         self._add_told(block, run)
 
     def _add_chart(self, block: Sketch, run: LessonView) -> None:

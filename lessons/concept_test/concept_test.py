@@ -58,9 +58,12 @@ def questions(test: Lesson) -> dict[str, Quiz]:
 
 
 def notes_of(progress: Progress, name: str) -> Notes | None:
-    """A student's notes on a test that has been handed in; None if it has not."""
+    """A student's notes on a test that has been handed in; None if it has not.
+
+    None also if it was handed in when the questions were other ones.
+    """
     notes = progress.notes.get(name)
-    return notes if notes is not None and notes.handed_in else None
+    return notes if notes is not None and notes.handed_in and not notes.unknown else None
 
 
 def chosen_in(test: Lesson, notes: Notes) -> list[int | None]:

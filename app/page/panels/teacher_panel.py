@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import viser
 
@@ -21,6 +22,7 @@ from onpath.app.page.teaching.class_answers import ClassAnswers
 from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
+from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.words import Words
 
 WIDTH, WIDE = 480, 1280  # [px]; wide for a projector
@@ -230,7 +232,11 @@ class TeacherPanel:
         )
 
     def _export(self) -> None:
-        members, course, language = self._class.members(), self._course, self._words.language
+        course, language = self._course, self._words.language
+        members = {
+            session: replace(member, progress=of_today(course, member.progress))
+            for session, member in self._class.members().items()
+        }
         ways = [(session, member.progress) for session, member in members.items()]
         test = course.lesson(BEFORE, language) if course.tests else None
         tests = rows_without_names(test, ways, self._class.code) if test else ()

@@ -15,6 +15,7 @@ from onpath.app.page.panels.widgets import note
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.concept_test.concept_test import TESTS
 from onpath.lessons.course import Course
+from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.progress import Progress, Truth
 from onpath.lessons.schema import Lesson
 from onpath.lessons.words import Words
@@ -32,7 +33,8 @@ class ClassAnswers:
         chosen = self._teaching.chosen
         lesson = self._course.lesson(chosen.lesson, self._words.language)
         index = min(chosen.step, len(lesson.steps) - 1)
-        ways = [member.progress for member in self._teaching.classroom.members().values()]
+        members = self._teaching.classroom.members().values()
+        ways = [of_today(self._course, member.progress) for member in members]
         if chosen.lesson in self._course.tests:
             return self._test(lesson, index, ways, large)
         return self._prediction(lesson, index, ways, large)

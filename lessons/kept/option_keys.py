@@ -1,0 +1,51 @@
+"""Keys of what can be chosen, by which a kept choice is found again when a lesson has changed.
+
+An option's key is that which the author gives it, or else made of its text in the lesson's first
+language, which is English if there is one. So options can be put into another order, and their
+translations reworded.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+
+from onpath.lessons.schema import Choice, Quiz, Sketch, Step
+
+Keys = dict[str, tuple[str, ...]]
+"""Key of the notes -> keys of what could be chosen there, in the author's order."""
+
+
+def keys_of(steps: Sequence[Step]) -> Keys:
+    """Keys of the options of predictions and quizzes, of reasons, and of the axes of sketches."""
+    keys = Keys()
+    for index, step in enumerate(steps):
+        for prediction in step.predictions()[:1]:
+            keys[str(index)] = _asked(prediction)
+            keys[why_key(str(index))] = tuple(map(fingerprint, prediction.reasons))
+        for number, block in enumerate(step.blocks):
+            if isinstance(block, Quiz):
+                keys[f"{index}.{number}"] = tuple(option.key for option in block.options)
+    return keys
+
+
+def fingerprint(text: str) -> str:
+    """A short name of a text, the same in every process."""
+    return hashlib.sha256(" ".join(text.split()).encode()).hexdigest()[:12]
+
+
+def why_key(key: str) -> str:
+    """Under which the reason for an answer is marked."""
+    return f"{key} why"
+
+
+def second_key(key: str) -> str:
+    """Under which the answer after a discussion is marked."""
+    return f"{key} second"
+
+
+def _asked(prediction: Choice | Sketch) -> tuple[str, ...]:
+    if isinstance(prediction, Choice):
+        return tuple(option.key for option in prediction.options)
+    axes = prediction.quantity, prediction.robot, f"{prediction.seconds:g}"
+    return (fingerprint(" ".join(axes)),)
