@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
@@ -120,7 +120,7 @@ def played(lab: Lab) -> Lab:
     do(lab, c.Predict())
     rate = lab.session.rate
     c.PlayStep().apply(lab)  # and nothing of the script yet
-    if lab.script is not None:
+    if lab.lessons.playing:
         assert lab.session.rate == rate and lab.session.running
         lab.session.rate = 1.0
         assert_at_the_beginning(lab)
@@ -191,6 +191,7 @@ ways = st.one_of(
 )
 
 
+@example(STEPS[0], [MEDDLING[-1], played])  # a pull that is a script, in a step without one
 @given(steps, st.lists(st.one_of(meddling, ways, st.just(played), st.just(reloaded)), max_size=12))
 @settings(max_examples=30)
 def test_random_walks(first: tuple[str, int], walk: list[Callable[[Lab], Lab]]) -> None:
