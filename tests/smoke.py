@@ -7,12 +7,14 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 import urllib.request
+from pathlib import Path
 
 
 def main() -> None:
-    """A simulation, an experiment, then the lab's page, then a clean stop."""
+    """A simulation, an experiment, a figure, then the lab's page, then a clean stop."""
     code = "import onpath; print(len(onpath.simulate(duration=0.1).t))"
     assert subprocess.check_output([sys.executable, "-c", code], text=True) == "100\n"
 
@@ -22,6 +24,11 @@ def main() -> None:
     controllers = json.loads(output)["laws"]
     assert controllers["path_following"]["max_distance_m"] <= 0.003, output
     assert controllers["trajectory_tracking"]["max_distance_m"] >= 0.04, output
+
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder) / "figure.html"
+        subprocess.run([onpath, "export", "figure", str(page)], check=True)
+        assert page.read_text("utf-8").count("<script") == 2
 
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))

@@ -38,7 +38,7 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
         aim: (table, θ) -> σ(θ) in the picture
         distance: (table, grid, y, guess of θ) -> Euclidean distance to the path, [m]
         brake: (table, y, θ) -> the unit tangent at θ, (p, 1), see `brake_at`
-        fault: (q, v) -> 1 where a number is not finite or a joint too fast, else 0
+        fault: (q, v) -> 1 where the simulation has diverged, as `Robot.fault` says, else 0
         hand: (y, from, to) -> y moved in the path's plane as the picture's point moves
     """
     system = robot.system
@@ -60,7 +60,7 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
         "aim": ca.Function("aim", [table, theta], [place(lift(local.sigma, False))]),
         "distance": _distance(kind, lift, table, y),
         "brake": ca.Function("brake", [table, y, theta], [tangent / _length(tangent)]),
-        "fault": _fault(system.n),
+        "fault": _fault(robot),
         "hand": _hand(robot, kind, seen, y),
     }
 
@@ -148,13 +148,14 @@ def _improved(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX, theta: ca.SX) -> c
     return _length(lift(local.sigma, False) - y)
 
 
-def _fault(n: int) -> ca.Function:
-    """See `first_fault`."""
+def _fault(robot: Robot) -> ca.Function:
+    """See `first_fault` and `Robot.broken`."""
+    n = robot.system.n
     q, v = ca.SX.sym("q", n), ca.SX.sym("v", n)
     good = ca.fabs(v[0]) <= FASTEST_JOINT
     for x, most in [(q[i], MOST) for i in range(n)] + [(v[i], FASTEST_JOINT) for i in range(1, n)]:
         good = ca.fmin(good, ca.fabs(x) <= most)
-    return ca.Function("fault", [q, v], [ca.if_else(good, 0, 1)])
+    return ca.Function("fault", [q, v], [ca.fmax(ca.if_else(good, 0, 1), robot.broken(q, v))])
 
 
 def _hand(robot: Robot, kind: Kind, seen: ca.DM, y: ca.SX) -> ca.Function:

@@ -110,6 +110,10 @@ class RigidFiveBar(PlanarRobot):
         """See `Robot.fault`."""
         return first_fault(q, v, collapse(q))
 
+    def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
+        """See `Robot.broken` and `collapse`."""
+        return ca.fabs(ca.sin(q[0] - q[1])) < COLLAPSED
+
     def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
         """See `Robot.skeleton`; rigid links have no deflection to exaggerate."""
         l1, l4 = self._lengths

@@ -24,7 +24,7 @@ from onpath.models.systems.drawing import (
     Length,
     Waist,
 )
-from onpath.models.systems.five_bar_robot import ANGLES, LENGTHS, collapse
+from onpath.models.systems.five_bar_robot import ANGLES, COLLAPSED, LENGTHS, collapse
 from onpath.models.systems.flexible_five_bar import RIGID
 from onpath.models.systems.flexible_links import FlexibleLinks, load_links
 from onpath.models.systems.flexible_parameters import PLANE, FlexibleParameters
@@ -193,6 +193,12 @@ class FlexibleFiveBar:
         zero = flexible_zero_dynamics(self.modes, self.plant_name)
         plant = flexible_five_bar_robot(self.modes, self.plant_name).plant(parameters)
         return bool(zero.exponents(straight, plant)[0, 0].real > 0)
+
+    def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
+        """See `Robot.broken`."""
+        bent, rate = (ca.fabs(ca.dot(x[RIGID:], ca.DM(self.beam.tip))) for x in (q, v))
+        bad = ca.fmax(bent > MOST_BENT * self.links.beam, rate > FASTEST_TIP)
+        return ca.fmax(bad, ca.fabs(ca.sin(q[0] - q[1])) < COLLAPSED)
 
     def place(self, y: Array) -> Array:
         """See `Robot.place`."""

@@ -36,6 +36,10 @@ class RigidRobot:
         """See `Robot.is_calm`."""
         return False
 
+    def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
+        """See `Robot.broken`: nowhere."""
+        return ca.SX(0)
+
     @property
     def grip(self) -> Grip:
         """See `Robot.grip`."""

@@ -157,6 +157,10 @@ class Robot(Protocol):
         """
         ...
 
+    def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
+        """1 where a check of `fault` fails, besides those of every robot, else 0."""
+        ...
+
     def place(self, y: Array) -> Array:
         """Points of the output space in the frame for drawing, (..., p) -> (..., 3), [m]."""
         ...

@@ -228,6 +228,11 @@ class SpatialArm(RigidRobot):
             singular = (np.sin(q[:, 2]) > -STRETCHED) | (radius < ABOVE_BASE)
         return first_fault(q, v, (singular, SINGULAR))
 
+    def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
+        """See `Robot.broken`."""
+        radius = self.links.l2 * ca.cos(q[1]) + self.links.l3 * ca.cos(q[1] + q[2])
+        return ca.fmax(ca.sin(q[2]) > -STRETCHED, radius < ABOVE_BASE)
+
     def place(self, y: Array) -> Array:
         """See `Robot.place`."""
         return y + np.array(MIDDLE)

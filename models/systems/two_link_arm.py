@@ -197,6 +197,10 @@ class TwoLinkArm(PlanarRobot):
             singular = np.sin(q[:, 1]) > -STRETCHED
         return first_fault(q, v, (singular, SINGULAR))
 
+    def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
+        """See `Robot.broken`."""
+        return ca.sin(q[1]) > -STRETCHED
+
     def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
         """See `Robot.skeleton`: bars of links 1 and 2; joints at base and elbow."""
         one, two = (

@@ -71,7 +71,8 @@ class Opened:
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("console", lambda message: self.complaints.append(message.text))
         self.page.goto(file.as_uri())
-        self.page.wait_for_function("window.onpath")
+        # not wait_for_function, which uses eval
+        wait_for(lambda: self.page.evaluate("'onpath' in window"), WAIT)
 
     def number(self, what: str) -> Any:
         return self.page.evaluate(what)

@@ -57,12 +57,28 @@ def test_what_a_page_computes_is_what_the_lab_computes(robot: str, name: str) ->
     np.testing.assert_allclose(brake, brake_at(machine, curve, end, 0.4)[1], atol=1e-14)
     moved = numbers(functions["hand"], end, seen, seen + [0.01, -0.02])
     np.testing.assert_allclose(numbers(functions["place"], moved), seen + [0.01, -0.02], atol=1e-15)
-    v = np.zeros(machine.system.n)
-    assert [
-        numbers(functions["fault"], q, v)[0],
-        numbers(functions["fault"], q, v + np.nan)[0],
-    ] == [0, 1]
-    assert numbers(functions["fault"], q, v + 101)[0] == 1
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_page_stops_a_robot_where_the_lab_does(robot: str) -> None:
+    entry, rng = ROBOTS[robot], np.random.default_rng(2)
+    machine = entry.make(entry.lab)
+    n = machine.system.n
+    kind = kind_of("path_following", entry.lab, CURVES["circle"])
+    fault = page_functions(machine, kind)["fault"]
+    home = machine.rest(machine.frame.lift(np.zeros(2)))
+    size = np.where(np.arange(n) < machine.system.m, 1.0, 0.02)  # joints, and what a link bends
+    near = home + size * rng.normal(0, 0.3, (100, n)), size * rng.normal(0, 100, (100, n))
+    near[1][:50] /= 100
+    q = np.concatenate([near[0], size * rng.uniform(-4, 4, (200, n)), [home, home + np.nan, home]])
+    v = np.concatenate([near[1], np.zeros((202, n)), np.full((1, n), np.nan)])
+    found = [bool(numbers(fault, *each)[0]) for each in zip(q, v, strict=True)]
+    expected = [
+        machine.fault(*each, entry.lab) is not None
+        for each in zip(q[:, None], v[:, None], strict=True)
+    ]
+    assert found == expected
+    assert 20 < sum(found) < len(found) - 20
 
 
 def test_a_page_is_small_the_same_every_time_and_names_no_other_place(tmp_path: Path) -> None:
