@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -213,6 +216,55 @@ def test_keys_and_names_are_the_lab_s(browser: Browser, tmp_path: Path) -> None:
     assert page.locator("html").get_attribute("lang") == "de"
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     page.close()
+
+
+def test_inside_an_iframe_of_a_web_server_s_page(browser: Browser, tmp_path: Path) -> None:
+    written(tmp_path)
+    (tmp_path / "blog.html").write_text("<iframe src=five_bar.en.html width=800 height=700>")
+    handler = partial(SimpleHTTPRequestHandler, directory=str(tmp_path))
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever).start()
+        page = browser.new_page()
+        page.goto(f"http://127.0.0.1:{server.server_port}/blog.html")
+        frame = page.frames[1]
+        wait_for(lambda: frame.evaluate("window.onpath?.simulation.time ?? 0") > 0.3, WAIT)
+        page.close()
+        server.shutdown()
+
+
+def test_a_tip_is_dragged_with_a_finger_and_the_page_still_scrolls(
+    browser: Browser, tmp_path: Path
+) -> None:
+    context = browser.new_context(viewport={"width": 390, "height": 600}, has_touch=True)
+    page = context.new_page()
+    page.goto(written(tmp_path).as_uri())
+    wait_for(lambda: page.evaluate("'onpath' in window"), WAIT)
+    page.get_by_role("button", name="Pause").click()
+    page.evaluate("scrollTo(0, 0)")
+    page.evaluate(THREE_FRAMES)
+    box = page.locator("canvas").first.bounding_box()
+    assert box
+    x, y = page.evaluate("onpath.views[0].pixel(onpath.simulation.benches[0].tip())")
+    touched = context.new_cdp_session(page)
+
+    def tell(kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": x, "y": y} for x, y in places]
+        touched.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    def swiped(x: float, y: float) -> list[Any]:
+        """Whether the tip is pulled on the way, and how far the page is scrolled after it."""
+        tell("touchStart", (x, y))
+        for way in range(10, 90, 10):
+            tell("touchMove", (x, y - way))
+        pulled = page.evaluate("onpath.simulation.benches[0].pulled")
+        tell("touchEnd")
+        page.evaluate(THREE_FRAMES)
+        return [pulled, page.evaluate("scrollY > 0")]
+
+    assert swiped(box["x"] + x, box["y"] + y) == [True, False]
+    assert not page.evaluate("onpath.simulation.benches[0].pulled")
+    assert swiped(box["x"] + 30, box["y"] + box["height"] - 20) == [False, True]
+    context.close()
 
 
 def test_axe_finds_nothing_serious(browser: Browser, tmp_path: Path) -> None:

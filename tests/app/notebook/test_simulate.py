@@ -232,7 +232,7 @@ def test_the_example_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.Monk
     (example,) = re.findall(r"## From Python\n.*?```python\n(.*?)```", text, re.DOTALL)
     monkeypatch.chdir(tmp_path)
     exec(compile(example, "README.md", "exec"), {})
-    assert {file.suffix for file in tmp_path.iterdir()} == {".csv", ".png"}
+    assert {file.suffix for file in tmp_path.iterdir()} == {".csv", ".png", ".html"}
 
 
 def test_the_package_alone_imports_next_to_nothing(tmp_path: Path) -> None:
