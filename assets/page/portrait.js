@@ -8,15 +8,23 @@
   const ask = window.matchMedia;
   window.matchMedia = (query) => ask.call(window, query === TELEPHONE ? `${query}, ${PORTRAIT}` : query);
 
-  // There the scene has its two buttons with it, since the panel shows a lesson's text or controls.
+  // There the scene has its two buttons with it, since the panel shows a lesson's text or controls;
+  // also where a page is so much enlarged that little is left beside the panel. See NARROW there.
+  const NARROW = 0.8;
   const upright = ask.call(window, `${TELEPHONE}, ${PORTRAIT}`);
+
+  function isNarrow() {
+    const scene = document.querySelector("canvas[data-engine]");
+    return upright.matches || scene !== null && scene.clientWidth < NARROW * scene.clientHeight;
+  }
+
   const hold = boxesOverScene.button("op-act", "h"), run = boxesOverScene.button("op-act", " ");
   const bar = boxesOverScene.make("div", "op-bar", hold, run);
 
   function look() {
     const words = document.querySelector("[data-said]")?.dataset;
     const invited = document.querySelector("#op-invitation:not([hidden])") !== null;
-    const hidden = !upright.matches || invited || !words?.hold;
+    const hidden = !isNarrow() || invited || !words?.hold;
     if (!hidden) {
       if (hold.textContent !== words.hold) hold.textContent = words.hold;
       if (run.textContent !== words.run) run.textContent = words.run;

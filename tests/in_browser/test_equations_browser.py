@@ -1,0 +1,51 @@
+"""No equation of any lesson has to be scrolled sideways, beside the scene or on a telephone."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.commands import TakeStep
+from onpath.app.server.lab_server import LabServer
+from onpath.lessons.course import BUILT_IN, read_course
+from tests.support.browser import Tab, wait_for
+
+pytestmark = pytest.mark.thorough
+
+COURSE, _ = read_course([BUILT_IN])
+WIDE = """() => {
+    for (const fold of document.querySelectorAll("details")) fold.open = true
+    return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(
+        [...document.querySelectorAll("math")]
+            .filter((each) => each.scrollWidth > each.clientWidth + 1)
+            .filter((each) => getComputedStyle(each).overflowX !== "visible")
+            .map((each) => [each.textContent, each.scrollWidth, each.clientWidth])))))
+}"""
+"""Equations that are wider than their place, in folds, too."""
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["desk", "telephone"])
+@pytest.mark.parametrize("lesson", COURSE.lessons)
+def test_every_equation_is_seen_at_once(
+    browser: Browser, server: LabServer, lesson: str, size: tuple[int, int]
+) -> None:
+    context = browser.new_context(viewport={"width": size[0], "height": size[1]})
+    tab = Tab(server, context, draws=False)
+    wide = dict[str, object]()
+    for index, step in enumerate(COURSE.lesson(lesson, "en").steps):
+        tab.ask(TakeStep(lesson, index), c.SetRunning(False))
+        tab.page.get_by_role("heading", name=step.title, exact=True).wait_for()
+        read = tab.button("Read on without it")
+        if step.kind == "run":
+            read.click()
+            read.wait_for(state="hidden")
+        wait_for(tab.is_built)
+        tab.settle()
+        if found := tab.page.evaluate(WIDE):
+            wide[step.title] = found
+    assert wide == {}
+    context.close()
