@@ -12,7 +12,14 @@ import numpy as np
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import robot_names
 from onpath.lessons.labels import event_label, setting_label, value_label
-from onpath.lessons.record import QUANTITIES, Mask, Record
+from onpath.lessons.measures.responses import (
+    UNITS,
+    latest_stretch,
+    overshoot,
+    settling_time,
+    unit_of,
+)
+from onpath.lessons.record import Mask, Record
 from onpath.lessons.task_schema import (
     Bound,
     Check,
@@ -63,16 +70,17 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
         return Verdict(False, words("check.stopped", robot=robots[check.robot]))
     chosen = record.chosen(check.robot, check)
     enough, seconds = _seconds(check, record, chosen, words)
+    unit = unit_of(check.stat, check.quantity)
     names = {
         "robot": robots[check.robot],
         "stat": _stat_words(check.stat, check.quantity, words),
         "during": words(f"during.{check.during}"),
-        "wanted": _range_words(check.below, check.above, QUANTITIES[check.quantity], words),
+        "wanted": _range_words(check.below, check.above, unit, words),
     }
     value = statistic(record, check.robot, check.quantity, check.stat, chosen)
     if value is None:
         return Verdict(False, words("check.nothing", **names, seconds=seconds))
-    unit, shown = QUANTITIES[check.quantity], _rounded(value, check.below, check.above)
+    shown = _rounded(value, check.below, check.above)
     said = words("check.bound", **names, value=shown, unit=unit) + seconds
     return Verdict(enough and _within(value, check.below, check.above), said)
 
@@ -139,6 +147,7 @@ def _(check: Order, record: Record, words: Words) -> Verdict:
 @verdict.register
 def _(check: Setting, record: Record, words: Words) -> Verdict:
     own: dict[str, object] = {"path": record.path, "robot": record.robot}
+    own |= {"length": record.length()}
     own |= {**DEFAULT_LAWS, **{bench: short_name(law) for bench, law in record.laws.items()}}
     value = own.get(check.name, getattr(record.parameters, check.name, None))
     if check.equals is not None:
@@ -148,7 +157,8 @@ def _(check: Setting, record: Record, words: Words) -> Verdict:
         passed, wanted = _same(value, equals), words("check.equals", value=said)
     else:
         passed = isinstance(value, int | float) and _within(value, check.below, check.above)
-        wanted = _range_words(check.below, check.above, "", words)
+        unit = "mm" if check.name == "length" else ""
+        wanted = _range_words(check.below, check.above, unit, words)
     name = setting_label(check.name, record.parameters, words)
     shown = value_label(check.name, value, words)
     return Verdict(passed, words("check.setting", name=name, value=shown, wanted=wanted))
@@ -161,12 +171,18 @@ def statistic(
 
     Args:
         robot, quantity: which column of the record.
-        stat: "max", "min", "mean", "rms" or "final" (the last value).
+        stat: "max", "min", "mean", "rms", "final" (the last value), or "settling" or "overshoot" of
+            the last uninterrupted part, see lessons/measures/responses.py.
         chosen: shape (n,); from `Record.chosen`.
     """
     values = record.values[robot].get(quantity)
     if values is None or not chosen.any():
         return None
+    if stat in UNITS:
+        chosen = latest_stretch(chosen)
+        if stat == "settling":
+            return settling_time(record.times[chosen], values[chosen])
+        return overshoot(values[chosen])
     values = values[chosen]
     if stat == "rms":
         return float(np.sqrt(np.mean(values**2)))

@@ -8,12 +8,12 @@ from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters, specs
 
-OTHERS = {"path": "check.path", "robot": "check.robot"}
+OTHERS = {"path": "check.path", "robot": "check.robot", "length": "check.length"}
 """Settings other than parameters and laws: name -> key of its label."""
 
 
 def setting_label(name: str, parameters: Parameters, words: Words) -> str:
-    """Displayed name of a setting: a parameter, "path", "robot", or a bench for its law."""
+    """Displayed name of a setting: a parameter, path, robot, length, or the law of a bench."""
     spec = specs(parameters).get(name)
     if spec is not None:
         return words.get(f"parameter.{name}.label", spec.label)

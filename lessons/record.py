@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -68,6 +69,7 @@ class Record:
         end: end of the last instant, [s].
         path, robot: names of the path and of the robot model.
         laws: current control law of each bench; a bench without one has that of a new lab.
+        length: measures the path, [mm].
     """
 
     times: Array
@@ -79,6 +81,7 @@ class Record:
     path: str = "circle"
     robot: str = "five_bar"
     laws: dict[str, str] = field(default_factory=dict[str, str])
+    length: Callable[[], float] = float
     _masks: dict[tuple[RobotName, str], Mask] = field(
         default_factory=dict[tuple[RobotName, str], Mask]
     )

@@ -6,7 +6,7 @@ from typing import Literal
 
 from onpath.lessons.action_schema import Data, RobotName, Script, Value
 
-Stat = Literal["max", "min", "mean", "rms", "final"]
+Stat = Literal["max", "min", "mean", "rms", "final", "settling", "overshoot"]
 During = Literal["always", "held", "pulled", "free"]
 EventName = Literal[
     "hold",
@@ -80,7 +80,8 @@ class Setting(Data, frozen=True, tag="setting", tag_field="kind"):
     """A parameter has a value or lies in a range.
 
     Attributes:
-        name: of a parameter; or "path" or "robot"; or "left" or "right" for the law of a bench.
+        name: of a parameter; or "path" or "robot"; or "length" of the path, [mm]; or "left" or
+            "right" for the law of a bench.
     """
 
     name: str

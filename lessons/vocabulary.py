@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import get_args
 
 from onpath.lessons.action_schema import Action, Laws, Script, StepSetup, Value
+from onpath.lessons.measures.responses import WITH_SIGN
 from onpath.lessons.record import PLOTS, QUANTITIES
 from onpath.lessons.schema import NumberQuestion, Prediction, Sketch
 from onpath.lessons.task_schema import Bound, Check, Compare, Event, EventName, Order, Setting, Task
@@ -128,11 +129,13 @@ def task_faults(task: Task, robot: str) -> Iterator[str]:
 def _check_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
     if isinstance(check, Bound | Compare):
         yield from _one_of(check.quantity, QUANTITIES, "quantity")
+        if check.stat == "overshoot" and check.quantity not in WITH_SIGN:
+            yield f"overshoot of {check.quantity}: it has no sign, only {', '.join(WITH_SIGN)} have"
     if isinstance(check, Bound | Setting):
         equals = getattr(check, "equals", None)
         if check.below is None and check.above is None and equals is None:
             yield "a check needs below or above"
-    others = "path", "robot", *BENCHES
+    others = "path", "robot", "length", *BENCHES
     if isinstance(check, Setting) and check.name not in others and entry is not None:
         yield from _one_of(check.name, specs(entry.parameters), "parameter")
     if isinstance(check, Order):

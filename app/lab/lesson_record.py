@@ -49,6 +49,7 @@ def record_of(session: Session, since: Beginning) -> Record:
         path=session.editor.design.name,
         robot=session.entry.name,
         laws=session.laws,
+        length=lambda: 1e3 * session.editor.design.curve.length(),
     )
 
 

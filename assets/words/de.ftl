@@ -24,6 +24,8 @@ stat-max = größter Wert, { $quantity }
 stat-min = kleinster Wert, { $quantity }
 stat-mean = Mittelwert, { $quantity }
 stat-rms = Effektivwert, { $quantity }
+stat-settling = Einschwingzeit ({ $quantity })
+stat-overshoot = Überschwingen ({ $quantity })
 stat-final = { $quantity } jetzt
 
 during-always = { "" }
@@ -43,6 +45,7 @@ check-order = in dieser Reihenfolge: { $events }
 check-setting = { $name } ist { $value }; verlangt: { $wanted }
 check-equals = { $value }
 check-path = Bahn
+check-length = Länge der Bahn in mm
 check-robot = Roboter
 check-stopped = { $robot } steht still: zurücksetzen und noch einmal versuchen
 

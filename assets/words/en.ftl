@@ -26,6 +26,8 @@ stat-max = largest { $quantity }
 stat-min = smallest { $quantity }
 stat-mean = mean { $quantity }
 stat-rms = rms { $quantity }
+stat-settling = settling time of { $quantity }
+stat-overshoot = overshoot of { $quantity }
 stat-final = { $quantity } now
 
 during-always = { "" }
@@ -45,6 +47,7 @@ check-order = in this order: { $events }
 check-setting = { $name } is { $value }; wanted: { $wanted }
 check-equals = { $value }
 check-path = path
+check-length = length of the path in mm
 check-robot = robot
 check-stopped = { $robot } has stopped: press Reset and try again
 
