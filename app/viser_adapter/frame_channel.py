@@ -130,6 +130,8 @@ class FrameChannel:
 
     def send(self) -> None:
         """Send the frames of all channels of this server, with one call of its event loop."""
+        if not self._messages:
+            return  # nothing to send, or sent together with another one's
         if channels := _ready.pop(self._loop, None):
             frames = [(channel, *channel._packed()) for channel in channels]
             with suppress(RuntimeError):  # the server has stopped
