@@ -29,6 +29,21 @@ def visit(browser: Browser, server: LabServer, newcomer: bool = False, **options
     return Tab(server, context, draws=False, newcomer=newcomer)
 
 
+WATCH = """
+window.uncovered = []
+function look() {
+    if (document.querySelector("[data-page]") !== null) return
+    const viser = document.querySelector("#root button, #root input, #root canvas")
+    const top = viser && document.elementFromPoint(innerWidth - 60, innerHeight / 2)
+    if (top && top !== document.body) window.uncovered.push(top.outerHTML)
+    window.looks = (window.looks ?? 0) + (viser !== null)
+    requestAnimationFrame(look)
+}
+requestAnimationFrame(look)
+"""
+"""Looks, until the lab's page has come, whether anything of viser's own page can be seen."""
+
+
 @pytest.fixture(scope="module")
 def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     tab = visit(browser, server)
@@ -38,6 +53,18 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
 
 
 # The first minute.
+
+
+def test_nothing_is_seen_of_the_viewer_s_own_page(browser: Browser, server: LabServer) -> None:
+    context = browser.new_context(viewport=WINDOW)
+    context.add_init_script(WATCH)
+    tab = Tab(server, context, draws=False)
+    tab.button("Hold both back").wait_for()
+    assert tab.page.evaluate("window.looks") > 0
+    assert tab.page.evaluate("window.uncovered") == []
+    tab.press("Hold both back")
+    wait_for(lambda: len(tab.session.grips.held) == 2)
+    context.close()
 
 
 def test_a_newcomer_is_invited_and_who_has_followed_is_not_asked_again(

@@ -1,0 +1,13 @@
+// Until the lab's page has come, a cover (see style.css) hides viser's own, which is none for students.
+(() => {
+  "use strict";
+
+  const root = document.documentElement;
+  root.classList.add("op-loading");
+  const observer = new MutationObserver(() => {
+    if (document.querySelector("[data-page]") === null) return;
+    root.classList.remove("op-loading");
+    observer.disconnect();
+  });
+  observer.observe(document, { childList: true, subtree: true });
+})();
