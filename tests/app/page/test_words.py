@@ -21,9 +21,9 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.page.panels.keys import KEYS, help_text
 from onpath.app.page.panels.robot_panel import label_of as title_of
-from onpath.app.page.panels.teacher_panel import TeacherPanel
 from onpath.app.page.panels.widgets import help_of, label_of, option_of
 from onpath.app.page.plots import MORE
+from onpath.app.page.teaching.teacher_panel import TeacherPanel
 from onpath.app.storage.records import NotKept
 from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.record import PLOTS

@@ -14,11 +14,11 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.dialog import mark_closing
-from onpath.app.page.panels.route_sender import RouteSender
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.app.page.teaching.ask_again import AskAgain
 from onpath.app.page.teaching.class_answers import ClassAnswers
+from onpath.app.page.teaching.route_sender import RouteSender
 from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
