@@ -260,6 +260,7 @@ class _Reader:
             label = "".join(child.content for child in children[i + 1 : end])
             token.tag = children[end].tag = "strong"
             token.attrs = {}
+            _separate(children[end + 1 : end + 3])
             try:
                 actions = read_link(address)
             except ValueError as error:
@@ -280,6 +281,17 @@ class _Reader:
     def _complain_all(self, line: int, texts: Iterable[str]) -> None:
         for text in texts:
             self._complain(line, text)
+
+
+def _separate(after: list[Token]) -> None:
+    """Put a comma between a link and one that follows it directly: their words would run together.
+
+    Args:
+        after: the two tokens after the link.
+    """
+    kinds = [token.type for token in after]
+    if kinds == ["text", "link_open"] and not after[0].content.strip():
+        after[0].content = ", "
 
 
 def _has_prose(tokens: list[Token]) -> bool:

@@ -324,3 +324,11 @@ def test_a_side_road_leaves_the_numbers_of_the_other_lessons_as_they_are(tmp_pat
         *[("01-first", "1"), ("01b-side", "1b"), ("02-second", "2")],
         *[("10-last", "3"), ("10c-end", "3c")],
     ]
+
+
+def test_the_words_of_links_side_by_side_do_not_run_together(tmp_path: Path) -> None:
+    links = "[one](lab:K3=1) [two](lab:K3=2), [three](lab:K3=3) and [four](lab:K3=4)."
+    file = write_lesson(tmp_path, LESSON.replace("[set K3 to 100](lab:K3=100).", links))
+    html = "".join(b.html for b in read_lesson(file).steps[0].blocks if isinstance(b, Text))
+    bold = [f"<strong>{word}</strong>" for word in ("one", "two", "three", "four")]
+    assert f"{', '.join(bold[:3])} and {bold[3]}." in html
