@@ -170,7 +170,7 @@ class Page:
             with own:
                 self._build_head(first, words, post)
         else:  # what a step speaks of is seen beneath its text; the plot comes last
-            self._build_head(first, words, post, plot=False)
+            self._build_numbers(words)
             tabs = gui.add_tab_group()
             own = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
         course = self._desk.course
@@ -186,6 +186,7 @@ class Page:
             with tabs.add_tab(words("show.title"), viser.Icon.EYE):
                 self._parts.append(controls.show())
         if tab is None:
+            self._build_ways(first, words, post)
             self._build_distance(first, words)
         own = words, post, course, self._scene, change, first, self.exporter.report
         lesson = LessonPanel(self._client, *own, tab=tab, student=self._desk.code)
@@ -204,17 +205,20 @@ class Page:
             self.reset_view,
         )
 
-    def _build_head(self, first: PageSnapshot, words: Words, post: Post, plot: bool = True) -> None:
-        """Build the permanent widgets: readout, lesson menu and distance plot."""
-        gui = self._client.gui
+    def _build_head(self, first: PageSnapshot, words: Words, post: Post) -> None:
+        """Build the permanent widgets: readout, menus and distance plot."""
         self._build_numbers(words)
+        self._build_ways(first, words, post)
+        self._build_distance(first, words)
+
+    def _build_ways(self, first: PageSnapshot, words: Words, post: Post) -> None:
+        """Build the ways to the help, to the lessons and into the class."""
+        gui = self._client.gui
         self._build_menus(first, words, post)
         if self._desk.course.lessons:
             self._parts.append(LessonMenu(gui, words, post, self._desk.course, first))
         if self._desk.seat is not None:
             self._parts.append(ClassPanel(gui, words, self._desk.seat, first))
-        if plot:
-            self._build_distance(first, words)
 
     def _build_menus(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the buttons for language, display and help."""

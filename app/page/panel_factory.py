@@ -40,6 +40,10 @@ ALL = (
 )
 
 
+FEW = 5
+"""Sliders of a lesson's step that leave room for the buttons below them."""
+
+
 class Part(Protocol):
     """A part of the page that shows the state of a lab."""
 
@@ -81,7 +85,11 @@ class PanelFactory:
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         """Build the run panel, the controls and the plot of a lesson's step."""
-        parts = self._add("hold", first) + self.listed_by_step(scene, first)
+        if len(_sliders(scene, first)) > FEW:
+            parts = self._add("hold", first) + self.listed_by_step(scene, first)
+        else:  # the button to hold is seen below them
+            parts = self._add_sliders(scene, first) + self._add("hold", first)
+            parts += self._add_others(scene, first)
         return parts + self.plot_of_step(scene, first)
 
     def run_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
@@ -90,15 +98,18 @@ class PanelFactory:
 
     def listed_by_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         """Build the controls listed by a lesson's step."""
+        return self._add_sliders(scene, first) + self._add_others(scene, first)
+
+    def _add_sliders(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
+        names = _sliders(scene, first)
+        if not names:
+            return []
+        return [ParameterWidgets(self._gui, self._words, self._post, names, first)]
+
+    def _add_others(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         self._scene.mouse.path_first = "editor" in scene.controls
-        parts, known = list[Part](), first.parameters
-        parameters = [name for name in scene.controls if name in known]
-        if parameters:
-            parts.append(ParameterWidgets(self._gui, self._words, self._post, parameters, first))
-        for name in scene.controls:
-            if name not in known and name != "hold":
-                parts += self._add(name, first)
-        return parts
+        names = [name for name in scene.controls if name not in first.parameters]
+        return [part for name in names if name != "hold" for part in self._add(name, first)]
 
     def plot_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         """Build the plot of a lesson's step, if it has one."""
@@ -172,6 +183,11 @@ class PanelFactory:
             hint=self._words("controls.copy_hint"),
         )
         on_user_update(copy, lambda on: self._post(c.SetCopy(on)))
+
+
+def _sliders(scene: StepSetup, first: PageSnapshot) -> list[str]:
+    """The parameters among the controls of a lesson's step."""
+    return [name for name in scene.controls if name in first.parameters]
 
 
 def _silent(_: object) -> None:

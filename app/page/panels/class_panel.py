@@ -30,6 +30,7 @@ class ClassPanel:
             self._leave = gui.add_button(words("class.leave"), color="gray", icon=viser.Icon.LOGOUT)
             self._said = gui.add_html("")
             with gui.add_folder(words("class.teacher"), expand_by_default=False):
+                gui.add_html(render("panel/secret.html"))
                 key = gui.add_text(words("class.key"), "", hint=words("class.key_hint"))
                 teach = gui.add_button(words("class.teach"), color="gray", icon=viser.Icon.KEY)
         self._try(self._join, lambda: seat.join(self._code.value, self._name.value))

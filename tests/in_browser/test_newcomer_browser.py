@@ -1,0 +1,125 @@
+"""What newcomers stumbled over, each once: buttons, plots, boards and boxes on the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser, ConsoleMessage, expect
+
+from onpath.app.classroom.local_classroom import LocalClassroom
+from onpath.app.lab import commands as c
+from onpath.app.lab.commands import TakeStep
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.server.lab_server import LabServer
+from tests.in_browser.test_pointer_browser import ARROWS, SCENES
+from tests.support.browser import WAIT, Tab, wait_for
+
+LESSON = "01-path-or-timetable"
+expect.set_options(timeout=WAIT * 1e3)
+
+PRIMARY = """() => [...document.querySelectorAll(".mantine-Button-root")]
+    .filter((each) => each.checkVisibility() && getComputedStyle(each).backgroundColor
+        === "rgb(0, 114, 178)").map((each) => each.textContent.trim())"""
+UNDER_SCROLLBAR = """() => {
+    const bars = [...document.querySelectorAll(".mantine-ScrollArea-scrollbar")]
+        .filter((bar) => bar.checkVisibility()).map((bar) => bar.getBoundingClientRect())
+    return [...document.querySelectorAll("input[inputmode]")].filter((box) => box.checkVisibility())
+        .map((box) => box.getBoundingClientRect()).filter((box) => bars.some((bar) =>
+            bar.left < box.right - 1 && bar.right > box.right && bar.height > bar.width))
+        .map((box) => [box.right, ...bars.map((bar) => bar.left)])
+}"""
+NARROW_PLOTS = """() => [...document.querySelectorAll(".uplot canvas")].filter((each) => {
+    const plot = each.getBoundingClientRect(), paper = each.closest(".mantine-Paper-root")
+    return each.checkVisibility() && plot.width < 0.8 * paper.getBoundingClientRect().width
+}).length"""
+
+
+@pytest.fixture(scope="module")
+def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    context.add_init_script(SCENES)
+    tab = Tab(server, context, draws=False)
+    tab.ask(c.SetRunning(False))
+    yield tab
+    assert tab.errors == []
+    context.close()
+
+
+def take(tab: Tab, index: int, lesson: str = LESSON) -> None:
+    """Open a step."""
+    tab.ask(TakeStep(lesson, index), c.SetRunning(False))
+    found = tab.lab.lessons.lesson
+    assert found is not None
+    tab.page.get_by_role("heading", name=found.steps[index].title, exact=True).wait_for()
+    wait_for(tab.is_built)
+    tab.settle()
+
+
+def test_one_button_is_the_primary_one_and_help_is_on_the_first_screen(tab: Tab) -> None:
+    assert tab.page.evaluate(PRIMARY) == ["Hold both back"]
+    expect(tab.button("Help and keys")).to_be_in_viewport()
+    expect(tab.button("Hold both back")).to_be_in_viewport()
+
+
+def test_no_number_is_under_a_scroll_bar(tab: Tab) -> None:
+    for folder in ("Advanced", "Realism"):
+        tab.open(folder)
+    assert tab.page.evaluate(UNDER_SCROLLBAR) == []
+
+
+def test_a_plot_is_as_wide_as_its_panel_in_another_language_too(tab: Tab) -> None:
+    assert tab.page.evaluate(NARROW_PLOTS) == 0
+    for language, name in (("de", "Beide festhalten"), ("en", "Hold both back")):
+        tab.ask(c.SetLanguage(language))
+        tab.button(name).first.wait_for()
+        wait_for(tab.is_built)
+        tab.settle()
+        wait_for(lambda: tab.page.evaluate(NARROW_PLOTS) == 0)
+
+
+def test_no_arrow_of_viser_covers_what_is_sketched(tab: Tab) -> None:
+    take(tab, 1)
+    box = tab._canvas()
+    way = [(box["x"] + x * box["width"], box["y"] + 0.5 * box["height"]) for x in (0.2, 0.5, 0.8)]
+    with tab.dragging(*way):
+        tab.settle()
+        shown = tab.page.evaluate(ARROWS)
+        assert len(shown) > 0 and not any(shown)
+    tab.page.get_by_text("Draw again, or commit").wait_for()
+
+
+def test_going_through_a_lesson_leaves_no_error_in_the_console(tab: Tab) -> None:
+    said = list[str]()
+
+    def heard(message: ConsoleMessage) -> None:
+        if message.type in ("error", "warning") and "component" in message.text:
+            said.append(message.text)
+
+    tab.page.on("console", heard)
+    for index in (0, 3, 6, 9, 6, 1, 0):
+        take(tab, index)
+    tab.page.remove_listener("console", heard)
+    assert said == []
+
+
+def test_what_a_step_speaks_of_is_on_the_first_screen(tab: Tab) -> None:
+    take(tab, 6)
+    for name in ("K1", "K2", "K5", "Speed"):
+        expect(tab.slider(name)).to_be_in_viewport()
+    expect(tab.button("Hold both back")).to_be_in_viewport()
+
+
+def test_a_teachers_key_is_not_shown_while_it_is_typed(browser: Browser) -> None:
+    server = LabServer("127.0.0.1", 0, LoopCache(), classroom=LocalClassroom())
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    tab = Tab(server, context, draws=False)
+    tab.open("Teacher…")
+    shown = "box => getComputedStyle(box).webkitTextSecurity"
+    assert tab.field("Teacher's key").evaluate(shown) == "disc"
+    assert tab.field("Class code").evaluate(shown) == "none"
+    context.close()
+    server.stop()
