@@ -27,6 +27,9 @@ class ExportCommand:
     """A path, such as circle or "ellipse 0.07 0.04"; repeat for more to choose from."""
     slider: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """A parameter that readers may change; repeat for more. By default the speed and gains."""
+    control: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """What else they may do or see: hold, pull, run, step, reset, path, plot; repeat for more. By
+    default all."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Set any parameter of the robot as name=value; repeat for more."""
     title: str = ""
@@ -36,7 +39,7 @@ class ExportCommand:
 
     def run(self) -> None:
         """Write the page, and print its size."""
-        from onpath.app.exports.standalone.figure_choice import SLIDERS
+        from onpath.app.exports.standalone.figure_choice import CONTROLS
         from onpath.app.notebook.figure import PATHS, figure
         from onpath.models.control.benches import DEFAULT_LAWS
 
@@ -45,7 +48,8 @@ class ExportCommand:
             self.robot,
             self.law or tuple(DEFAULT_LAWS.values()),
             self.path or PATHS,
-            sliders=self.slider or SLIDERS,
+            sliders=self.slider or None,
+            controls=self.control or CONTROLS,
             title=self.title,
             language=self.language,
             **dict(assignments(self.set)),

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from onpath.app.common.atomic_file import check_writable, whole_file
-from onpath.app.exports.standalone.figure_choice import SLIDERS, chosen
+from onpath.app.exports.standalone.figure_choice import CONTROLS, chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.assets.messages import languages
 from onpath.lessons.words import Words
@@ -25,7 +25,8 @@ def figure(
     laws: Sequence[str] = tuple(DEFAULT_LAWS.values()),
     paths: Sequence[str] | Mapping[str, Curve | str] = PATHS,
     *,
-    sliders: Sequence[str] = SLIDERS,
+    sliders: Sequence[str] | None = None,
+    controls: Sequence[str] = CONTROLS,
     title: str = "",
     language: str = "en",
     **parameters: Any,
@@ -41,7 +42,9 @@ def figure(
         laws: one or two of `onpath.laws()`, or laws of one's own.
         paths: to choose from, the first one at the beginning: names of `onpath.paths()` or texts as
             `onpath.simulate` takes them, or a name for each path.
-        sliders: names of `onpath.parameters(robot)` that readers may change.
+        sliders: names of `onpath.parameters(robot)` that readers may change; None: the speed and
+            the gains of the laws.
+        controls: what else they may do or see: some of hold, pull, run, step, reset, path, plot.
         title: above the figure.
         language: of the page.
         parameters: as in `onpath.simulate`; the speed is that of a new lab if not given.
@@ -68,7 +71,7 @@ def figure(
         paths = [paths]
     named = paths if isinstance(paths, Mapping) else {name: name for name in paths}
     curves = {name: _curve(each) for name, each in named.items()}
-    choice = chosen(robot, laws, curves, parameters, sliders)
+    choice = chosen(robot, laws, curves, parameters, sliders, controls)
     with whole_file(path) as scratch:
         scratch.write_text(figure_page(choice, Words(language), title), encoding="utf-8")
     return path

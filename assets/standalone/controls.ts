@@ -34,15 +34,15 @@ export class Controls {
         const { data } = simulation
         this.held = this.button("main", "", () => this.toggleHold(), said(data, "run.hold_hint"))
         this.run = this.button("", "", () => this.toggleRun(), said(data, "run.run_hint"))
-        const buttons = made(
-            "div",
-            "buttons",
-            this.held,
-            this.run,
-            this.button("", said(data, "run.step"), () => this.step(), said(data, "key.right")),
-            this.button("", said(data, "run.reset"), () => this.reset(), said(data, "key.reset")),
-            ...(data.paths.length > 1 ? [this.paths()] : []),
-        )
+        const every: Record<string, HTMLElement> = {
+            hold: this.held,
+            run: this.run,
+            step: this.button("", said(data, "run.step"), () => this.step(), said(data, "key.right")),
+            reset: this.button("", said(data, "run.reset"), () => this.reset(), said(data, "key.reset")),
+            ...(data.paths.length > 1 ? { path: this.paths() } : {}),
+        }
+        const shown = Object.keys(every).filter(name => data.controls.includes(name))
+        const buttons = made("div", "buttons", ...shown.map(name => every[name]!))
         const sliders = data.sliders.map((slider, i) => this.slider(slider, i))
         this.element = made("div", "controls", buttons, made("div", "sliders", ...sliders))
         this.show()
@@ -129,14 +129,14 @@ export class Controls {
         const target = event.target as HTMLElement
         if (event.ctrlKey || event.metaKey || event.altKey || target.closest("select, input")) return
         if (event.key === " " && target.closest("button")) return
-        const acts: Record<string, () => void> = {
-            h: () => this.toggleHold(),
-            " ": () => this.toggleRun(),
-            ArrowRight: () => this.step(),
-            r: () => this.reset(),
+        const acts: Record<string, [string, () => void]> = {
+            h: ["hold", () => this.toggleHold()],
+            " ": ["run", () => this.toggleRun()],
+            ArrowRight: ["step", () => this.step()],
+            r: ["reset", () => this.reset()],
         }
-        const act = acts[event.key] ?? acts[event.key.toLowerCase()]
-        if (!act || event.repeat) return
+        const [name, act] = acts[event.key] ?? acts[event.key.toLowerCase()] ?? []
+        if (!name || !act || event.repeat || !this.simulation.data.controls.includes(name)) return
         event.preventDefault()
         act()
     }

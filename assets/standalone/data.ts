@@ -49,6 +49,7 @@ export interface FigureData {
     benches: BenchData[]
     paths: PathData[]
     sliders: SliderData[]
+    controls: string[]
     box: [number, number, number, number]
     off: number
     strip: number

@@ -37,7 +37,10 @@ class Figure implements Running {
         this.plot = new Plot(this.simulation, data)
         this.live.setAttribute("role", "status")
         into.replaceChildren(...this.parts())
-        for (const view of this.views) this.grabs(view)
+        if (data.controls.includes("pull")) {
+            for (const view of this.views) this.grabs(view)
+            this.keys()
+        }
         addEventListener("resize", () => (this.stale = true))
         this.forget()
         requestAnimationFrame(() => this.frame())
@@ -76,9 +79,15 @@ class Figure implements Running {
             ...(data.title ? [made("h1", "", data.title)] : []),
             made("div", "robots", ...robots),
             controls.element,
-            made("p", "axis", said(data, "standalone.plot")),
-            made("div", "plot", this.plot.canvas),
+            ...(data.controls.includes("plot") ? this.plotted() : []),
             this.live,
+        ]
+    }
+
+    private plotted(): HTMLElement[] {
+        return [
+            made("p", "axis", said(this.data, "standalone.plot")),
+            made("div", "plot", this.plot.canvas),
         ]
     }
 
@@ -151,7 +160,6 @@ class Figure implements Running {
                 if (from) this.simulation.pull(null)
                 from = null
             })
-        if (view === this.views[0]) this.keys()
     }
 
     private keys(): void {

@@ -218,6 +218,21 @@ def test_keys_and_names_are_the_lab_s(browser: Browser, tmp_path: Path) -> None:
     page.close()
 
 
+def test_what_is_not_chosen_is_not_there(browser: Browser, tmp_path: Path) -> None:
+    figure = onpath.figure(tmp_path / "a.html", controls=["hold"], sliders=[], laws="set_point")
+    opened = Opened(browser, figure)
+    names = opened.page.get_by_role("button").all_inner_texts()
+    assert names == ["Hold back"]
+    assert opened.page.get_by_role("slider").count() == 0
+    assert opened.page.get_by_role("combobox").count() == 0
+    assert opened.page.locator("canvas").count() == 1
+    opened.page.keyboard.press(" ")
+    assert opened.number("onpath.running")
+    opened.page.keyboard.press("h")
+    assert opened.number("onpath.simulation.held")
+    opened.page.close()
+
+
 def test_inside_an_iframe_of_a_web_server_s_page(browser: Browser, tmp_path: Path) -> None:
     written(tmp_path)
     (tmp_path / "blog.html").write_text("<iframe src=five_bar.en.html width=800 height=700>")

@@ -32,7 +32,8 @@ from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.parameters import Parameters, changed, specs
 from onpath.models.systems.robots import Robot
 
-SLIDERS = ("speed", "K1", "K2", "K3", "K5")
+CONTROLS = ("hold", "pull", "run", "step", "reset", "path", "plot")
+"""What a reader may do or see: hold robots back, pull them, pause, choose a path, the plot."""
 
 
 @dataclass(frozen=True)
@@ -45,13 +46,15 @@ class FigureChoice:
         paths: name -> curve; it begins with the first one.
         parameters: of the robot, the laws and the task.
         sliders: names of parameters that readers may change; each is a number of the settings.
+        controls: some of `CONTROLS`.
     """
 
     robot: str
     laws: tuple[str, ...]
     paths: Mapping[str, Curve]
     parameters: Parameters
-    sliders: tuple[str, ...] = SLIDERS
+    sliders: tuple[str, ...]
+    controls: tuple[str, ...] = CONTROLS
 
     @property
     def entry(self) -> RobotEntry:
@@ -90,9 +93,15 @@ def chosen(
     laws: Sequence[str] = tuple(DEFAULT_LAWS.values()),
     paths: Mapping[str, Curve] | None = None,
     values: Mapping[str, Any] | None = None,
-    sliders: Sequence[str] = SLIDERS,
+    sliders: Sequence[str] | None = None,
+    controls: Sequence[str] = CONTROLS,
 ) -> FigureChoice:
     """Check a choice; the robot starts as gently as in a new lab.
+
+    Args:
+        robot, laws, paths, controls: see `FigureChoice`.
+        values: parameters by name, where they differ from a new lab's.
+        sliders: None: the speed or the target, and the gains of the laws.
 
     Raises:
         ValueError: an unknown name, a value out of range, a path that the robot cannot follow, or
@@ -108,15 +117,25 @@ def chosen(
         parameters = changed(parameters, name, value)
     if parameters.speed_profile != "constant":
         raise ValueError("speed_profile: a figure has a constant speed")
-    figure = FigureChoice(
-        robot, tuple(map(law_name, laws)), dict(paths or {}), parameters, tuple(sliders)
-    )
+    names = tuple(map(law_name, laws))
+    shown = _usual_sliders(names, parameters) if sliders is None else tuple(sliders)
+    figure = FigureChoice(robot, names, dict(paths or {}), parameters, shown, tuple(controls))
     _check(figure)
     return figure
 
 
+def _usual_sliders(laws: Sequence[str], parameters: Parameters) -> tuple[str, ...]:
+    """The wanted motion, and the gains that act in one of the laws."""
+    task, unused = ("speed", "K4") if parameters.task == "speed" else ("target", "")
+    gains = dict.fromkeys(gain for law in laws for gain in law_named(law).gains)
+    return task, *(gain for gain in gains if gain != unused)
+
+
 def _check(figure: FigureChoice) -> None:
     robot = figure.machine
+    for control in figure.controls:
+        if control not in CONTROLS:
+            raise unknown_name(control, list(CONTROLS), "control")
     if not figure.paths:
         raise ValueError("paths: expected at least one")
     for law in figure.laws:

@@ -54,6 +54,7 @@ def figure_data(figure: FigureChoice, words: Words, title: str = "") -> dict[str
         "benches": _benches(figure, words),
         "paths": [_path(figure, name, curve, words) for name, curve in curves.items()],
         "sliders": [_slider(figure, name, words) for name in figure.sliders],
+        "controls": figure.controls,
         "box": _box(figure),
         "off": OFF,
         "strip": robot.drawing.strip,

@@ -110,6 +110,7 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
         (["--slider", "task"], "cannot be changed in a figure"),
         (["--set", "speed_profile=sine"], "constant speed"),
         (["--language", "xx"], "en"),
+        (["--control", "brake"], "control"),
     ]
     for arguments, hint in wrong:
         assert run_command(["export", "figure", target, *arguments]) == 2, arguments
@@ -134,3 +135,17 @@ def test_what_runs_was_built_from_these_sources() -> None:
     built = asset_path("standalone/figure.js").read_text("utf-8")
     assert built.splitlines()[0] == f"// sources: {hashlib.sha256(text).hexdigest()}"
     assert text.count(b"\n") <= LINES
+
+
+@pytest.mark.parametrize(
+    "laws, task, expected",
+    [
+        (("trajectory_tracking", "set_point"), "speed", ["speed", "K1", "K2", "K3"]),
+        (("waiting_clock",), "speed", ["speed", "K1", "K2", "K3", "clock_gain"]),
+        (("path_following",), "position", ["target", "K1", "K2", "K3", "K4", "K5"]),
+    ],
+)
+def test_sliders_are_those_of_what_acts(
+    laws: tuple[str, ...], task: str, expected: list[str]
+) -> None:
+    assert list(chosen("five_bar", laws, CURVES, {"task": task}).sliders) == expected
