@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 import onpath
@@ -120,12 +120,20 @@ def test_held_back_the_tracker_is_torn_off_and_the_follower_waits(opened: Opened
     opened.do(("advance", 2000))
     tracker, follower = opened.number("onpath.simulation.benches.map(bench => bench.most)")
     assert tracker > 0.04 and follower < 0.003
-    wait_for(lambda: "waits" in opened.page.get_by_role("status").inner_text(), WAIT)
-    assert "torn off" in opened.page.get_by_role("status").inner_text()
+    said = opened.page.get_by_role("status")
+    wait_for(lambda: "torn off" in said.inner_text() and "waits" in said.inner_text(), WAIT)
     opened.press("Let both go")
     opened.press("Pause")
     opened.do(("advance", 3000))
     assert max(opened.number(DISTANCES)) < 1e-3
+
+
+BEGIN: list[Act] = [("choose", 0), ("set", [0, 2.0]), ("set", [1, 400.0])]
+PULLED: list[Act] = [
+    *BEGIN,
+    *(("advance", 500), ("pull", [0.01, 0.02]), ("advance", 300), ("pull", [0.02, 0.0])),
+    *(("advance", 300), ("hold", True), ("advance", 100), ("pull", None)),
+]
 
 
 def acts() -> st.SearchStrategy[list[Act]]:
@@ -139,9 +147,7 @@ def acts() -> st.SearchStrategy[list[Act]]:
         st.tuples(st.just("reset"), st.none()),
         st.tuples(st.just("pull"), st.one_of(st.none(), st.tuples(coordinate, coordinate))),
     )
-    return st.lists(st.one_of(each), min_size=3, max_size=12).map(
-        lambda found: [("choose", 0), ("set", [0, 2.0]), ("set", [1, 400.0]), *found]
-    )
+    return st.lists(st.one_of(each), min_size=3, max_size=12).map(lambda found: [*BEGIN, *found])
 
 
 @settings(
@@ -149,6 +155,7 @@ def acts() -> st.SearchStrategy[list[Act]]:
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 @given(acts())
+@example(PULLED)
 def test_the_same_inputs_give_the_trajectory_of_python(opened: Opened, script: list[Act]) -> None:
     python = PythonFigure(choice())
     for act in (*script, ("advance", 1000)):
