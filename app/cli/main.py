@@ -7,6 +7,7 @@ import io
 import re
 import sys
 from dataclasses import dataclass
+from importlib.metadata import version
 from typing import Annotated
 
 import tyro
@@ -114,6 +115,9 @@ def run_command(arguments: list[str]) -> int:
     The code is 0; 1 for lessons with problems; 2, with one line on standard error, for other
     errors; or 130, the usual one, for an interrupted command.
     """
+    if arguments == ["--version"]:
+        print(f"onpath {version('onpath')}")
+        return 0
     if not arguments or arguments[0] not in (*COMMANDS, "-h", "--help"):
         if arguments and not arguments[0].startswith("-"):
             print(f"onpath: {unknown_command(arguments[0])}", file=sys.stderr)

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -30,6 +31,12 @@ def onpath(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         command, capture_output=True, text=True, env=environment, timeout=60, check=False
     )
+
+
+def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    stated = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
+    assert run_command(["--version"]) == 0
+    assert capsys.readouterr().out == f"onpath {stated}\n"
 
 
 def test_summary_is_json_with_both_controllers(capsys: pytest.CaptureFixture[str]) -> None:
