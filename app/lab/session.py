@@ -107,6 +107,7 @@ class Session:
 
         If that has the same states, both go on from the present one; otherwise they start anew.
         """
+        robot = self.entry.make(parameters)  # may take long, and another thread may read the lab
         if self.robot.extra_fields:
             self.history.settle()  # the samples depend on the parameters
         rise = rise_of(parameters)
@@ -115,7 +116,6 @@ class Session:
         if parameters.across != self.parameters.across:
             self.across_since = self.time
         before, self.parameters = self.parameters, parameters
-        robot = self.entry.make(parameters)
         if robot is self.robot:
             return
         self.history.settle()
@@ -133,12 +133,12 @@ class Session:
 
     def _set_up(self, entry: RobotEntry) -> None:
         self.history.settle()  # a page that is being built in another thread reads it, too
-        self.entry = entry
         parameters, editor, start, wall = self.earlier.get(entry.name, Belongings(entry.lab))
+        robot, rise = entry.make(parameters), rise_of(parameters)
+        editor = editor or PathEditor(robot, self.presets["circle"], rise)
+        self.entry, self.editor = entry, editor
         self.parameters: Parameters = parameters
-        self.robot: Robot = entry.make(parameters)
-        rise = rise_of(parameters)
-        self.editor = editor or PathEditor(self.robot, self.presets["circle"], rise)
+        self.robot: Robot = robot
         self.start, self.wall = start, wall
         self._restart()
 

@@ -6,6 +6,7 @@ This is the only module that knows both labs and pages: pages receive snapshots 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
@@ -18,6 +19,20 @@ from onpath.app.simulation.display_rate import STRIDES, is_turn
 AT_EASE = STRIDES[0]  # the stride of a thread that is not overloaded
 SLOW, SLOWER = 3, 5
 """Frames of display per update of traces, plots and readouts: at ease, 10 Hz; else 5, 4 or 3 Hz."""
+
+TRIES = 5  # to read a lab that is being changed
+
+
+def first_snapshot(lab: Lab, nickname: str = "") -> PageSnapshot:
+    """What a page is built from. Called in the thread that builds it.
+
+    If the simulation thread changes the robot at this moment, what is read may not fit together;
+    then it is read again.
+    """
+    for _ in range(TRIES - 1):
+        with suppress(Exception):
+            return take_page_snapshot(lab, 1.0, nickname=nickname)
+    return take_page_snapshot(lab, 1.0, nickname=nickname)
 
 
 class LabFeed:

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import LawPlaces, PageSnapshot
-from onpath.app.server.lab_feed import AT_EASE, LabFeed
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.server import lab_feed
+from onpath.app.server.lab_feed import AT_EASE, LabFeed, first_snapshot
 from onpath.app.simulation.display_rate import STRIDES, is_turn
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import changed
 from tests.support.lab import FOLLOWER, FRAME, do, new_lab, y
 
 FRAMES = 240
@@ -82,3 +87,38 @@ def test_a_hand_is_followed_in_every_frame_but_costs_no_more_slow_updates() -> N
 def test_of_a_lab_at_rest_only_slow_updates_are_shown() -> None:
     paper = shown(AT_EASE, 0, c.SetRunning(False))
     assert len(paper.moved) <= 1 and paper.whole == shown(AT_EASE, 0).whole
+
+
+@pytest.mark.parametrize("name", ["flexible", "five_bar"])
+def test_a_page_can_be_built_while_a_robot_is_made(name: str) -> None:
+    """That takes long, and another thread reads the lab."""
+    lab, seen = new_lab(FRAME), list[PageSnapshot]()
+    session, entry = lab.session, ROBOTS[name]
+
+    def slowly(parameters: Any) -> Any:
+        seen.append(take_page_snapshot(lab, 1.0))
+        return entry.make(parameters)
+
+    before = take_page_snapshot(lab, 1.0)
+    session.choose_robot(replace(entry, make=slowly))
+    first = len(seen)
+    assert first and all(each.key == before.key for each in seen)
+    assert all(each.parameters == before.parameters for each in seen)
+    chosen = take_page_snapshot(lab, 1.0)
+    session.set_parameters(changed(session.parameters, "payload", 0.05))
+    assert seen[first].key == chosen.key and seen[first].parameters == chosen.parameters
+
+
+def test_a_lab_that_is_just_being_changed_is_read_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    lab, faults = new_lab(FRAME), [KeyError("alpha"), IndexError()]
+
+    def torn(*arguments: Any, **options: Any) -> PageSnapshot:
+        if faults:
+            raise faults.pop()
+        return take_page_snapshot(*arguments, **options)
+
+    monkeypatch.setattr(lab_feed, "take_page_snapshot", torn)
+    assert first_snapshot(lab, "Ada").nickname == "Ada"
+    faults += [KeyError("alpha")] * 100
+    with pytest.raises(KeyError):
+        first_snapshot(lab)
