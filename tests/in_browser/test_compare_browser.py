@@ -34,7 +34,7 @@ def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabSe
     expect(tab.page.get_by_alt_text("Largest distance to the path over delay")).to_be_visible()
 
     tab.ask(c.TypeLaw(RIGHT, TYPED))
-    own = tab.page.get_by_label("Own law, right", exact=True)
+    own = tab.page.get_by_role("checkbox", name="Own law, right", exact=True)
     own.check(timeout=20_000)
     tab.press("Compare")
     expect(tab.page.locator(f"{TABLE} tbody tr", has_text=TYPED)).to_have_count(1, timeout=60_000)
