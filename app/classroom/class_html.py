@@ -161,7 +161,7 @@ def given_line(found: Distribution, words: Words) -> str:
     """How many have answered, skipped, and not answered yet, and how many answers are lost."""
     given = sum(found.counts) + len(found.sketches)
     said = words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
-    return f"{said} {words('class.earlier', count=found.earlier)}" if found.earlier else said
+    return f"{said} {words('class.unknown', count=found.unknown)}" if found.unknown else said
 
 
 @dataclass(frozen=True, slots=True)

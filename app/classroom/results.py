@@ -28,7 +28,7 @@ HEADER = (
     *("number", "nickname", "lesson", "step", "kind", "item", "result", "right", "value"),
     *("sure", "why"),
 )
-EARLIER = "unknown", "", ""
+UNKNOWN = "unknown", "", ""
 """Result, correctness and value of a choice of which the options have changed since."""
 FORMULA = frozenset("=+-@|%\u2212\u2795\u2796\ua78a\U0001f7f0")
 """Beginnings of a formula, also as minus, heavy or short sign; other widths and sizes by NFKC."""
@@ -42,7 +42,7 @@ class Distribution:
         counts: number of answers per option; empty for a sketch.
         sketches: the sketched curves.
         skipped: number of students who skipped it.
-        earlier: number of answers that cannot be known, since the lesson has changed.
+        unknown: number of answers that cannot be known, since the lesson has changed.
         waiting: number of students who have not answered.
     """
 
@@ -50,7 +50,7 @@ class Distribution:
     sketches: tuple[Answer, ...]
     skipped: int
     waiting: int
-    earlier: int = 0
+    unknown: int = 0
 
 
 def prediction_at(lesson: Lesson, index: int) -> tuple[int, Prediction] | None:
@@ -87,7 +87,7 @@ def distribution(
         sketches=tuple(answer for answer in given if answer.times),
         skipped=sum(answer.skipped for answer in given) - lost,
         waiting=len(answers) - len(given),
-        earlier=lost,
+        unknown=lost,
     )
 
 
@@ -144,13 +144,13 @@ def _rows(lesson: Lesson, notes: Notes) -> Iterator[tuple[object, ...]]:
     for index, step in enumerate(lesson.steps):
         for prediction in step.predictions():
             answer = notes.answers.get(str(index))
-            told, earlier = _told(prediction, answer), str(index) in notes.unknown
-            result = EARLIER if earlier else _answered(prediction, answer)
+            told, unknown = _told(prediction, answer), str(index) in notes.unknown
+            result = UNKNOWN if unknown else _answered(prediction, answer)
             yield index + 1, "prediction", step.title, *result, *told
             if str(index) in notes.asked_again:
                 second = notes.second.get(str(index))
-                told, earlier = _told(prediction, second), second_key(str(index)) in notes.unknown
-                result = EARLIER if earlier else _answered(prediction, second)
+                told, unknown = _told(prediction, second), second_key(str(index)) in notes.unknown
+                result = UNKNOWN if unknown else _answered(prediction, second)
                 yield index + 1, "second", step.title, *result, *told
         for task in step.tasks():
             best = notes.tasks.get(task.id)
@@ -160,7 +160,7 @@ def _rows(lesson: Lesson, notes: Notes) -> Iterator[tuple[object, ...]]:
             key = f"{index}.{number}"
             if isinstance(block, Quiz):
                 chosen = _chosen(block, notes.quiz.get(key))
-                chosen = EARLIER if key in notes.unknown else chosen
+                chosen = UNKNOWN if key in notes.unknown else chosen
                 yield index + 1, "question", step.title, *chosen
             elif isinstance(block, NumberQuestion):
                 given = notes.numbers.get(key)

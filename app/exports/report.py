@@ -53,7 +53,7 @@ class AskedPrediction:
         step: index of the step that asks.
         chosen: index of the option chosen, if any.
         second: the answer after a discussion, if it was asked again.
-        earlier: whether the answer cannot be known, since the lesson has changed.
+        unknown: whether the answer cannot be known, since the lesson has changed.
         figure: figure of a sketch, if there is anything to draw.
     """
 
@@ -64,7 +64,7 @@ class AskedPrediction:
     chosen: int | None
     figure: SketchFigure | None
     second: Answer | None = None
-    earlier: bool = False
+    unknown: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,8 +140,8 @@ def _asked(chapter: Chapter, key: str, block: Prediction, words: Words) -> Asked
     figure = _figure(block, answer, truth, words, names) if isinstance(block, Sketch) else None
     chosen = answer.option if answer else None
     second = chapter.notes.second.get(key)
-    earlier = key in chapter.notes.unknown
-    return AskedPrediction(int(key), block, answer, truth, chosen, figure, second, earlier)
+    unknown = key in chapter.notes.unknown
+    return AskedPrediction(int(key), block, answer, truth, chosen, figure, second, unknown)
 
 
 def _passed(task: Task, best: float | None, words: Words) -> str:

@@ -256,7 +256,7 @@ class LessonState:
         marks = marks_of(lesson, key, answer, again)
         self._note_chosen(key, marks, "second" if again else "answers", answer)
 
-    def is_earlier(self, key: str = "") -> bool:
+    def is_unknown(self, key: str = "") -> bool:
         """Whether something was chosen that cannot be known, since the lesson has changed.
 
         Args:

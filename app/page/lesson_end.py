@@ -144,7 +144,7 @@ class LessonEnd:
                 names = robot_names(laws, self._words)
                 said = curve_words(block, answer, truth, self._words, names)
             shown = {"block": block, "answer": answer, "truth": truth, "said": said}
-            shown |= {"second": notes.second.get(key), "earlier": key in notes.unknown}
+            shown |= {"second": notes.second.get(key), "unknown": key in notes.unknown}
             self._html("lesson/end_prediction.html", title=title, colour=BORDER.hex, **shown)
             if isinstance(block, Sketch) and said:
                 chart = PredictionChart(self._gui, block, answer, laws, self._words, truth)

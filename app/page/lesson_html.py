@@ -75,14 +75,14 @@ def question(
     chosen: int | None,
     revealed: bool,
     words: Words,
-    earlier: bool = False,
+    unknown: bool = False,
 ) -> str:
     """A question with lettered options and, once revealed, the correct one and the explanation.
 
     Args:
         order: the options' indices in the order in which they are shown; see `option_order`.
         chosen: index of the student's answer; None when there is none.
-        earlier: whether the answer cannot be known, since the options have changed.
+        unknown: whether the answer cannot be known, since the options have changed.
     """
     return render(
         "lesson/question.html",
@@ -91,7 +91,7 @@ def question(
         options=[(LETTERS[place], block.options[i]) for place, i in enumerate(order)],
         own=None if chosen is None else block.options[chosen],
         revealed=revealed,
-        earlier=earlier,
+        unknown=unknown,
         words=words,
     )
 
@@ -108,13 +108,13 @@ def open_question(block: OpenQuestion, text: str, words: Words) -> str:
     return render("lesson/open.html", words=words, **shown)
 
 
-def told(block: Prediction, answer: Answer | None, words: Words, earlier: bool = False) -> str:
+def told(block: Prediction, answer: Answer | None, words: Words, unknown: bool = False) -> str:
     """How sure the student is of a prediction, and why; empty if neither was said.
 
     Args:
-        earlier: whether the answer cannot be known, since the question has changed.
+        unknown: whether the answer cannot be known, since the question has changed.
     """
-    shown = {"block": block, "answer": answer, "earlier": earlier}
+    shown = {"block": block, "answer": answer, "unknown": unknown}
     return render("lesson/beside.html", words=words, **shown).strip()
 
 

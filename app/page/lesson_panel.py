@@ -11,7 +11,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
 from onpath.app.page.answer_boxes import AnswerBox, PredictionForm, add_letters
-from onpath.app.page.concept_test.end import ConceptTestEnd
+from onpath.app.page.concept_test.end import add_test_end
 from onpath.app.page.concept_test.entry import answered_line
 from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.lesson_end import LessonEnd
@@ -129,8 +129,8 @@ class LessonPanel:
             self._panel.set_width(width)
         with self._tab:
             if run.ended:
-                end = ConceptTestEnd if run.is_test else LessonEnd
-                self._handles += end(self._gui, run, self._post, self._report).handles
+                end = self._gui, run, self._post, self._report
+                self._handles += add_test_end(*end) if run.is_test else LessonEnd(*end).handles
                 return
             self._html(page.heading(lesson, step, run))
             if run.index == 0 and (aims := page.aims(lesson, run.words)):
@@ -165,7 +165,7 @@ class LessonPanel:
             key = f"{run.index}.{number}"
             chosen, order = run.notes.quiz.get(key), run.order(block, key)
             told = chosen is not None and not run.is_test
-            self._html(page.question(block, order, chosen, told, run.words, run.is_earlier(key)))
+            self._html(page.question(block, order, chosen, told, run.words, run.is_unknown(key)))
             answered = add_letters(
                 self._gui, order, lambda at, _: self._post(c.AnswerQuiz(number, at))
             )
@@ -212,7 +212,7 @@ class LessonPanel:
         chosen, order = answer.option if answer else None, run.order(block)
         if answer is not None:
             self._add_let_happen(run)
-        self._html(page.question(block, order, chosen, False, run.words, run.is_earlier()))
+        self._html(page.question(block, order, chosen, False, run.words, run.is_unknown()))
         if answer is None:
             self._add_form(block, run)
         else:
@@ -240,8 +240,8 @@ class LessonPanel:
 
     def _add_told(self, block: Prediction, run: LessonView) -> None:
         """How sure the student was, and why, if it was said."""
-        earlier = isinstance(block, Sketch) and run.is_earlier()
-        if said := page.told(block, run.answer(), run.words, earlier):
+        unknown = isinstance(block, Sketch) and run.is_unknown()
+        if said := page.told(block, run.answer(), run.words, unknown):
             self._html(said)
 
     def _add_run(self, run: LessonView) -> None:
@@ -258,14 +258,14 @@ class LessonPanel:
         if run.waits:
             self._html(page.remark(run.words("lesson.predict_before"), italic=True))
         block, answer = found[1], run.answer()
-        if answer is not None and answer.skipped and not run.is_earlier():
+        if answer is not None and answer.skipped and not run.is_unknown():
             self._html(page.remark(run.words("lesson.skipped"), italic=True))
         if isinstance(block, Sketch):
             self._add_chart(block, run)
         elif truth is not None and not run.playing:
             chosen = answer.option if answer else None
-            order, earlier = run.order(block), run.is_earlier()
-            self._html(page.question(block, order, chosen, True, run.words, earlier))
+            order, unknown = run.order(block), run.is_unknown()
+            self._html(page.question(block, order, chosen, True, run.words, unknown))
         self._add_told(block, run)
 
     def _add_chart(self, block: Sketch, run: LessonView) -> None:

@@ -104,7 +104,7 @@ class LabServer:
         self._class: ClassService | None = None
         if classroom is not None:
             self._class = ClassService(classroom, self.sessions, records, self._keeper)
-        self._views, self._dark = dict[int, LabFeed](), set[int]()  # and clients with dark pages
+        self._views, self._dark = dict[int, LabFeed](), set[int]()  # dark: clients that ask for it
         self._newcomers, self._onlookers = BuildQueue(self.server), TabVisibilities(self.server)
         set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.lab)))
         self._arrivals = Arrivals(self.server, ASKED, self._connected)

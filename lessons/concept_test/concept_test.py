@@ -73,6 +73,6 @@ def chosen_in(test: Lesson, notes: Notes) -> list[int | None]:
 
 
 def right_in(test: Lesson, notes: Notes) -> list[bool]:
-    """Whether each question has been answered, and rightly."""
+    """Whether each question has been answered correctly."""
     asked = zip(questions(test).values(), chosen_in(test, notes), strict=True)
     return [at is not None and block.options[at].right for block, at in asked]

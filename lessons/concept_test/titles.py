@@ -1,4 +1,4 @@
-"""What the concept tests are called."""
+"""Titles of the concept tests."""
 
 from __future__ import annotations
 

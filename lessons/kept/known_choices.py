@@ -1,7 +1,7 @@
 """Kept choices of lessons that have changed since: found again by their keys, or known to be lost.
 
-Notes of before there were marks say only which place an option had, so which one it was cannot be
-known. A curve without a mark is shown if the step still asks for a curve.
+Notes from before marks were kept say only at which place an option stood, so it cannot be known
+which option it was. A curve without a mark is shown if the step still asks for a curve.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Keys of what can be chosen, by which a kept choice is found again when a lesson has changed.
 
-An option's key is that which the author gives it, or else made of its text in the lesson's first
-language, which is English if there is one. So options can be put into another order, and their
-translations reworded.
+The key of an option is given by the author, or else made from its text in the lesson's first
+language (English if there is one). Options can thus be put into another order, and their
+translations can be reworded.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ def fingerprint(text: str) -> str:
 
 
 def why_key(key: str) -> str:
-    """Under which the reason for an answer is marked."""
+    """The key under which the reason for an answer is marked."""
     return f"{key} why"
 
 
 def second_key(key: str) -> str:
-    """Under which the answer after a discussion is marked."""
+    """The key under which the answer after a discussion is marked."""
     return f"{key} second"
 
 

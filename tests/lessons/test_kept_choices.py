@@ -81,7 +81,7 @@ def shown(lab: Lab) -> str:
     assert found is not None
     answer = run.answer()
     option = answer.option if answer else None
-    return page.question(found[1], (0, 1), option, True, run.words, run.is_earlier())  # type: ignore[arg-type]
+    return page.question(found[1], (0, 1), option, True, run.words, run.is_unknown())  # type: ignore[arg-type]
 
 
 # Stored by an older version.
@@ -94,7 +94,7 @@ def test_a_choice_of_an_older_version_is_not_shown_and_it_says_so(tmp_path: Path
     answer = run.answer()
     assert answer is not None and answer.option is None and not run.waits  # the result was seen
     said = shown(lab)
-    assert ENGLISH("lesson.earlier") in said and ENGLISH("lesson.right") not in said
+    assert ENGLISH("lesson.unknown") in said and ENGLISH("lesson.right") not in said
     assert "font-weight:700" not in said  # no option is marked as the student's
     assert notes.answers["1"].times == (0.0, 1.0)  # the curve is as it was
     assert notes.tasks == {"hold": 0.0} and notes.seen == 8
@@ -104,21 +104,21 @@ def test_the_records_of_an_older_version_say_so(tmp_path: Path) -> None:
     course = course_of(tmp_path)
     lab = returned(course, json.loads(OLDER))
     made = report(lab.lessons, "", datetime(2026, 1, 1, tzinfo=UTC)).decode()
-    assert made.count(ENGLISH("lesson.earlier")) == 2
+    assert made.count(ENGLISH("lesson.unknown")) == 2
     assert ENGLISH("report.chosen") not in made and ENGLISH("lesson.skipped") not in made
     rows = class_csv([Member(1, "Ada", lab.lessons.progress)], course, "en").decode().split("\r\n")
     assert sum(",unknown," in row for row in rows) == 2 and not any(",skipped," in r for r in rows)
     block = course.lesson(NAME, "en").steps[3].predictions()[0]
     found = distribution(block, NAME, 3, [lab.lessons.progress])
-    assert (found.counts, found.skipped, found.waiting, found.earlier) == ((0, 0), 0, 0, 1)
-    assert ENGLISH("class.earlier", count=1) in given_line(found, ENGLISH)
+    assert (found.counts, found.skipped, found.waiting, found.unknown) == ((0, 0), 0, 0, 1)
+    assert ENGLISH("class.unknown", count=1) in given_line(found, ENGLISH)
 
 
 def test_who_answers_again_is_known_again(tmp_path: Path) -> None:
     lab = returned(course_of(tmp_path), json.loads(OLDER))
     do(lab, TakeStep(NAME, 7), c.AnswerQuiz(0, 0))
     assert lab.lessons.notes.unknown == (ASKED,) and lab.lessons.notes.quiz == {QUIZ: 0}
-    assert not lab.lessons.is_earlier(QUIZ)
+    assert not lab.lessons.is_unknown(QUIZ)
 
 
 # Stored by this version; the lesson changes.
@@ -139,7 +139,7 @@ def test_an_option_of_another_text_is_another_one(tmp_path: Path, text: str) -> 
     lab = returned(course_of(tmp_path / "after", changed('"that"', f'"{text}"')), kept)
     assert lab.lessons.notes.unknown == (ASKED,)
     assert lab.lessons.notes.quiz == {QUIZ: 1}  # the quiz is the same
-    assert ENGLISH("lesson.earlier") in shown(lab)
+    assert ENGLISH("lesson.unknown") in shown(lab)
 
 
 def test_an_option_with_a_key_may_be_reworded(tmp_path: Path) -> None:
@@ -159,7 +159,7 @@ def test_a_translation_has_the_keys_of_the_first_language(tmp_path: Path) -> Non
     lab = returned(course_of(tmp_path / "after", de=reworded), kept)
     answer = lab.lessons.answer()
     assert answer is not None and answer.option == 1 and not lab.lessons.notes.unknown
-    assert Words("de")("lesson.earlier") not in shown(lab)
+    assert Words("de")("lesson.unknown") not in shown(lab)
 
 
 def test_a_step_that_asks_for_a_curve_now_shows_no_choice(tmp_path: Path) -> None:
@@ -179,7 +179,7 @@ def test_a_curve_of_other_axes_is_not_shown(tmp_path: Path) -> None:
     assert same.lessons.notes.answers["1"].times and same.lessons.progress == lab.lessons.progress
     speed = course_of(tmp_path / "after", changed('"distance"\nseconds', '"speed"\nseconds'))
     other = returned(speed, stored)
-    assert not other.lessons.notes.answers["1"].times and other.lessons.is_earlier()
+    assert not other.lessons.notes.answers["1"].times and other.lessons.is_unknown()
 
 
 def test_the_answer_after_a_discussion_and_the_reason_are_found_again(tmp_path: Path) -> None:

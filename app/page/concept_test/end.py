@@ -18,26 +18,20 @@ if TYPE_CHECKING:
     from onpath.app.page.lesson_view import LessonView
 
 
-class ConceptTestEnd:
-    """The widgets of the end of a test, added to the container that is open.
+def add_test_end(
+    gui: viser.GuiApi, run: LessonView, post: Post, report: Callable[[], None]
+) -> list[Any]:
+    """Add the widgets of the end of a test; returns them.
 
     Args:
         report: requests the record of all lessons.
-
-    Attributes:
-        handles: all of them, each with `remove`.
     """
-
-    def __init__(
-        self, gui: viser.GuiApi, run: LessonView, post: Post, report: Callable[[], None]
-    ) -> None:
-        words, told = run.words, told_tests(run)
-        title = titles_of_tests(run.course, words)[run.progress.lesson]
-        shown = {"run": run, "title": title, "told": told, "colour": AZURE.hex}
-        content = render("lesson/test_end.html", words=words, **shown)
-        ways: dict[str, Callable[[], None]] = {
-            words("end.record"): report,
-            words("lesson.close"): lambda: post(c.CloseLesson()),
-        }
-        buttons = add_buttons(gui, "", ways, lambda act: act())
-        self.handles: list[Any] = [gui.add_html(content), buttons]
+    words, told = run.words, told_tests(run)
+    title = titles_of_tests(run.course, words)[run.progress.lesson]
+    shown = {"run": run, "title": title, "told": told, "colour": AZURE.hex}
+    content = gui.add_html(render("lesson/test_end.html", words=words, **shown))
+    ways: dict[str, Callable[[], None]] = {
+        words("end.record"): report,
+        words("lesson.close"): lambda: post(c.CloseLesson()),
+    }
+    return [content, add_buttons(gui, "", ways, lambda act: act())]

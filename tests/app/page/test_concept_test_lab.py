@@ -97,7 +97,7 @@ def test_the_end_of_a_test_tells_no_score_before_the_second(language: str) -> No
         gui: Any = type("Gui", (), {"add_html": lambda _, html: shown.append(html)})()
         for name in (BEFORE, AFTER):
             sit(lab, name)
-            end.ConceptTestEnd(gui, lab.lessons, lab.post, lambda: None)  # type: ignore[arg-type]
+            end.add_test_end(gui, lab.lessons, lab.post, lambda: None)  # type: ignore[arg-type]
     right = [
         str(next(o.answer for o in b.options if o.right))
         for b in questions(COURSE.lesson(BEFORE, language)).values()
