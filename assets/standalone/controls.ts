@@ -30,6 +30,7 @@ export class Controls {
     constructor(
         private readonly simulation: Simulation,
         private readonly page: Running,
+        ended: AbortSignal,
     ) {
         const { data } = simulation
         this.held = this.button("main", "", () => this.toggleHold(), said(data, "run.hold_hint"))
@@ -46,7 +47,7 @@ export class Controls {
         const sliders = data.sliders.map((slider, i) => this.slider(slider, i))
         this.element = made("div", "controls", buttons, made("div", "sliders", ...sliders))
         this.show()
-        document.addEventListener("keydown", event => this.key(event))
+        document.addEventListener("keydown", event => this.key(event), { signal: ended })
     }
 
     /** Write the present state on the buttons. */

@@ -1,11 +1,10 @@
-// Builds the page, and lets time run.
+// Builds a figure in a page, and lets time run.
 
 import { caption, spoken } from "./captions"
 import { Controls, made, type Running } from "./controls"
 import { said, type FigureData } from "./data"
-import { Kernels } from "./kernels"
 import { Plot } from "./plot"
-import { Simulation } from "./simulation"
+import type { Simulation } from "./simulation"
 import { View } from "./view"
 
 const FRAME = 1 / 60 // [s], of a step
@@ -13,9 +12,10 @@ const LONGEST = 0.1 // [s], that a picture may be late before simulated time fal
 const SILENCE = 3000 // [ms], at least, between two lines of the same kind
 const PULL = 0.03 // [m], by which a key pulls
 
-class Figure implements Running {
+export class Figure implements Running {
     running = !matchMedia("(prefers-reduced-motion: reduce)").matches
-    readonly simulation: Simulation
+    readonly controls: Controls
+    private readonly data: FigureData
     private readonly views: View[]
     private readonly captions: HTMLElement[]
     private readonly plot: Plot
@@ -26,22 +26,24 @@ class Figure implements Running {
     private kind = ""
     private said = 0
 
+    /** `ended` stops the figure, for a page that puts another one in its place. */
     constructor(
-        private readonly data: FigureData,
-        kernels: Kernels,
+        readonly simulation: Simulation,
         into: HTMLElement,
+        private readonly ended: AbortSignal = new AbortController().signal,
     ) {
-        this.simulation = new Simulation(data, kernels)
+        const data = (this.data = simulation.data)
         this.views = this.simulation.benches.map(bench => new View(bench, data))
         this.captions = this.views.map(() => made("span", "caption"))
         this.plot = new Plot(this.simulation, data)
         this.live.setAttribute("role", "status")
+        this.controls = new Controls(simulation, this, ended)
         into.replaceChildren(...this.parts())
         if (data.controls.includes("pull")) {
             for (const view of this.views) this.grabs(view)
             this.keys()
         }
-        addEventListener("resize", () => (this.stale = true))
+        addEventListener("resize", () => (this.stale = true), { signal: ended })
         this.forget()
         requestAnimationFrame(() => this.frame())
     }
@@ -74,11 +76,10 @@ class Figure implements Running {
         })
         this.plot.canvas.setAttribute("role", "img")
         this.plot.canvas.setAttribute("aria-label", this.plot.label())
-        const controls = new Controls(this.simulation, this)
         return [
             ...(data.title ? [made("h1", "", data.title)] : []),
             made("div", "robots", ...robots),
-            controls.element,
+            this.controls.element,
             ...(data.controls.includes("plot") ? this.plotted() : []),
             this.live,
         ]
@@ -92,6 +93,7 @@ class Figure implements Running {
     }
 
     private frame(): void {
+        if (this.ended.aborted) return
         const now = performance.now()
         this.due += Math.min((now - this.last) / 1e3, LONGEST)
         this.last = now
@@ -168,20 +170,16 @@ class Figure implements Running {
         }
         const way = (event: KeyboardEvent) =>
             event.ctrlKey || event.metaKey || event.altKey ? undefined : ways[event.key.toLowerCase()]
-        addEventListener("keydown", event => {
-            const by = way(event)
-            if (by && !event.repeat) this.simulation.pull(by)
-        })
-        addEventListener("keyup", event => way(event) && this.simulation.pull(null))
-        addEventListener("blur", () => this.simulation.pull(null))
+        const { ended: signal } = this
+        addEventListener(
+            "keydown",
+            event => {
+                const by = way(event)
+                if (by && !event.repeat) this.simulation.pull(by)
+            },
+            { signal },
+        )
+        addEventListener("keyup", event => way(event) && this.simulation.pull(null), { signal })
+        addEventListener("blur", () => this.simulation.pull(null), { signal })
     }
 }
-
-async function begin(): Promise<void> {
-    const data = JSON.parse(document.getElementById("data")!.textContent!) as FigureData
-    const kernels = await Kernels.from(data.module)
-    // For a page around it, and for tests: advance(ticks), simulation.hold(true) and so on.
-    Object.assign(window, { onpath: new Figure(data, kernels, document.getElementById("figure")!) })
-}
-
-void begin()
