@@ -11,8 +11,11 @@ VENV   ?= .venv
 BIN     = $(VENV)/bin
 LAB     = $(VENV)/.installed
 TOOLS   = $(VENV)/.tools
+# Bytecode is kept beside the tools, whatever the environment says: the processes that tests start
+# would compile all of OnPath again, each of them.
+KEPT    = env -u PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX=$(abspath $(VENV))/bytecode
 # In order, so that the longest test begins early: it would be the last one otherwise.
-PYTEST  = $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder
+PYTEST  = $(KEPT) $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 .PHONY: run test thorough fuzz check format bench soak picture wheel clean
 .DEFAULT_GOAL := run

@@ -11,12 +11,12 @@ from playwright.sync_api import Browser
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.server.lab_server import LabServer
-from onpath.lessons.course import BUILT_IN, read_course
 from tests.support.browser import Tab, wait_for
+from tests.support.built_in import built_in_course
 
 pytestmark = pytest.mark.thorough
 
-COURSE, _ = read_course([BUILT_IN])
+COURSE, _ = built_in_course()
 WIDE = """() => {
     for (const fold of document.querySelectorAll("details")) fold.open = true
     return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(

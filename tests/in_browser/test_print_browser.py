@@ -12,8 +12,9 @@ import pytest
 
 from onpath.app.exports.guide import worksheet
 from onpath.assets.messages import languages
-from onpath.lessons.course import BUILT_IN, read_course
+from onpath.lessons.course import BUILT_IN
 from onpath.lessons.words import Words
+from tests.support.built_in import built_in_course
 
 pytestmark = pytest.mark.thorough
 
@@ -25,7 +26,7 @@ PAGE = re.compile(rb"/Type\s*/Page\b")
 
 @pytest.mark.parametrize("language", languages())
 def test_every_worksheet_has_two_pages(browser: Browser, language: str) -> None:
-    course, _ = read_course([BUILT_IN])
+    course, _ = built_in_course()
     page = browser.new_page()
     for name in course.lessons:
         page.set_content(worksheet(course, BUILT_IN, name, Words(language))[0])

@@ -13,11 +13,11 @@ from playwright.sync_api import Browser, Locator, expect
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.server.lab_server import LabServer
-from onpath.lessons.course import BUILT_IN, read_course
 from tests.support.browser import WAIT, Tab, wait_for
+from tests.support.built_in import built_in_course
 
 expect.set_options(timeout=WAIT * 1e3)
-COURSE, _ = read_course([BUILT_IN])
+COURSE, _ = built_in_course()
 LESSON, STEP = "01-path-or-timetable", 6
 PINNED = ":has(> * [data-pinned])"
 UNCOVERED = """(thing) => {

@@ -15,9 +15,9 @@ from playwright.sync_api import Browser
 
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.task_schema import Task
 from tests.support.browser import Tab, wait_for
+from tests.support.built_in import built_in_course
 from tests.support.hands import (
     ROBOT,
     Choose,
@@ -32,7 +32,7 @@ from tests.support.hands import (
     Wait,
 )
 
-COURSE, _ = read_course([BUILT_IN])
+COURSE, _ = built_in_course()
 TASKS = {
     (lesson.name, task.id): (index, task)
     for lesson in (versions["en"] for versions in COURSE.lessons.values())

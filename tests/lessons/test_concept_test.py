@@ -27,8 +27,9 @@ from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import Lesson
+from tests.support.built_in import built_in_course
 
-COURSE, PROBLEMS = read_course([BUILT_IN])
+COURSE, PROBLEMS = built_in_course()
 TEST = COURSE.lesson(BEFORE, "en")
 FRONT = '+++\ntitle = "A"\nsummary = "B"\n+++\n\n'
 ITEM = """# quiz: One

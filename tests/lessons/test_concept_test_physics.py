@@ -14,10 +14,10 @@ import pytest
 import onpath
 from onpath.app.notebook.run import Run
 from onpath.lessons.concept_test.concept_test import BEFORE
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.models.arrays import Array
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.system import decoupling_matrix
+from tests.support.built_in import built_in_course
 
 TRACKER, FOLLOWER, WAITING = "trajectory_tracking", "path_following", "waiting_clock"
 SPEED, RADIUS = 2 * np.pi, 0.05
@@ -43,7 +43,7 @@ def error(made: Run) -> Array:
 
 
 def test_every_question_that_a_run_can_answer_is_answered_here() -> None:
-    titles = [s.title for s in read_course([BUILT_IN])[0].lesson(BEFORE, "en").steps]
+    titles = [s.title for s in built_in_course()[0].lesson(BEFORE, "en").steps]
     asked = [test.__doc__ for name, test in globals().items() if name.startswith("test_of_")]
     assert titles[:-1] == asked
 

@@ -22,11 +22,12 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.setup import Setup, to_data
 from onpath.app.page import lesson_html as page
 from onpath.app.storage.lab_state import keep, put_back
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import Course, read_course
 from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.built_in import built_in_course
 from tests.support.lab import do, store
 from tests.support.lesson_texts import LESSON, write_lesson
 
@@ -221,7 +222,7 @@ def test_every_order_of_the_options_gives_the_option_that_was_chosen(tmp_path: P
 
 
 def test_keys_of_a_question_differ_and_are_the_same_in_all_languages() -> None:
-    course = read_course([BUILT_IN])[0]
+    course = built_in_course()[0]
     for versions in (*course.lessons.values(), *course.tests.values()):
         first, *others = versions.values()
         assert first.keys and all(other.keys == first.keys for other in others)

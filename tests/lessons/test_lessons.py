@@ -20,11 +20,12 @@ from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import Choice, Lesson, Quiz, Step
 from onpath.lessons.task_schema import Order, Setting, Task
 from onpath.lessons.words import Words, languages
+from tests.support.built_in import built_in_course
 from tests.support.lab import store
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.lesson_texts import REFERENCE as EXAMPLE
 
-COURSE, PROBLEMS = read_course([BUILT_IN])
+COURSE, PROBLEMS = built_in_course()
 ENGLISH = [versions["en"] for versions in COURSE.lessons.values()]
 TASKS = [
     (lesson, step, task) for lesson in ENGLISH for step in lesson.steps for task in step.tasks()

@@ -9,7 +9,7 @@ import pytest
 from onpath.app.cli.main import run_command
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.page.lesson_html import entry
-from onpath.lessons.course import BUILT_IN, read_course
+from onpath.lessons.course import read_course
 from onpath.lessons.formulas import to_html
 from onpath.lessons.minutes import (
     MINUTES,
@@ -23,6 +23,7 @@ from onpath.lessons.minutes import (
     word_count,
 )
 from onpath.lessons.parse import read_lesson
+from tests.support.built_in import built_in_course
 from tests.support.lesson_texts import LESSON, write_lesson
 
 LONGEST = 25.0
@@ -98,7 +99,7 @@ def test_optional_steps_are_counted_apart(
 
 
 def test_no_lesson_takes_more_than_25_minutes_without_its_optional_steps() -> None:
-    course, _ = read_course([BUILT_IN])
+    course, _ = built_in_course()
     long = {
         (name, language): required_minutes(lesson).total
         for name, versions in course.lessons.items()

@@ -22,13 +22,14 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.answers import kept_text
 from onpath.app.lab.lab import Lab
 from onpath.app.page import lesson_html as page
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import Course, read_course
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.progress import MOST_TEXT, SURENESS, Answer, read_progress
 from onpath.lessons.schema import NumberQuestion
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.errors import CodedError
+from tests.support.built_in import built_in_course
 from tests.support.lab import do, store
 from tests.support.lesson_texts import LESSON, write_lesson
 
@@ -199,7 +200,7 @@ def test_guide_and_worksheet_have_the_questions(tmp_path: Path) -> None:
 
 
 def test_numbers_asked_for_in_the_course_are_those_of_the_formulas() -> None:
-    course, problems = read_course([BUILT_IN])
+    course, problems = built_in_course()
     asked = {
         (name, block.number): block.tolerance
         for name in course.lessons

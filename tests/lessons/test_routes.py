@@ -10,10 +10,11 @@ from onpath.app.cli.main import run_command
 from onpath.app.lab.commands import FollowRoute, GoToStep, OpenLesson, TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.assets.messages import languages
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import Course, read_course
 from onpath.lessons.minutes import step_minutes
 from onpath.lessons.progress import Progress, read_progress
 from onpath.lessons.routes import FOLDER
+from tests.support.built_in import built_in_course
 from tests.support.lab import do, store
 from tests.support.lesson_texts import write_lesson
 
@@ -137,7 +138,7 @@ def test_what_is_wrong_is_named(
 
 def test_the_built_in_routes_have_time_for_what_they_name() -> None:
     """In every language; a demonstration is not read aloud, so it may be quicker."""
-    course, problems = read_course([BUILT_IN])
+    course, problems = built_in_course()
     assert problems == [] and len(course.routes) == 3
     for name, route in course.routes.items():
         assert set(route.title) == set(route.summary) == set(languages())

@@ -6,11 +6,11 @@ import re
 
 import pytest
 
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.schema import Choice, Lesson, Quiz
 from onpath.lessons.words import languages
+from tests.support.built_in import built_in_course
 
-COURSE, PROBLEMS = read_course([BUILT_IN])
+COURSE, PROBLEMS = built_in_course()
 EACH = pytest.mark.parametrize(
     "lesson",
     [COURSE.lesson(name, language) for name in COURSE.lessons for language in languages()],

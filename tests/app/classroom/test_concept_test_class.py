@@ -15,11 +15,11 @@ from onpath.app.classroom.concept_test_results import (
 )
 from onpath.app.classroom.results import class_csv
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.words import ENGLISH
+from tests.support.built_in import built_in_course
 
-COURSE = read_course([BUILT_IN])[0]
+COURSE = built_in_course()[0]
 TEST = COURSE.lesson(BEFORE, "en")
 ASKED = questions(TEST)
 CODE = "abcd"

@@ -31,7 +31,7 @@ from onpath.app.page.preferences import DEFAULTS
 from onpath.app.scene.captions import Captions
 from onpath.assets import asset_path
 from onpath.lessons.checks import Verdict
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import Course
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.schema import (
     Choice,
@@ -46,6 +46,7 @@ from onpath.lessons.schema import (
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import ENGLISH, Words, languages
 from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
+from tests.support.built_in import built_in_course
 from tests.support.checkout import ROOT
 
 TAG = re.compile(r"</?(?!br\b)[a-zA-Z][a-zA-Z0-9]*(\s[a-z-]+=|\s*/?>)")  # markdown may have <br/>
@@ -53,7 +54,7 @@ BYTES_ALONE = "app/viser_adapter/page_scripts.py"  # puts our files into viser's
 VOID = {"br", "img", "meta", "line", "polyline"}
 HOSTILE = ["<img src=x onerror=alert(1)>", '"><script>alert(2)</script>', "'{0}{{ 7 }}{% x %}&lt;"]
 DAY = datetime(2025, 3, 2)
-COURSE = read_course([BUILT_IN])[0]
+COURSE = built_in_course()[0]
 NAME = next(iter(COURSE.lessons))
 
 

@@ -14,11 +14,12 @@ from onpath.app.exports.guide import guide, worksheet
 from onpath.assets.messages import languages
 from onpath.lessons.action_schema import Action, Laws, Script
 from onpath.lessons.action_words import script_words
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import BUILT_IN, Course
 from onpath.lessons.schema import Block, Choice, NumberQuestion, OpenQuestion, Quiz, Sketch, Text
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.built_in import built_in_course
 from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 
 ARTICLE = re.compile(r'<article[^>]* data-asked="([^"]+)">(.*?)</article>', re.DOTALL)
@@ -28,7 +29,7 @@ in_every_language = pytest.mark.parametrize("language", languages())
 @cache
 def course() -> Course:
     """The built-in lessons."""
-    return read_course([BUILT_IN])[0]
+    return built_in_course()[0]
 
 
 def asked(name: str, language: str) -> Iterator[tuple[str, Block]]:

@@ -20,10 +20,11 @@ from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_run import LessonRun
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import Course, read_course
 from onpath.lessons.progress import Answer, Notes, Progress, Truth
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.built_in import built_in_course
 from tests.support.lab import do, run, store
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.waiting import wait_for
@@ -185,7 +186,7 @@ def test_an_empty_record_says_so(course: Course) -> None:
 
 
 def test_german_is_german(tmp_path: Path) -> None:
-    course = read_course([BUILT_IN])[0]
+    course = built_in_course()[0]
     name = next(name for name in course.lessons if "de" in course.lessons[name])
     notes = Notes(
         seen=3, answers={"1": SKETCH}, truths={"1": replace(TRUTH, times=(0.0, 0.5, 1.0))}

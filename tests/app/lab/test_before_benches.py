@@ -26,14 +26,14 @@ from onpath.app.lab.setups.setup import to_data
 from onpath.app.lab.setups.share_code import decode
 from onpath.app.storage.lab_state import put_back
 from onpath.app.storage.records import Records, file_url
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.models.closed_loop.trajectory import read_csv
 from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
+from tests.support.built_in import built_in_course
 from tests.support.checkout import ROOT
 from tests.support.lab import do, new_lab, store
 
 DATA = ROOT / "tests" / "data" / "two_laws"
-COURSE = read_course([BUILT_IN])[0]
+COURSE = built_in_course()[0]
 LESSON = "01-path-or-timetable"
 DAY = datetime(2026, 11, 23)
 KEY = "k7mf2xqa9tzr"

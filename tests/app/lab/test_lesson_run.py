@@ -20,12 +20,13 @@ from onpath.app.lab.sketches import sketched
 from onpath.app.page import lesson_html as html
 from onpath.lessons.action_schema import Action
 from onpath.lessons.checks import judge
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import Course, read_course
 from onpath.lessons.progress import MOST_POINTS, Answer, Progress, read_progress
 from onpath.lessons.schema import Choice, Option, Quiz, Sketch
 from onpath.lessons.task_schema import Event, Task
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.built_in import built_in_course
 from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, run, store
 from tests.support.lesson_texts import write_lesson
 
@@ -159,7 +160,7 @@ def test_a_task_fails_then_passes_and_stays_passed(lab: Lab) -> None:
 @pytest.mark.parametrize("frame", [0.7 / 60, 1 / 60, 1.3 / 60])
 def test_pulled_off_let_go_and_back_again(frame: float) -> None:
     """Lesson 1's last task, by the keys that it names, at the paces that a lab has."""
-    lab = Lab(store(), FIVE_BAR, read_course([BUILT_IN])[0])
+    lab = Lab(store(), FIVE_BAR, built_in_course()[0])
     do(lab, TakeStep("01-path-or-timetable", 9))
     for _ in range(6):
         do(lab, c.MoveHand(0.005, 0.0))
@@ -202,7 +203,7 @@ def test_what_is_undone_by_rewinding_passes_no_task(lab: Lab) -> None:
 
 def test_the_truth_has_every_peak_however_long_ago() -> None:
     """Lesson 3 plays for longer than the lab's past is kept at every frame."""
-    lab = Lab(store(), FIVE_BAR, read_course([BUILT_IN])[0])
+    lab = Lab(store(), FIVE_BAR, built_in_course()[0])
     do(lab, TakeStep("03-the-five-bar", 3), c.Predict(), c.PlayStep())
     seen: dict[str, list[float]] = {name: [] for name in lab.session.runs}
     while lab.lessons.playing:

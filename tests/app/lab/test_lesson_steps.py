@@ -17,15 +17,16 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.storage.lab_state import LabState, keep, put_back
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import Course, read_course
 from onpath.models.closed_loop.simulation import FREE
 from onpath.models.control.benches import BENCHES, RIGHT
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import changed
+from tests.support.built_in import built_in_course
 from tests.support.lab import do, run, store
 from tests.support.lesson_texts import LESSON, write_lesson
 
-COURSE = read_course([BUILT_IN])[0]
+COURSE = built_in_course()[0]
 STEPS = [
     (name, index)
     for name in COURSE.lessons

@@ -13,10 +13,11 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.lesson_html import aims
 from onpath.app.server.lab_server import LabServer
 from onpath.assets.messages import languages
-from onpath.lessons.course import BUILT_IN, read_course
+from onpath.lessons.course import read_course
 from onpath.lessons.schema import Front
 from onpath.lessons.words import ENGLISH, Words
 from tests.support import waiting
+from tests.support.built_in import built_in_course
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.student import Student
 
@@ -27,7 +28,7 @@ TEXTS = {"needs": "a ruler", "goals": "draw a line", "misconception": "lines are
 
 @pytest.mark.parametrize("language", languages())
 def test_every_lesson_says_it_and_keeps_the_teachers_part(language: str) -> None:
-    words, course = Words(language), read_course([BUILT_IN])[0]
+    words, course = Words(language), built_in_course()[0]
     for name in course.lessons:
         lesson = course.lesson(name, language)
         said = aims(lesson, words)

@@ -17,11 +17,11 @@ from onpath.app.lab.lab import Lab
 from onpath.app.page.concept_test import end
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.built_in import built_in_course
 from tests.support.lab import do, run, store
 
-COURSE = read_course([BUILT_IN])[0]
+COURSE = built_in_course()[0]
 ASKED = questions(COURSE.lesson(BEFORE, "en"))
 LESSON = "01-path-or-timetable"
 

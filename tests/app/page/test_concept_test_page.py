@@ -11,13 +11,13 @@ from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.option_order import option_order
 from onpath.lessons.words import ENGLISH
 from tests.support import waiting
+from tests.support.built_in import built_in_course
 from tests.support.student import Student
 
-COURSE = read_course([BUILT_IN])[0]
+COURSE = built_in_course()[0]
 wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that would hang
 TEST = COURSE.lesson(BEFORE, "en")
 

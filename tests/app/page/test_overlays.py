@@ -23,7 +23,6 @@ from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tube_nodes import drawn_curve, tube_shape
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.images import add_png, png_of
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.rank_test import rank_grid
 from onpath.models.paths.path_design import presets
@@ -32,6 +31,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import RobotEntry
 from onpath.models.systems.two_link_arm import TwoLinkArm
+from tests.support.built_in import built_in_course
 from tests.support.lab import do, run, store
 from tests.support.student import Student
 from tests.support.waiting import wait_for
@@ -269,7 +269,7 @@ def test_a_computation_that_fails_can_be_asked_for_again() -> None:
 
 @pytest.fixture
 def lessons() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), read_course([BUILT_IN])[0])
+    server = LabServer("127.0.0.1", 0, LoopCache(), built_in_course()[0])
     yield server
     server.stop()
 

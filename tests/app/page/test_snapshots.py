@@ -28,10 +28,11 @@ from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.frame_channel import FrameChannel
 from onpath.app.viser_adapter.frame_packing import GroupUpdate
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import Course
 from onpath.lessons.schema import Sketch
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from tests.support import waiting
+from tests.support.built_in import built_in_course
 from tests.support.lab import FOLLOWER, FRAME, store
 from tests.support.student import Student
 
@@ -53,7 +54,7 @@ def client() -> Iterator[viser.ClientHandle]:
 
 @pytest.fixture(scope="module")
 def course() -> Course:
-    return read_course([BUILT_IN])[0]
+    return built_in_course()[0]
 
 
 class Drawing:

@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 from websockets.exceptions import InvalidStatus
 
-from onpath.lessons.course import BUILT_IN, read_course
+from tests.support.built_in import built_in_course
 from tests.support.checkout import ROOT
 from tests.support.student import Student
 from tests.support.supervisor import Supervisor
@@ -151,7 +151,7 @@ def test_a_student_whose_worker_is_killed_goes_on_with_another(site: Site) -> No
         student.set("K2", 44.0)
         student.set("Path", "clover")
         student.set("Lessons", True)
-        numbers = read_course([BUILT_IN])[0].numbers().values()
+        numbers = built_in_course()[0].numbers().values()
         student.read(lambda: all(student.has_widget(f"Open lesson {each}") for each in numbers))
         student.set(f"Open lesson {[*numbers][-1]}", True)
         student.set("Next", True)
