@@ -60,7 +60,7 @@ def test_the_parts_of_the_manifest_find_each_other(
     assert mounted == {v["name"] for v in deployment["template"]["spec"]["volumes"]}
 
 
-def test_the_pod_starts_what_there_is_and_may_do_little(
+def test_the_pod_starts_an_existing_command_with_few_rights(
     manifest: dict[str, Any], container: dict[str, Any]
 ) -> None:
     assert {word for word in container["args"] if word.startswith("--")} <= options()
@@ -75,7 +75,7 @@ def test_the_pod_starts_what_there_is_and_may_do_little(
     assert not container["securityContext"]["allowPrivilegeEscalation"]
 
 
-def test_proxies_say_who_asks_and_are_believed(container: dict[str, Any]) -> None:
+def test_trusted_proxies_pass_on_the_client_address(container: dict[str, Any]) -> None:
     assert re.search(r"^\s+proxy_set_header X-Forwarded-For \$remote_addr;$", NGINX, re.MULTILINE)
     networks = container["args"][container["args"].index("--trusted-proxy") + 1]
     pod = str(next(ip_network(networks).hosts()))
@@ -91,7 +91,7 @@ def test_browsers_stay_with_their_pod_and_websockets_stay_open(manifest: dict[st
     assert manifest["Service"]["spec"]["sessionAffinity"] == "ClientIP"
 
 
-def test_the_container_is_no_root_answers_for_its_health_and_has_what_it_needs(
+def test_the_container_has_no_root_a_health_check_and_its_dependencies(
     container: dict[str, Any], manifest: dict[str, Any]
 ) -> None:
     (user,) = re.findall(r"^USER (\d+)$", CONTAINERFILE, re.MULTILINE)

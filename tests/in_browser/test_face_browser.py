@@ -67,9 +67,7 @@ def test_nothing_is_seen_of_the_viewer_s_own_page(browser: Browser, server: LabS
     context.close()
 
 
-def test_a_newcomer_is_invited_and_who_has_followed_is_not_asked_again(
-    browser: Browser, server: LabServer
-) -> None:
+def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None:
     tab = visit(browser, server, newcomer=True)
     invitation, spoken = tab.page.locator("#op-invitation"), tab.page.locator("#op-voice")
     tab.button("Hold them back").click()
@@ -260,7 +258,7 @@ def test_a_share_code_is_copied(tab: Tab) -> None:
     assert copied == code.inner_text() == tab.lab.shared
 
 
-def test_whoever_asks_for_less_motion_finds_the_robots_at_rest(
+def test_with_reduced_motion_the_robots_are_at_rest_at_first(
     browser: Browser, server: LabServer
 ) -> None:
     tab = visit(browser, server, reduced_motion="reduce")
@@ -306,7 +304,7 @@ def test_a_number_may_be_written_with_a_power_of_ten(tab: Tab) -> None:
     expect(tab.page.locator(WRONG)).to_be_hidden()
 
 
-def test_a_number_beyond_the_limits_is_not_changed_without_a_word(tab: Tab) -> None:
+def test_a_number_beyond_the_limits_is_not_changed_silently(tab: Tab) -> None:
     wrong = tab.page.locator(WRONG)
     for typed in ("1e9", "99999"):
         retype(tab, "K1 across", typed)
@@ -321,7 +319,7 @@ def test_a_number_beyond_the_limits_is_not_changed_without_a_word(tab: Tab) -> N
     tab.blur()
 
 
-def test_what_is_no_number_stays_and_is_called_so(tab: Tab) -> None:
+def test_text_that_is_not_a_number_stays_and_is_reported(tab: Tab) -> None:
     typed, wrong = tab.page.locator(TYPED), tab.page.locator(WRONG)
     for leave in ("Enter", "Tab"):
         retype(tab, "K1 across", "fast")

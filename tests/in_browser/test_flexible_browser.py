@@ -163,7 +163,7 @@ def blow_up(tab: Tab) -> None:
     tab.page.locator("#op-message").get_by_role("button", name="Show it slowly").wait_for()
 
 
-def test_who_asks_for_less_motion_or_opens_the_page_later_is_offered_the_replay(
+def test_the_replay_is_offered_with_reduced_motion_or_on_a_page_opened_later(
     browser: Browser, server: LabServer
 ) -> None:
     window: ViewportSize = {"width": 1280, "height": 800}

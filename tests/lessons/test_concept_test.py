@@ -130,7 +130,7 @@ def test_the_class_s_means_are_those_of_its_students(
     assert found.gain == normalised_gain(found.mean_before, found.mean_after)
 
 
-def test_only_who_has_handed_in_both_counts_and_what_is_left_out_is_not_right() -> None:
+def test_only_students_who_handed_in_both_count_and_a_missing_answer_is_wrong() -> None:
     all_right, none = [True] * 12, [False] * 12
     half = Progress(notes={BEFORE: handed_in(TEST, none)})
     open_still = both(none, all_right)

@@ -53,6 +53,6 @@ def test_no_text_says_it(truth: str) -> None:
         "At 96 % there is 0.29, at 99 % 0.12, and at 100 % nothing",
     ],
 )
-def test_what_was_told_would_be_noticed(said: str) -> None:
+def test_the_false_sentences_would_be_noticed(said: str) -> None:
     """These are the sentences of the first edition."""
     assert sum(bool(claim.search(said)) for claim in FALSE.values()) == 1

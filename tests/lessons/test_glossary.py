@@ -24,7 +24,7 @@ def test_every_language_has_the_same_entries(language: str) -> None:
         assert symbols.findall(one.means) == symbols.findall(other.means)
 
 
-def test_an_entry_belongs_to_a_lesson_that_there_is() -> None:
+def test_every_entry_belongs_to_an_existing_lesson() -> None:
     numbers = {home.name.split("-")[0].lstrip("0") for home in BUILT_IN.glob("[0-9]*")}
     assert {entry.lesson for entry in glossary("en")} <= numbers
 

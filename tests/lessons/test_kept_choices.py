@@ -115,7 +115,7 @@ def test_the_records_of_an_older_version_say_so(tmp_path: Path) -> None:
     assert ENGLISH("class.unknown", count=1) in given_line(found, ENGLISH)
 
 
-def test_who_answers_again_is_known_again(tmp_path: Path) -> None:
+def test_a_new_answer_is_known_again(tmp_path: Path) -> None:
     lab = returned(course_of(tmp_path), json.loads(OLDER))
     do(lab, TakeStep(NAME, 7), c.AnswerQuiz(0, 0))
     assert lab.lessons.notes.unknown == (ASKED,) and lab.lessons.notes.quiz == {QUIZ: 0}

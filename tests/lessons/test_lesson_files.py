@@ -311,7 +311,7 @@ def test_every_language_says_everything() -> None:
             assert arguments(own[key]) == arguments(message), key
 
 
-def test_a_language_that_there_is_not_is_answered_in_english() -> None:
+def test_a_missing_language_falls_back_to_english() -> None:
     assert Words("xx").language == "en" and Words("../en")("kind.play") == Words()("kind.play")
 
 

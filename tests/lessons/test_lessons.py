@@ -74,7 +74,7 @@ def test_solution_passes_and_failure_does_not(lesson: Lesson, step: Step, task: 
 
 
 @pytest.mark.parametrize(("lesson", "step"), SCRIPTS, ids=label)
-def test_what_a_step_shows_by_itself_is_let_happen(lesson: Lesson, step: Step) -> None:
+def test_every_script_of_a_step_plays_to_its_end(lesson: Lesson, step: Step) -> None:
     assert step.script is not None
     lab = lab_at(lesson, step, store())
     assert not any(play(lab, step.script))  # there is no task to judge
@@ -124,7 +124,7 @@ def test_references_are_where_the_lessons_are() -> None:
     ],
     ids=["a solution that fails", "a failure that passes", "a solution that does nothing"],
 )
-def test_a_solution_that_is_none_is_found(
+def test_an_invalid_solution_is_found(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], reference: str, line: int, words: str
 ) -> None:
     file = write_lesson(tmp_path).with_name(REFERENCE)

@@ -127,7 +127,7 @@ def test_answers_are_kept_and_judged(tmp_path: Path) -> None:
     assert lab.lessons.notes.written == {}
 
 
-def test_what_is_no_answer_is_refused(tmp_path: Path) -> None:
+def test_an_invalid_answer_is_refused(tmp_path: Path) -> None:
     run = lab_at(tmp_path, 7).lessons
     for typed in (math.nan, math.inf, "2", None, True):
         with pytest.raises(CodedError):

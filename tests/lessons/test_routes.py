@@ -99,7 +99,7 @@ def test_the_teacher_opens_a_route_and_a_step_beside_it(tmp_path: Path) -> None:
     assert place(lab) == ("02-b", 0)
 
 
-def test_a_route_that_there_is_not_is_refused(tmp_path: Path) -> None:
+def test_an_unknown_route_is_refused(tmp_path: Path) -> None:
     lab = Lab(store(), course=written(tmp_path))
     do(lab, FollowRoute("shorts"))
     assert lab.message_level == "warning" and "short" in lab.message

@@ -45,7 +45,7 @@ def test_a_small_crowd_on_a_real_server(tmp_path: Path) -> None:
     assert (tmp_path / "data" / "onpath" / "onpath.db").exists()
 
 
-def test_a_server_for_so_many_admits_them_all_from_one_address() -> None:
+def test_a_measured_server_admits_all_clients_from_one_address() -> None:
     for clients in range(1, MOST + 1):
         queue, inside = AdmissionQueue(places_for(clients)), list[int]()
         for number in range(clients):
@@ -102,7 +102,7 @@ def has_browsers(folder: Path) -> bool:
 
 @pytest.mark.thorough
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
-def test_a_bench_that_is_stopped_takes_its_server_along(tmp_path: Path) -> None:
+def test_stopping_a_bench_stops_its_server(tmp_path: Path) -> None:
     """Both at once: each waits until its server is at rest before its browsers come."""
     command = [sys.executable, "-m", "onpath", "bench", "--clients", "2", "--seconds", "60"]
     pipe = subprocess.PIPE

@@ -48,7 +48,7 @@ def test_summary_is_json_with_both_controllers(capsys: pytest.CaptureFixture[str
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_one_controller_alone_is_as_in_company(
+def test_one_controller_alone_gives_the_same_numbers_as_beside_another(
     name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     summaries = []
@@ -66,7 +66,7 @@ def test_laws_are_chosen_by_name_in_the_order_given(capsys: pytest.CaptureFixtur
         assert list(result["laws"]) == names and result["controllers"] == result["laws"]
 
 
-def test_a_path_may_stand_in_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_path_may_be_read_from_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "path.json"
     file.write_text('{"points": [[0.06, 0], [0, 0.05], [-0.05, 0], [0, -0.04]]}')
     outputs = []
@@ -259,7 +259,7 @@ def test_complaint_names_what_was_expected(
     assert words in capsys.readouterr().err
 
 
-def test_a_file_that_is_there_is_kept_when_a_run_fails(
+def test_an_existing_file_is_kept_when_a_run_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = tmp_path / "out.csv"
@@ -277,7 +277,7 @@ def test_a_file_that_is_there_is_kept_when_a_run_fails(
     assert sorted(p.name for p in tmp_path.iterdir()) == ["out.csv", "seen"]
 
 
-def test_nothing_is_simulated_for_a_file_that_cannot_be(
+def test_an_unwritable_file_is_refused_before_simulating(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(

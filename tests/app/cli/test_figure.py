@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,8 +15,17 @@ from onpath.app.exports.paper_figures import paper_figure
 from onpath.models.studies.paper_figures import FIGURES
 from onpath.models.systems.catalogue import ROBOTS
 
+QUICK_FIGURES, QUICK_ROBOTS = (2, 7), ("two_link_arm", "flexible")
+"""Those of `make test`: plane and flexible. The others are drawn by the same code."""
 
-@pytest.mark.parametrize("number", FIGURES)
+
+def some(every: Iterable[Any], quick: tuple[Any, ...]) -> list[Any]:
+    """All cases, those that are not quick marked as thorough."""
+    marks = pytest.mark.thorough
+    return [each if each in quick else pytest.param(each, marks=marks) for each in every]
+
+
+@pytest.mark.parametrize("number", some(FIGURES, QUICK_FIGURES))
 def test_the_same_figure_has_the_same_bytes(
     number: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -79,7 +90,7 @@ def test_errors_are_one_line(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", some(ROBOTS, QUICK_ROBOTS))
 def test_the_rank_test_is_drawn_for_every_robot(
     robot: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

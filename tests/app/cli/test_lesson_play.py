@@ -110,7 +110,7 @@ def test_times_go_on_through_a_reset(tmp_path: Path, capsys: Capture) -> None:
         (["99", "1"], "unknown lesson '99'"),
     ],
 )
-def test_a_step_that_there_is_not_is_named(
+def test_a_missing_step_is_named_in_the_error(
     capsys: Capture, arguments: list[str], said: str
 ) -> None:
     assert run_command(["lessons", "play", *arguments]) == 2
@@ -125,7 +125,7 @@ def test_a_lesson_with_problems_or_without_a_reference_is_not_played(
     assert "reference.toml" in capsys.readouterr().err
 
 
-def test_text_shows_what_the_step_speaks_of_and_all_on_demand(capsys: Capture) -> None:
+def test_text_shows_the_quantities_of_the_step_and_all_on_demand(capsys: Capture) -> None:
     assert run_command(["lessons", "play", "2", "3"]) == 0
     some = capsys.readouterr().out
     assert "lag [mm] follower" in some and "energy" not in some

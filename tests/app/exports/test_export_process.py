@@ -35,7 +35,7 @@ def test_a_file_from_the_process_is_the_same_to_the_byte(process: ExportProcess)
     assert made == csv_bytes(session.robot, session.history.all())
 
 
-def test_it_is_another_process_and_gives_way_to_the_lab(process: ExportProcess) -> None:
+def test_it_is_another_process_with_lower_priority(process: ExportProcess) -> None:
     pid = process.call(LONG, os.getpid)
     assert pid == process.pid != os.getpid()
     assert process.call(LONG, os.nice, 0) == min(os.nice(0) + NICENESS, 19)
@@ -49,7 +49,7 @@ def test_what_fails_is_told_and_the_process_stays(process: ExportProcess) -> Non
     assert process.call(LONG, os.getpid) == pid
 
 
-def test_what_is_printed_there_is_no_result(process: ExportProcess) -> None:
+def test_output_printed_in_the_process_is_not_taken_for_a_result(process: ExportProcess) -> None:
     assert process.call(LONG, print, "hello") is None
 
 

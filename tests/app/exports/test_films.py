@@ -89,7 +89,7 @@ def press_at_once(lab: Lab, exporters: list[Exporter]) -> None:
         thread.join()
 
 
-def test_twelve_pressed_together_are_twelve_films_and_leave_nothing_behind(
+def test_twelve_simultaneous_requests_make_twelve_films_and_leave_nothing_behind(
     lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     started: list[WebsockServer] = []
@@ -194,7 +194,7 @@ def test_while_one_file_is_made_others_are_refused_and_the_user_is_told(lab: Lab
     lab.clear_message()
 
 
-def test_nothing_is_made_for_who_has_left_the_queue(
+def test_nothing_is_made_for_a_user_who_has_left_the_queue(
     lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made: list[str] = []

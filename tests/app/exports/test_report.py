@@ -270,7 +270,7 @@ class Client:
         self.sent[name] = content
 
 
-def test_it_is_sent_as_it_was_when_it_was_asked_for(course: Course) -> None:
+def test_it_is_sent_as_it_was_when_it_was_requested(course: Course) -> None:
     lab, client = Lab(store(), FIVE_BAR, course), Client()
     do(lab, c.OpenLesson(NAME), c.GoToStep(1))
     do(lab, c.Predict(times=(0.0, 2.0), values=(5.0, 30.0)), c.GoToStep(1), c.PlayStep())
@@ -285,7 +285,7 @@ def test_it_is_sent_as_it_was_when_it_was_asked_for(course: Course) -> None:
     assert strokes(picture, SELECTED.hex) == strokes(picture, VERMILLION.hex) == 1
 
 
-def test_what_to_take_away_is_told_to_whom_came_to_the_end(tmp_path: Path) -> None:
+def test_what_to_take_away_is_shown_to_students_who_reached_the_end(tmp_path: Path) -> None:
     point = "Remember the path."
     text = LESSON.replace("minutes = 1", f'minutes = 1\ntakeaway = ["{point}"]')
     course = read(tmp_path, text)

@@ -68,7 +68,7 @@ def now(lab: Lab) -> list[object]:
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_together_is_one_by_one(seed: int) -> None:
+def test_advancing_together_equals_advancing_one_by_one(seed: int) -> None:
     stopped, labs, others = set[str](), list[Lab](), list[Lab]()
     for labs, others in zip(played(seed, True), played(seed, False), strict=True):
         for lab, other in zip(labs, others, strict=True):

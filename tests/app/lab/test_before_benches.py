@@ -87,7 +87,7 @@ def test_a_kept_lab_opens_in_its_lesson(records: Records) -> None:
     records.close()
 
 
-def test_a_kept_class_goes_on(records: Records) -> None:
+def test_a_stored_class_continues(records: Records) -> None:
     room = SharedClassroom(records, KEY, lambda: 5.0, lambda: 1.8e9)
     room.look()
     assert [member.name for member in room.members().values()] == ["Ada", "Emmy"]
@@ -103,6 +103,6 @@ def test_a_kept_class_goes_on(records: Records) -> None:
     records.close()
 
 
-def test_a_table_of_then_is_read() -> None:
+def test_a_csv_file_of_that_version_is_read() -> None:
     text = "t_s,controller,q1_rad\n0,trajectory_tracking,1\n0,path_following,2\n"
     assert read_csv(io.StringIO(text))["path_following"]["q1_rad"] == [2.0]

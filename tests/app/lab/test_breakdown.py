@@ -46,7 +46,7 @@ def test_the_last_moments_are_shown_slowly_and_larger(blown_up: Lab) -> None:
     assert lab.message == said
 
 
-def test_whatever_its_user_does_ends_it_and_time_goes_on(blown_up: Lab) -> None:
+def test_any_action_of_the_user_ends_it_and_time_runs(blown_up: Lab) -> None:
     lab, session = blown_up, blown_up.session
     said, running = lab.message, session.running
     for command, then in (
@@ -77,7 +77,7 @@ def test_a_teacher_who_freezes_the_lab_stops_it_too(blown_up: Lab) -> None:
     assert take_snapshot(blown_up, 1.0).time == shown
 
 
-def test_time_goes_on_after_it_as_before(blown_up: Lab) -> None:
+def test_time_runs_afterwards_as_before(blown_up: Lab) -> None:
     for running in (True, False):
         blown_up.session.running = running
         do(blown_up, c.ReplayBreakdown())
@@ -104,7 +104,7 @@ def test_looking_elsewhere_ends_it(blown_up: Lab) -> None:
     assert session.viewing == pytest.approx(session.time - 0.02)
 
 
-def test_the_last_settings_that_did_well_are_offered_and_taken(blown_up: Lab) -> None:
+def test_the_last_stable_settings_are_offered_and_applied(blown_up: Lab) -> None:
     assert take_snapshot(blown_up, 1.0).remedy == {"alpha": 0.5}
     do(blown_up, c.UseEarlierSettings())
     run(blown_up, 1.0)

@@ -13,7 +13,7 @@ asked = st.lists(
 
 
 @given(asked)
-def test_first_come_first_served_among_those_who_ask_lately(
+def test_recent_requests_are_served_in_order(
     pauses: list[tuple[int, float]],
 ) -> None:
     now, came, last = 0.0, dict[int, int](), dict[int, float]()

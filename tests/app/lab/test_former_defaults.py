@@ -50,7 +50,7 @@ def parameters(lab: Lab, robot: str) -> Any:
 
 
 @pytest.mark.parametrize("case", CODES)
-def test_a_share_code_of_then_has_the_physics_of_then(case: str) -> None:
+def test_an_old_share_code_keeps_its_physics(case: str) -> None:
     code, own = CODES[case]
     lab = new_lab()
     do(lab, c.UseShared(code))
@@ -61,7 +61,7 @@ def test_a_share_code_of_then_has_the_physics_of_then(case: str) -> None:
         assert found.tracker_integral == expected.get("tracker_integral", "off")
 
 
-def test_a_lab_kept_then_is_put_back_and_kept_with_its_version() -> None:
+def test_an_old_stored_lab_is_restored_and_stored_with_its_version() -> None:
     lab, kept = new_lab(), list[dict[str, Any]]()
     old = {"benches": {"five_bar": {"parameters": {"K1": 900.0}}}}
     put_back(lab, {"setup": old, "lessons": {}, "before": old})
@@ -74,14 +74,14 @@ def test_a_lab_kept_then_is_put_back_and_kept_with_its_version() -> None:
     assert capture(again.session) == capture(lab.session)
 
 
-def test_what_a_teacher_sent_then_is_taken() -> None:
+def test_an_old_push_of_a_teacher_is_accepted() -> None:
     sent = read_push('{"setup":{"benches":{"five_bar":{"parameters":{"K2":60.0}}}}}')
     assert isinstance(sent, TakeSetup)
     assert sent.setup.robots["five_bar"] == RobotSetup({"K2": 60.0, "K3": 0.0})
     assert read_push(push_text(sent)) == sent
 
 
-def test_a_robot_that_there_was_not_then_has_its_own_defaults(
+def test_a_robot_added_since_has_its_own_defaults(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(ROBOTS, "new", ROBOTS["five_bar"])
@@ -96,6 +96,6 @@ def test_a_new_lab_has_the_integral_and_its_data_say_so() -> None:
 
 
 @pytest.mark.parametrize("version", [0, 3, -1, True, "2", 1.5, None])
-def test_a_version_that_is_none_is_refused(version: object) -> None:
+def test_an_invalid_version_is_refused(version: object) -> None:
     with pytest.raises(ValueError):
         from_data({"defaults": version})

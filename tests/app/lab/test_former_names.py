@@ -51,14 +51,14 @@ def plant(lab: Lab) -> str:
     return lab.session.parameters.plant
 
 
-def test_a_share_code_of_then_opens() -> None:
+def test_an_old_share_code_opens() -> None:
     lab = new_lab()
     do(lab, c.UseShared(SHARED))
     assert plant(lab) == NEW
     assert capture(lab.session).robots["flexible"].parameters == {"plant": NEW, "alpha": 1.0}
 
 
-def test_a_lab_kept_then_is_put_back_and_kept_under_the_new_name() -> None:
+def test_an_old_stored_lab_is_restored_and_stored_under_the_new_name() -> None:
     lab, kept = new_lab(), list[dict[str, Any]]()
     put_back(lab, {"setup": SETUP, "lessons": {}, "before": SETUP})
     assert plant(lab) == NEW
@@ -66,14 +66,14 @@ def test_a_lab_kept_then_is_put_back_and_kept_under_the_new_name() -> None:
     assert NEW in json.dumps(kept[0]["setup"]) and OLD not in json.dumps(kept[0]["setup"])
 
 
-def test_a_teacher_s_set_up_of_then_is_taken() -> None:
+def test_an_old_set_up_of_a_teacher_is_accepted() -> None:
     lab = new_lab()
     lab.post(TakeSetup(from_data(SETUP)))
     lab.drain()
     assert plant(lab) == NEW
 
 
-def test_a_lab_on_a_worker_of_then_is_mirrored() -> None:
+def test_a_lab_on_a_worker_of_the_old_version_is_mirrored() -> None:
     lab = new_lab()
     do(lab, c.UseShared(SHARED))
     text = msgspec.json.encode(tell(ScheduledLab(lab))).decode().replace(NEW, OLD)
@@ -89,7 +89,7 @@ def course(tmp_path: Path) -> Course:
     return found
 
 
-def test_a_lesson_of_then_sets_and_checks_it(course: Course) -> None:
+def test_an_old_lesson_sets_and_checks_it(course: Course) -> None:
     assert LESSON_OF_THEN.count(OLD) == 3
     lab = Lab(store(), course=course)
     do(lab, c.OpenLesson("01-a"), c.GoToStep(0))

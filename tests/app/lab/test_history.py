@@ -160,7 +160,7 @@ def test_older_stretches_are_fewer_and_as_exact() -> None:
         assert np.array_equal(state, later.drives[name].state)
 
 
-def test_who_looks_meanwhile_changes_nothing() -> None:
+def test_reading_from_another_thread_changes_nothing() -> None:
     """A page is built in a thread of its own."""
     history, done = new_history(), threading.Event()
 

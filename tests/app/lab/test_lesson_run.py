@@ -111,7 +111,9 @@ def test_skipping_the_prediction_of_a_pushed_step_does_not_skip_what_happens(
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
-def test_who_did_not_answer_is_told_the_answer_and_not_that_it_was_right(language: str) -> None:
+def test_a_student_who_did_not_answer_is_told_the_answer_and_not_that_it_was_right(
+    language: str,
+) -> None:
     words = Words(language)
     options = (Option("this", "no"), Option("that", "of course", right=True))
     for block in (Choice("Which?", options), Quiz("Which?", options)):
@@ -282,7 +284,7 @@ def test_progress_comes_back_from_json(lab: Lab, course: Course) -> None:
         None,
     ],
 )
-def test_what_is_no_progress_is_refused(data: object) -> None:
+def test_invalid_progress_is_refused(data: object) -> None:
     with pytest.raises(ValueError):
         read_progress(data)
 

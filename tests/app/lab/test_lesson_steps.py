@@ -202,7 +202,17 @@ def test_random_walks(first: tuple[str, int], walk: list[Callable[[Lab], Lab]]) 
     assert set_up_again(lab)
 
 
-@pytest.mark.parametrize("name", COURSE.lessons)
+QUICK = "05-invariance", "07-flexible-link"
+"""Lessons of `make test`, a rigid and a flexible robot; `make thorough` has the others."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[] if name in QUICK else [pytest.mark.thorough])
+        for name in COURSE.lessons
+    ],
+)
 def test_there_and_back_through_a_lesson_while_meddling(name: str) -> None:
     lab = pushed((name, 0))(new_lab())
     last = len(COURSE.lesson(name, "en").steps) - 1

@@ -39,14 +39,14 @@ def level_set(path: str = "circle") -> Lab:
 
 
 @pytest.mark.parametrize("path", ["clover", "segment", "rounded square"])
-def test_where_there_is_none_it_is_refused_and_nothing_changes(path: str) -> None:
+def test_without_a_level_set_it_is_refused_and_nothing_changes(path: str) -> None:
     lab = level_set(path)
     assert across(lab) == "distance" and NONE in lab.message and lab.message_level == "warning"
     assert not any(kept.kind.level_set for kept in lab.session.runs.values())
 
 
 @pytest.mark.parametrize("path", ["circle", "ellipse"])
-def test_where_there_is_one_it_is_used(path: str) -> None:
+def test_with_a_level_set_it_is_used(path: str) -> None:
     lab = level_set(path)
     assert across(lab) == "level_set" and lab.message == ""
     assert all(kept.kind.level_set for kept in lab.session.runs.values())

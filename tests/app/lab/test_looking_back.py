@@ -105,7 +105,7 @@ def test_only_going_on_forgets_and_undo_brings_all_of_it_back(actions: list[str]
                 assert lab.session.running and lab.session.viewing is None
 
 
-def test_a_lab_brought_back_goes_on_as_if_nothing_had_been() -> None:
+def test_a_restored_lab_continues_as_if_nothing_had_happened() -> None:
     lab, twin = new_lab(), new_lab()
     for each in (lab, twin):
         do(each, c.SetParameter("K3", 200), c.SetParameter("encoder_counts", 4000))
@@ -175,7 +175,7 @@ def test_a_step_of_a_lesson_cannot_be_passed_by_bringing_back_what_came_before(
     assert lab.session.undo_timeline is None
 
 
-def test_whoever_acts_on_the_lab_while_looking_back_is_told_that_it_is_the_present() -> None:
+def test_acting_on_the_lab_while_looking_back_returns_to_the_present_and_says_so() -> None:
     for command in (c.Hold(True), c.MoveHand(0.01, 0.0), c.StepOnce(), c.ChoosePath("ellipse")):
         lab = new_lab(0.5)
         do(lab, c.LookAt(0.3))

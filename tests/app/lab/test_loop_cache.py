@@ -88,7 +88,7 @@ def test_loops_are_interpreted_at_once_and_compiled_later(store: LoopCache, gate
     assert len(gate.passed) == len(BENCHES)
 
 
-def test_what_cannot_be_compiled_is_told_once_and_the_lab_goes_on(
+def test_a_failed_compilation_is_logged_once_and_the_lab_continues(
     store: LoopCache, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setitem(sys.modules, "llvmlite.binding", None)

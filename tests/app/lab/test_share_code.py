@@ -253,6 +253,6 @@ def test_session_codes_are_forgiving_and_unambiguous() -> None:
 @pytest.mark.parametrize(
     "text", ["", "abc", "k7mf-2xqa-9tz0", "k7mf-2xqa-9tzrr", "é" * 12, "x" * 10**7]
 )
-def test_what_is_no_session_code_is_refused(text: str) -> None:
+def test_an_invalid_session_code_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match="session code"):
         normalised(text)

@@ -143,7 +143,7 @@ def test_a_lesson_may_set_it_and_nothing_else_by_that_name() -> None:
         ("profile_period", "0:0, 1:1"),
     ],
 )
-def test_what_is_no_profile_is_refused_and_changes_nothing(name: str, value: Any) -> None:
+def test_an_invalid_profile_is_refused_and_changes_nothing(name: str, value: Any) -> None:
     lab = lab_with("sine", 0.1)
     before = lab.session.parameters
     do(lab, c.SetParameter(name, value))

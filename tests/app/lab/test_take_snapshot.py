@@ -20,7 +20,7 @@ def away(snapshot: Snapshot, name: str = RIGHT) -> float:
     return float(np.linalg.norm(points - tip, axis=1).min())
 
 
-def test_looking_back_shows_the_path_of_then() -> None:
+def test_looking_back_shows_the_path_of_that_time() -> None:
     lab = new_lab()
     run(lab, 1.0)
     circle = take_snapshot(lab, 1.0)

@@ -110,7 +110,7 @@ def test_a_wrong_text_is_told_and_changes_nothing(text: str, said: str) -> None:
     assert lab.session.laws[LEFT] == PATH_FOLLOWING
 
 
-def test_a_bench_that_there_is_not() -> None:
+def test_an_unknown_bench_is_refused() -> None:
     lab = Lab(STORE)
     do(lab, c.TypeLaw("middle", PATH_FOLLOWING))
     assert "unknown bench" in lab.message and lab.law_refusals == {}

@@ -186,7 +186,7 @@ def test_nonsense_is_refused_and_changes_nothing(bad: c.Command) -> None:
     assert lab.session.wall == wall and lab.session.hold_direction == "along"
 
 
-def test_looking_back_shows_the_wall_of_then_and_going_on_has_that_of_now() -> None:
+def test_looking_back_shows_the_wall_of_that_time_and_continuing_uses_the_present_one() -> None:
     lab = walled(0.5, Wall(0.0, 0.04, -1.5))
     then = take_snapshot(lab, 1.0).wall
     do(lab, c.MoveWall(np.array([0.02, 0.035])))

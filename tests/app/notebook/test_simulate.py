@@ -174,7 +174,7 @@ def test_a_path_and_a_profile_may_be_text() -> None:
     assert np.array_equal(told.y, made.y) and told.distance.max() < 1e-5
 
 
-def test_a_path_that_is_none_is_refused() -> None:
+def test_an_invalid_path_is_refused() -> None:
     for make, words in (
         (lambda: onpath.ellipse(0, 1), "half axes: expected positive"),
         (lambda: onpath.circle(float("nan")), "radius: expected positive"),

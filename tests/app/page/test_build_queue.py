@@ -102,7 +102,7 @@ class Comer(threading.Thread):
         return self.student.moving > 0
 
 
-def test_pages_are_built_one_at_a_time_and_who_waits_is_told(
+def test_pages_are_built_one_at_a_time_and_waiting_clients_are_told(
     server: LabServer, builds: Builds
 ) -> None:
     address = f"ws://127.0.0.1:{server.server.get_port()}"
@@ -144,7 +144,9 @@ def test_a_file_that_is_being_made_does_not_delay_the_page(
         over.set()
 
 
-def test_who_leaves_while_waiting_is_built_nothing(server: LabServer, builds: Builds) -> None:
+def test_no_page_is_built_for_a_client_that_leaves_while_waiting(
+    server: LabServer, builds: Builds
+) -> None:
     address = f"ws://127.0.0.1:{server.server.get_port()}"
     crowd = [Comer(address, patient=number < FEW + 1) for number in range(CROWD)]
     for number, comer in enumerate(crowd):

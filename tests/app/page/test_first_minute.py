@@ -66,14 +66,14 @@ def test_a_newcomer_is_led_from_a_hold_to_a_pull_to_a_bent_path(
 
 
 @pytest.mark.parametrize("kept", ["0", "", "5", "-1", "x" * 2000, "١", "2"])
-def test_what_a_browser_keeps_is_where_it_goes_on_if_it_makes_sense(
+def test_the_stored_number_of_invitations_is_used_if_it_is_valid(
     kept: str, guest: Callable[[str], Guest]
 ) -> None:
     expected = "pull" if kept == "2" else "hold"
     assert guest(kept).after(new_lab(), 4.0) == expected
 
 
-def test_who_has_seen_all_is_left_in_peace(guest: Callable[[str], Guest]) -> None:
+def test_a_user_who_has_seen_all_invitations_is_shown_none(guest: Callable[[str], Guest]) -> None:
     assert guest(str(len(INVITATIONS))).after(new_lab(), 4.0) == ""
 
 

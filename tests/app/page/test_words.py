@@ -319,11 +319,11 @@ def test_a_new_robot_speaks_english_until_it_is_translated(crane: RobotEntry) ->
         if language in OTHERS:
             assert label_of(words, "K1", known["K1"]) != known["K1"].label  # as every robot
             test_what_stands_in_models_is_translated(words)
-            test_nothing_is_translated_that_there_is_not(language)
+            test_no_language_translates_anything_that_does_not_exist(language)
 
 
 @pytest.mark.parametrize("language", OTHERS)
-def test_nothing_is_translated_that_there_is_not(language: str) -> None:
+def test_no_language_translates_anything_that_does_not_exist(language: str) -> None:
     there_are = {f"path.{name}" for name in presets()}
     for entry in ROBOTS.values():
         there_are |= {f"machine.{entry.name}.{part}" for part in ("label", "text")}

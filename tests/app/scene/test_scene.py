@@ -299,7 +299,7 @@ def test_benches_differ_in_lightness_or_blue_for_every_eye():
     assert palette.OF_BENCH[LEFT].hex == "#d55e00"
 
 
-def test_who_may_draw_is_told_so_until_the_end(lab):
+def test_drawing_is_reported_as_possible_until_it_ends(lab):
     notes = [lab.api.get_handle_by_name(f"/notes/{bench}") for bench in BENCHES]
     lab.scene.begin_freehand(lambda stroke: None)
     lab.scene.update_traces(snapshot())

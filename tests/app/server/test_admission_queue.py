@@ -61,7 +61,7 @@ def test_a_free_place_goes_to_the_address_that_has_fewest(notices: Notices) -> N
 
 
 @given(st.lists(st.tuples(st.integers(0, 9), st.sampled_from("abc"), st.booleans()), max_size=60))
-def test_who_waits_could_not_be_inside(steps: list[tuple[int, str, bool]]) -> None:
+def test_nobody_waits_while_a_place_is_free(steps: list[tuple[int, str, bool]]) -> None:
     """After any sequence of arrivals and departures nobody waits for a place that is free."""
     notices = Notices()
     with pytest.MonkeyPatch.context() as patch:

@@ -68,7 +68,7 @@ def test_silent_tabs_hold_no_thread_no_lab_and_no_place(lab: LabServer) -> None:
         assert [is_closed(tab) for tab in tabs] == [True] * MOST_EACH + [False] * MOST_EACH
 
 
-def test_who_answers_late_comes_back_to_the_same_lab(lab: LabServer) -> None:
+def test_a_late_answer_returns_to_the_same_lab(lab: LabServer) -> None:
     with Student(f"ws://127.0.0.1:{lab.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.code and student.has_widget("Path"))
@@ -128,7 +128,7 @@ def inn() -> Iterator[Inn]:
     inn.server.stop()
 
 
-def test_who_has_answered_everything_is_let_in_once(inn: Inn) -> None:
+def test_a_client_that_has_answered_everything_enters_once(inn: Inn) -> None:
     client = inn.visit()
     with client:
         answers = answers_of(client)

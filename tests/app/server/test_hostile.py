@@ -218,7 +218,7 @@ NO_VALUES: list[Any] = [
 ]
 
 
-def test_no_widget_of_the_lab_takes_what_it_cannot_hold(
+def test_no_widget_of_the_lab_takes_an_impossible_value(
     server: LabServer, attacker: Guest, witness: Witness
 ) -> None:
     lab = attacker.scheduled.lab
@@ -239,7 +239,7 @@ def test_no_widget_of_the_lab_takes_what_it_cannot_hold(
     assert attacker.id in server._views  # it may go on
 
 
-def test_another_s_widgets_do_not_move(
+def test_widgets_of_another_client_cannot_be_changed(
     server: LabServer, attacker: Guest, witness: Witness
 ) -> None:
     victim = Guest(server)
@@ -271,7 +271,7 @@ UNREAD = 100_000  # messages are more than buffers hold: some have been sent aft
     ],
 )
 @pytest.mark.usefixtures("quiet_log")
-def test_long_work_asked_for_all_the_time_is_the_asker_s_to_wait_for(
+def test_requesting_long_work_all_the_time_delays_only_the_sender(
     attacker: Guest, witness: Witness, label: str, values: list[Any]
 ) -> None:
     """As fast as the limit on messages allows: the work, not the messages, is the burden."""
@@ -329,7 +329,7 @@ def test_a_wrong_version_is_told_so_and_closed(
     assert set(server.server.get_clients()) == clients
 
 
-def test_what_is_no_request_is_closed_and_not_logged_in_full(
+def test_an_invalid_request_is_closed_and_not_logged_in_full(
     server: LabServer, witness: Witness, quiet_log: None
 ) -> None:
     with witness.served():
@@ -497,7 +497,7 @@ for _ in sys.stdin:
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="no way to suspend a process here")
-def test_a_suspended_process_goes_on_where_it_was_and_makes_nothing_up() -> None:
+def test_a_suspended_process_continues_where_it_was_and_does_not_catch_up() -> None:
     pipe = subprocess.PIPE
     command = [sys.executable, "-c", SUSPENDED]
     process = subprocess.Popen(

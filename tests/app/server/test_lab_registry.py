@@ -153,7 +153,7 @@ def test_abandoned_lab_is_kept_for_a_while_and_then_dropped(desk: Desk) -> None:
     assert used.scheduled in desk.simulation.labs  # somebody looks at it, however long
 
 
-def test_no_more_than_so_many_wait(desk: Desk) -> None:
+def test_the_number_of_waiting_labs_is_limited(desk: Desk) -> None:
     tabs = [desk.open(str(k)) for k in range(MOST_ABANDONED + 5)]
     assert len(desk.sessions) == MOST_ABANDONED + 5
     for client, _ in tabs:

@@ -145,7 +145,7 @@ def test_strangers_and_monsters_are_refused(site: Site) -> None:
 
 
 @needs_nginx
-def test_a_student_whose_worker_is_killed_goes_on_with_another(site: Site) -> None:
+def test_a_student_whose_worker_is_killed_continues_on_another(site: Site) -> None:
     with site.student(site.cookie()) as student:
         student.open()
         student.set("K2", 44.0)

@@ -69,7 +69,7 @@ class Browser:
                 self.answer()
 
 
-def test_who_answers_late_is_looked_for_and_not_taken_for_gone() -> None:
+def test_a_browser_that_answers_late_is_not_taken_for_gone() -> None:
     browser = Browser()
     browser.wait(60.0, answers=True)
     assert 60 / (QUESTION_INTERVAL + TICK) - 1 <= browser.asked <= 60 / QUESTION_INTERVAL
@@ -77,7 +77,7 @@ def test_who_answers_late_is_looked_for_and_not_taken_for_gone() -> None:
     assert browser.scheduled.view is browser
 
 
-def test_a_lab_waits_for_who_does_not_answer_and_goes_on() -> None:
+def test_a_lab_waits_for_a_browser_that_does_not_answer_and_continues() -> None:
     browser = Browser()
     lab = browser.scheduled.lab
     browser.wait(QUIET)
@@ -92,13 +92,13 @@ def test_a_lab_waits_for_who_does_not_answer_and_goes_on() -> None:
     assert browser.updates > told and lab.session.time > simulated
 
 
-def test_who_is_told_nothing_is_asked_nothing() -> None:
+def test_a_browser_that_is_sent_nothing_is_asked_nothing() -> None:
     browser = Browser()
     browser.wait(100.0, tells=False)
     assert browser.asked == 0 and browser.scheduled.view is browser
 
 
-def test_who_has_left_does_not_come_back_by_a_late_answer() -> None:
+def test_a_late_answer_does_not_bring_back_a_browser_that_has_left() -> None:
     browser = Browser()
     browser.wait(QUIET)
     browser.onlooker.leave()

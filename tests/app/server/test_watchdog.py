@@ -66,7 +66,7 @@ class Look:
 
 
 @given(st.lists(st.sets(st.sampled_from("ab")), max_size=4 * LOOKS))
-def test_what_has_shown_no_sign_of_life_in_so_many_looks_hangs(lives: list[set[str]]) -> None:
+def test_anything_without_a_sign_of_life_for_long_enough_hangs(lives: list[set[str]]) -> None:
     look, silent = Look(), {"a": 0, "b": 0}
     look.dog.look()
     for alive in [*lives, {"a"}]:

@@ -140,7 +140,7 @@ def test_slow_frames_slow_simulated_time_visibly() -> None:
     assert max(thread.lateness) <= LATEST + 2.5 * FRAME  # it never piles up
 
 
-def test_after_a_stall_it_goes_on_at_its_pace() -> None:
+def test_after_a_stall_it_continues_at_its_pace() -> None:
     cost = 5.0
 
     def stall(frame: int) -> float:
@@ -183,7 +183,7 @@ def test_drawing_gives_way_before_simulated_time_does() -> None:
     assert max(thread.lateness[60:]) < 0.05
 
 
-def test_late_frames_of_what_costs_nothing_to_draw_are_drawn_as_ever() -> None:
+def test_late_frames_are_drawn_as_usual_where_drawing_costs_nothing() -> None:
     _, _, (screen,) = drawn(8.0, lambda at: 0.05 if at % 20 == 0 else 0.010, 0.001, count=1)
     assert max(b - a for a, b in itertools.pairwise(screen.drawn)) <= ceil(STRIDES[1])
 

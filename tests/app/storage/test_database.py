@@ -130,7 +130,7 @@ def test_a_lab_comes_back(file: Path) -> None:
     assert capture(other) == capture(session)
 
 
-def test_when_it_was_kept_is_the_clock_s(file: Path) -> None:
+def test_the_time_of_storing_is_that_of_the_clock(file: Path) -> None:
     filled(file, 1)
     with sqlite3.connect(file) as raw:
         assert raw.execute("SELECT updated, version FROM labs").fetchall() == [(NOON, 1)]
@@ -147,7 +147,7 @@ def test_when_it_was_kept_is_the_clock_s(file: Path) -> None:
         ("x" * 65, {}, "session code"),
     ],
 )
-def test_what_is_too_large_or_strange_is_refused(
+def test_a_state_that_is_too_large_or_invalid_is_refused(
     file: Path, code: str, state: dict[str, Any], words: str
 ) -> None:
     with opened(file) as records:
@@ -230,7 +230,7 @@ def test_a_file_with_wrong_bytes_opens_and_nothing_is_deleted(file: Path, seed: 
         assert broken_files(file)[0].read_bytes() == bytes(good)
 
 
-def test_a_state_that_is_no_state_is_told_from_none(file: Path) -> None:
+def test_an_invalid_state_is_distinguished_from_a_missing_one(file: Path) -> None:
     filled(file, 3)
     with sqlite3.connect(file) as raw:
         raw.execute("UPDATE labs SET state = '[1,' WHERE code = 'code0'")
@@ -434,7 +434,7 @@ def test_processes_that_find_a_broken_file_at_once(file: Path) -> None:
         assert all(records.load(f"w{i}") for i in range(3))
 
 
-def test_who_finds_a_broken_file_while_it_is_moved_aside_waits(file: Path) -> None:
+def test_a_process_that_finds_a_broken_file_waits_while_another_moves_it_aside(file: Path) -> None:
     file.parent.mkdir()
     file.write_bytes(b"broken" * 1000)
     others: list[Records] = []
@@ -578,7 +578,7 @@ def test_a_lab_is_kept_when_it_is_let_go_though_its_turn_was_under_way() -> None
     keeper.close()
 
 
-def test_what_could_not_be_kept_is_tried_again_and_told_once(caplog: Any) -> None:
+def test_a_failed_write_is_repeated_and_reported_once(caplog: Any) -> None:
     caplog.set_level(logging.WARNING)
     store = Memory()
     store.fault = NotKept("error.database", reason="the disk is full")
@@ -615,7 +615,7 @@ def test_an_older_state_never_overwrites_a_newer_one() -> None:
     assert store.saved == [("a", 2)]
 
 
-def test_one_lab_s_mistake_is_its_own(caplog: Any) -> None:
+def test_a_mistake_of_one_lab_does_not_affect_others(caplog: Any) -> None:
     store = Memory()
     keeper = WriteBehind(store, interval=0.002)
 

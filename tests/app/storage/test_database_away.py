@@ -281,7 +281,7 @@ def granted(server: Server) -> list[float]:
     return waits
 
 
-def test_who_returns_waits_twice_two_seconds_at_most_is_told_and_finds_the_lab_later(
+def test_a_returning_user_waits_for_four_seconds_at_most_is_told_and_finds_the_lab_later(
     server: Server, granted: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert TRANSACTION_WAIT <= 2.0

@@ -55,7 +55,9 @@ def test_a_lab_is_deleted_a_year_after_its_last_use(world: World) -> None:
     assert world.expiry().delete() == 2 and world.there() == "d"
 
 
-def test_of_too_many_those_not_used_for_longest_are_deleted_but_none_in_use(world: World) -> None:
+def test_beyond_the_limit_the_least_recently_used_labs_are_deleted_but_none_in_use(
+    world: World,
+) -> None:
     world.save(*"abcdef")
     world.leases.renew(["a"])  # has been open for long
     world.save("b")

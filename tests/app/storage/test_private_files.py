@@ -47,7 +47,7 @@ def test_a_new_file_its_journals_and_its_folder_are_their_owner_s(file: Path) ->
     assert mode(file.parent) == 0o700
 
 
-def test_a_file_that_was_there_is_withdrawn_and_its_folder_left_alone(file: Path) -> None:
+def test_an_existing_file_is_made_private_and_its_folder_left_alone(file: Path) -> None:
     file.parent.mkdir(mode=0o755)
     with closing(sqlite3.connect(file)) as earlier:
         earlier.execute("PRAGMA journal_mode = WAL")
@@ -61,14 +61,14 @@ def test_a_file_that_was_there_is_withdrawn_and_its_folder_left_alone(file: Path
     assert mode(file.parent) == 0o755
 
 
-def test_the_default_folder_is_withdrawn(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_default_folder_is_made_private(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(database.platformdirs, "user_data_dir", lambda name: str(file.parent))
     file.parent.mkdir(mode=0o755)
     Records().close()
     assert mode(file.parent) == 0o700 and mode(default_file()) == 0o600
 
 
-def test_what_may_not_be_withdrawn_is_warned_of(
+def test_a_warning_is_logged_if_permissions_cannot_be_restricted(
     file: Path, monkeypatch: pytest.MonkeyPatch, caplog: Any
 ) -> None:
     def refuse(path: Path, mode: int) -> None:

@@ -92,7 +92,7 @@ def test_silent_connections_of_one_address_keep_nobody_out(
     assert not caplog.records
 
 
-def test_of_silent_connections_too_many_the_oldest_are_cut_off() -> None:
+def test_beyond_the_limit_the_oldest_silent_connections_are_closed() -> None:
     with serving(Limits(max_waiting=9, max_waiting_each=6)) as site:
         first = [site.connect(OTHER) for _ in range(3)]
         mine = [site.connect() for _ in range(20)]
@@ -109,7 +109,7 @@ def test_one_address_has_no_more_websockets_than_its_share() -> None:
         assert site.ask("/health") == 200
 
 
-def test_who_leaves_makes_room() -> None:
+def test_closing_a_connection_makes_room() -> None:
     with serving(Limits(max_connections_each=1)) as site:
         inside = say(site.connect(), **UPGRADE)
         assert status(inside) == 101 and site.websocket() == 503
@@ -132,7 +132,7 @@ class CountedConnection:
     peer = address = ONE
 
 
-def test_who_is_gone_before_the_request_is_looked_at_takes_no_room() -> None:
+def test_a_client_that_is_gone_before_its_request_is_read_takes_no_room() -> None:
     connections, request = (
         ConnectionLimits(Limits(max_connections_each=1), Proxies()),
         Request("/", Headers()),
@@ -165,13 +165,13 @@ def test_who_is_gone_before_the_request_is_looked_at_takes_no_room() -> None:
         ("::1", ["2001:db8:1:2:ffff::"], "2001:db8:1:2::/64"),
     ],
 )
-def test_only_a_proxy_that_is_trusted_says_who_asks(
+def test_only_a_trusted_proxy_determines_the_client_address(
     peer: str, forwarded: list[str], asker: str
 ) -> None:
     assert Proxies(("10.0.0.0/8",)).client_address(peer, forwarded) == asker
 
 
-def test_a_proxy_that_cannot_be_is_refused() -> None:
+def test_an_invalid_proxy_is_refused() -> None:
     with pytest.raises(ValueError, match="does not appear"):
         make_server(port=0, trusted_proxies=("10.0.0.0/99",))
 

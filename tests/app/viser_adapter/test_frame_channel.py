@@ -141,7 +141,7 @@ def test_what_one_thread_tells_in_a_frame_arrives_at_once_and_in_order(
         assert told_until(socket, "/0") == [["/0"]]
 
 
-def test_nobody_is_told_anything_when_he_is_gone(
+def test_nothing_is_sent_to_a_browser_that_has_gone(
     server: viser.ViserServer, recwarn: pytest.WarningsRecorder
 ) -> None:
     with browser(server) as (client, _):

@@ -339,7 +339,7 @@ def test_a_disabled_button_can_be_neither_pressed_nor_held(lab: Lab, attacker: B
 
 
 @pytest.mark.usefixtures("no_errors")
-def test_to_hold_what_is_no_button_has_no_effect(
+def test_holding_a_widget_that_is_not_a_button_has_no_effect(
     lab: Lab, attacker: Browser, bystander: Browser
 ) -> None:
     errors = error_log._seen.copy()
@@ -487,7 +487,7 @@ def test_impossible_scene_messages_reach_no_callback(
 
 
 @pytest.mark.usefixtures("no_errors")
-def test_what_is_no_message_is_skipped(lab: Lab, attacker: Browser, bystander: Browser) -> None:
+def test_invalid_messages_are_skipped(lab: Lab, attacker: Browser, bystander: Browser) -> None:
     def packed(message: Any) -> bytes:
         return msgspec.msgpack.encode(message)
 
@@ -519,7 +519,7 @@ def test_what_is_no_message_is_skipped(lab: Lab, attacker: Browser, bystander: B
 
 
 @pytest.mark.usefixtures("no_errors")
-def test_too_large_a_message_closes_that_connection(
+def test_a_message_that_is_too_large_closes_its_connection(
     lab: Lab, attacker: Browser, bystander: Browser
 ) -> None:
     attacker.update("text", value="x" * 2_000_000)
@@ -530,7 +530,7 @@ def test_too_large_a_message_closes_that_connection(
 
 @pytest.mark.parametrize("flood", ["messages", "pings", "fragments"])
 @pytest.mark.usefixtures("no_errors")
-def test_a_flood_closes_that_connection_and_says_why(
+def test_a_flood_of_messages_closes_its_connection_and_says_why(
     lab: Lab, attacker: Browser, bystander: Browser, flood: str
 ) -> None:
     def pour() -> None:
@@ -755,7 +755,9 @@ def test_failing_callbacks_kill_nothing_and_are_logged_once_each(
 # What hardening relies on.
 
 
-def test_viser_is_the_one_that_hardening_was_written_against(lab: Lab, attacker: Browser) -> None:
+def test_viser_has_the_version_that_hardening_was_written_against(
+    lab: Lab, attacker: Browser
+) -> None:
     assert viser.__version__ == "1.1.1"
     client = lab.server.get_clients()[attacker.id]
     needed: list[tuple[Any, str]] = [

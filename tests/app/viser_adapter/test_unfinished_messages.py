@@ -91,7 +91,7 @@ def test_a_message_that_never_ends_closes_its_sender(part: Callable[[int], bytes
         raw.close()
 
 
-def test_one_that_goes_on_byte_by_byte_is_closed_too() -> None:
+def test_a_message_that_arrives_byte_by_byte_is_closed_too() -> None:
     with serving(message_seconds=0.2) as server:
         (raw,) = tabs(server, 1)
         raw.sendall(ANNOUNCED)
@@ -107,7 +107,7 @@ def test_one_that_goes_on_byte_by_byte_is_closed_too() -> None:
         raw.close()
 
 
-def test_messages_in_pieces_that_end_have_all_the_time() -> None:
+def test_complete_messages_in_pieces_have_no_total_time_limit() -> None:
     """The time of a message begins with it, though the one before was in the same packet."""
     message = frames(packed("ViewerCameraMessage", **CAMERA))
     with serving(message_seconds=LONG) as server:

@@ -36,7 +36,7 @@ def test_a_wall_pushes_only_while_it_is_pressed_and_never_pulls(rig: Rig, kind: 
     assert depth.max() < 0.02
 
 
-def test_a_wall_out_of_the_way_is_none(rig: Rig) -> None:
+def test_a_wall_out_of_the_way_changes_nothing(rig: Rig) -> None:
     start = rig.on_path(FOLLOWING, CIRCLE, 0.0, 0.0)
     wall = {"wall_active": 1, "wall_place": (0.0, 0.06), "wall_normal": (0.0, -1.0)}
     free = rig.run(FOLLOWING, CIRCLE, start, 1500)

@@ -257,7 +257,7 @@ def test_the_loop_becomes_unstable_where_the_poles_say(k1: float, k2: float, rat
         assert (growth > 0) == (delay > low) and abs(growth) > 0.5
 
 
-def test_a_delay_that_is_switched_on_goes_on_with_the_same_torque() -> None:
+def test_a_delay_that_is_switched_on_continues_with_the_same_torque() -> None:
     parameters = dataclasses.replace(ROBOTS["two_link_arm"].lab, speed=1.0)
     slow = dataclasses.replace(parameters, delay=3.0)
     kernel, other = (kernel_for("two_link_arm", p) for p in (parameters, slow))

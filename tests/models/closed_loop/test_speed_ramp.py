@@ -54,7 +54,7 @@ def test_without_the_feedforward_the_speed_lags(rig: Rig) -> None:
 
 
 @BOTH
-def test_a_ramp_that_is_switched_on_begins_at_the_speed_of_then(rig: Rig, kind: Kind) -> None:
+def test_a_ramp_that_is_switched_on_begins_at_the_current_speed(rig: Rig, kind: Kind) -> None:
     start = rig.on_path(kind, CIRCLE, 0.0, 0.0)
     loop = rig.loop(kind)
     state, _ = loop.run(start, rig.settings(kind, speed=6.0), CIRCLE.table(), 1500)

@@ -284,7 +284,7 @@ def test_a_law_may_divide_by_zero_where_it_is_not_used() -> None:
         ("__class__", "error.unknown_name"),
     ],
 )
-def test_what_is_no_law_is_refused(text: str, code: str) -> None:
+def test_text_that_is_not_a_law_is_refused(text: str, code: str) -> None:
     with pytest.raises(CodedError) as refused:
         law_named(text)
     assert refused.value.message.code == code and str(refused.value)

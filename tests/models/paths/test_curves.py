@@ -170,7 +170,7 @@ def test_control_points_give_the_curve_back() -> None:
         ([[0.0, 0.0, 0.0], [0.1, 0.1, 0.0], [0.2, 0.0, 0.0]], "shape"),
     ],
 )
-def test_points_that_are_no_path_are_refused(
+def test_points_that_do_not_form_a_path_are_refused(
     fit: Callable[[Array], Curve], points: list[list[float]], reason: str
 ) -> None:
     with pytest.raises(ValueError, match=reason):

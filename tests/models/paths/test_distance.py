@@ -27,7 +27,7 @@ def test_a_good_guess_finds_the_closest_point(design, frame):
 
 
 @pytest.mark.parametrize("design", DESIGNS, ids=lambda design: design.name)
-def test_a_wild_guess_never_tells_of_a_distance_that_is_none(design):
+def test_a_wild_guess_never_gives_a_wrong_distance(design):
     rng = np.random.default_rng(2)
     frame, theta = Plane(), rng.uniform(-np.pi, np.pi, 300)
     y = rng.uniform(-0.12, 0.12, (300, 2))

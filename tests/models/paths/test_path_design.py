@@ -99,7 +99,7 @@ def test_cusp_is_refused() -> None:
     assert any("cusp" in reason for reason in found)
 
 
-def test_numbers_that_are_none_are_refused() -> None:
+def test_numbers_that_are_not_finite_are_refused() -> None:
     assert "not numbers" in reasons(circle(math.nan))[0]
 
 
@@ -149,7 +149,7 @@ def test_moving_a_point_moves_the_path_there_and_not_elsewhere(name: str) -> Non
 
 @settings(max_examples=40, deadline=None)
 @given(st.sampled_from(GOOD), st.integers(0, 30), st.floats(allow_nan=True, allow_infinity=True))
-def test_point_goes_nowhere_that_is_no_place(name: str, index: int, x: float) -> None:
+def test_a_point_is_not_moved_to_an_invalid_place(name: str, index: int, x: float) -> None:
     design = presets()[name]
     if index >= len(design.points) or not math.isfinite(x):
         with pytest.raises(ValueError, match="control point"):
@@ -271,7 +271,7 @@ BAD_STROKES = [
 
 
 @pytest.mark.parametrize("stroke", BAD_STROKES, ids=str)
-def test_stroke_that_is_none_is_refused_in_words(stroke: np.ndarray) -> None:
+def test_an_invalid_stroke_is_refused_with_a_reason(stroke: np.ndarray) -> None:
     with pytest.raises(ValueError, match=r"path|stroke"):
         drawn(stroke)
 

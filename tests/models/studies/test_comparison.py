@@ -60,7 +60,7 @@ def test_the_readme_quotes_the_worst_places_of_the_brake() -> None:
     assert [round(max(distances(law, "brake"))) for law in laws] == [48, 4, 4]
 
 
-def test_who_waits_is_late_and_who_runs_by_the_clock_is_not() -> None:
+def test_laws_that_wait_are_late_and_laws_with_a_clock_are_not() -> None:
     for law in ("path_following", "waiting_clock"):
         assert all(2.0 < outcome.delay_s < 2.4 for outcome in outcomes(law, "brake"))
     assert all(abs(outcome.delay_s) < 0.01 for outcome in outcomes("trajectory_tracking", "brake"))

@@ -154,7 +154,7 @@ def test_one_small_wave_cannot_tell_gravity_from_inertia() -> None:
     assert identify(regular).values["M11"] == pytest.approx(0.0226, rel=1.1 * within_a_step)
 
 
-def test_takes_no_more_terms_than_the_data_ask_for(rig: Rig) -> None:
+def test_it_uses_no_more_terms_than_the_data_need(rig: Rig) -> None:
     def chosen(**changes: Any) -> set[str]:
         return set(simplest(recorded(rig, circle(0.05), K5=40, **changes)).values)
 

@@ -65,7 +65,7 @@ def test_points_mean_the_same_as_text_and_as_json(closed: bool) -> None:
         ("0" * (LONGEST_TEXT + 1), "more than"),
     ],
 )
-def test_what_is_no_path_is_refused_with_the_form_expected(text: str, words: str) -> None:
+def test_an_invalid_path_is_refused_with_the_expected_form(text: str, words: str) -> None:
     if not words:
         assert curve_from_text(text).closed
         return

@@ -169,7 +169,7 @@ def test_a_profile_is_read_from_text_and_pairs_alike() -> None:
 @pytest.mark.parametrize(
     "value", ["", "1", "0:0:0", "a:b", "1:0, 0:0", "0:nan", "-1:0", "0:0, 601:0", 3, [(0,)], []]
 )
-def test_what_is_no_profile_is_refused(value: Any) -> None:
+def test_an_invalid_profile_is_refused(value: Any) -> None:
     with pytest.raises(ValueError, match="profile"):
         experiments()["obstruction"].with_values({"profile": value})
 

@@ -51,7 +51,7 @@ def test_ends_of_a_range_belong_to_it(name: str) -> None:
     "value", [math.nan, math.inf, "nan", "1e999", "", "x", None, [1, 2], 10**400]
 )
 @pytest.mark.parametrize("name", SPECS)
-def test_what_is_no_value_is_refused_by_name(name: str, value: object) -> None:
+def test_an_invalid_value_is_refused_by_name(name: str, value: object) -> None:
     with pytest.raises(ValueError, match=name):
         changed(FiveBarParameters(), name, value)
 
