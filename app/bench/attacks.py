@@ -1,4 +1,4 @@
-"""Attacks on a running server, one kind after the other, from an address of their own.
+"""Attacks on a running server, one kind after the other, from a separate address.
 
 `python -m onpath.app.bench.attacks PORT` reads names of `ATTACKS`, and makes each until the next.
 """
@@ -47,7 +47,7 @@ Misuse = Callable[["Intruder"], AsyncIterator[bytes]]
 
 
 class Intruder(Browser):
-    """A tab that is shown its lab as any other, and sends what `misuse` yields.
+    """A tab that receives its lab like any other, and sends what `misuse` yields.
 
     Attributes:
         widgets: the ids of its widgets by label.
@@ -69,7 +69,7 @@ class Intruder(Browser):
 
     @property
     def owner(self) -> str:
-        """Whose nodes it may drag: its own client's."""
+        """The client whose nodes it may drag: its own."""
         return self._owner
 
     def _heeds(self, kind: str) -> bool:
@@ -92,7 +92,7 @@ def update(uuid: str, value: Any) -> bytes:
     return packed("GuiUpdateMessage", uuid=uuid, updates={"value": value})
 
 
-# What one tab does.
+# Attacks by a single tab.
 
 
 async def press(tab: Intruder, *presses: tuple[str, Any]) -> AsyncIterator[bytes]:
@@ -102,7 +102,7 @@ async def press(tab: Intruder, *presses: tuple[str, Any]) -> AsyncIterator[bytes
 
 
 async def guess(tab: Intruder, typed: str, length: int, button: str) -> AsyncIterator[bytes]:
-    """Type codes made up of so many letters, with any nickname, and press a button."""
+    """Type random codes of a given length, with any nickname, and press a button."""
     name = await tab.find("Nickname")
     field, pressed = await tab.find(typed), await tab.find(button)
     while True:
@@ -140,7 +140,7 @@ async def leave(tab: Intruder) -> AsyncIterator[bytes]:
 
 
 async def read_nothing(tab: Intruder) -> AsyncIterator[bytes]:
-    """Let everything wait that the server sends."""
+    """Never read what the server sends."""
     await tab.find("K1")
     tab.socket.transport.pause_reading()
     yield GREETING
@@ -153,7 +153,7 @@ async def look_on(tab: Intruder) -> AsyncIterator[bytes]:
     yield GREETING
 
 
-# How many do it.
+# How many tabs or connections attack.
 
 
 async def again(visit: Callable[[], Coroutine[Any, Any, None]]) -> None:
@@ -165,7 +165,7 @@ async def again(visit: Callable[[], Coroutine[Any, Any, None]]) -> None:
 
 
 def tabs(number: int, misuse: Misuse) -> Attack:
-    """So many tabs, each doing the same."""
+    """A number of tabs that all make the same attack."""
 
     async def attack(port: int) -> None:
         await asyncio.gather(
@@ -178,7 +178,7 @@ def tabs(number: int, misuse: Misuse) -> Attack:
 def connections(
     number: int, said: Sequence[bytes], versions: Sequence[str | None] = (SUBPROTOCOL,)
 ) -> Attack:
-    """So many connections, each of which says one of these things and then waits.
+    """A number of connections, each of which sends one of these messages and then waits.
 
     Args:
         versions: of the page that a websocket is asked for; without any, none is asked for.

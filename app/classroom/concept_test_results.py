@@ -66,7 +66,7 @@ def rows_without_names(
 ) -> Iterator[tuple[object, ...]]:
     """Rows of the CSV: of every student who has handed in, without name, then those of the class.
 
-    A student is the same pseudonym in both tests. It cannot be told from it who that is.
+    A student is the same pseudonym in both tests. The pseudonym does not reveal who that is.
 
     Args:
         ways: session code and progress of each student.

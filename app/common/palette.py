@@ -98,7 +98,7 @@ SCALE = (
     *(Colour(53, 183, 121), Colour(94, 201, 98), Colour(144, 215, 67), Colour(200, 224, 32)),
     *(Colour(253, 231, 37),),
 )
-"""A colour scale for maps, evenly spaced samples of viridis, which every eye can order."""
+"""A colour scale for maps, evenly spaced samples of viridis, whose order every viewer can see."""
 
 
 def on_scale(shares: np.ndarray) -> np.ndarray:

@@ -29,7 +29,7 @@ def comparison_figure(
 ) -> Figure:
     """Plot the largest distance over the delay at the end, at the worst place of each obstruction.
 
-    A law that keeps to the path lies low; one that keeps to the timetable lies at a delay of 0.
+    A law that stays on the path has a small distance; one that keeps to its clock has a delay of 0.
     Where a run was stopped as diverged, the point is hollow.
     """
     laws = list(dict.fromkeys(law for law, _ in results))

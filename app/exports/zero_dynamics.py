@@ -21,7 +21,7 @@ SETTABLE = ("plant", "rho", "frequency", "zeta", "b", "d", "centre")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Study:
-    """Internal dynamics of the flexible link with the controlled output held still.
+    """Internal dynamics of the flexible link with the controlled output held constant.
 
     Attributes:
         parameters: plant, rho, frequency, zeta; their alpha, modes and payload are ignored.

@@ -150,7 +150,7 @@ class LessonState:
         return notes.answers.get(found[0]) if found is not None and again else None
 
     def ask_again(self) -> None:
-        """Ask the open step's prediction a second time; who has not answered has skipped it."""
+        """Ask the open step's prediction a second time; no answer counts as skipped."""
         if (found := self.prediction()) is None:
             return
         key, notes = found[0], self.notes
@@ -268,7 +268,7 @@ class LessonState:
         return own in notes.unknown
 
     def _note_chosen(self, key: str, marks: dict[str, str], kind: str, chosen: object) -> None:
-        """Store what was chosen, in the notes of a kind, and by what it is found again."""
+        """Store a choice in the notes of a kind, with the key by which it is found again."""
         notes = self.notes
         own = second_key(key) if kind == "second" else key
         self.note(

@@ -169,7 +169,7 @@ class PathEditor:
         return self._swap(self._future, self._past)
 
     def forget_edits(self) -> None:
-        """Leave nothing to undo or redo."""
+        """Clear the undo and redo histories."""
         self._past.clear()
         self._future.clear()
 

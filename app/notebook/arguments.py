@@ -1,4 +1,4 @@
-"""Reads what is given to the functions of `import onpath`: each complaint names the argument."""
+"""Reads the arguments of the functions of `import onpath`; each error names the argument."""
 
 from __future__ import annotations
 

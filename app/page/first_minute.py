@@ -42,7 +42,7 @@ INVITATIONS = (
 
 
 class FirstMinute:
-    """Invites whoever has not followed them yet; assets/page/invitation.js shows them."""
+    """Shows the invitations that a user has not followed yet; see assets/page/invitation.js."""
 
     def __init__(self, client: viser.ClientHandle, words: Words) -> None:
         self._client, self._words = client, words
@@ -65,7 +65,7 @@ class FirstMinute:
             self._handle.content = self._content()
 
     def _begin(self, kept: str) -> None:
-        """Begin where this browser has got to; what it says is not trusted."""
+        """Continue with the invitation that this browser has reached; its value is not trusted."""
         known = [str(count) for count in range(len(INVITATIONS) + 1)]
         self._next = known.index(kept) if kept in known else 0
 

@@ -1,6 +1,6 @@
 """What a page draws in its scene on demand: labels, tube, coordinate curves, rank test.
 
-Like the shading of the singular zone this is the page's own matter: no command, nothing of the lab.
+Like the shading of the singular zone this concerns the page alone: no command, no state of the lab.
 So it works in the same way on a teacher's page that shows a student's lab.
 """
 

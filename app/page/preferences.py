@@ -1,4 +1,4 @@
-"""What a browser wants of its page, which it keeps: speech and sound."""
+"""A browser's preferences, which it stores itself: speech and sound."""
 
 from __future__ import annotations
 
@@ -36,5 +36,5 @@ class Preferences(Mapping[str, bool]):
         self._client.local_storage.set_item(name, "yes" if on else "no")
 
     def _heard(self, name: str, kept: str) -> None:
-        """What a browser says is not trusted: anything else leaves the default."""
+        """The browser's value is not trusted: anything invalid leaves the default."""
         self._values[name] = {"yes": True, "no": False}.get(kept, DEFAULTS[name])

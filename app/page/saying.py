@@ -48,7 +48,7 @@ class Saying:
         self._frame = lru_cache(maxsize=16)(partial(_frame, words))
 
     def ask_summary(self) -> None:
-        """Have what is on the screen told at the next update. Thread-safe."""
+        """Announce what is on the screen at the next update. Thread-safe."""
         self._asked = True
 
     def follow(self, snapshot: Snapshot) -> None:
@@ -122,7 +122,7 @@ def _written(value: float | int | str) -> str:
 
 
 def summary(snapshot: PageSnapshot, captions: dict[str, str], words: Words) -> str:
-    """What is on the screen, for whoever does not see it: clock, path, and each robot."""
+    """A description of the screen for users who cannot see it: clock, path, and each robot."""
     path = words.get(f"path.{snapshot.edit.name}", snapshot.edit.name)
     said = [
         _spoken(snapshot, captions, words),

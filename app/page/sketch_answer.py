@@ -18,7 +18,7 @@ from onpath.lessons.schema import Sketch
 NUMBERS = 6  # sliders that draw a sketch
 
 Drawn = Callable[[np.ndarray, np.ndarray], None]
-"""Is told the times [s] and the values of a sketch."""
+"""Receives the times [s] and the values of a sketch."""
 
 
 class SketchAnswer:
@@ -39,11 +39,11 @@ class SketchAnswer:
             self._add_numbers(client.gui, block, run, drawn)
 
     def draw(self) -> None:
-        """Show the stroke as far as it is drawn."""
+        """Show the part of the stroke that has been drawn."""
         self._board.draw()
 
     def remove(self) -> None:
-        """Remove all of it."""
+        """Remove the board and the sliders."""
         self._board.remove()
         self._folder.remove()
         self._scene.show_titles(True)

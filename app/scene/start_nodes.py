@@ -1,4 +1,4 @@
-"""The start of the next run at every robot: a ball that is dragged, and an arrow: its velocity."""
+"""The start of the next run at every robot: a ball to drag, and an arrow for its velocity."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The lab that a newcomer finds."""
+"""The lab of a new user."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from onpath.models.systems.parameters import changed
 
 
 def new_lab(store: LoopCache, course: Course) -> Lab:
-    """A lab whose robots all begin slowly; lessons and files have the usual speed."""
+    """A lab whose robots all start slowly; lessons and files have the usual speed."""
     lab = Lab(store, course=course)
     session = lab.session
     for name, entry in ROBOTS.items():

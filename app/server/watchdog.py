@@ -79,7 +79,7 @@ class Watchdog:
                 *(self.trouble, self._seconds, self._seconds),
             )
         elif before and not self.trouble:
-            log.warning("no longer true: %s", before)
+            log.warning("%s no longer", before)
         if silent >= 2 * LOOKS:
             self._end()
 

@@ -1,4 +1,4 @@
-"""What a browser keeps for us, asked for without waiting for its answer."""
+"""Reads a browser's local storage without blocking."""
 
 from __future__ import annotations
 

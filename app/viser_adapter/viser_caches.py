@@ -1,4 +1,4 @@
-"""What viser works out anew for every handle or icon, and is always the same.
+"""Caches for what viser computes anew for every handle or icon although it never changes.
 
 A page has a hundred handles: for each, viser evaluates the type hints of its properties, which is
 two fifths of the time that building a page takes. And for each icon it reads the directory of an
@@ -17,7 +17,7 @@ evaluated_hints = cache(get_type_hints)
 
 
 def keep_what_is_constant() -> None:
-    """Let viser evaluate the hints of each class once, and open its archive of icons once."""
+    """Make viser evaluate the type hints of each class once, and open its archive of icons once."""
     handle: Any = _assignable_props_api.AssignablePropsBase
     handle._prop_hints = property(lambda self: evaluated_hints(type(self._impl.props)))
     modules: list[Any] = [_gui_api, _gui_handles]

@@ -51,7 +51,7 @@ class TypeLaw(Command):
         """See `Command.apply`."""
         bench = checks.bench(self.bench)
         try:
-            own_law(self.text)  # a name of the registry is none
+            own_law(self.text)  # names of the registry are not typed laws
             ChooseLaw(bench, self.text).apply(lab)
         except ValueError as error:
             lab.law_refusals[bench] = lab.words.sentence(error)

@@ -191,7 +191,7 @@ def commit(lab: Lab, design: PathDesign) -> None:
 def finish(lab: Lab) -> None:
     """End the drag of a control point; if it went less far than wanted, show why.
 
-    The marks of what is beyond are for the hand that drags: they go with it.
+    The marks of the invalid places are only shown during the drag.
     """
     _end(lab, "say.no_further")
     lab.session.editor.clear_faults()

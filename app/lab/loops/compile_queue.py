@@ -1,4 +1,4 @@
-"""Keys that wait to be compiled, of which those that are still asked for come first.
+"""Keys that wait to be compiled; those requested recently come first.
 
 A lab asks in every frame for a loop that it lacks. What nobody has asked for lately is overtaken by
 what somebody needs now, and given up once many wait. So no lab that changes its settings without

@@ -14,7 +14,7 @@ from onpath.lessons.words import Words
 
 
 class ClassPanel:
-    """A folder with inputs for class code and nickname, or with the student's name once joined."""
+    """A folder with fields for class code and nickname, or with the student's name once joined."""
 
     def __init__(
         self, gui: viser.GuiApi, words: Words, seat: ClassSeat, first: PageSnapshot

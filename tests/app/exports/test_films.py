@@ -29,7 +29,7 @@ wait_for = partial(waiting.wait_for, seconds=WAIT)
 
 
 class Note:
-    """What the user reads."""
+    """Messages to the user."""
 
     body = ""
 
@@ -68,7 +68,7 @@ def lab() -> Lab:
 
 
 def open_sockets() -> int:
-    """Of this process."""
+    """Number of sockets that this process has open."""
     ours = [SOCKETS / name for name in os.listdir(SOCKETS)] if SOCKETS.exists() else []
     return sum(os.readlink(each).startswith("socket:") for each in ours if each.is_symlink())
 
@@ -154,7 +154,7 @@ class Occupied:
         begun.wait(WAIT)
 
     def end(self) -> None:
-        """And whoever was in the queue has had a turn."""
+        """Wait until everybody in the queue has had a turn."""
         self.over.set()
         exports._queue.submit(lambda: None).result(WAIT)
 

@@ -36,12 +36,12 @@ steps = st.sampled_from(STEPS)
 
 
 def new_lab() -> Lab:
-    """With all lessons, none of them open."""
+    """A lab with all lessons, none of them open."""
     return Lab(store(), course=COURSE)
 
 
 def setting(lab: Lab) -> Setup:
-    """What of a lab decides what happens in it."""
+    """The part of a lab's set-up that affects the simulation."""
     return replace(capture(lab.session), exaggeration=1.0)
 
 
@@ -69,7 +69,7 @@ def here(lab: Lab) -> tuple[str, int]:
 
 
 def assert_at_the_beginning(lab: Lab) -> None:
-    """As a new lab that came straight to this step."""
+    """Assert the state of a new lab that came straight to this step."""
     setup, states = wanted(*here(lab))
     assert setting(lab) == setup
     for name, one in lab.session.runs.items():
@@ -81,7 +81,7 @@ def assert_at_the_beginning(lab: Lab) -> None:
 
 
 def arrived(lab: Lab) -> Lab:
-    """Just now, by some way."""
+    """Assert that the lab has just arrived at a step; return it."""
     run_, lesson = lab.lessons, lab.lessons.lesson
     assert lesson is not None and lab.script is None
     assert_at_the_beginning(lab)
@@ -136,7 +136,7 @@ def left_and_opened(lab: Lab) -> Lab:
 
 
 def reloaded(lab: Lab) -> Lab:
-    """In another process, as it was left, at the start."""
+    """The lab as restored in another process, at the start."""
     kept: list[LabState] = []
     keep(lab, lambda make: kept.append(make()))
     again = new_lab()

@@ -143,7 +143,7 @@ def test_a_first_lab_finds_its_loops_compiled(store: LoopCache) -> None:
 
 
 class Quick(InterpretedLoop):
-    """Stands for a compiled loop."""
+    """Stands in for a compiled loop."""
 
 
 @pytest.fixture

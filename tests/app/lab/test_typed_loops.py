@@ -62,7 +62,7 @@ class Bench:
 
 
 class Owner:
-    """Stands for a lab."""
+    """Stands in for a lab."""
 
 
 @pytest.fixture

@@ -33,7 +33,7 @@ class Widget(SimpleNamespace):
     on_click = on_update
 
     def set(self, value: Any) -> None:
-        """The user sets it, or presses it."""
+        """Set the value as a user does, or press the button."""
         self.value = value
         with pytest.raises(StopIteration):  # nothing that follows from it waits
             self.act(SimpleNamespace(client="somebody")).send(None)
@@ -75,7 +75,7 @@ class Shown:
         self.use, self.why = self.gui.named["Use this law"][0], self.gui.html[0]
 
     def follow(self, frames: int = 2) -> None:
-        """The lab goes on, and is shown."""
+        """Advance the lab, and show it."""
         for _ in range(frames):
             run(self.lab, FRAME)
             self.panel.follow(take_page_snapshot(self.lab, 1.0))

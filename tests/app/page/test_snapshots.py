@@ -110,7 +110,7 @@ def drawing(client: viser.ClientHandle, course: Course, monkeypatch: pytest.Monk
 
 
 def plain(value: Any) -> object:
-    """As something that can be compared."""
+    """A message in a form that can be compared."""
     if isinstance(value, np.ndarray):
         return value.dtype.str, value.shape, value.tobytes()
     if isinstance(value, dict):
@@ -135,7 +135,7 @@ def filmed(lab: Lab, *commands: c.Command) -> Iterator[PageSnapshot | Motion]:
 
 
 def sent(snapshot: PageSnapshot | Motion) -> PageSnapshot | Motion:
-    """The same, by way of bytes."""
+    """A snapshot encoded to bytes and decoded again."""
     again = from_bytes(to_bytes(snapshot))
     assert type(again) is type(snapshot) and to_bytes(again) == to_bytes(snapshot)
     return again

@@ -30,7 +30,7 @@ class Timer:
 
 
 class Loop:
-    """An event loop whose time passes only when it is told so."""
+    """An event loop with a clock that the test advances."""
 
     def __init__(self) -> None:
         self.now, self.timers = 0.0, list[Timer]()
@@ -49,13 +49,13 @@ class Loop:
 
 
 class Button:
-    """Takes what is to be done while it is held down."""
+    """Records what to do while the button is held."""
 
     def on_hold(self, act: Callable[[object], Coroutine[Any, Any, None]]) -> None:
         self.act = act
 
     def tell(self) -> None:
-        """A message comes; nothing in it waits."""
+        """Deliver a message, whose handler must not wait."""
         with pytest.raises(StopIteration):
             self.act(None).send(None)
 
@@ -96,7 +96,7 @@ class Slider:
         self.act = act
 
     def move(self, value: float) -> None:
-        """A message comes; nothing that follows from it waits."""
+        """Deliver a message, whose handler must not wait."""
         self.value = value
         with pytest.raises(StopIteration):
             self.act(SimpleNamespace(client="somebody")).send(None)

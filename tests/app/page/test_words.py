@@ -103,7 +103,7 @@ def calls(tree: ast.AST) -> Iterator[tuple[str, ast.Call]]:
             yield name, node
 
 
-# Nothing but the catalogue speaks.
+# All text comes from the catalogue.
 
 SHOWN = {"label", "hint", "text", "title", "body", "options", "content", "initial_value"}
 FOR_EYES = re.compile(r"add_(?!light|mesh|line|arrow|grid|image|batched|copies)|Series")
@@ -231,7 +231,7 @@ def test_every_key_is_used() -> None:
     assert {key for key in unused if not key.startswith(PREFIXES)} == set()
 
 
-# What is put together exists in every language.
+# Keys that are composed exist in every language.
 
 
 @pytest.mark.parametrize("words", [Words(language) for language in languages()])

@@ -28,14 +28,14 @@ wait_for = partial(waiting.wait_for, seconds=WAIT)
 
 
 def silent(server: viser.ViserServer, source: str = "127.0.0.1") -> socket.socket:
-    """A tab that is there, and says nothing more."""
+    """A tab that connects and then sends nothing."""
     raw = knock(server.get_port(), source=source)
     raw.sendall(frames(packed("ViewerCameraMessage", **CAMERA)))
     return raw
 
 
 def all_threads_are_free(server: viser.ViserServer) -> bool:
-    """Whether viser's threads can all be had at once."""
+    """Whether all of viser's threads are free."""
     pool = server._thread_executor
     meet = threading.Barrier(pool._max_workers)
     jobs = [pool.submit(meet.wait, WAIT / 2) for _ in range(pool._max_workers)]
@@ -82,7 +82,7 @@ def test_a_late_answer_returns_to_the_same_lab(lab: LabServer) -> None:
         assert student.code == code and len(lab.sessions) == 1
 
 
-# The questions by themselves.
+# The questions alone, without a server.
 
 
 class Inn:
@@ -104,13 +104,13 @@ class Inn:
         return client
 
     def settled(self, client: ClientConnection) -> None:
-        """What a client has sent so far has been heard."""
+        """Return when everything that a client has sent so far has been handled."""
         assert client.ping().wait(WAIT)
         assert all_threads_are_free(self.server)
 
 
 def answers_of(client: ClientConnection) -> dict[str, bytes]:
-    """To what it is asked, by key, not sent yet."""
+    """The messages with which a browser would answer, by key; they are not sent."""
     answers: dict[str, bytes] = {}
     while len(answers) < 2:
         raw = client.recv(WAIT)

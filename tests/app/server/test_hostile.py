@@ -55,7 +55,7 @@ wait_for = partial(waiting.wait_for, seconds=60.0)
 
 
 class Guest:
-    """A tab that answers what a tab must, reads everything, and sends what it is told."""
+    """A tab that answers as viser's page does, reads everything, and sends what a test sends."""
 
     def __init__(self, server: LabServer, inside: bool = True) -> None:
         self.told: list[dict[str, Any]] = []
@@ -153,13 +153,13 @@ class Witness:
             self._loop.run_until_complete(self._browsing)
 
     def close(self) -> None:
-        """It leaves, and its thread ends."""
+        """Close the connection, and end its thread."""
         self._loop.call_soon_threadsafe(self._browsing.cancel)
         self._thread.join(WAIT)
 
     @contextmanager
     def served(self) -> Iterator[None]:
-        """What is done in here takes nothing away from it."""
+        """Assert that the witness keeps its display rate meanwhile."""
         before, begun = len(self._browser.shown), time.process_time()
         yield
         wait_for(lambda: len(self._browser.shown) >= before + LEAST)
@@ -169,7 +169,7 @@ class Witness:
         assert rate > LEAST_RATE and gap < LONGEST_GAP, f"{rate:.1f} Hz, {gap:.3f} s"
 
     def watch(self, frames: int) -> None:
-        """Return when it has been shown so many more."""
+        """Return when it has been shown that many more frames."""
         before = len(self._browser.shown)
         wait_for(lambda: len(self._browser.shown) >= before + frames)
 
@@ -200,7 +200,7 @@ def attacker(server: LabServer) -> Iterator[Guest]:
 def quiet_log(
     caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]
 ) -> Iterator[None]:
-    """A warning for a client at most, and no traceback."""
+    """At most one warning for each client, and no traceback."""
     caplog.set_level(logging.WARNING)
     yield
     records = caplog.get_records("call")
@@ -519,7 +519,7 @@ def test_a_suspended_process_continues_where_it_was_and_does_not_catch_up() -> N
         witness = Witness(int(*told()))
         before = now()
         process.send_signal(signal.SIGSTOP)
-        time.sleep(2.0)  # this time must pass: the process sleeps through it
+        time.sleep(2.0)  # wall time must pass while the process is suspended
         process.send_signal(signal.SIGCONT)
         woken = now()
         assert woken[0] - before[0] < 1.0  # the sleep is not made up for

@@ -32,7 +32,7 @@ PRESSES = 2000
 
 
 class Gate:
-    """Where somebody may be held up."""
+    """A place at which a caller can be blocked."""
 
     def __init__(self) -> None:
         self.reached, self.open = threading.Event(), threading.Event()
@@ -43,7 +43,7 @@ class Gate:
 
 
 class Held:
-    """Leases, and a database, that hold up whoever wants one lab at one place."""
+    """Leases and a database that block whoever opens a certain lab."""
 
     def __init__(self, where: str) -> None:
         self.gate, self._where = Gate(), where
@@ -82,7 +82,7 @@ def in_thread(act: Callable[[], Any]) -> threading.Thread:
 
 
 def ends(act: Callable[[], Any]) -> bool:
-    """Whether something comes to its end, and does not wait for ever."""
+    """Whether a call returns, and does not block for ever."""
     done = threading.Event()
 
     def acting() -> None:

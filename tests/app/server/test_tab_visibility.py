@@ -56,7 +56,7 @@ class Browser:
         asyncio.run(self._answer(self.camera))
 
     def wait(self, seconds: float, answers: bool = False, tells: bool = True) -> None:
-        """Time passes, and the lab is shown as long as somebody looks."""
+        """Let time pass; the lab is shown as long as somebody looks."""
         for _ in range(round(seconds / TICK)):
             self.now += TICK
             if tells and self.scheduled.view is not None:
@@ -126,7 +126,7 @@ class Tab(Student):
             super()._take(message)
 
     def show(self) -> None:
-        """It draws again."""
+        """Resume drawing."""
         assert self.asked is not None and self._socket is not None
         self.hidden = False
         self._socket.send(answer(self.asked) or b"")

@@ -182,7 +182,7 @@ def test_a_suspended_process_does_not_hang(
         student.open()
         student.read(lambda: student.moving > 10)
         process.send_signal(signal.SIGSTOP)
-        time.sleep(2.5 * HANG)  # this time must pass: the process sleeps through it
+        time.sleep(2.5 * HANG)  # wall time must pass while the process is suspended
         process.send_signal(signal.SIGCONT)
         moving = student.moving
         student.read(lambda: student.moving > moving + 60)

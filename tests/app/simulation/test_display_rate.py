@@ -55,7 +55,7 @@ def test_one_slow_frame_changes_nothing() -> None:
 
 @pytest.mark.parametrize("stride", [1.0, *STRIDES])
 def test_display_is_as_often_as_the_stride_says_and_even(stride: float) -> None:
-    """Also of what is drawn in every so many-th of its frames only."""
+    """Also of a lab that is drawn in every n-th of its frames only."""
     for step in (stride, 5 * stride):
         turns = [frame for frame in range(1, 1201) if is_turn(frame, step)]
         gaps = {later - earlier for earlier, later in itertools.pairwise(turns)}

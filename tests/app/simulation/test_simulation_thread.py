@@ -46,14 +46,14 @@ class Clock:
 
 
 def clocked(seconds: float) -> tuple[Clock, SimulationThread]:
-    """A thread that runs for so long, by a clock of its own."""
+    """A thread that runs for some time by a clock of its own, [s]."""
     clock = Clock(seconds)
     clock.thread = SimulationThread(clock, clock.sleep)
     return clock, clock.thread
 
 
 class View:
-    """Looks for a while at every frame."""
+    """A viewer that is shown every frame for some time."""
 
     def __init__(self, work: Callable[[int], object]) -> None:
         self.work = work
@@ -68,7 +68,7 @@ class View:
 
 
 class Screen:
-    """Draws when it is its turn, which takes so long, [s]."""
+    """A viewer that takes some time to draw, [s], when it is its turn."""
 
     def __init__(self, clock: Clock, offset: int, cost: float) -> None:
         self.clock, self.offset, self.cost = clock, offset, cost
@@ -268,7 +268,7 @@ def test_labs_come_and_go_from_other_threads_while_it_runs() -> None:
 
 
 class Asking(Lab):
-    """A lab of which something is asked all the time that takes so long, [s]."""
+    """A lab that always has a command waiting that takes some time, [s]."""
 
     def __init__(self, cost: float) -> None:
         self.cost, self.begun = cost, list[int]()

@@ -21,7 +21,7 @@ class World:
         self.leases = Leases(self.records, clock=lambda: self.now)
 
     def save(self, *codes: str) -> None:
-        """One after the other."""
+        """Store labs one after the other."""
         for code in codes:
             self.records.save(code, {})
             self.now += 1.0

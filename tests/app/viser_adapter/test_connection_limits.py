@@ -48,7 +48,7 @@ class Site:
         self.server, self._visits = server, visits
 
     def connect(self, source: str = ONE) -> socket.socket:
-        """Without a word."""
+        """Open a connection and send nothing."""
         target = ("127.0.0.1", self.server.get_port())
         made = socket.create_connection(target, timeout=WAIT, source_address=(source, 0))
         return self._visits.enter_context(made)
