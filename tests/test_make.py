@@ -30,6 +30,22 @@ def test_both_parts_run_whatever_the_other_says(tmp_path: Path, fails: str, targ
     assert (done.returncode == 0) == (fails == "nothing")
 
 
+@pytest.mark.skipif(shutil.which("make") is None, reason="needs make")
+def test_bytecode_is_kept_in_the_environment(tmp_path: Path) -> None:
+    """Else every process that a test starts compiles all of OnPath."""
+    (tmp_path / "bin").mkdir()
+    pytest_of_ours = tmp_path / "bin" / "pytest"
+    told = "echo $PYTHONPYCACHEPREFIX ${PYTHONDONTWRITEBYTECODE-is kept}"
+    pytest_of_ours.write_text(f"#!/bin/sh\n{told}\n", "utf-8")
+    pytest_of_ours.chmod(0o755)
+    command = ["make", "-o", f"{tmp_path}/.tools", f"VENV={tmp_path}", "test"]
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(
+        command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.count(f"{tmp_path}/bytecode is kept\n") == 2
+
+
 PIP = """#!/bin/sh
 case "$*" in
     *"-m venv"*) for place; do :; done; rm -rf "$place"; mkdir -p "$place/bin"
