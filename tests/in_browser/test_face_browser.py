@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import product
 from typing import Any
 
 import pytest
@@ -18,6 +19,7 @@ from onpath.app.page.first_minute import INVITATIONS
 from onpath.app.server.lab_server import LabServer
 from tests.support.axe import violations
 from tests.support.browser import WAIT, Tab, wait_for
+from tests.support.cases import some
 
 WINDOW: ViewportSize = {"width": 1280, "height": 800}
 LESSON = "01-path-or-timetable"
@@ -228,8 +230,12 @@ def test_a_message_is_over_the_scene_and_moves_nothing_in_the_panel(tab: Tab) ->
     expect(message).to_be_hidden()
 
 
-@pytest.mark.parametrize("name", ["Help and keys", "Language, display", "Robot…", "Lessons"])
-@pytest.mark.parametrize("how", ["Escape", "beside it", "×", "Close"])
+DIALOGS = "Help and keys", "Language, display", "Robot…", "Lessons"
+WAYS = "Escape", "beside it", "×", "Close"
+QUICK = [*((name, "×") for name in DIALOGS), *(("Lessons", how) for how in WAYS)]
+
+
+@pytest.mark.parametrize(("name", "how"), some(product(DIALOGS, WAYS), QUICK))
 def test_a_dialog_closes_in_every_usual_way(tab: Tab, name: str, how: str) -> None:
     tab.press(name)
     dialog = tab.page.get_by_role("dialog")

@@ -31,6 +31,7 @@ from onpath.models.layout import Layout
 from onpath.models.paths.curves import TABLE_SHAPE, TERMS, Curve, circle, segment
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
+from tests.support.cases import some
 from tests.support.wasm_runs import rows_in_browser
 
 if TYPE_CHECKING:
@@ -45,6 +46,11 @@ CASES = [
     ("five_bar", TYPED, {}),
     ("flexible", "path_following", {"law": "composite", "modes": 2}),
     ("five_bar", "path_following", {"delay": 1.5, "stiction": 0.02, "sensor_noise": 1.0}),
+]
+QUICK = [
+    ("five_bar", "path_following", {}),
+    ("spatial_arm", "trajectory_tracking", {}),
+    *CASES[-3:],
 ]
 KINDS: list[dict[str, Any]] = [
     {"encoder_counts": 4000, "coulomb": 0.01},
@@ -112,7 +118,7 @@ def largest_difference(
     return float(np.abs(found - expected).max())
 
 
-@pytest.mark.parametrize("name, law, values", CASES, ids=lambda case: str(case)[:20])
+@pytest.mark.parametrize("name, law, values", some(CASES, QUICK), ids=lambda case: str(case)[:20])
 def test_a_run_is_the_interpreter_s(
     page: Page, name: str, law: str, values: dict[str, Any]
 ) -> None:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,15 +12,10 @@ from onpath.app.cli.main import run_command
 from onpath.app.exports.paper_figures import paper_figure
 from onpath.models.studies.paper_figures import FIGURES
 from onpath.models.systems.catalogue import ROBOTS
+from tests.support.cases import some
 
 QUICK_FIGURES, QUICK_ROBOTS = (2, 7), ("two_link_arm", "flexible")
 """Those of `make test`: plane and flexible. The others are drawn by the same code."""
-
-
-def some(every: Iterable[Any], quick: tuple[Any, ...]) -> list[Any]:
-    """All cases, those that are not quick marked as thorough."""
-    marks = pytest.mark.thorough
-    return [each if each in quick else pytest.param(each, marks=marks) for each in every]
 
 
 @pytest.mark.parametrize("number", some(FIGURES, QUICK_FIGURES))

@@ -23,6 +23,7 @@ from onpath.models.control.benches import BENCHES, RIGHT
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import changed
 from tests.support.built_in import built_in_course
+from tests.support.cases import some
 from tests.support.lab import do, run, store
 from tests.support.lesson_texts import LESSON, write_lesson
 
@@ -206,13 +207,7 @@ QUICK = "05-invariance", "07-flexible-link"
 """Lessons of `make test`, a rigid and a flexible robot; `make thorough` has the others."""
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=[] if name in QUICK else [pytest.mark.thorough])
-        for name in COURSE.lessons
-    ],
-)
+@pytest.mark.parametrize("name", some(COURSE.lessons, QUICK))
 def test_there_and_back_through_a_lesson_while_meddling(name: str) -> None:
     lab = pushed((name, 0))(new_lab())
     last = len(COURSE.lesson(name, "en").steps) - 1
