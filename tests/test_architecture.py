@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
-
-import pytest
 
 from tests.support.checkout import ROOT
 
@@ -44,15 +43,20 @@ LIVE = ("lab", "session", "history", "lesson_run", "snapshots.take_snapshot")
 LONGEST = 40
 
 
+@cache
 def sources() -> list[Path]:
     files = [file for folder in TOPS for file in (ROOT / folder).rglob("*.py")]
     assert len(files) > 10
     return sorted(files)
 
 
-FILES = pytest.mark.parametrize("file", sources(), ids=lambda file: str(file.relative_to(ROOT)))
+def offenders(fault: Callable[[Path], object]) -> list[str]:
+    """Files with a fault, and what it is."""
+    found = {file.relative_to(ROOT): fault(file) for file in sources()}
+    return [f"{file}: {told}" for file, told in found.items() if told]
 
 
+@cache
 def parse(file: Path) -> ast.Module:
     return ast.parse(file.read_text(encoding="utf-8"))
 
@@ -89,17 +93,18 @@ def module_of(file: Path) -> str:
     return ".".join(file.relative_to(ROOT).with_suffix("").parts)
 
 
-@FILES
-def test_imports_go_down_the_list_of_folders(file: Path) -> None:
-    own = folder_of(module_of(file))
-    below = ORDER[ORDER.index(own) :] if own in ORDER else []
-    ours = {folder_of(name) for name in imports(parse(file)) if name.startswith("onpath.")}
-    assert ours <= {*below, own}
+def test_imports_go_down_the_list_of_folders() -> None:
+    def upward(file: Path) -> set[str]:
+        own = folder_of(module_of(file))
+        below = ORDER[ORDER.index(own) :] if own in ORDER else []
+        ours = {folder_of(name) for name in imports(parse(file)) if name.startswith("onpath.")}
+        return ours - {*below, own}
+
+    assert offenders(upward) == []
 
 
-@FILES
-def test_the_project_is_imported_as_one_package(file: Path) -> None:
-    assert not packages(parse(file)) & {*TOPS, "tests"}
+def test_the_project_is_imported_as_one_package() -> None:
+    assert offenders(lambda file: packages(parse(file)) & {*TOPS, "tests"}) == []
 
 
 def graph() -> dict[str, set[str]]:
@@ -138,28 +143,37 @@ def test_the_simulated_lab_knows_nothing_of_its_user() -> None:
     assert not needed & {"app.lab.lab", "app.lab.commands", "app.lab.lesson_run"}
 
 
-@FILES
-def test_what_draws_knows_no_lab_but_snapshots(file: Path) -> None:
-    if folder_of(module_of(file)) in DRAWING:
+def test_what_draws_knows_no_lab_but_snapshots() -> None:
+    live = tuple(f"app.lab.{module}." for module in LIVE)
+
+    def known(file: Path) -> set[str]:
+        if folder_of(module_of(file)) not in DRAWING:
+            return set()
         tree = parse(file)
-        known = [name.removeprefix("onpath.") for name in imports(tree)]
-        assert not {name for name in known if name.startswith("app.simulation.simulation_thread")}
-        for module in LIVE:
-            assert not {name for name in known if f"{name}.".startswith(f"app.lab.{module}.")}
+        modules = {f"{name.removeprefix('onpath.')}." for name in imports(tree)}
         attributes = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
-        assert not attributes & {"lab", "session"}
+        simulation = "app.simulation.simulation_thread"
+        return {m for m in modules if m.startswith((simulation, *live))} | (
+            attributes & {"lab", "session"}
+        )
+
+    assert offenders(known) == []
 
 
-@FILES
-def test_mathematics_knows_no_viewer_thread_or_clock(file: Path) -> None:
-    if file.relative_to(ROOT).parts[0] in MATHEMATICS:
-        assert not packages(parse(file)) & FOREIGN
+def test_mathematics_knows_no_viewer_thread_or_clock() -> None:
+    def foreign(file: Path) -> set[str]:
+        is_pure = file.relative_to(ROOT).parts[0] in MATHEMATICS
+        return packages(parse(file)) & FOREIGN if is_pure else set()
+
+    assert offenders(foreign) == []
 
 
-@FILES
-def test_only_the_command_line_prints(file: Path) -> None:
-    names = {node.id for node in ast.walk(parse(file)) if isinstance(node, ast.Name)}
-    assert "print" not in names or str(file.relative_to(ROOT)).startswith(PRINTING)
+def test_only_the_command_line_prints() -> None:
+    def prints(file: Path) -> bool:
+        names = {node.id for node in ast.walk(parse(file)) if isinstance(node, ast.Name)}
+        return "print" in names and not str(file.relative_to(ROOT)).startswith(PRINTING)
+
+    assert offenders(prints) == []
 
 
 def lines(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
@@ -172,30 +186,29 @@ def lines(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
     return total
 
 
-@FILES
-def test_functions_are_short(file: Path) -> None:
-    long = {
-        node.name: lines(node)
-        for node in ast.walk(parse(file))
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and lines(node) >= LONGEST
-    }
-    assert not long
+def test_functions_are_short() -> None:
+    def long(file: Path) -> dict[str, int]:
+        return {
+            node.name: lines(node)
+            for node in ast.walk(parse(file))
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and lines(node) >= LONGEST
+        }
+
+    assert offenders(long) == []
 
 
-@FILES
-def test_modules_and_public_functions_say_what_they_are(file: Path) -> None:
-    tree = parse(file)
-    if not tree.body:
-        return
-    assert ast.get_docstring(tree)
-    silent = [
-        node.name
-        for node in tree.body
-        if isinstance(node, ast.FunctionDef | ast.ClassDef)
-        and not node.name.startswith("_")
-        and not ast.get_docstring(node)
-    ]
-    assert not silent
+def test_modules_and_public_functions_say_what_they_are() -> None:
+    def silent(file: Path) -> list[str]:
+        tree = parse(file)
+        public = [
+            node
+            for node in tree.body
+            if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_")
+        ]
+        without = [node.name for node in public if not ast.get_docstring(node)]
+        return without if ast.get_docstring(tree) or not tree.body else ["the module", *without]
+
+    assert offenders(silent) == []
 
 
 def test_rules_would_notice() -> None:
@@ -205,3 +218,5 @@ def test_rules_would_notice() -> None:
     assert folder_of("onpath.models.arrays.Array") == "models"
     long = ast.parse("def f():\n    '''a\n    b'''\n" + "    x = 1\n" * 50).body[0]
     assert isinstance(long, ast.FunctionDef) and lines(long) == 51
+    first = sources()[0].relative_to(ROOT)
+    assert offenders(lambda file: file == sources()[0] and "bad") == [f"{first}: bad"]

@@ -26,10 +26,17 @@ CHARGE = re.compile(
 FORMER = '{"as_printed": "unit_modes"}'  # still read
 
 
-@pytest.mark.parametrize("file", [*TOLD, ROOT / "README.md"], ids=lambda file: file.name)
-def test_no_file_says_so(file: Path) -> None:
+def charged(file: Path) -> str:
+    """The first such claim in a file; empty if there is none."""
     text = " ".join(file.read_text(encoding="utf-8").replace(FORMER, "").split())
-    assert not CHARGE.search(text), CHARGE.search(text)
+    found = CHARGE.search(text)
+    return found[0] if found else ""
+
+
+def test_no_file_says_so() -> None:
+    assert len(TOLD) > 500
+    found = {str(file): charged(file) for file in [*TOLD, ROOT / "README.md"]}
+    assert {file: said for file, said in found.items() if said} == {}
 
 
 @pytest.mark.parametrize(

@@ -50,10 +50,10 @@ def test_ends_of_a_range_belong_to_it(name: str) -> None:
 @pytest.mark.parametrize(
     "value", [math.nan, math.inf, "nan", "1e999", "", "x", None, [1, 2], 10**400]
 )
-@pytest.mark.parametrize("name", SPECS)
-def test_an_invalid_value_is_refused_by_name(name: str, value: object) -> None:
-    with pytest.raises(ValueError, match=name):
-        changed(FiveBarParameters(), name, value)
+def test_an_invalid_value_is_refused_by_name(value: object) -> None:
+    for name in SPECS:
+        with pytest.raises(ValueError, match=name):
+            changed(FiveBarParameters(), name, value)
 
 
 @pytest.mark.parametrize("name", [name for name, spec in SPECS.items() if spec.options])
