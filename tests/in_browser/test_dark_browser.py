@@ -75,6 +75,7 @@ def brightness(tab: Tab, low: tuple[float, float], high: tuple[float, float]) ->
     return np.asarray(picture) / 255.0
 
 
+@pytest.mark.thorough
 def test_the_scene_has_a_dark_wall_and_a_dark_ground(drawn: dict[str, Tab]) -> None:
     wall, ground = ((0.02, 0.02), (0.98, 0.1)), ((0.02, 0.95), (0.98, 0.99))
     for place in (wall, ground):
@@ -82,6 +83,7 @@ def test_the_scene_has_a_dark_wall_and_a_dark_ground(drawn: dict[str, Tab]) -> N
         assert np.median(brightness(drawn["dark"], *place)) < 0.2
 
 
+@pytest.mark.thorough
 def test_titles_in_the_scene_are_light_on_dark(drawn: dict[str, Tab]) -> None:
     title = (0.05, 0.12), (0.95, 0.27)
     for scheme, tab in drawn.items():
@@ -90,6 +92,7 @@ def test_titles_in_the_scene_are_light_on_dark(drawn: dict[str, Tab]) -> None:
         assert seen.max() > 0.75 and seen.min() < 0.3
 
 
+@pytest.mark.thorough
 def test_a_board_to_sketch_on_is_dark(drawn: dict[str, Tab]) -> None:
     for scheme, tab in drawn.items():
         tab.ask(TakeStep(LESSON, 1))
@@ -146,6 +149,7 @@ def test_every_step_of_a_dark_lesson_can_be_read(
     tab.page.context.close()
 
 
+@pytest.mark.thorough
 def test_a_dark_teachers_page_can_be_read(browser: Browser) -> None:
     room = LocalClassroom()
     server = LabServer("127.0.0.1", 0, LoopCache(), classroom=room)
@@ -160,6 +164,7 @@ def test_a_dark_teachers_page_can_be_read(browser: Browser) -> None:
     server.stop()
 
 
+@pytest.mark.thorough
 def test_plots_can_be_read_with_the_users_own_colours(browser: Browser, server: LabServer) -> None:
     tab = visit(browser, server, scheme="light", forced_colors="active")
     behind = "plot => getComputedStyle(plot).backgroundColor"

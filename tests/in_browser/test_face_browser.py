@@ -95,6 +95,7 @@ def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None
     tab.page.context.close()
 
 
+@pytest.mark.thorough
 def test_the_introduction_can_be_skipped_for_good(browser: Browser, server: LabServer) -> None:
     tab = visit(browser, server, newcomer=True)
     tab.button("Skip the introduction").click()
@@ -199,6 +200,7 @@ AUDIO = """window.AudioContext = class {
 }"""
 
 
+@pytest.mark.thorough
 def test_the_distances_are_heard_once_that_is_switched_on(
     browser: Browser, server: LabServer
 ) -> None:
@@ -264,6 +266,7 @@ def test_a_share_code_is_copied(tab: Tab) -> None:
     assert copied == code.inner_text() == tab.lab.shared
 
 
+@pytest.mark.thorough
 def test_with_reduced_motion_the_robots_are_at_rest_at_first(
     browser: Browser, server: LabServer
 ) -> None:
@@ -274,6 +277,7 @@ def test_with_reduced_motion_the_robots_are_at_rest_at_first(
     tab.page.context.close()
 
 
+@pytest.mark.thorough
 def test_axe_finds_nothing_serious_in_a_lesson(browser: Browser, server: LabServer) -> None:
     tab = visit(browser, server)
     tab.ask(c.OpenLesson(LESSON))
@@ -393,6 +397,7 @@ WATCH_PANEL = """() => {
 }"""
 
 
+@pytest.mark.thorough
 def test_the_first_hold_moves_nothing_in_the_panel(browser: Browser) -> None:
     """Its loop is compiled meanwhile."""
     server = LabServer("127.0.0.1", 0, LoopCache())

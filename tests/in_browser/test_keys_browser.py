@@ -145,6 +145,7 @@ def test_the_view_is_reset_by_a_key_and_by_a_button(tab: Tab) -> None:
     assert tab.lab.asked == asked  # nobody else who looks at this lab notices
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("place", PLACES)
 def test_the_view_is_reset_on_a_phone(browser: Browser, server: LabServer, place: str) -> None:
     with opened(browser, server, place, **TOUCH) as tab:

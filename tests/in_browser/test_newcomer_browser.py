@@ -18,6 +18,8 @@ from onpath.app.server.lab_server import LabServer
 from tests.in_browser.test_pointer_browser import ARROWS, SCENES
 from tests.support.browser import WAIT, Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 LESSON = "01-path-or-timetable"
 expect.set_options(timeout=WAIT * 1e3)
 

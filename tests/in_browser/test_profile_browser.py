@@ -15,6 +15,8 @@ from onpath.app.server.lab_server import LabServer
 from onpath.models.control.benches import RIGHT
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 
 def test_a_profile_is_chosen_and_the_poles_tell_their_place(
     browser: Browser, server: LabServer

@@ -66,6 +66,7 @@ def test_a_slider_is_dragged_by_a_finger_while_the_text_stays(tab: Tab) -> None:
         assert heading(tab).evaluate(UNCOVERED) and slider.evaluate(UNCOVERED)
 
 
+@pytest.mark.thorough
 def test_what_is_below_the_text_is_not_hidden_by_the_controls(tab: Tab) -> None:
     take(tab, LESSON, STEP)
     for name in ("Next", "Back", "Set up again"):
@@ -75,6 +76,7 @@ def test_what_is_below_the_text_is_not_hidden_by_the_controls(tab: Tab) -> None:
         assert tab.slider("K1").evaluate(UNCOVERED)
 
 
+@pytest.mark.thorough
 def test_a_step_without_controls_leaves_its_text_all_the_room(tab: Tab) -> None:
     take(tab, LESSON, STEP)
     pinned = tab.page.locator("[data-pinned]")
