@@ -26,6 +26,50 @@ class Laws(Data, frozen=True):
         return {bench: law for bench, law in msgspec.structs.asdict(self).items() if law}
 
 
+class StartState(Data, frozen=True):
+    """Where and how both robots start, by the path; all of it is 0 in a new lab.
+
+    Attributes:
+        place: parameter of a point of the path, [rad].
+        across: distance from there, to the left of the path positive, as ξ₁, [mm].
+        speed: along the path, [mm/s].
+        across_rate: velocity across the path, as ξ₂, [mm/s].
+        lead: how far the clock of a law that has one is ahead, [rad].
+    """
+
+    place: float = 0.0
+    across: float = 0.0
+    speed: float = 0.0
+    across_rate: float = 0.0
+    lead: float = 0.0
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """Those that are not 0, named as in `models.closed_loop.start.Start`, SI."""
+        named = {
+            "theta": self.place,
+            "beside": 1e-3 * self.across,
+            "along": 1e-3 * self.speed,
+            "across": 1e-3 * self.across_rate,
+            "clock_offset": self.lead,
+        }
+        return {name: value for name, value in named.items() if value}
+
+
+class SceneMark(Data, frozen=True):
+    """A text in the scene, or an arrow with a text at its tail, at both robots.
+
+    Attributes:
+        at: place, or the arrow's tip: right and up from the middle of the preset paths, [mm].
+        tail: of the arrow, in the same way; None for a text alone. It is called `from` in TOML.
+        text: may be empty if there is an arrow.
+    """
+
+    at: tuple[float, float]
+    tail: tuple[float, float] | None = msgspec.field(name="from", default=None)
+    text: str = ""
+
+
 class StepSetup(Data, frozen=True):
     """The state of the lab at the beginning of a step.
 
@@ -35,7 +79,10 @@ class StepSetup(Data, frozen=True):
         laws: control laws of the benches.
         set: parameters that differ from the lab's defaults; all others are reset to them.
         controls: controls that are shown: names of parameters, or of CONTROLS.
-        plot: a plot to show besides the distance, one of PLOTS; empty for none.
+        plot: what is plotted besides the distance, of PLOTS: one, or a list of two; empty for none.
+        start: where and how both robots start.
+        show: what is drawn besides the robots, of DRAWINGS.
+        marks: texts and arrows in the scene.
         running: whether time runs.
         keep: whether robot, path, laws and parameters of the step before are kept, except those
             named here.
@@ -46,9 +93,17 @@ class StepSetup(Data, frozen=True):
     laws: Laws = Laws()
     set: dict[str, Value] = {}
     controls: tuple[str, ...] = ()
-    plot: str = ""
+    plot: str | tuple[str, ...] = ""
+    start: StartState = StartState()
+    show: tuple[str, ...] = ()
+    marks: tuple[SceneMark, ...] = ()
     running: bool = True
     keep: bool = False
+
+    @property
+    def plots(self) -> tuple[str, ...]:
+        """Names of the plots besides that of the distance."""
+        return tuple(filter(None, [self.plot])) if isinstance(self.plot, str) else self.plot
 
     def after(self, before: StepSetup) -> StepSetup:
         """The complete setup, given that of the step before."""
@@ -76,6 +131,8 @@ class Action(Data, frozen=True):
         reset: put both robots back to the start.
         run: run or pause.
         identify: fit the controller's model to the measured motion.
+        start: put both robots to another start, and begin anew there.
+        rate: simulated seconds per second from now to the end of the script; 0.25 is slow motion.
         only: the robot that hold and pull act on; empty for both.
     """
 
@@ -91,6 +148,8 @@ class Action(Data, frozen=True):
     reset: bool | None = None
     run: bool | None = None
     identify: bool | None = None
+    start: StartState | None = None
+    rate: float | None = None
     only: RobotName | Literal[""] = ""
 
     @property
@@ -108,7 +167,7 @@ class Action(Data, frozen=True):
 
 ACTIONS = (
     *("hold", "pull", "release", "set", "path", "move", "robot", "laws", "reset", "run"),
-    "identify",
+    *("identify", "start", "rate"),
 )
 
 
@@ -122,3 +181,13 @@ class Script(Data, frozen=True):
 
     do: tuple[Action, ...] = ()
     until: float = 5.0
+
+    @property
+    def seconds(self) -> float:
+        """How long it takes to watch it, [s]: longer than `until` with slow motion."""
+        time, rate, taken = 0.0, 1.0, 0.0
+        for action in sorted(self.do, key=lambda action: action.at):
+            if action.rate:
+                taken += (action.at - time) / rate
+                time, rate = action.at, action.rate
+        return taken + (self.until - time) / rate

@@ -60,6 +60,8 @@ def _number(value: float, words: Words) -> str:
 _WORDS: dict[str, Callable[[Action, Words], str]] = {
     "hold": lambda action, words: words("event.hold" if action.hold else "event.let_go"),
     "run": lambda action, words: words("guide.run" if action.run else "guide.pause"),
+    "rate": lambda action, words: words("guide.rate", rate=_number(action.rate or 1.0, words)),
+    "start": lambda _, words: words("guide.start"),
     "pull": _pull,
     "move": _move,
     "path": _named,

@@ -21,6 +21,7 @@ from onpath.lessons.measures.responses import (
 )
 from onpath.lessons.record import Mask, Record
 from onpath.lessons.task_schema import (
+    Better,
     Bound,
     Check,
     Compare,
@@ -116,6 +117,37 @@ def _(check: Compare, record: Record, words: Words) -> Verdict:
         **names,
     )
     return Verdict(enough and ratio >= check.ratio, said + seconds)
+
+
+@verdict.register
+def _(check: Better, record: Record, words: Words) -> Verdict:
+    robots = robot_names(record.laws, words)
+    if record.stopped(check.robot):
+        return Verdict(False, words("check.stopped", robot=robots[check.robot]))
+    chosen = record.chosen(check.robot, check)
+    enough, seconds = _seconds(check, record, chosen, words)
+    value = statistic(record, check.robot, check.quantity, check.stat, chosen)
+    before = record.before.get(check)
+    limit = None if before is None else check.share * before
+    passed = enough and value is not None and limit is not None and value < limit
+    unit = unit_of(check.stat, check.quantity)
+    said = words(
+        "check.better",
+        robot=robots[check.robot],
+        stat=_stat_words(check.stat, check.quantity, words),
+        during=words(f"during.{check.during}"),
+        value="–" if value is None else f"{_rounded(value, limit, None)} {unit}",
+        before="–" if before is None else f"{_rounded(before, None, None)} {unit}",
+    )
+    return Verdict(passed, said + seconds)
+
+
+def measured(check: Better, record: Record) -> float | None:
+    """What a run must be better than in the next one; None if it was too short for that."""
+    chosen = record.chosen(check.robot, check)
+    if record.stopped(check.robot) or record.seconds(chosen) < check.least - INSTANT:
+        return None
+    return statistic(record, check.robot, check.quantity, check.stat, chosen)
 
 
 @verdict.register

@@ -9,14 +9,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
+from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem
 from onpath.lessons.routes import Route, read_routes
 from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Sketch, Step, Text
 from onpath.lessons.task_schema import Reference, Task
-from onpath.lessons.vocabulary import script_faults
+from onpath.lessons.vocabulary.setups import script_faults
 from onpath.lessons.words import DEFAULT
 
 BUILT_IN = Path(__file__).parent / "course"
@@ -84,6 +86,8 @@ def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
         found = sorted({file.parent for file in folder.glob("*/*.md") if file.stem != "README"})
         if not found:
             text = "no lessons: a lesson is a folder in it with en.md"
+            if _is_lesson(folder):
+                text = f"this is a lesson itself: name the folder that it is in, {folder.parent}"
             problems.append(Problem(str(folder), 1, text))
         for home in found:
             versions, wrong = read_versions(home)
@@ -97,6 +101,20 @@ def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
         read = read_routes(folder, lessons)
         routes, problems = {**read.routes, **routes}, problems + read.problems
     return Course(lessons, routes, tests), sorted(problems)
+
+
+def read_folder(folder: Path) -> tuple[Course, list[Problem], Path]:
+    """The lessons in a folder, or the one whose folder it is; their problems; where they are."""
+    if not _is_lesson(folder):
+        return *read_course([folder]), folder
+    home = folder.resolve()
+    versions, problems = read_versions(home)
+    return Course({home.name: versions} if versions else {}), sorted(problems), home.parent
+
+
+def _is_lesson(folder: Path) -> bool:
+    """Whether it is the folder of one lesson."""
+    return any(folder.glob("??.md")) and not any(folder.glob("*/??.md"))
 
 
 def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
@@ -116,7 +134,7 @@ def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
         first, *others = versions.values()
         for other in others:
             problems += _differences(first, other, home / f"{other.language}.md")
-            versions[other.language] = msgspec.structs.replace(other, keys=first.keys)
+            versions[other.language] = replace(other, keys=first.keys)
         if home.name != FOLDER:
             problems += read_references(first, home / REFERENCE)[1]
     return versions, problems
@@ -166,22 +184,31 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
             yield Problem(str(file), theirs.line, f"{text}: {same}")
 
 
+def _without_words(scene: StepSetup | None) -> StepSetup | None:
+    """A scene without the texts of its marks."""
+    if scene is None:
+        return None
+    return replace(scene, marks=tuple(replace(m, text=str(bool(m.text))) for m in scene.marks))
+
+
 def _structure(step: Step) -> tuple[object, ...]:
     """The parts of a step that are the same in all languages."""
     tasks = [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()]
     blocks = [block for block in step.blocks if not isinstance(block, Text | Task)]
     right = [[o.right for o in b.options] for b in blocks if isinstance(b, Choice | Quiz)]
     aims = [bool(b.misconception) for b in blocks if isinstance(b, Quiz)]
-    asked = [(b.why, len(b.reasons)) for b in step.predictions()]
+    asked = [(b.why, len(b.reasons), len(b.hidden)) for b in step.predictions()]
     checked = [(b.number, b.tolerance) for b in blocks if isinstance(b, NumberQuestion)]
     drawn = [
-        msgspec.structs.replace(b, question="", usual="", answer="", ask="", reasons=())
+        replace(b, question="", usual="", answer="", ask="", reasons=(), hidden=())
         for b in blocks
         if isinstance(b, Sketch)
     ]
     told = [tuple(bool(getattr(b, name, "")) for name in NOTES) for b in step.blocks]
     texts = [block for block in step.blocks if isinstance(block, Text)]
     links = [link.actions for text in texts for link in text.links]
+    branches = [text.when for text in texts if text.when]
     kinds = [type(block) for block in blocks]
-    shown = step.kind, step.optional, step.scene, step.script
-    return *shown, tasks, kinds, right, drawn, told, links, asked, checked, aims
+    shown = step.kind, step.optional, step.when, _without_words(step.scene), step.script
+    stated = [replace(each, line=0, text="") for each in step.stated]
+    return *shown, branches, stated, tasks, kinds, right, drawn, told, links, asked, checked, aims

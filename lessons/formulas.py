@@ -15,6 +15,8 @@ from markdown_it.token import Token
 from markupsafe import Markup
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
+from onpath.lessons.vocabulary.latex import latex_faults
+
 MIME = {
     ".svg": "image/svg+xml",
     ".png": "image/png",
@@ -44,9 +46,12 @@ def mathml(latex: str, options: dict[str, Any]) -> str:
     """
     display = "block" if options.get("display_mode") else "inline"
     try:
-        return COMMA.sub(r"<mn>\1,\2</mn>", convert(latex, display=display))
+        written = convert(latex, display=display)
     except Exception as error:  # the library raises many kinds
         raise FormulaError(f"formula {latex!r}: {error or type(error).__name__}") from None
+    if faults := list(latex_faults(latex, written)):
+        raise FormulaError(f"formula {latex!r}: {'; '.join(faults)}")
+    return COMMA.sub(r"<mn>\1,\2</mn>", written)
 
 
 @cache

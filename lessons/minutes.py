@@ -70,7 +70,7 @@ def step_minutes(step: Step) -> Minutes:
     tried = MINUTES["play"] if step.kind == "play" else 0.0
     return Minutes(
         reading=sum(word_count(text) for block in step.blocks for text in _read(block)) / WORDS,
-        runs=0.0 if step.script is None else step.script.until / 60,
+        runs=0.0 if step.script is None else step.script.seconds / 60,
         predictions=sum(MINUTES[type(block).__name__.lower()] for block in asked),
         tasks=MINUTES["task"] * len(step.tasks()) + tried,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -10,21 +11,20 @@ from pathlib import Path
 from typing import Any, get_args
 
 from markdown_it.token import Token
-from markupsafe import Markup
 
-from onpath.lessons import vocabulary
 from onpath.lessons.action_schema import Script, StepSetup
-from onpath.lessons.completeness import lacks
+from onpath.lessons.completeness import lacks, order_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
-from onpath.lessons.formulas import FormulaError, embedded, folded, reader, render
+from onpath.lessons.formulas import FormulaError, reader
 from onpath.lessons.kept.option_keys import keys_of
-from onpath.lessons.links import read_link
+from onpath.lessons.measures.stated import Stated, take_stated
+from onpath.lessons.personal.branches import faults_of_when
 from onpath.lessons.problems import LessonError, Problem
+from onpath.lessons.prose import data_faults, read_prose
 from onpath.lessons.rendered import rendered
 from onpath.lessons.schema import (
     Block,
     Front,
-    LabLink,
     Lesson,
     NumberQuestion,
     OpenQuestion,
@@ -37,14 +37,23 @@ from onpath.lessons.schema import (
 )
 from onpath.lessons.task_schema import Task
 from onpath.lessons.toml_blocks import read_checked, read_toml
+from onpath.lessons.vocabulary.blocks import (
+    number_faults,
+    option_faults,
+    prediction_faults,
+    task_faults,
+)
+from onpath.lessons.vocabulary.setups import release_faults, scene_faults, script_faults
 
+NO_MARK = StepMark()
 LARGEST = 1_000_000
 """Largest size of a lesson file, [B]."""
 KINDS: tuple[str, ...] = get_args(StepKind)
 FENCES = ("step", "scene", "script", "predict", "task", "quiz", "number", "open")
-KNOWN = (*FENCES, "fold")
+KNOWN = (*FENCES, "fold", "when")
 HEADING = re.compile(r"(\w+):\s*(.+)")
 FOLD = re.compile(r"fold\b\s*(.*)")
+BRANCH = re.compile(r"when\b\s*(.*)")
 
 
 @dataclass(slots=True)
@@ -57,13 +66,13 @@ class _Draft:
     blocks: list[Block]
     scene: StepSetup | None = None
     script: Script | None = None
-    optional: bool = False
+    mark: StepMark = NO_MARK
     broken: bool = False  # whether one of its blocks could not be read
 
-    def step(self) -> Step:
+    def step(self, stated: tuple[Stated, ...] = ()) -> Step:
         kind: Any = self.kind
-        blocks = tuple(self.blocks)
-        parts = self.scene, self.script, self.optional
+        blocks, when = tuple(self.blocks), self.mark.when
+        parts = self.scene, self.script, self.mark.optional or bool(when), when, stated
         return Step(kind, self.title, self.line, blocks, *parts)
 
 
@@ -89,8 +98,8 @@ class _Reader:
 
     def __init__(self, path: Path, text: str) -> None:
         self._path = path
-        self._text = text
         self._problems: list[Problem] = []
+        self._text, self._stated = take_stated(text, self._complain)
         self._markdown = reader()
         self._robot = self._home = "five_bar"
         self._scene = StepSetup()
@@ -106,9 +115,17 @@ class _Reader:
         steps = self._steps(body, first)
         if not self._problems and front is not None:
             name, language = self._path.parent.name, self._path.stem
-            made = tuple(draft.step() for draft in steps)
+            made = self._made(steps)
             return Lesson(name, language, front, made, keys_of(made))
         raise LessonError(self._problems)
+
+    def _made(self, drafts: list[_Draft]) -> tuple[Step, ...]:
+        """The steps, each with the numbers that are stated in it."""
+        ends = [*(draft.line for draft in drafts[1:]), float("inf")]
+        return tuple(
+            draft.step(tuple(each for each in self._stated if draft.line <= each.line < end))
+            for draft, end in zip(drafts, ends, strict=False)
+        )
 
     def _front(self) -> tuple[Front | None, int]:
         """The front matter and the number of lines it takes."""
@@ -119,9 +136,7 @@ class _Reader:
             return None, 0
         front = read_toml("\n".join(lines[1 : ends[1]]), 2, Front, self._complain)
         if front is not None:
-            self._complain_all(
-                1, vocabulary.scene_faults(StepSetup(robot=front.robot), front.robot)
-            )
+            self._complain_all(1, scene_faults(StepSetup(robot=front.robot), front.robot))
             self._robot = self._home = front.robot
             try:
                 front = rendered(front)
@@ -142,14 +157,18 @@ class _Reader:
                 self._fence(drafts[-1], head.info.strip(), head.content, line + 1)
             elif head.type == "fence" and (fold := FOLD.fullmatch(head.info.strip())):
                 self._fold(drafts[-1], fold[1], head.content, line + 1)
+            elif head.type == "fence" and (branch := BRANCH.fullmatch(head.info.strip())):
+                self._branch(drafts[-1], branch[1], head.content, line + 1)
             elif head.type == "fence" and (near := get_close_matches(head.info, KNOWN, 1)):
                 self._complain(line, f"unknown block {head.info.strip()!r}: did you mean {near[0]}")
             else:
                 self._prose(drafts[-1], tokens, line)
         broken = {draft.line for draft in drafts if draft.broken}
-        steps = [draft.step() for draft in drafts]
+        steps = self._made(drafts)
         is_test = self._path.parent.name == FOLDER
         self._complain_all(1, lacks_of_test(steps) if is_test else lacks(steps, broken))
+        for line, fault in (*faults_of_when(steps), *order_faults(steps, broken)):
+            self._complain(line, fault)
         return drafts
 
     def _begin(self, heading: str, line: int) -> _Draft:
@@ -164,19 +183,19 @@ class _Reader:
     def _fence(self, draft: _Draft, what: str, content: str, line: int) -> None:
         """Read a fenced block of TOML."""
         before = len(self._problems)
+        self._complain_all(line, _words_faults(content))
         if what == "step":
-            mark = self._checked(content, line, StepMark, lambda _: ())
-            draft.optional = mark is not None and mark.optional
+            draft.mark = self._checked(content, line, StepMark, lambda _: ()) or draft.mark
         elif what == "scene":
             draft.scene = self._checked(content, line, StepSetup, self._scene_faults)
         elif what == "script":
             draft.script = self._checked(content, line, Script, self._script_faults)
         else:
             kinds: dict[str, tuple[Any, Callable[[Any], Iterable[str]]]] = {
-                "predict": (Prediction, vocabulary.prediction_faults),
+                "predict": (Prediction, prediction_faults),
                 "task": (Task, self._task_faults),
                 "quiz": (Quiz, _quiz_faults),
-                "number": (NumberQuestion, vocabulary.number_faults),
+                "number": (NumberQuestion, number_faults),
                 "open": (OpenQuestion, lambda _: ()),
             }
             self._add(draft, self._checked(content, line, *kinds[what]), line)
@@ -193,13 +212,14 @@ class _Reader:
     def _scene_faults(self, scene: StepSetup) -> Iterator[str]:
         self._scene = scene.after(self._scene)
         self._robot = self._scene.robot or self._home
-        return vocabulary.scene_faults(self._scene, self._robot)
+        return scene_faults(self._scene, self._robot)
 
     def _script_faults(self, script: Script) -> Iterator[str]:
-        return vocabulary.script_faults(script, self._robot)
+        yield from script_faults(script, self._robot)
+        yield from release_faults(script)
 
     def _task_faults(self, task: Task) -> Iterator[str]:
-        return vocabulary.task_faults(task, self._robot)
+        return task_faults(task, self._robot)
 
     def _fold(self, draft: _Draft, title: str, content: str, line: int) -> None:
         """Read a fenced block of Markdown that is shown when its title is pressed."""
@@ -207,68 +227,24 @@ class _Reader:
             self._complain(line, "a fold needs a title: ```fold I cannot play: tell me")
         self._prose(draft, self._markdown.parse(content), line, title)
 
-    def _prose(self, draft: _Draft, tokens: list[Token], line: int, fold: str = "") -> None:
-        """Read a paragraph, list, table or picture; lab links end the text block.
+    def _branch(self, draft: _Draft, when: str, content: str, line: int) -> None:
+        """Read a fenced block of Markdown that is shown for some answers only."""
+        if not when:
+            self._complain(line, "a branch needs an answer: ```when wrong")
+        self._prose(draft, self._markdown.parse(content), line, when=when)
 
-        Args:
-            fold: a title, for a text that is shown when it is pressed.
-        """
-        links: list[LabLink] = []
-        for token in tokens:
-            for child in token.children or ():
-                if child.type == "image":
-                    self._embed(child, line)
-            links += self._links(token.children or [], line)
-        try:
-            html = render(self._markdown, tokens)
-        except FormulaError as error:
-            self._complain(line, str(error))
-            return
-        if links and not _has_prose(tokens):
-            html = Markup()  # the buttons show the same words
-        if fold:
-            html = folded(fold, html)
+    def _prose(
+        self, draft: _Draft, tokens: list[Token], line: int, fold: str = "", when: str = ""
+    ) -> None:
+        """Read a part of a text; lab links end the text block, and so does a condition."""
+        read = read_prose(self._markdown, tokens, self._path.parent, self._robot, fold)
+        for below, fault in read.faults:
+            self._complain(line + below, fault)
         last = draft.blocks[-1] if draft.blocks else None
-        if isinstance(last, Text) and not last.links:
-            draft.blocks[-1] = Text(last.html + html, tuple(links))
+        if isinstance(last, Text) and not last.links and last.when == when:
+            draft.blocks[-1] = Text(last.html + read.html, tuple(read.links), when)
         else:
-            draft.blocks.append(Text(html, tuple(links)))
-
-    def _embed(self, image: Token, line: int) -> None:
-        source = str(image.attrGet("src") or "")
-        picture = (self._path.parent / source).resolve()
-        try:
-            if not picture.is_relative_to(self._path.parent.resolve()):
-                raise ValueError(f"picture {source!r} is not in the lesson's folder")
-            image.attrSet("src", embedded(picture))
-        except OSError:
-            self._complain(line, f"no picture {source!r}")
-        except ValueError as error:
-            self._complain(line, str(error))
-
-    def _links(self, children: list[Token], line: int) -> Iterator[LabLink]:
-        """Lab links of a text; in the text their words become bold instead of links."""
-        for i, token in enumerate(children):
-            if token.type != "link_open":
-                continue
-            address = str(token.attrGet("href") or "")
-            if address.startswith("https://"):
-                token.attrSet("target", "_blank")
-                token.attrSet("rel", "noopener noreferrer")
-                continue
-            end = next(j for j in range(i, len(children)) if children[j].type == "link_close")
-            label = "".join(child.content for child in children[i + 1 : end])
-            token.tag = children[end].tag = "strong"
-            token.attrs = {}
-            _separate(children[end + 1 : end + 3])
-            try:
-                actions = read_link(address)
-            except ValueError as error:
-                self._complain(line, str(error))
-                continue
-            for action in actions:
-                self._complain_all(line, vocabulary.action_faults(action, self._robot))
-            yield LabLink(label, actions)
+            draft.blocks.append(read.text(when))
 
     def _checked(
         self, content: str, line: int, kind: Any, faults: Callable[[Any], Iterable[str]]
@@ -283,23 +259,6 @@ class _Reader:
             self._complain(line, text)
 
 
-def _separate(after: list[Token]) -> None:
-    """Put a comma between a link and one that follows it directly: their words would run together.
-
-    Args:
-        after: the two tokens after the link.
-    """
-    kinds = [token.type for token in after]
-    if kinds == ["text", "link_open"] and not after[0].content.strip():
-        after[0].content = ", "
-
-
-def _has_prose(tokens: list[Token]) -> bool:
-    """Whether there is any text outside links."""
-    inline = [child for token in tokens for child in token.children or ()]
-    return any(child.level == 0 and child.content.strip(" \u00a0,.;:·|") for child in inline)
-
-
 def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
     """Splits tokens into top-level blocks."""
     section: list[Token] = []
@@ -312,5 +271,13 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
             section = []
 
 
+def _words_faults(content: str) -> Iterator[str]:
+    """The faults of the texts in a block of TOML; none if it cannot be read, which is told."""
+    try:
+        yield from data_faults(tomllib.loads(content))
+    except (tomllib.TOMLDecodeError, RecursionError):
+        return
+
+
 def _quiz_faults(quiz: Quiz) -> Iterator[str]:
-    return vocabulary.option_faults([option.right for option in quiz.options])
+    return option_faults([option.right for option in quiz.options])

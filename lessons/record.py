@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from onpath.lessons.action_schema import RobotName
-from onpath.lessons.task_schema import Window
+from onpath.lessons.task_schema import Better, Window
 from onpath.models.arrays import Array
 from onpath.models.systems.parameters import Parameters
 
@@ -30,7 +30,7 @@ QUANTITIES: dict[str, str] = {
 }
 """Quantity -> unit."""
 PLOTS = (
-    *("speed", "torques", "across", "across_rate", "place", "rate", "force"),
+    *("phase", "speed", "torques", "across", "across_rate", "place", "rate", "force"),
     *("modes", "deflection", "energy"),
 )
 """Names of the plots that a scene can show."""
@@ -70,6 +70,7 @@ class Record:
         path, robot: names of the path and of the robot model.
         laws: current control law of each bench; a bench without one has that of a new lab.
         length: measures the path, [mm].
+        before: what the run before this one must be better than; see `lessons.checks.measured`.
     """
 
     times: Array
@@ -82,6 +83,7 @@ class Record:
     robot: str = "five_bar"
     laws: dict[str, str] = field(default_factory=dict[str, str])
     length: Callable[[], float] = float
+    before: Mapping[Better, float] = field(default_factory=dict[Better, float])
     _masks: dict[tuple[RobotName, str], Mask] = field(
         default_factory=dict[tuple[RobotName, str], Mask]
     )

@@ -11,6 +11,7 @@ import msgspec
 from markupsafe import Markup
 
 from onpath.lessons.action_schema import Action, Data, RobotName, Script, StepSetup
+from onpath.lessons.measures.stated import Stated
 from onpath.lessons.task_schema import Task
 
 StepKind = Literal["play", "predict", "run", "explain", "task", "quiz"]
@@ -37,6 +38,7 @@ class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
 
     Attributes:
         ask: for the teacher, what to ask the class before it is seen.
+        hidden: what no text before may say, outside a fold.
         reasons: from which the student may choose one.
         why: whether the student is asked for a reason in own words.
     """
@@ -46,6 +48,7 @@ class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
     ask: str = ""
     reasons: tuple[str, ...] = ()
     why: bool = False
+    hidden: tuple[str, ...] = ()
 
 
 class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
@@ -59,7 +62,7 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
         usual: for the teacher, what students usually draw.
         answer: for the teacher, what the true curve is like, and why.
         ask: for the teacher, what to ask the class before it is seen.
-        reasons, why: as in `Choice`.
+        reasons, why, hidden: as in `Choice`.
     """
 
     question: str
@@ -73,6 +76,7 @@ class Sketch(Data, frozen=True, tag="sketch", tag_field="kind"):
     ask: str = ""
     reasons: tuple[str, ...] = ()
     why: bool = False
+    hidden: tuple[str, ...] = ()
 
 
 Prediction = Choice | Sketch
@@ -129,10 +133,16 @@ class LabLink(msgspec.Struct, frozen=True):
 
 
 class Text(msgspec.Struct, frozen=True):
-    """Part of a step's text, as safe HTML, and its lab links, which follow it as buttons."""
+    """Part of a step's text, as safe HTML, and its lab links, which follow it as buttons.
+
+    Attributes:
+        html: may contain numbers of the student's, see `lessons.personal.own_numbers`.
+        when: the answer for which it is shown, see `lessons.personal.branches`; empty for any.
+    """
 
     html: Markup
     links: tuple[LabLink, ...] = ()
+    when: str = ""
 
 
 Block = Text | Choice | Sketch | Task | Quiz | NumberQuestion | OpenQuestion
@@ -143,9 +153,11 @@ class StepMark(Data, frozen=True):
 
     Attributes:
         optional: whether it is a side road, which may be left out.
+        when: the answer for which it is opened, as in `Text`; such a step is optional.
     """
 
     optional: bool = False
+    when: str = ""
 
 
 class Step(msgspec.Struct, frozen=True):
@@ -156,6 +168,8 @@ class Step(msgspec.Struct, frozen=True):
         scene: state of the lab at the beginning, or None for that of the step before.
         script: actions that the lab performs by itself, or None.
         optional: whether it may be left out; the lesson's minutes and its end do not count it.
+        when: see `StepMark`.
+        stated: numbers of its text that a run must confirm.
     """
 
     kind: StepKind
@@ -165,6 +179,8 @@ class Step(msgspec.Struct, frozen=True):
     scene: StepSetup | None = None
     script: Script | None = None
     optional: bool = False
+    when: str = ""
+    stated: tuple[Stated, ...] = ()
 
     def predictions(self) -> list[Prediction]:
         """The predictions of this step."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+import msgspec
 import numpy as np
 
-from onpath.lessons.action_schema import Action, Laws, RobotName, Script
+from onpath.lessons.action_schema import Action, Laws, RobotName, Script, StartState
 from onpath.lessons.record import ROBOTS
 from onpath.models.arrays import Array
 
@@ -78,6 +79,9 @@ def action_text(action: Action) -> str:
     if what in ("set", "laws"):
         values = (action.set or {}) if what == "set" else (action.laws or Laws()).named
         given = ", ".join(f"{name} = {value}" for name, value in values.items())
+    if isinstance(given, StartState):
+        values = msgspec.to_builtins(given).items()
+        given = ", ".join(f"{name} = {value:g}" for name, value in values if value) or "on the path"
     if isinstance(given, bool):
         return (what if given else f"{what} off") + only
     return f"{what} {given}{only}"

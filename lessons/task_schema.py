@@ -56,6 +56,19 @@ class Compare(Window, frozen=True, tag="compare", tag_field="kind"):
     ratio: float = 1.0
 
 
+class Better(Window, frozen=True, tag="better", tag_field="kind"):
+    """A statistic of a quantity is less than it was in the run before, up to the last reset.
+
+    Attributes:
+        share: at most this share of what it was.
+    """
+
+    quantity: str = ""
+    robot: RobotName = "follower"
+    stat: Stat = "max"
+    share: float = 1.0
+
+
 class Event(Data, frozen=True, tag="event", tag_field="kind"):
     """An event has happened.
 
@@ -90,7 +103,7 @@ class Setting(Data, frozen=True, tag="setting", tag_field="kind"):
     above: float | None = None
 
 
-Check = Bound | Compare | Event | Order | Setting
+Check = Bound | Compare | Better | Event | Order | Setting
 
 
 class Task(Data, frozen=True):

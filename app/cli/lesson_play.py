@@ -7,17 +7,20 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import msgspec
 import tyro
 
 if TYPE_CHECKING:
     from onpath.app.exports.step_play import PlayedScript
+    from onpath.lessons.action_schema import StepSetup
     from onpath.lessons.course import Course
     from onpath.lessons.schema import Lesson, Step
     from onpath.lessons.step_numbers import ScriptPart
 
+PLOTTED = {"torques": ("torque",), "phase": ("across", "across_rate")}
+"""Quantities of the plots that are not called like them."""
 ALWAYS = ("distance", "torque")  # quantities that are printed for every step
 
 
@@ -99,7 +102,22 @@ def _setup(lesson: Lesson, index: int) -> dict[str, Any]:
     scene = lesson.scene_at(index)
     robot, path = scene.robot or lesson.front.robot, scene.path or "circle"
     laws = {**DEFAULT_LAWS, **scene.laws.named}
-    return {"robot": robot, "path": path, "laws": laws, "set": dict(scene.set), "plot": scene.plot}
+    return {
+        "robot": robot,
+        "path": path,
+        "laws": laws,
+        "set": dict(scene.set),
+        "plot": list(scene.plots),
+        **_drawn(scene),
+    }
+
+
+def _drawn(scene: StepSetup) -> dict[str, Any]:
+    """What differs from a new lab's start and drawing."""
+    told = {"start": scene.start, "show": scene.show, "marks": scene.marks}
+    plain = {name: msgspec.to_builtins(value) for name, value in told.items()}
+    plain["start"] = {name: value for name, value in plain["start"].items() if value}
+    return {name: value for name, value in plain.items() if value}
 
 
 def _as_json(lesson: Lesson, index: int, runs: list[PlayedScript]) -> dict[str, Any]:
@@ -139,6 +157,9 @@ def _lines(lesson: Lesson, index: int, runs: list[PlayedScript], every: bool) ->
     yield f"  robot {setup['robot']}, path {setup['path']}, laws: {laws}"
     values = ", ".join(f"{name} = {value}" for name, value in setup["set"].items())
     yield f"  set: {values or 'nothing'}; all others as in a new lab"
+    for name in ("plot", "start", "show", "marks"):
+        if setup.get(name):
+            yield f"  {name}: {_told(setup[name])}"
     if not runs:
         yield "  no script and no task"
     shown = QUANTITIES if every else [q for q in QUANTITIES if q in _mentioned(lesson, index)]
@@ -150,6 +171,13 @@ def _lines(lesson: Lesson, index: int, runs: list[PlayedScript], every: bool) ->
             yield f"  task {'passed' if run.passed else 'not passed'}; at the end:"
         for verdict in run.verdicts:
             yield f"    {'✓' if verdict.passed else '○'} {verdict.words}"
+
+
+def _told(value: Any) -> str:
+    """Plots, a start, drawings or marks in a line."""
+    if isinstance(value, dict):
+        return ", ".join(f"{name} = {each}" for name, each in cast(dict[str, Any], value).items())
+    return ", ".join(each if isinstance(each, str) else f"[{_told(each)}]" for each in value)
 
 
 def _part_lines(part: ScriptPart, quantities: list[str]) -> Iterator[str]:
@@ -177,5 +205,7 @@ def _mentioned(lesson: Lesson, index: int) -> set[str]:
     asked = [block for each in lesson.steps[max(0, index - 1) : index + 1] for block in each.blocks]
     named = {getattr(block, "quantity", "") for block in asked}
     checked = {getattr(check, "quantity", "") for task in step.tasks() for check in task.check}
-    plot = {"torques": "torque"}.get(lesson.scene_at(index).plot, lesson.scene_at(index).plot)
-    return {*ALWAYS, *named, *checked, plot}
+    plots = {
+        quantity for plot in lesson.scene_at(index).plots for quantity in PLOTTED.get(plot, (plot,))
+    }
+    return {*ALWAYS, *named, *checked, *plots}

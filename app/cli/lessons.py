@@ -40,23 +40,22 @@ class CheckLessons:
     """Read lessons and play their scripts, solutions and failures."""
 
     folder: Annotated[Path | None, tyro.conf.Positional] = None
-    """Folder of lessons; by default the built-in ones."""
+    """Folder of lessons, or of one lesson; by default the built-in ones."""
 
     def run(self) -> int:
         """Print what is wrong; return exit code 1 if anything is."""
         from onpath.app.lab.course_check import play_course
         from onpath.app.lab.loops.loop_cache import LoopCache
-        from onpath.lessons.course import BUILT_IN, read_course
+        from onpath.lessons.course import BUILT_IN, read_folder
 
-        folder = self.folder or BUILT_IN
-        course, problems = read_course([folder])
+        course, problems, folder = read_folder(self.folder or BUILT_IN)
         if not problems:
             problems = list(play_course(course, folder, LoopCache(at_once=True)))
         if not problems:
             lessons = list(course.lessons.values())
             tasks = sum(len(next(iter(versions.values())).tasks()) for versions in lessons)
-            count = f"{len(lessons)} lesson{'s' if len(lessons) != 1 else ''}"
-            print(f"{count}, {tasks} solutions and failures played, nothing wrong")
+            counts = [_count(len(lessons), "lesson"), _count(tasks, "solution")]
+            print(f"{', '.join(counts)} and {_count(tasks, 'failure')} played, nothing wrong")
         return _reported(problems)
 
 
@@ -105,6 +104,10 @@ def minutes_table(course: Course, steps: bool) -> str:
     for name, route in course.routes.items():
         lines.append(f"{name:32.32s} {route.minutes:7.1f} route: {route.text(route.title, 'en')}")
     return "\n".join(lines)
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'s' if number != 1 else ''}"
 
 
 def _reported(problems: list[Problem]) -> int:

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.lesson_run import setup_of
 from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.run_samples import Samples
+from onpath.app.lab.setups.step_setup import setup_of
+from onpath.app.lab.stated_check import stated_faults
 from onpath.lessons.action_schema import Script
 from onpath.lessons.checks import Verdict, judge
 from onpath.lessons.course import REFERENCE, Course, read_references
+from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.problems import Problem
+from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson, Step
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import DEFAULT, Words
@@ -33,8 +38,11 @@ def play_course(course: Course, folder: Path, store: LoopCache) -> Iterator[Prob
     for name in course.lessons:
         lesson = course.lesson(name, DEFAULT)
         home = folder / name
-        for step in lesson.steps:
-            yield from _script_faults(lesson, step, home / f"{lesson.language}.md", store)
+        file = home / f"{lesson.language}.md"
+        faults = [fault for step in lesson.steps for fault in _script_faults(lesson, step, store)]
+        if not faults:
+            faults += stated_faults(lesson, lambda at, of=lesson: measured_run(of, at, store))
+        yield from (Problem(str(file), line, text) for line, text in faults)
         yield from _reference_faults(lesson, home / REFERENCE, store)
 
 
@@ -51,19 +59,24 @@ def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Ve
     Raises:
         ValueError: the lab refuses a command of the script; the message says why.
     """
-    session, words = lab.session, Words()
+    session, words, earlier = lab.session, Words(), EarlierRun()
     begin = Beginning.now(session)
     lab.script, session.running = player_of(script), True
-    for _ in range(round(3 * script.until / LOOKS)):
+    for _ in range(round(3 * script.seconds / LOOKS)):
         for _ in range(round(LOOKS / FRAME)):
             lab.drain()
             lab.advance(session.rate * FRAME)
         if lab.message_level == "warning":
             raise ValueError(lab.message)
-        yield [] if task is None else judge(task, record_of(session, begin), words)
+        yield [] if task is None else _judged(task, record_of(session, begin), earlier, words)
         if lab.script is None:
             return
     raise ValueError(f"the script does not reach its end at {script.until:g} s")
+
+
+def _judged(task: Task, record: Record, earlier: EarlierRun, words: Words) -> list[Verdict]:
+    earlier.follow(record, [task])
+    return judge(task, replace(record, before=earlier.values), words)
 
 
 def solved(lab: Lab, script: Script, task: Task) -> tuple[bool, list[Verdict]]:
@@ -79,14 +92,29 @@ def solved(lab: Lab, script: Script, task: Task) -> tuple[bool, list[Verdict]]:
     return passed, last
 
 
-def _script_faults(lesson: Lesson, step: Step, file: Path, store: LoopCache) -> Iterator[Problem]:
+def measured_run(lesson: Lesson, index: int, store: LoopCache) -> Record:
+    """Everything that is measured while a step's script is played.
+
+    Raises:
+        ValueError: see `play`.
+    """
+    step = lesson.steps[index]
+    assert step.script is not None
+    lab = lab_at(lesson, step, store)
+    samples = Samples(lab.session)
+    for _ in play(lab, step.script):
+        samples.follow(lab.session)
+    return samples.record(lab.session)
+
+
+def _script_faults(lesson: Lesson, step: Step, store: LoopCache) -> Iterator[tuple[int, str]]:
     if step.script is None:
         return
     try:
         for _ in play(lab_at(lesson, step, store), step.script):
             pass
     except ValueError as error:
-        yield Problem(str(file), step.line, f"the script of step {step.title!r}: {error}")
+        yield step.line, f"the script of step {step.title!r}: {error}"
 
 
 def _reference_faults(lesson: Lesson, file: Path, store: LoopCache) -> Iterator[Problem]:

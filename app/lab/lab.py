@@ -77,6 +77,7 @@ class Lab:
         asked: number of commands given by the user.
         unsaved: whether the latest changes cannot be saved at present.
         breakdown: what can be done when a robot has stopped.
+        phase_asked: whether the page draws a phase plane of its own accord.
         watch: called in every frame, or None.
     """
 
@@ -93,12 +94,18 @@ class Lab:
         self.frozen, self.asked = False, 0
         self.unsaved = False
         self.breakdown = Breakdown()
+        self.phase_asked = False
         self.watch: Callable[[Lab], None] | None = None
 
     @property
     def words(self) -> Words:
         """Texts in the user's language."""
         return self.lessons.words
+
+    @property
+    def draws_phase(self) -> bool:
+        """Whether a phase plane is drawn, because of the open step or of a user's choice."""
+        return self.phase_asked or "phase" in self.lessons.plots
 
     @property
     def locked(self) -> Message | None:

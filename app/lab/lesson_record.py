@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,7 @@ from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import ROLES
 from onpath.lessons.progress import MOST_POINTS, Truth
 from onpath.lessons.record import ROBOTS, Happening, Record
+from onpath.lessons.task_schema import Better
 from onpath.lessons.thinning import peaks
 from onpath.models.arrays import Array
 from onpath.models.control.benches import LEFT
@@ -35,8 +37,14 @@ class Beginning:
         return Beginning(session.run_number, session.time)
 
 
-def record_of(session: Session, since: Beginning) -> Record:
-    """Record since the beginning of a step or, if later, since the last reset."""
+def record_of(
+    session: Session, since: Beginning, before: Mapping[Better, float] | None = None
+) -> Record:
+    """Record since the beginning of a step or, if later, since the last reset.
+
+    Args:
+        before: see `Record.before`.
+    """
     begin = since.time if since.run == session.run_number else 0.0
     times, samples = session.history.samples(begin, session.time, MOST_SAMPLES)
     return Record(
@@ -50,6 +58,7 @@ def record_of(session: Session, since: Beginning) -> Record:
         robot=session.entry.name,
         laws=session.laws,
         length=lambda: 1e3 * session.editor.design.curve.length(),
+        before={} if before is None else before,
     )
 
 

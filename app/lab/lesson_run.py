@@ -15,10 +15,12 @@ from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
 from onpath.app.lab.setups.capture import capture
-from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
+from onpath.app.lab.setups.setup import Setup
+from onpath.app.lab.setups.step_setup import setup_of
 from onpath.lessons.checks import Verdict, judge, statistic
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
+from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.progress import Answer, Progress, Truth
 from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson, Prediction, Sketch
@@ -52,6 +54,7 @@ class LessonRun(LessonState):
     Attributes:
         verdicts: on the checks of the open step's tasks, by task.
         before: set-up of the lab before a lesson was opened.
+        plots: names of the open step's plots.
     """
 
     def __init__(self, course: Course, progress: Progress | None = None) -> None:
@@ -63,6 +66,9 @@ class LessonRun(LessonState):
         self._trace: Trace | None = None  # of the quantity during the demonstration
         self._passed: dict[str, int] = {}  # the run in which each task was passed
         self.before: Setup | None = None
+        self.plots: tuple[str, ...] = ()
+        self._earlier = EarlierRun()
+        self._rate: float | None = None  # before a demonstration that changes it
 
     @property
     def playing(self) -> bool:
@@ -133,6 +139,7 @@ class LessonRun(LessonState):
     def close(self, lab: LessonLab) -> None:
         """Close the lesson and restore the lab as it was before."""
         self.progress = replace(self.progress, lesson="", route="", ended=False)
+        self.plots = ()
         self._begin_again(lab, running=lab.session.running)
         if self.before is not None:
             lab.set_up(self.before)
@@ -202,12 +209,14 @@ class LessonRun(LessonState):
         if lesson is None:
             return
         self.check_unlocked()
-        rate = session.rate
+        rate = session.rate if self._rate is None else self._rate
         _set_up(lab, lesson, self.index)
         session.rate = rate  # may be slow motion; the result is the same
         self._begin = Beginning.now(session)
         self._trace = Trace(quantity_of(found[1]), self._begin) if found else None
         self._player = lab.script = player
+        script = lesson.steps[self.index].script
+        self._rate = rate if script and any(action.rate for action in script.do) else None
         session.running = True
         self.version += 1
 
@@ -219,6 +228,8 @@ class LessonRun(LessonState):
         session = lab.session
         if self._player is not None and lab.script is not self._player:
             ended, self._player = self._player, None
+            session.rate = session.rate if self._rate is None else self._rate
+            self._rate = None
             if ended.finished:
                 self._note_truth(session)
             self.version += 1
@@ -238,7 +249,8 @@ class LessonRun(LessonState):
         return self._trace.truth()
 
     def _judge(self, session: Session, tasks: list[Task]) -> None:
-        record = record_of(session, self._begin)
+        record = record_of(session, self._begin, self._earlier.values)
+        self._earlier.follow(record, tasks)
         for task in tasks:
             verdicts = judge(task, record, self.words)
             passed = all(verdict.passed for verdict in verdicts)
@@ -272,14 +284,15 @@ class LessonRun(LessonState):
             self.progress = replace(self.progress, ended=True)
         self.note(step=index, seen=max(self.notes.seen, index + 1))
         lab.session.editor.forget_edits()  # an undo would bring the path of another step back
+        self.plots = lesson.scene_at(index).plots
         self._begin_again(lab, lesson.scene_at(index).running)
 
     def _begin_again(self, lab: LessonLab, running: bool) -> None:
         """Reset demonstration, tasks and undo for the step."""
         session = lab.session
         lab.script, session.undo_timeline, session.running = None, None, running
-        self._player = self._trace = None
-        self.verdicts, self._passed = {}, {}
+        self._player = self._trace = self._rate = None
+        self.verdicts, self._passed, self._earlier = {}, {}, EarlierRun()
         self._begin = Beginning.now(session)
         self._lock(session)
 
@@ -295,19 +308,6 @@ class LessonRun(LessonState):
             truths = {**truths, found[0]: self._trace.truth()}
         played = tuple(dict.fromkeys((*self.notes.played, str(self.index))))
         self.note(truths=truths, played=played)
-
-
-def setup_of(lesson: Lesson, index: int, exaggeration: float = 1.0) -> Setup:
-    """A step's set-up, which depends on the lesson only, not on earlier changes in the lab.
-
-    Args:
-        index: of the step.
-        exaggeration: magnification of the drawn deflection, kept from the lab.
-    """
-    scene = lesson.scene_at(index)
-    robot, path = scene.robot or lesson.front.robot, Path(scene.path or Path().name)
-    own = {robot: RobotSetup(dict(scene.set), path)}
-    return Setup(robot, own, exaggeration=exaggeration, laws=scene.laws.named)
 
 
 def _set_up(lab: LessonLab, lesson: Lesson, index: int) -> None:

@@ -13,6 +13,7 @@ from onpath.app.lab.answers import kept_number, kept_text
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import mark_of, marks_of
 from onpath.lessons.kept.option_keys import second_key
+from onpath.lessons.personal.branches import is_shown
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.routes import Route
 from onpath.lessons.schema import (
@@ -87,15 +88,32 @@ class LessonState:
     def beside(self, by: int) -> tuple[str, int]:
         """Lesson and index of a step `by` steps from the open one; at an end, of the last one.
 
-        On a route, the step after the last one of a stop is the first one of the next stop.
+        On a route, the step after the last one of a stop is the first one of the next stop. Steps
+        for other answers than the student's are passed over.
         """
-        lesson, route = self.lesson, self.route
+        lesson = self.lesson
         if lesson is None:
             return "", 0
         here = lesson.name, self.index
-        name, index = (route.beside(*here, by) or here) if route else (lesson.name, here[1] + by)
+        at = self._moved(here, by)
+        while not self._is_open(*at):
+            further = self._moved(at, 1 if by > 0 else -1)
+            if further == at:
+                return here
+            at = further
+        return at
+
+    def _moved(self, at: tuple[str, int], by: int) -> tuple[str, int]:
+        """As `beside`, from another step, and whatever the answers are."""
+        name, index = (self.route.beside(*at, by) or at) if self.route else (at[0], at[1] + by)
         steps = self.course.lesson(name, self.progress.language).steps
         return name, min(max(index, 0), len(steps) - 1)
+
+    def _is_open(self, name: str, index: int) -> bool:
+        """Whether a step is one for the student's answers."""
+        steps = self.course.lesson(name, self.progress.language).steps
+        notes = self.progress.notes.get(name, Notes())
+        return is_shown(steps[index].when, steps, notes, index)
 
     @property
     def at_end(self) -> bool:

@@ -21,7 +21,6 @@ from onpath.app.page.sketch_answer import SketchAnswer
 from onpath.app.scene.scene import Scene
 from onpath.lessons.course import Course
 from onpath.lessons.schema import (
-    Choice,
     NumberQuestion,
     OpenQuestion,
     Prediction,
@@ -156,9 +155,10 @@ class LessonPanel:
 
     def _add(self, number: int, block: object, run: LessonView) -> None:
         if isinstance(block, Text):
-            self._html(page.text(block.html))
-            for link in block.links:
-                self._button(link.label, c.Act(link.actions), "gray", viser.Icon.POINTER)
+            if (shown := run.text(number, block)) is not None:
+                self._html(page.text(shown))
+                for link in block.links:
+                    self._button(link.label, c.Act(link.actions), "gray", viser.Icon.POINTER)
         elif isinstance(block, Task):
             self._add_task(block, run)
         elif isinstance(block, Quiz):
@@ -170,7 +170,7 @@ class LessonPanel:
                 self._gui, order, lambda at, _: self._post(c.AnswerQuiz(number, at))
             )
             self._handles.append(answered)
-        elif isinstance(block, Choice | Sketch):
+        elif isinstance(block, Prediction):
             self._add_prediction(block, run)
         elif isinstance(block, NumberQuestion | OpenQuestion):
             self._add_question(number, block, run)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from markupsafe import Markup
+
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import option_order
-from onpath.lessons.schema import Choice, Quiz
+from onpath.lessons.personal.branches import is_shown
+from onpath.lessons.personal.own_numbers import filled
+from onpath.lessons.schema import Choice, Quiz, Text
 from onpath.lessons.words import Words
 
 NO_SETUP = StepSetup()
@@ -51,6 +55,17 @@ class LessonView(LessonState):
         """Set-up of the open step."""
         lesson = self.lesson
         return NO_SETUP if lesson is None else lesson.scene_at(self.index)
+
+    def text(self, place: int, block: Text) -> Markup | None:
+        """A text of the open step with the student's numbers; None if it is for other answers.
+
+        Args:
+            place: index among the step's blocks.
+        """
+        lesson = self.lesson
+        if lesson is None or not is_shown(block.when, lesson.steps, self.notes, self.index, place):
+            return None
+        return filled(block.html, lesson.steps, self.index, self.notes, self.words)
 
     def order(self, block: Choice | Quiz, key: str = "") -> tuple[int, ...]:
         """The order in which the options of a question are shown; see `option_order`.

@@ -25,7 +25,7 @@ from onpath.app.page.panels.show_panel import ShowPanel
 from onpath.app.page.panels.start_panel import StartPanel
 from onpath.app.page.panels.wall_panel import WallPanel
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_user_update
-from onpath.app.page.plots import MORE, LivePlot, MorePlots
+from onpath.app.page.plots import MORE, MorePlots, add_plot
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
 from onpath.lessons.action_schema import StepSetup
@@ -112,11 +112,10 @@ class PanelFactory:
         return [part for name in names if name != "hold" for part in self._add(name, first)]
 
     def plot_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Build the plot of a lesson's step, if it has one."""
-        plot = MORE[scene.plot] if scene.plot else None
-        if plot is None or plot.field not in dict(first.key.fields):
-            return []
-        return [LivePlot(self._gui, self._words, first.key.fields, plot, height=200)]
+        """Build the plots of a lesson's step, if it has any."""
+        fields = first.key.fields
+        plots = [MORE[name] for name in scene.plots if MORE[name].field in dict(fields)]
+        return [add_plot(self._gui, self._words, fields, plot) for plot in plots]
 
     def show(self) -> Part:
         """Build the folder "Show" alone, open."""
@@ -130,7 +129,7 @@ class PanelFactory:
             "path": lambda: PathChoice(gui, words, post, first),
             "editor": lambda: self._editor(first),
             "gains": lambda: GainsPanel(gui, words, post, first),
-            "plots": lambda: MorePlots(gui, words, first.key.fields),
+            "plots": lambda: MorePlots(gui, words, first.key.fields, post),
             "compare": lambda: ComparePanel(gui, words, first, exporter.compare),
             "past": lambda: PastPanel(gui, words, post, exporter),
             "keep": lambda: KeepPanel(gui, words, post, exporter, self._desk),

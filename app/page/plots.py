@@ -10,7 +10,11 @@ import viser
 from viser import uplot
 
 from onpath.app.common.palette import OF_BENCH
+from onpath.app.lab.commands import AskPhase
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.panels.phase_plot import NAME as PHASE_NAME
+from onpath.app.page.panels.phase_plot import PhasePlot
+from onpath.app.page.panels.widgets import Post, on_user_update
 from onpath.app.viser_adapter.containers import beside
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.benches import bench_titles
@@ -64,9 +68,12 @@ def _alone(_: Fields) -> list[str]:
 
 
 DISTANCE = Plot("distance", "distance", 1e3, _alone, least=(0.0, 1.0))
+PHASE = Plot(PHASE_NAME, "xi_rate", 1e3, _alone)
+"""Is not over time; see `PhasePlot`."""
 MORE = {
     plot.name: plot
     for plot in (
+        PHASE,
         Plot("speed", "speed", 1.0, _alone),
         Plot("torques", "u", 1.0, _numbered("u", "u")),
         Plot("across", "xi", 1e3, _numbered("ξ", "xi"), least=(-1.0, 1.0)),
@@ -186,18 +193,32 @@ def _shown(fields: Fields, words: Words) -> dict[str, Plot | None]:
     return {words("plots.none"): None, **some}
 
 
-class MorePlots:
-    """A selectable plot."""
+def add_plot(
+    gui: viser.GuiApi, words: Words, fields: Fields, plot: Plot, level_set: bool = False
+) -> LivePlot | PhasePlot:
+    """Add a plot of those that can be chosen."""
+    if plot is PHASE:
+        return PhasePlot(gui, words)
+    return LivePlot(gui, words, fields, plot, 200, level_set)
 
-    def __init__(self, gui: viser.GuiApi, words: Words, fields: Fields) -> None:
+
+class MorePlots:
+    """A selectable plot.
+
+    Args:
+        post: is told whether the phase plane is drawn.
+    """
+
+    def __init__(self, gui: viser.GuiApi, words: Words, fields: Fields, post: Post) -> None:
         self._gui, self._words, self._fields = gui, words, fields
-        self._plot: LivePlot | None = None
+        self._plot: LivePlot | PhasePlot | None = None
         self._plots = _shown(fields, words)
         self._folder = gui.add_folder(words("plots.more"), expand_by_default=False)
         with self._folder:
             self._choice = gui.add_dropdown(
                 words("plots.show"), list(self._plots), hint=words("plots.show_hint")
             )
+        on_user_update(self._choice, lambda name: post(AskPhase(self._plots.get(name) is PHASE)))
         self._drawn: tuple[Plot | None, bool] = None, False
 
     def follow(self, snapshot: PageSnapshot) -> None:
@@ -211,7 +232,7 @@ class MorePlots:
                 self._plot = None
             if chosen is not None:
                 with self._folder:
-                    parts = self._gui, self._words, self._fields, chosen, 200, level_set
-                    self._plot = LivePlot(*parts)
+                    parts = self._gui, self._words, self._fields, chosen, level_set
+                    self._plot = add_plot(*parts)
         if self._plot is not None:
             self._plot.follow(snapshot)

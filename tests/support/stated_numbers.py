@@ -15,8 +15,8 @@ import numpy as np
 
 from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.lesson_run import setup_of
 from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
+from onpath.app.lab.setups.step_setup import setup_of
 from onpath.lessons.action_schema import Action, RobotName, Script, Value
 from onpath.lessons.benches import ROLES
 from onpath.lessons.course import BUILT_IN

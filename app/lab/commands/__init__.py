@@ -46,6 +46,7 @@ from onpath.app.lab.commands.pulse import Pulse
 from onpath.app.lab.commands.sharing import Share, UseShared
 from onpath.app.lab.commands.start import MoveStart, SetStart, StartOnPath
 from onpath.app.lab.commands.time import (
+    AskPhase,
     GoOn,
     LookAt,
     LookBack,
@@ -71,6 +72,7 @@ __all__ = [
     "AnswerInWords",
     "AnswerNumber",
     "AnswerQuiz",
+    "AskPhase",
     "BeginStepAnew",
     "ChooseLaw",
     "ChoosePath",

@@ -13,12 +13,13 @@ from onpath.app.lab.commands.forces import Release
 from onpath.app.lab.commands.laws import ChooseLaw
 from onpath.app.lab.commands.parameters import ChooseRobot, Identify, SetParameter
 from onpath.app.lab.commands.path import ChoosePath, MovePoint
-from onpath.app.lab.commands.time import Reset, SetRunning
+from onpath.app.lab.commands.time import Reset, SetRate, SetRunning
 from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.script_player import ScriptPlayer
-from onpath.lessons.action_schema import Action, Laws, RobotName, Script
+from onpath.lessons.action_schema import Action, Laws, RobotName, Script, StartState
 from onpath.lessons.benches import BENCH_OF
+from onpath.models.closed_loop.start import Start
 from onpath.models.control.benches import BENCHES, checked_laws
 from onpath.models.errors import CodedError
 
@@ -69,6 +70,20 @@ class ScriptLaws(Command):
         """See `Command.apply`."""
         for bench, law in checked_laws(self.laws.named, lab.session.entry).items():
             lab.session.change_law(bench, law)
+
+
+@dataclass(frozen=True, slots=True)
+class ScriptStart(Command):
+    """Put both robots to a start, and begin anew there."""
+
+    start: StartState
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        start = Start(**self.start.numbers)
+        lab.session.check_start(start)
+        lab.session.start = start
+        lab.session.reset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,4 +147,6 @@ _COMMANDS: dict[str, Callable[[Action], list[Command]]] = {
     "reset": lambda _: [Reset()],
     "run": lambda action: [SetRunning(action.run)],
     "identify": lambda _: [Identify()],
+    "start": lambda action: [ScriptStart(action.start or StartState())],
+    "rate": lambda action: [SetRate(action.rate or 1.0)],
 }

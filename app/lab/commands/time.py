@@ -84,6 +84,17 @@ class SetRate(Command):
 
 
 @dataclass(frozen=True, slots=True)
+class AskPhase(Command):
+    """Keep the phase plane in the snapshots, or leave it out; it is drawn from every frame."""
+
+    on: bool
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        lab.phase_asked = bool(self.on)
+
+
+@dataclass(frozen=True, slots=True)
 class LookAt(Command):
     """Pause and view the state [s] before now; 0 is now."""
 

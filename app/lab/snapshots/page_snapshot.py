@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -149,6 +149,8 @@ class PageSnapshot(Snapshot):
         obstacle: the wall, or None.
         beginning: the start of the next run.
         places: of the robots on the path, for the poles of their laws.
+        phase: ξ₁ and ξ₂ of the last seconds in every frame, shape (n, robots, 2), SI; only if a
+            phase plane is asked for, else shape (0, 0, 2).
         shared: the last share code made.
         nickname: the student's nickname in the class, or empty.
     """
@@ -164,6 +166,7 @@ class PageSnapshot(Snapshot):
     obstacle: WallState | None
     beginning: StartState
     places: LawPlaces
+    phase: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
 
 
 def parameters_of(snapshot: PageSnapshot) -> Parameters:

@@ -42,6 +42,8 @@ from onpath.models.systems.robots import Robot
 TRACE = 1.6  # [s]
 TRACE_POINTS = 120
 CURVE_POINTS = 160
+PHASE_WINDOW, PHASE_POINTS = 3.0, 180  # [s]
+NO_PHASE = np.zeros((0, 0, 2))
 PLOT_WINDOW = 10.0  # [s]
 PLOT_POINTS = 160
 DESIGN_POINTS = 32
@@ -98,6 +100,7 @@ def take_page_snapshot(
         obstacle=wall_state(session),
         beginning=start_state(session),
         places=law_places(session, scene["time"], before),
+        phase=_phase(lab, scene["time"]),
     )
 
 
@@ -188,6 +191,17 @@ def _traces(session: Session, time: float) -> Array:
     y = session.sample_layout.slices["y"]
     _, samples = session.history.samples(time - TRACE, time, TRACE_POINTS, y)
     return samples if samples.size else np.zeros((0, len(session.runs), session.robot.system.p))
+
+
+def _phase(lab: Lab, time: float) -> Array:
+    """`PageSnapshot.phase`."""
+    session = lab.session
+    if not lab.draws_phase:
+        return NO_PHASE
+    xi, rate = (session.sample_layout.slices[name].start for name in ("xi", "xi_rate"))
+    since = max(time - PHASE_WINDOW, session.across_since)
+    _, samples = session.history.samples(since, time, PHASE_POINTS, slice(xi, rate + 1))
+    return samples[..., [0, rate - xi]] if samples.size else NO_PHASE
 
 
 def _path_view(

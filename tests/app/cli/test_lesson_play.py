@@ -13,6 +13,7 @@ from onpath.app.cli.main import run_command
 from onpath.lessons.action_schema import Action, Laws, Script
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.step_numbers import action_text, parts_of
+from tests.support.format_texts import FORMAT_LESSON, FORMAT_REFERENCE
 from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 from tests.support.stated_numbers import shown
 
@@ -91,7 +92,7 @@ def test_times_go_on_through_a_reset(tmp_path: Path, capsys: Capture) -> None:
     text = LESSON.replace(
         "until = 2.0\ndo = [{ at = 0.5, hold = true }, { at = 1.5, hold = false }]", script
     )
-    write_lesson(tmp_path, text)
+    write_lesson(tmp_path, text.replace("seconds = 2.0", "seconds = 3.0"))
     (run,) = played(capsys, "1", "3", "--folder", str(tmp_path))["runs"]
     first, held, again, _ = run["parts"]
     assert again["actions"] == ["reset"]
@@ -99,6 +100,17 @@ def test_times_go_on_through_a_reset(tmp_path: Path, capsys: Capture) -> None:
     # the same beginning as at first
     assert again["numbers"]["tracker"]["distance"]["final"] < 0.1
     assert first["numbers"]["tracker"]["distance"]["final"] < 0.1
+
+
+def test_what_a_step_draws_and_where_it_starts_is_printed(tmp_path: Path, capsys: Capture) -> None:
+    write_lesson(tmp_path, FORMAT_LESSON, FORMAT_REFERENCE)
+    assert run_command(["lessons", "play", "1", "1", "--folder", str(tmp_path)]) == 0
+    text = capsys.readouterr().out
+    assert "plot: phase, torques" in text and "show: tube, errors" in text
+    assert "start: place = 0.5, across = 10.0" in text and "marks: [at = [50" not in text
+    assert run_command(["lessons", "play", "1", "3", "--folder", str(tmp_path)]) == 0
+    text = capsys.readouterr().out
+    assert "rate 0.25" in text and "start across = 5" in text and "across_rate [mm/s]" in text
 
 
 @pytest.mark.parametrize(

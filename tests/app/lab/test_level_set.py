@@ -16,7 +16,7 @@ from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.notebook.simulate import ellipse, simulate
 from onpath.lessons.action_schema import StepSetup
-from onpath.lessons.vocabulary import scene_faults
+from onpath.lessons.vocabulary.setups import scene_faults
 from onpath.models.closed_loop.trajectory import header, write_csv
 from onpath.models.studies.experiments import experiments
 from onpath.models.studies.experiments import run as run_experiment

@@ -15,7 +15,7 @@ from onpath.app.lab.setups.setup import to_data
 from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.setups.stored import from_data
 from onpath.lessons.action_schema import StepSetup
-from onpath.lessons.vocabulary import scene_faults
+from onpath.lessons.vocabulary.setups import scene_faults
 from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.studies.experiments import experiments
 from onpath.models.studies.experiments import run as run_experiment

@@ -35,7 +35,7 @@ from onpath.app.storage.lab_state import keep, put_back
 from onpath.app.viser_adapter.message_filter import Limits
 from onpath.lessons.action_schema import Laws, StepSetup
 from onpath.lessons.benches import bench_titles, law_label, law_text, robot_names
-from onpath.lessons.vocabulary import scene_faults
+from onpath.lessons.vocabulary.setups import scene_faults
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.start import Start
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT, RIGHT

@@ -1,0 +1,112 @@
+"""Numbers that a text states of a run: `{{47 = max distance tracker during held}}`.
+
+The text shows the number, and `onpath lessons check` plays the run and compares.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from difflib import get_close_matches
+from typing import Any, get_args
+
+import msgspec
+import numpy as np
+
+from onpath.lessons.action_schema import RobotName
+from onpath.lessons.record import QUANTITIES
+from onpath.lessons.task_schema import During, Stat
+
+STATED = re.compile(r"\{\{\s*([−+-]?\d+(?:[.,]\d+)?)\s*(?:±\s*(\d+(?:[.,]\d+)?)\s*)?=([^{}]*)\}\}")
+FORM = "{{47 = max distance tracker}}, and if needed: during held, from 3 to 5"
+"""What is expected, for messages."""
+KNOWN: dict[str, tuple[str, ...]] = {
+    "stat": get_args(Stat),
+    "quantity": tuple(QUANTITIES),
+    "robot": get_args(RobotName),
+    "during": get_args(During),
+}
+
+
+class Stated(msgspec.Struct, frozen=True):
+    """A number of a text, and what it is of a run.
+
+    Attributes:
+        line: of the file, in which it stands.
+        text: the number as it is shown.
+        tolerance: in the unit of the quantity.
+        begin, end: part of the script, [s].
+    """
+
+    line: int
+    text: str
+    value: float
+    tolerance: float
+    stat: Stat
+    quantity: str
+    robot: RobotName
+    during: During = "always"
+    begin: float = 0.0
+    end: float = float("inf")
+
+    def agrees(self, measured: float) -> bool:
+        """Whether it is what was measured."""
+        return bool(abs(measured - self.value) <= self.tolerance + 1e-9)
+
+
+def take_stated(text: str, complain: Callable[[int, str], None]) -> tuple[str, list[Stated]]:
+    """The text with plain numbers in place of those that a run must confirm, and these."""
+    found = list[Stated]()
+
+    def plain(match: re.Match[str]) -> str:
+        line = text.count("\n", 0, match.start()) + 1
+        try:
+            found.append(_read(line, *match.groups()))
+        except ValueError as error:
+            complain(line, f"{match[0]}: {error}")
+        return match[1] + "\n" * match[0].count("\n")
+
+    return STATED.sub(plain, text), found
+
+
+def _read(line: int, number: str, tolerance: str | None, what: str) -> Stated:
+    """A stated number.
+
+    Raises:
+        ValueError: it is not understood; the message has the nearest name.
+    """
+    words = what.split()
+    if len(words) < 3:
+        raise ValueError(f"write it as {FORM}")
+    named = dict(zip(("stat", "quantity", "robot"), words[:3], strict=True))
+    read: dict[str, Any] = {name: _one_of(word, name) for name, word in named.items()}
+    rest = words[3:]
+    if rest[:1] == ["during"] and len(rest) >= 2:
+        read["during"], rest = _one_of(rest[1], "during"), rest[2:]
+    if len(rest) == 4 and (rest[0], rest[2]) == ("from", "to"):
+        read["begin"], read["end"], rest = float(rest[1]), float(rest[3]), []
+        if not 0 <= read["begin"] < read["end"]:
+            raise ValueError("it ends before it begins")
+    if rest:
+        raise ValueError(f"{' '.join(rest)!r} is not understood; write it as {FORM}")
+    value = _value(number)
+    digits = len(re.split("[.,]", number)[1]) if re.search("[.,]", number) else 0
+    allowed = 0.5 * 10.0**-digits if tolerance is None else _value(tolerance)
+    return Stated(line, number, value, allowed, **read)
+
+
+def _value(number: str) -> float:
+    return float(number.replace("−", "-").replace(",", "."))
+
+
+def _one_of(word: str, what: str) -> str:
+    if word in KNOWN[what]:
+        return word
+    near = get_close_matches(word, KNOWN[what], 1)
+    hint = f"did you mean {near[0]}?" if near else f"one of {', '.join(KNOWN[what])}"
+    raise ValueError(f"{what} {word!r}: {hint}")
+
+
+def in_span(times: np.ndarray, stated: Stated) -> np.ndarray:
+    """The instants that a number is about, as a mask, shape (n,)."""
+    return (times >= stated.begin - 1e-9) & (times <= stated.end + 1e-9)

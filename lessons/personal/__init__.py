@@ -1,0 +1,1 @@
+"""What of a lesson depends on the student's answers."""

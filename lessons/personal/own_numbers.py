@@ -1,0 +1,77 @@
+"""The student's own numbers in a text: `{{your sketch max or 47}}`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from operator import itemgetter
+
+from markupsafe import Markup
+
+from onpath.lessons.progress import Notes
+from onpath.lessons.schema import Choice, NumberQuestion, Sketch, Step
+from onpath.lessons.words import Words
+
+OWN = re.compile(r"\{\{\s*your\s+([^{}]*?)\s*\}\}")
+SKETCH: dict[str, Callable[[Sequence[float]], float]] = {
+    "max": max,
+    "min": min,
+    "final": itemgetter(-1),
+}
+KINDS = (*(f"sketch {stat}" for stat in SKETCH), "number", "choice", "best")
+NOTHING = "–"
+
+
+def own_faults(text: str) -> Iterator[str]:
+    """The faults of a text's places for the student's numbers, and of all other double braces."""
+    for match in OWN.finditer(text):
+        if _parts(match[1])[0] not in KINDS:
+            yield f"{match[0]}: it is {{{{your …}}}} with one of {', '.join(KINDS)}, and `or …`"
+    if "{{" in OWN.sub("", text):
+        yield "{{ is not understood: a number is {{47 = max distance tracker}} or {{your number}}"
+
+
+def filled(html: Markup, steps: Sequence[Step], index: int, notes: Notes, words: Words) -> Markup:
+    """A text of a step with the student's numbers, or with what stands there without them.
+
+    Args:
+        notes: the student's answers in this lesson.
+    """
+    if "{{" not in html:
+        return html
+
+    def own(match: re.Match[str]) -> str:
+        kind, other = _parts(match[1])
+        return str(Markup("{}").format(_value(kind, steps, index, notes, words) or other))
+
+    return Markup(OWN.sub(own, str(html)))
+
+
+def _parts(said: str) -> tuple[str, Markup]:
+    """What is wanted, and what is shown without it, which is part of a safe text."""
+    kind, _, other = said.partition(" or ")
+    return " ".join(kind.split()), Markup(other.strip() or NOTHING)
+
+
+def _value(
+    kind: str, steps: Sequence[Step], index: int, notes: Notes, words: Words
+) -> str | Markup:
+    """The latest such answer up to a step; empty if there is none."""
+    for at in range(index, -1, -1):
+        for place, block in enumerate(steps[at].blocks):
+            answer = (notes.second if str(at) in notes.asked_again else notes.answers).get(str(at))
+            if isinstance(block, NumberQuestion) and kind == "number":
+                given = notes.numbers.get(f"{at}.{place}")
+                return "" if given is None else words.number(given)
+            if isinstance(block, Sketch) and kind.startswith("sketch"):
+                values = () if answer is None else answer.values
+                return words.number(SKETCH[kind[7:]](values), 3) if values else ""
+            if isinstance(block, Choice) and kind == "choice":
+                chosen = None if answer is None or str(at) in notes.unknown else answer.option
+                known = chosen is not None and chosen in range(len(block.options))
+                return Markup(block.options[chosen or 0].text) if known else ""
+        for task in steps[at].tasks():
+            if task.best and kind == "best":
+                best = notes.tasks.get(task.id)
+                return "" if best is None else words.number(best, 3)
+    return ""

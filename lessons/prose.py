@@ -1,0 +1,172 @@
+"""Reads a paragraph, list, table or picture of a lesson's text: safe HTML, lab links, faults."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, cast
+
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+from markupsafe import Markup
+
+from onpath.lessons.formulas import FormulaError, embedded, folded, render
+from onpath.lessons.links import read_link
+from onpath.lessons.personal.own_numbers import own_faults
+from onpath.lessons.schema import LabLink, Text
+from onpath.lessons.vocabulary.setups import action_faults
+
+HTML = re.compile(
+    r"</?(script|style|iframe|object|embed|img|div|span|br|p|table|svg|details|font|center|sub|sup"
+    r"|video|audio|input|button|form|link|meta)(\s[^<>]*)?/?>",
+    re.IGNORECASE,
+)
+"""Typed tags; they are shown, which nobody wants."""
+
+
+@dataclass(slots=True)
+class Prose:
+    """What was read.
+
+    Attributes:
+        html: of the text; empty if it consists of links only, which become buttons.
+        faults: each with the number of lines after the first one.
+    """
+
+    html: Markup = field(default_factory=Markup)
+    links: list[LabLink] = field(default_factory=list[LabLink])
+    faults: list[tuple[int, str]] = field(default_factory=list[tuple[int, str]])
+
+    def text(self, when: str = "") -> Text:
+        """The text as a block of a step."""
+        return Text(self.html, tuple(self.links), when)
+
+
+def read_prose(
+    markdown: MarkdownIt, tokens: list[Token], home: Path, robot: str, fold: str = ""
+) -> Prose:
+    """Read a part of a text.
+
+    Args:
+        home: the folder of its pictures.
+        robot: at which its links act.
+        fold: a title, for a text that is shown when it is pressed.
+    """
+    prose = Prose()
+    first = next((token.map[0] for token in tokens if token.map), 0)
+    for token in tokens:
+        below = token.map[0] - first if token.map else 0
+        children = token.children or []
+        faults = [*_pictures(children, home), *_written_faults(token)]
+        links = list(_links(children, robot, faults))
+        prose.links += links
+        prose.faults += [(below, fault) for fault in faults]
+    try:
+        prose.html = render(markdown, tokens)
+    except FormulaError as error:
+        prose.faults.append((0, str(error)))
+        return prose
+    if prose.links and not _has_prose(tokens):
+        prose.html = Markup()  # the buttons show the same words
+    if fold:
+        prose.html = folded(fold, prose.html)
+    return prose
+
+
+def text_faults(text: str) -> Iterator[str]:
+    """What is wrong with the words of a text in Markdown, apart from formulas that can be read."""
+    if match := HTML.search(text):
+        yield f"{match[0]}: HTML is shown as it is typed; write Markdown, or `{match[0]}` as code"
+    yield from own_faults(text)
+
+
+def data_faults(value: Any) -> Iterator[str]:
+    """The faults of all texts in a block of TOML."""
+    if isinstance(value, dict):
+        value = list(cast(dict[str, Any], value).values())
+    if isinstance(value, list):
+        for each in cast(list[Any], value):
+            yield from data_faults(each)
+    elif isinstance(value, str):
+        if "{{" in value:
+            yield f"{value[:40]!r}: {{{{…}}}} belongs into the text of a step, not into a block"
+        else:
+            yield from text_faults(value)
+        if value.replace("\\$", "").count("$") % 2:
+            yield _unclosed(value)
+
+
+def _unclosed(text: str) -> str:
+    """The fault of a text in which a formula begins and does not end."""
+    at = text.rindex("$")
+    part = text[max(0, at - 5) : at + 25].strip()
+    return f"{part!r}: a formula begins with $ and does not end; a dollar is written \\$"
+
+
+def _written_faults(token: Token) -> Iterator[str]:
+    """The faults of the words of a paragraph, a heading or a cell."""
+    words = "".join(child.content for child in token.children or () if child.type == "text")
+    yield from text_faults(words)
+    if words.count("$") > token.content.count("\\$"):
+        yield _unclosed(words)
+
+
+def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
+    """Put pictures into the text; the faults of those that cannot be."""
+    for image in children:
+        if image.type != "image":
+            continue
+        source = str(image.attrGet("src") or "")
+        picture = (home / source).resolve()
+        try:
+            if not picture.is_relative_to(home.resolve()):
+                raise ValueError(f"picture {source!r} is not in the lesson's folder")
+            image.attrSet("src", embedded(picture))
+        except OSError:
+            yield f"no picture {source!r}"
+        except ValueError as error:
+            yield str(error)
+
+
+def _links(children: list[Token], robot: str, faults: list[str]) -> Iterator[LabLink]:
+    """Lab links of a text; in the text their words become bold instead of links."""
+    for i, token in enumerate(children):
+        if token.type != "link_open":
+            continue
+        address = str(token.attrGet("href") or "")
+        if address.startswith("https://"):
+            token.attrSet("target", "_blank")
+            token.attrSet("rel", "noopener noreferrer")
+            continue
+        end = next(j for j in range(i, len(children)) if children[j].type == "link_close")
+        label = "".join(child.content for child in children[i + 1 : end])
+        token.tag = children[end].tag = "strong"
+        token.attrs = {}
+        _separate(children[end + 1 : end + 3])
+        try:
+            actions = read_link(address)
+        except ValueError as error:
+            faults.append(str(error))
+            continue
+        for action in actions:
+            faults += action_faults(action, robot)
+        yield LabLink(label, actions)
+
+
+def _separate(after: list[Token]) -> None:
+    """Put a comma between a link and one that follows it directly: their words would run together.
+
+    Args:
+        after: the two tokens after the link.
+    """
+    kinds = [token.type for token in after]
+    if kinds == ["text", "link_open"] and not after[0].content.strip():
+        after[0].content = ", "
+
+
+def _has_prose(tokens: list[Token]) -> bool:
+    """Whether there is any text outside links."""
+    inline = [child for token in tokens for child in token.children or ()]
+    return any(child.level == 0 and child.content.strip(" \u00a0,.;:·|") for child in inline)

@@ -1,0 +1,112 @@
+"""Faults of what a student is asked: predictions, questions, and tasks with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from onpath.lessons.measures.responses import WITH_SIGN
+from onpath.lessons.record import QUANTITIES
+from onpath.lessons.schema import NumberQuestion, Prediction, Sketch
+from onpath.lessons.task_schema import Better, Bound, Check, Compare, Event, Order, Setting, Task
+from onpath.lessons.vocabulary.names import EVENTS, HIGHEST, LONGEST, one_of
+from onpath.models.control.benches import BENCHES
+from onpath.models.control.laws.own import OWN
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS, RobotEntry
+from onpath.models.systems.parameters import specs
+
+
+def prediction_faults(prediction: Prediction) -> Iterator[str]:
+    """The faults of a prediction."""
+    if prediction.reasons and prediction.why:
+        yield "why = true: reasons are given, so own words are not asked for"
+    if len(prediction.reasons) == 1 or not all(map(str.strip, prediction.reasons)):
+        yield "reasons: two or more are needed, none of them empty"
+    if isinstance(prediction, Sketch):
+        yield from one_of(prediction.quantity, QUANTITIES, "quantity")
+        if not 0 < prediction.seconds <= LONGEST:
+            yield f"seconds = {prediction.seconds:g}: between 0 and {LONGEST:g}"
+        low, high = prediction.bottom, prediction.top
+        if not -HIGHEST <= low < high <= HIGHEST:
+            yield f"top = {high:g} must be above bottom = {low:g}, both within ±{HIGHEST:g}"
+    else:
+        yield from option_faults([option.right for option in prediction.options])
+
+
+def number_faults(question: NumberQuestion) -> Iterator[str]:
+    """The faults of a question whose answer is a number."""
+    if not abs(question.number) <= HIGHEST:
+        yield f"number = {question.number:g}: within ±{HIGHEST:g}"
+    if not 0 < question.tolerance <= HIGHEST:
+        yield f"tolerance = {question.tolerance:g}: above 0, and at most {HIGHEST:g}"
+    elif question.number and question.tolerance >= abs(question.number):
+        yield f"tolerance = {question.tolerance:g}: 0 would be accepted as {question.number:g}"
+
+
+def option_faults(right: list[bool]) -> Iterator[str]:
+    """The faults of a question's options.
+
+    Args:
+        right: for every option, whether it is correct.
+    """
+    if len(right) < 2 or sum(right) != 1:
+        yield f"{len(right)} options, {sum(right)} right: two or more are needed, one of them right"
+
+
+def task_faults(task: Task, robot: str) -> Iterator[str]:
+    """The faults of a task."""
+    if not task.id.replace("-", "").isalnum():
+        yield f"id {task.id!r}: letters, digits and hyphens"
+    if not task.check:
+        yield f"task {task.id!r} has no check"
+    if task.best:
+        yield from one_of(task.best, QUANTITIES, "quantity")
+    for check in task.check:
+        yield from _check_faults(check, ROBOTS.get(robot))
+
+
+def _check_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
+    if isinstance(check, Bound | Compare | Better):
+        yield from one_of(check.quantity, QUANTITIES, "quantity")
+        if check.stat == "overshoot" and check.quantity not in WITH_SIGN:
+            yield f"overshoot of {check.quantity}: it has no sign, only {', '.join(WITH_SIGN)} have"
+        if 0 < check.last < check.least:
+            yield f"least = {check.least:g}: of the last {check.last:g} s there are never so many"
+    if isinstance(check, Better) and not 0 < check.share <= 1:
+        yield f"share = {check.share:g}: above 0, and at most 1"
+    if isinstance(check, Bound | Setting):
+        yield from _limit_faults(check.below, check.above, getattr(check, "equals", None))
+    yield from _name_faults(check, entry)
+
+
+def _limit_faults(below: float | None, above: float | None, equals: object) -> Iterator[str]:
+    """The faults of what a value must be."""
+    if below is None and above is None and equals is None:
+        yield "a check needs below or above"
+    elif below is not None and above is not None and above > below:
+        yield f"above = {above:g} and below = {below:g}: no number is both"
+    elif isinstance(equals, int | float) and not (
+        (below is None or equals <= below) and (above is None or equals >= above)
+    ):
+        yield f"equals = {equals:g} is not within below and above"
+
+
+def _name_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
+    """The names of a check that are unknown."""
+    parameters = None if entry is None else specs(entry.parameters)
+    if isinstance(check, Setting) and check.name in BENCHES and check.equals is not None:
+        yield from one_of(str(check.equals), [*LAWS, OWN], "law")
+    others = "path", "robot", "length", *BENCHES
+    if isinstance(check, Setting) and check.name not in others and parameters is not None:
+        yield from one_of(check.name, parameters, "parameter")
+    events = check.events if isinstance(check, Order) else ()
+    for event in events:
+        yield from one_of(event.partition(":")[0], EVENTS, "event")
+    named = [(event.partition(":")[0], event.partition(":")[2]) for event in events]
+    if isinstance(check, Event):
+        named.append((check.event, check.name))
+    known = {"law": [*LAWS, OWN], "set": parameters, "path": presets(), "robot": ROBOTS}
+    for event, name in named:
+        if name and (names := known.get(event)) is not None:
+            yield from one_of(name, names, "parameter" if event == "set" else event)

@@ -1,0 +1,44 @@
+"""Faults of formulas that the converter shows as they are typed: unknown commands."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from difflib import get_close_matches
+from functools import cache
+
+from latex2mathml import commands
+from latex2mathml.symbols_parser import SYMBOLS
+
+UNKNOWN = re.compile(r"<m[io][^>]*>(\\[A-Za-z]+)</m[io]>")
+ENVIRONMENT = re.compile(r"\\begin\s*\{([^}]*)\}")
+ENVIRONMENTS = (
+    *("matrix", "pmatrix", "bmatrix", "Bmatrix", "vmatrix", "Vmatrix", "smallmatrix", "array"),
+    *("cases", "align", "align*", "split"),
+)
+
+
+def latex_faults(latex: str, mathml: str) -> Iterator[str]:
+    """The commands and environments of a formula that are unknown, with the nearest known ones.
+
+    Args:
+        mathml: what the formula was converted to.
+    """
+    for name in dict.fromkeys(ENVIRONMENT.findall(latex)):
+        if name not in ENVIRONMENTS:
+            yield f"unknown environment {name!r}{_near(name, ENVIRONMENTS)}"
+    for name in dict.fromkeys(UNKNOWN.findall(mathml)):
+        plain = f"\\operatorname{{{name[1:]}}}"
+        yield f"unknown command {name}{_near(name, _known())} A name is written {plain}"
+
+
+def _near(name: str, known: tuple[str, ...]) -> str:
+    near = get_close_matches(name, known, 1)
+    return f"; did you mean {near[0]}?" if near else ""
+
+
+@cache
+def _known() -> tuple[str, ...]:
+    """All commands that can be converted."""
+    constants = [value for value in vars(commands).values() if isinstance(value, str)]
+    return tuple(sorted({name for name in (*constants, *SYMBOLS) if name[:1] == "\\"}))

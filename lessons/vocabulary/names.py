@@ -1,0 +1,34 @@
+"""The names of controls, plots and events, and the answer to one that is unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import get_args
+
+from onpath.lessons.task_schema import EventName
+from onpath.models.systems.parameter_specs import unknown_name
+
+CONTROLS = (
+    *("hold", "path", "editor", "gains", "plots", "past", "robot", "laws", "copy", "flexible"),
+    *("identify", "show", "direction", "wall", "start"),
+)
+DRAWINGS = ("labels", "tube", "grid", "rank", "errors", "mass")
+"""What a scene can draw besides the robots."""
+EVENTS: tuple[str, ...] = get_args(EventName)
+RATES = (0.125, 4.0)
+"""Slowest and fastest motion: simulated seconds per second."""
+MOST_PLOTS = 2
+MOST_MARKS = 12
+REACH = 500.0
+"""Farthest place of a mark, [mm]."""
+HIGHEST = 1e6
+"""Largest limit of a sketch's axis."""
+LONGEST = 60.0
+"""Longest script or sketch, [s]: the lab keeps one minute of history."""
+
+
+def one_of(name: str, known: Iterable[object], what: str) -> Iterator[str]:
+    """The fault of a name that is none of the known ones, with the nearest one."""
+    names = [str(each) for each in known]
+    if name not in names:
+        yield str(unknown_name(name, names, what=what))

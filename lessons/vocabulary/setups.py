@@ -1,0 +1,171 @@
+"""Faults of what a lesson does with the lab: scenes, scripts and actions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from onpath.lessons.action_schema import (
+    Action,
+    Laws,
+    SceneMark,
+    Script,
+    StartState,
+    StepSetup,
+    Value,
+)
+from onpath.lessons.record import PLOTS
+from onpath.lessons.vocabulary.names import (
+    CONTROLS,
+    DRAWINGS,
+    LONGEST,
+    MOST_MARKS,
+    MOST_PLOTS,
+    RATES,
+    REACH,
+    one_of,
+)
+from onpath.models.closed_loop.simulation import check_level_set, raised
+from onpath.models.closed_loop.start import Start, check_start
+from onpath.models.control.benches import checked_laws
+from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS, RobotEntry
+from onpath.models.systems.parameters import Parameters, changed, specs
+
+
+def scene_faults(scene: StepSetup, robot: str) -> Iterator[str]:
+    """The faults of a scene."""
+    if scene.robot:
+        yield from one_of(scene.robot, ROBOTS, "robot")
+    if scene.path:
+        yield from one_of(scene.path, presets(), "path")
+    yield from _drawing_faults(scene)
+    entry = ROBOTS.get(scene.robot or robot)
+    if entry is not None:
+        yield from _law_faults(scene.laws, entry)
+        faults = list(_setting_faults(scene.set, entry))
+        yield from faults or _path_faults(scene, entry)
+        for name in scene.controls:
+            yield from one_of(name, [*CONTROLS, *specs(entry.parameters)], "control")
+
+
+def _drawing_faults(scene: StepSetup) -> Iterator[str]:
+    """The faults of what a scene plots and draws."""
+    for name in scene.plots:
+        yield from one_of(name, PLOTS, "plot")
+    if len(set(scene.plots)) < len(scene.plots) or len(scene.plots) > MOST_PLOTS:
+        yield f"plot: one, or a list of {MOST_PLOTS} different ones"
+    for name in scene.show:
+        yield from one_of(name, DRAWINGS, "drawing")
+    if len(scene.marks) > MOST_MARKS:
+        yield f"marks: at most {MOST_MARKS}"
+    for mark in scene.marks:
+        yield from _mark_faults(mark)
+
+
+def _mark_faults(mark: SceneMark) -> Iterator[str]:
+    numbers = [*mark.at, *(mark.tail or ())]
+    if not all(abs(number) <= REACH for number in numbers):  # NaN fails too
+        yield f"marks: places within ±{REACH:g} mm"
+    if mark.tail is None and not mark.text.strip():
+        yield "marks: each has a text, or with `from` an arrow"
+    elif mark.tail == mark.at:
+        yield "marks: the arrow begins where it ends"
+
+
+def script_faults(script: Script, robot: str) -> Iterator[str]:
+    """The faults of a script."""
+    if not 0 < script.until <= LONGEST:
+        yield f"until = {script.until:g}: a script ends between 0 and {LONGEST:g} s"
+    for action in script.do:
+        if not 0 <= action.at <= script.until:
+            yield f"at = {action.at:g}: between 0 and the script's end at {script.until:g} s"
+        yield from action_faults(action, robot)
+        robot = action.robot or robot
+
+
+def release_faults(script: Script) -> Iterator[str]:
+    """The fault of a pull that goes on after the script, when the student cannot end it."""
+    pulled: Action | None = None
+    for action in sorted(script.do, key=lambda action: action.at):
+        if action.pull is not None:
+            pulled = action
+        elif action.release or action.reset or action.start or action.robot:
+            pulled = None
+    if pulled is not None:
+        yield f"pull at {pulled.at:g} s: nothing releases it; add {{ at = …, release = true }}"
+
+
+def action_faults(action: Action, robot: str) -> Iterator[str]:
+    """The faults of an action."""
+    try:
+        what = action.what
+    except ValueError as error:
+        yield str(error)
+        return
+    if what == "set" and robot in ROBOTS:
+        yield from _setting_faults(action.set or {}, ROBOTS[robot])
+    elif what == "path":
+        yield from one_of(action.path or "", presets(), "path")
+    elif what == "robot":
+        yield from one_of(action.robot or "", ROBOTS, "robot")
+    elif what == "laws" and action.laws is not None and robot in ROBOTS:
+        yield from _law_faults(action.laws, ROBOTS[robot])
+    elif what == "rate" and not RATES[0] <= (action.rate or 0.0) <= RATES[1]:
+        yield f"rate = {action.rate:g}: between {RATES[0]:g} and {RATES[1]:g}"
+    elif what == "start" and action.start is not None:
+        yield from _start_faults(action.start)
+
+
+def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
+    """The faults of a scene's path, and of its start on that."""
+    name, parameters = scene.path or "circle", entry.lab
+    design = presets().get(name)
+    if design is None:
+        return
+    for setting, value in scene.set.items():
+        parameters = changed(parameters, setting, value)
+    try:
+        check_level_set(parameters, design.curve)
+    except ValueError as error:
+        yield f"path {name!r}: {error}"
+    curve = raised(design.curve, parameters)
+    faults = curve_faults(entry.make(parameters).margin, curve)
+    for fault in faults:
+        yield f"path {name!r}: {fault.reason}"
+    if scene.start.numbers and not faults:
+        yield from _start_faults(scene.start, (entry, parameters, curve))
+
+
+def _start_faults(
+    start: StartState, where: tuple[RobotEntry, Parameters, Curve] | None = None
+) -> Iterator[str]:
+    """Why a start is not possible.
+
+    Args:
+        where: robot, parameters and path, if they are known.
+    """
+    try:
+        state = Start(**start.numbers)
+        if where is not None:
+            entry, parameters, curve = where
+            check_start(entry.make(parameters), curve, parameters, state)
+    except ValueError as error:
+        yield f"start: {error}"
+
+
+def _law_faults(laws: Laws, entry: RobotEntry) -> Iterator[str]:
+    try:
+        checked_laws(laws.named, entry)
+    except ValueError as error:
+        yield str(error)
+
+
+def _setting_faults(values: dict[str, Value], entry: RobotEntry) -> Iterator[str]:
+    for name, value in values.items():
+        try:
+            changed(replace(entry.lab), name, value)
+        except ValueError as error:
+            yield str(error)

@@ -1,0 +1,126 @@
+"""What a lesson's author gets wrong is met with a line and what to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from onpath.app.cli.main import run_command
+from onpath.lessons.course import read_course
+from onpath.lessons.parse import read_lesson
+from onpath.lessons.problems import LessonError
+from onpath.lessons.schema import Text
+from tests.support.format_texts import FORMAT_LESSON, FORMAT_REFERENCE
+from tests.support.lesson_texts import LESSON, write_lesson
+
+LATEX = "$$\\dot x = v$$"
+Capture = pytest.CaptureFixture[str]
+
+
+def faults(path: Path) -> list[tuple[int, str]]:
+    """Line and words of all that is wrong."""
+    with pytest.raises(LessonError) as caught:
+        read_lesson(path)
+    return [(problem.line, problem.text) for problem in caught.value.problems]
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "said"),
+    [
+        ("seconds = 2.0", "seconds = 8.0", "8 s long, and the run after it, 'And now', 2 s"),
+        ("seconds = 2.0", "seconds = 1.0", "1 s long"),
+        ("below = 5.0", "below = 5.0\nabove = 6.0", "no number is both"),
+        ("least = 1.0", "least = 3.0\nlast = 2.0", "never so many"),
+        ("hold = true }, { at = 1.5, hold = false", "pull = [9, 0]", "release = true"),
+        (LATEX, "$\\alhpa$", "did you mean \\alpha"),
+        (LATEX, "$\\arg z$", "\\operatorname{arg}"),
+        (LATEX, "$\\begin{aligned}a\\end{aligned}$", "did you mean align?"),
+        (LATEX, "so $x = 3 it is", "does not end"),
+        ('"Draw the distance."', '"Draw $x"', "does not end"),
+        (LATEX, "<script>alert(1)</script>", "HTML is shown as it is typed"),
+        ('"Draw the distance."', "'<b>Draw</b> <img src=x>'", "HTML is shown"),
+        (LATEX, "{{47 = max distanse tracker}}", "did you mean distance?"),
+        (LATEX, "{{47 = max distance}}", "write it as"),
+        (LATEX, "{{47 = max distance tracker for ever}}", "'for ever' is not understood"),
+        (LATEX, "{{forty-seven}}", "{{ is not understood"),
+        (LATEX, "{{your weight}}", "one of sketch max"),
+        ('"Draw the distance."', '"{{your number}}"', "not into a block"),
+        (LATEX, "```when wrogn\nNo.\n```", "did you mean wrong?"),
+        ("Which one *waits*?", "```when wrong\nNo.\n```", "no question with a right answer"),
+        ('controls = ["K1", "hold"]', 'plot = ["speed", "rate", "force"]', "a list of 2"),
+        ('controls = ["K1", "hold"]', 'plot = ["sped"]', "did you mean speed"),
+        ('controls = ["K1", "hold"]', 'show = ["tub"]', "did you mean tube?"),
+        ('controls = ["K1", "hold"]', "marks = [{ at = [0, 50] }]", "has a text"),
+        ('controls = ["K1", "hold"]', "start = { across = 500 }", "start: "),
+        ('controls = ["K1", "hold"]', "start = { acros = 5 }", "did you mean across"),
+        ("{ at = 0.5, hold = true }", "{ at = 0.5, rate = 0.01 }", "between 0.125 and 4"),
+    ],
+)
+def test_it_is_told_with_its_line(tmp_path: Path, right: str, wrong: str, said: str) -> None:
+    assert right in LESSON
+    text = LESSON.replace(right, wrong, 1)
+    found = faults(write_lesson(tmp_path, text))
+    assert len(found) == 1 and said in found[0][1], found
+    at = text[: text.index(wrong)].count("\n") + 1
+    assert -6 <= at - found[0][0] <= 6  # its line, or that of its block, or of its step
+
+
+def test_what_a_prediction_hides_is_not_told_before_it_except_in_a_fold(tmp_path: Path) -> None:
+    text = LESSON.replace('"Draw the distance."', '"D"\nhidden = ["47 mm"]')
+    text = text.replace("# run: And now", "# run: And now\n\nIt was 47 mm.")
+    read_lesson(write_lesson(tmp_path, text))
+    told = text.replace("Which one *waits*?", "Up to 47 mm.")
+    ((line, words),) = faults(write_lesson(tmp_path, told))
+    assert "'47 mm' is told before step 'Before'" in words
+    assert told.split("\n")[line - 1] == "# play: Look around"
+    fold = text.replace("Which one *waits*?", "```fold Tell me\nUp to 47 mm.\n```")
+    read_lesson(write_lesson(tmp_path, fold))
+
+
+def test_a_lesson_with_all_of_the_format_is_read(tmp_path: Path, capsys: Capture) -> None:
+    file = write_lesson(tmp_path, FORMAT_LESSON, FORMAT_REFERENCE)
+    assert run_command(["lessons", "check", str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    assert out == "1 lesson, 1 solution and 1 failure played, nothing wrong\n"
+    explain = next(step for step in read_lesson(file).steps if step.kind == "explain")
+    texts = [block for block in explain.blocks if isinstance(block, Text)]
+    assert [text.when for text in texts] == ["", "wrong"] and "{{your sketch" in texts[0].html
+
+
+def test_a_lesson_is_checked_by_its_own_folder(tmp_path: Path, capsys: Capture) -> None:
+    file = write_lesson(tmp_path)
+    assert run_command(["lessons", "check", str(file.parent)]) == 0
+    assert "1 lesson, " in capsys.readouterr().out
+    file.write_text(LESSON.replace("K1 = 300", "K9 = 300"))
+    assert run_command(["lessons", "check", str(file.parent)]) == 1
+    assert "K9" in capsys.readouterr().err
+    (problem,) = read_course([file.parent])[1]
+    assert "this is a lesson itself" in problem.text and str(tmp_path) in problem.text
+
+
+@pytest.mark.parametrize(
+    ("number", "agrees"),
+    [
+        ("{{0.0 = min distance follower}}", True),
+        ("{{47 = max distance tracker}}", False),
+        ("{{30 ± 30 = max distance tracker during held from 0.5 to 1.5}}", True),
+        ("{{30 ± 1 = max distance tracker during held from 0.5 to 0.6}}", False),
+    ],
+)
+def test_a_number_of_the_text_is_compared_with_the_run(
+    tmp_path: Path, capsys: Capture, number: str, agrees: bool
+) -> None:
+    text = LESSON.replace("until = 2.0", "until = 2.0", 1).replace(LATEX, f"It is {number} mm.")
+    text = text.replace("```script\nuntil = 1.0\n```", "```script\n" + HELD + "\n```")
+    file = write_lesson(tmp_path, text)
+    assert run_command(["lessons", "check", str(tmp_path)]) == (0 if agrees else 1)
+    said = capsys.readouterr().err
+    line = text[: text.index(number)].count("\n") + 1
+    assert agrees or (f"{file}:{line}: " in said and "is stated, but max distance" in said)
+    shown = number[2:].split()[0]
+    html = next(step for step in read_lesson(file).steps if step.kind == "explain").blocks[0]
+    assert isinstance(html, Text) and f"It is {shown} mm." in html.html
+
+
+HELD = "until = 2.0\ndo = [{ at = 0.5, hold = true }, { at = 1.5, hold = false }]"
