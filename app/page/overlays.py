@@ -1,4 +1,4 @@
-"""What a page draws in its scene on demand: labels, tube, coordinate curves, rank test.
+"""What a page draws in its scene on demand: labels, tube, coordinate curves, rank test, and more.
 
 Like the shading of the singular zone this concerns the page alone: no command, no state of the lab.
 So it works in the same way on a teacher's page that shows a student's lab.
@@ -14,16 +14,20 @@ import viser
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.lab.snapshots.snapshot import Motion
+from onpath.app.scene.error_nodes import ErrorNodes
+from onpath.app.scene.mark_nodes import MarkNodes
+from onpath.app.scene.mass_nodes import MassNodes
 from onpath.app.scene.rank_nodes import RankNodes, RankPicture, rank_picture
 from onpath.app.scene.robot_labels import LARGE, LETTERS, RobotLabels
 from onpath.app.scene.stage import Stage
 from onpath.app.scene.tube_nodes import TubeNodes, TubeShape, tube_shape
+from onpath.lessons.action_schema import SceneMark
 from onpath.models.control.rank_test import RankGrid
 from onpath.models.systems.robots import Robot
 
 Submit = Callable[[Callable[[], None]], None]
 Result = TypeVar("Result")
-Node = TypeVar("Node", RobotLabels, TubeNodes, RankNodes)
+Node = TypeVar("Node", RobotLabels, TubeNodes, RankNodes, ErrorNodes, MassNodes, MarkNodes)
 
 
 @dataclass(slots=True)
@@ -35,12 +39,16 @@ class Switches:
         tube: the tube around the path.
         grid: curves of constant θ and of constant ξ.
         rank: the rank test as a map.
+        errors: both errors, to the timetable's point and to the path, as arrows.
+        mass: the ellipse of the effective mass at the end-points.
     """
 
     labels: bool = False
     tube: bool = False
     grid: bool = False
     rank: bool = False
+    errors: bool = False
+    mass: bool = False
 
 
 class Background(Generic[Result]):
@@ -111,6 +119,7 @@ class Overlays:
 
     Attributes:
         stage, switches: see above.
+        marks: what a lesson's step puts into the scene.
     """
 
     def __init__(
@@ -128,6 +137,10 @@ class Overlays:
         self._labels = Drawn[RobotLabels]()
         self._tube = Drawn[TubeNodes]()
         self._rank = Drawn[RankNodes]()
+        self._errors = Drawn[ErrorNodes]()
+        self._mass = Drawn[MassNodes]()
+        self._marks = Drawn[MarkNodes]()
+        self.marks: tuple[SceneMark, ...] = ()
         self._shape: Background[TubeShape] = Background(submit)
         self._map: Background[RankPicture] = Background(submit)
 
@@ -146,12 +159,17 @@ class Overlays:
         """Move what moves with the robots."""
         if self._labels.nodes is not None:
             self._labels.nodes.update(motion)
+        if self._errors.nodes is not None:
+            self._errors.nodes.follow(motion)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Draw what is wanted, and remove what is not; nothing if that has not changed."""
         self._follow_labels(snapshot)
         self._follow_tube(snapshot)
         self._follow_map(snapshot)
+        self._follow_errors(snapshot)
+        self._follow_mass(snapshot)
+        self._follow_marks()
 
     def _follow_labels(self, snapshot: PageSnapshot) -> None:
         parts = self._scene, self.stage, self._robot, snapshot.motion
@@ -180,3 +198,27 @@ class Overlays:
         else:
             key = self._map.key
             self._rank.show(key, lambda: RankNodes(self._scene, self.stage, self._robot, picture))
+
+    def _follow_errors(self, snapshot: PageSnapshot) -> None:
+        if self.switches.errors:
+            parts = self._scene, self.stage, snapshot.motion, self._letters
+            self._errors.show(True, lambda: ErrorNodes(*parts))
+        else:
+            self._errors.remove()
+
+    def _follow_mass(self, snapshot: PageSnapshot) -> None:
+        if not self.switches.mass:
+            self._mass.remove()
+            return
+        motion, parameters = snapshot.motion, parameters_of(snapshot)
+        parts = self._scene, self.stage, self._robot, motion, parameters
+        self._mass.show(True, lambda: MassNodes(*parts))
+        if self._mass.nodes is not None:
+            self._mass.nodes.follow(motion, parameters)
+
+    def _follow_marks(self) -> None:
+        if self.marks:
+            parts = self._scene, self.stage, self._robot, self.marks, self._letters
+            self._marks.show(self.marks, lambda: MarkNodes(*parts))
+        else:
+            self._marks.remove()

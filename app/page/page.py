@@ -27,6 +27,7 @@ from onpath.app.page.preferences import Preferences
 from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.page.saying import Saying
 from onpath.app.page.step_controls import StepControls
+from onpath.app.page.step_drawings import StepDrawings
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
@@ -148,6 +149,7 @@ class Page:
         self._client.gui.add_html(render("panel/page.html", words=words))
         self._saying = Saying(self._client.gui, words, self._wanted, self._scene.captions)
         self._parts.append(self._saying)
+        self._parts.append(StepDrawings(self._overlays, self._desk.course, words))
         self._build_panels(first, words, post)
         own = {"view": self.reset_view, "summary": self._saying.ask_summary}
         add_keys(self._client.gui, words, post, own)

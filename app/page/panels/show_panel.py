@@ -23,6 +23,8 @@ SWITCHES = {
     "tube": ("show.tube", "show.tube_hint"),
     "grid": ("show.grid", "show.grid_hint"),
     "rank": ("show.rank", "show.rank_hint"),
+    "errors": ("show.errors", "show.errors_hint"),
+    "mass": ("show.mass", "show.mass_hint"),
 }
 """Label and hint of each switch."""
 TICKS = 3

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,17 +13,21 @@ import viser
 
 from onpath.app.common import palette
 from onpath.app.lab import commands as c
+from onpath.app.lab.commands.scripts import ScriptPull
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.snapshots.snapshot import END, MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.page.overlays import Background, Overlays, Switches
 from onpath.app.page.panels.show_panel import SWITCHES, rank_legend, tube_numbers
+from onpath.app.scene.error_nodes import ErrorNodes
 from onpath.app.scene.rank_nodes import largest, map_corners, map_picture
 from onpath.app.scene.robot_labels import RobotLabels
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tube_nodes import drawn_curve, tube_shape
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.images import add_png, png_of
+from onpath.lessons.action_schema import SceneMark
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.rank_test import rank_grid
 from onpath.models.paths.path_design import presets
@@ -101,6 +106,38 @@ def test_a_switch_draws_and_removes_and_a_still_lab_sends_nothing_more(
     setattr(shown.overlays.switches, name, False)
     assert set(shown.follow()) == {"RemoveSceneNodeMessage"}
     assert shown.follow() == []
+
+
+@ENTRIES
+def test_marks_are_at_both_robots_and_go_with_their_step(shown: Shown) -> None:
+    """A text at each robot, and one node for all arrows."""
+    mark = SceneMark((10.0, 20.0), text="here")
+    shown.overlays.marks = (mark, SceneMark((0.0, 50.0), (0.0, 80.0)))
+    sent = Counter(shown.follow())
+    assert sent["LabelMessage"] == 2 and sent["ArrowMessage"] == 1
+    assert shown.follow() == []
+    shown.overlays.marks = (mark,)
+    assert "LabelMessage" in shown.follow()
+    shown.overlays.marks = ()
+    assert set(shown.follow()) == {"RemoveSceneNodeMessage"}
+
+
+@ENTRIES
+def test_the_arrows_lead_to_the_timetable_and_to_the_path(shown: Shown) -> None:
+    """With a hand at both, so that both errors are there; d is the distance that is measured."""
+    do(shown.lab, c.SetParameter("K1", 100.0), ScriptPull((20.0, 15.0)))
+    run(shown.lab, 0.6)
+    motion, snapshot = take_motion(shown.lab), take_page_snapshot(shown.lab, 1.0)
+    stage = shown.overlays.stage
+    nodes = ErrorNodes(shown.overlays._scene, stage, motion, 0.02)
+    moved = stage.origins - 0.012 * stage.away
+    for i, view in enumerate(snapshot.robots.values()):
+        (begin, clock), (again, path) = nodes._drawn[i] - moved[i]
+        np.testing.assert_allclose([begin, again], [motion.point(i, END)] * 2, atol=1e-9)
+        np.testing.assert_allclose(clock, motion.point(0, MARKER), atol=1e-9)
+        assert np.linalg.norm(path - begin) == pytest.approx(view.distance, abs=2e-4)
+        assert view.distance > 3e-3
+    nodes.remove()
 
 
 @ENTRIES

@@ -1,0 +1,38 @@
+"""What a lesson's step draws in the scene: it switches it on when the step is opened."""
+
+from __future__ import annotations
+
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.lesson_view import LessonView
+from onpath.app.page.overlays import Overlays
+from onpath.lessons.course import Course
+from onpath.lessons.words import Words
+
+Place = tuple[str, int]
+
+
+class StepDrawings:
+    """Switches drawings on and off with the steps; in between the student may switch them.
+
+    Args:
+        overlays: what is switched.
+    """
+
+    def __init__(self, overlays: Overlays, course: Course, words: Words) -> None:
+        self._overlays, self._course, self._words = overlays, course, words
+        self._version, self._place = -1, ("", -1)
+        self._shown: tuple[str, ...] = ()
+
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Draw what the open step asks for, if another step was open before."""
+        if snapshot.lesson.version == self._version:
+            return
+        self._version = snapshot.lesson.version
+        view = LessonView(self._course, self._words, snapshot.lesson)
+        place = (view.progress.lesson, view.index) if view.lesson is not None else ("", -1)
+        if place == self._place:
+            return
+        self._place, wanted = place, view.setup.show
+        for name in {*self._shown, *wanted}:
+            setattr(self._overlays.switches, name, name in wanted)
+        self._shown, self._overlays.marks = wanted, view.setup.marks
