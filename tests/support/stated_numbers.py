@@ -20,6 +20,7 @@ from onpath.app.lab.setups.step_setup import setup_of
 from onpath.lessons.action_schema import Action, RobotName, Script, Value
 from onpath.lessons.benches import ROLES
 from onpath.lessons.course import BUILT_IN
+from onpath.lessons.measures.stated import take_stated
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.schema import Lesson
 from onpath.models.arrays import Array
@@ -32,9 +33,9 @@ NUMBER = r"([−-]?\d+(?:[.,]\d+)?)"
 
 
 def text(lesson: str, language: str = "en") -> str:
-    """Full text of a lesson, by its number, such as "01"."""
+    """Full text of a lesson, by its number, such as "01", with plain numbers."""
     (home,) = BUILT_IN.glob(f"{lesson}-*")
-    return (home / f"{language}.md").read_text(encoding="utf-8")
+    return take_stated((home / f"{language}.md").read_text(encoding="utf-8"), print)[0]
 
 
 def numbers(part: str) -> list[float]:

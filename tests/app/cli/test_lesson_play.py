@@ -44,7 +44,9 @@ def test_the_numbers_are_those_of_the_motion(capsys: Capture) -> None:
                 assert around.min() - single <= said["max"] <= around.max() + single
                 assert column.min() - single <= said["min"] <= said["final"] <= said["max"]
                 assert said["max"] <= column.max() + single
-    assert [part["actions"] for part in run["parts"]] == [[], ["hold"], ["hold off"], []]
+    slow, quick = ["rate 0.25"], ["rate 1.0"]
+    actions = [part["actions"] for part in run["parts"]]
+    assert actions == [[], slow, ["hold"], quick, ["hold off"], []]
 
 
 def test_the_parts_are_the_times_between_the_actions() -> None:
