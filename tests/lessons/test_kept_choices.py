@@ -167,6 +167,7 @@ def test_a_step_that_asks_for_a_curve_now_shows_no_choice(tmp_path: Path) -> Non
     kept = chosen(course_of(tmp_path / "before"))
     start, end = LESSON.index('kind = "choice"'), LESSON.index("# run: See")
     curve = LESSON[LESSON.index('kind = "sketch"') : LESSON.index("# run: And now")]
+    curve = curve.replace("seconds = 2.0", "seconds = 1.0")  # as long as the run
     lab = returned(course_of(tmp_path / "after", LESSON[:start] + curve + LESSON[end:]), kept)
     assert lab.lessons.notes.unknown == (ASKED,)
 
