@@ -59,9 +59,35 @@ class CheckLessons:
         return _reported(problems)
 
 
+@dataclass(frozen=True)
+class ListNames:
+    """List all names that a lesson may use: robots, parameters, paths, laws, plots, quantities…"""
+
+    into: Path | None = None
+    """A Markdown file, such as lessons/README.md, in which to replace the lists."""
+
+    def run(self) -> int:
+        """Print the lists, or write them.
+
+        Raises:
+            ValueError: the file does not say where they are.
+        """
+        from onpath.app.common.atomic_file import whole_file
+        from onpath.lessons.vocabulary.lists import names_markdown, with_names
+
+        if self.into is None:
+            print(names_markdown(), end="")
+        else:
+            text = with_names(self.into.read_text("utf-8"))
+            with whole_file(self.into) as path:
+                path.write_text(text, "utf-8")
+        return 0
+
+
 LessonsAction = (
     Annotated[ListLessons, tyro.conf.subcommand("list", prefix_name=False)]
     | Annotated[CheckLessons, tyro.conf.subcommand("check", prefix_name=False)]
+    | Annotated[ListNames, tyro.conf.subcommand("names", prefix_name=False)]
     | Annotated[PlayLesson, tyro.conf.subcommand("play", prefix_name=False)]
     | Annotated[WriteGuide, tyro.conf.subcommand("guide", prefix_name=False)]
     | Annotated[WriteWorksheet, tyro.conf.subcommand("worksheet", prefix_name=False)]

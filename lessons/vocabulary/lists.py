@@ -1,0 +1,80 @@
+"""All names that a lesson may use, as Markdown, which is a part of lessons/README.md."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from typing import Any, get_args
+
+from onpath.lessons.record import PLOTS, QUANTITIES
+from onpath.lessons.task_schema import During, Stat
+from onpath.lessons.vocabulary.names import CONTROLS, DRAWINGS, EVENTS
+from onpath.lessons.words import Words
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameter_specs import Spec
+from onpath.models.systems.parameters import specs
+
+BEGIN, END = "<!-- names: begin -->\n", "<!-- names: end -->\n"
+"""Lines of a file between which the lists stand."""
+
+
+def names_markdown() -> str:
+    """The lists and tables of all names."""
+    words = Words()
+    lists: dict[str, Iterable[tuple[str, str]]] = {
+        "robots": ((name, entry.label) for name, entry in ROBOTS.items()),
+        "paths": ((name, "") for name in presets()),
+        "laws": ((name, law.label) for name, law in LAWS.items()),
+        "plots": ((name, words(f"plot.{name}")) for name in PLOTS),
+        "drawings (show)": ((name, words(f"show.{name}")) for name in DRAWINGS),
+        "controls": ((name, "") for name in CONTROLS),
+        "quantities": ((name, f"[{unit}]") for name, unit in QUANTITIES.items()),
+        "stat": ((name, "") for name in get_args(Stat)),
+        "during": ((name, "") for name in get_args(During)),
+        "events": ((name, "") for name in EVENTS),
+    }
+    lines = [f"- **{what}**: {', '.join(map(_told, names))}" for what, names in lists.items()]
+    heads = ["| parameter | | unit | values | in a new lab |", "|---|---|---|---|---|"]
+    return "\n".join([*lines, "", *heads, *_parameter_rows()]) + "\n"
+
+
+def with_names(text: str) -> str:
+    """A text in which the lists between the marks are those of today.
+
+    Raises:
+        ValueError: it has no such marks.
+    """
+    before, begin, rest = text.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise ValueError(f"there must be the lines {BEGIN.strip()} and {END.strip()}")
+    return f"{before}{BEGIN}\n{names_markdown()}\n{END}{after}"
+
+
+def _told(each: tuple[str, str]) -> str:
+    name, label = each
+    return f"`{name}` {label}".rstrip()
+
+
+def _parameter_rows() -> Iterator[str]:
+    """A row for each parameter; several if it is another one at another robot."""
+    found = defaultdict[tuple[str, ...], list[str]](list)
+    for robot, entry in ROBOTS.items():
+        for name, spec in specs(entry.parameters).items():
+            default = _value(getattr(entry.lab, name))
+            found[name, spec.label, spec.unit, _values(spec), default].append(robot)
+    for (name, label, unit, values, default), robots in found.items():
+        where = "" if len(robots) == len(ROBOTS) else f" ({', '.join(robots)})"
+        yield f"| `{name}`{where} | {label} | {unit} | {values} | {default} |"
+
+
+def _values(spec: Spec) -> str:
+    if spec.options:
+        return ", ".join(f"`{option}`" for option in spec.options)
+    return f"{spec.low:g} to {spec.high:g}"
+
+
+def _value(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
