@@ -103,6 +103,7 @@ class _Reader:
         self._markdown = reader()
         self._robot = self._home = "five_bar"
         self._scene = StepSetup()
+        self._branches: dict[tuple[int, str], int] = {}  # step's line, condition -> its line
 
     def lesson(self) -> Lesson:
         """Read the whole file.
@@ -167,7 +168,9 @@ class _Reader:
         steps = self._made(drafts)
         is_test = self._path.parent.name == FOLDER
         self._complain_all(1, lacks_of_test(steps) if is_test else lacks(steps, broken))
-        for line, fault in (*faults_of_when(steps), *order_faults(steps, broken)):
+        for line, when, fault in faults_of_when(steps):
+            self._complain(self._branches.get((line, when), line), fault)
+        for line, fault in order_faults(steps, broken):
             self._complain(line, fault)
         return drafts
 
@@ -231,6 +234,7 @@ class _Reader:
         """Read a fenced block of Markdown that is shown for some answers only."""
         if not when:
             self._complain(line, "a branch needs an answer: ```when wrong")
+        self._branches[draft.line, when] = line - 1
         self._prose(draft, self._markdown.parse(content), line, when=when)
 
     def _prose(

@@ -25,7 +25,8 @@ def read_toml(content: str, line: int, kind: type[T], complain: Complain) -> T |
         place = re.search(r"at line (\d+)", str(error))
         complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}")
     except msgspec.ValidationError as error:
-        complain(line_of(str(error), content, line), f"{error}{_near_field(str(error), kind)}")
+        near = _near_field(str(error), kind) or _near_value(str(error), kind)
+        complain(line_of(str(error), content, line), f"{error}{near}")
     except RecursionError:
         complain(line, "nested too deeply")
     return None
@@ -36,6 +37,26 @@ def _near_field(error: str, kind: Any) -> str:
     unknown = re.search(r"unknown field `(.+?)`", error)
     near = get_close_matches(unknown[1], sorted(_fields(kind)), 1) if unknown else []
     return f"; did you mean {near[0]}?" if near else ""
+
+
+def _near_value(error: str, kind: Any) -> str:
+    """The known value that is nearest to the unknown one of an error, as a suggestion."""
+    unknown = re.search(r"Invalid (?:enum )?value '(.+?)'", error)
+    near = get_close_matches(unknown[1], sorted(_values(kind)), 1) if unknown else []
+    return f"; did you mean {near[0]}?" if near else ""
+
+
+def _values(kind: Any) -> set[str]:
+    """All strings that a type, or the types in it, name as possible values."""
+    parts = get_args(kind)
+    values = {part for part in parts if isinstance(part, str)}
+    values |= {value for part in parts for value in _values(part)}
+    if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
+        tag = kind.__struct_config__.tag
+        values |= {tag} if isinstance(tag, str) else set()
+        for field in msgspec.structs.fields(kind):
+            values |= _values(field.type)
+    return values
 
 
 def _fields(kind: Any) -> set[str]:

@@ -41,14 +41,14 @@ def is_shown(when: str, steps: Sequence[Step], notes: Notes, index: int, block: 
     return not when or (found is not None and when in _outcomes(*found, notes))
 
 
-def faults_of_when(steps: Sequence[Step]) -> Iterator[tuple[int, str]]:
-    """Lines and faults of the conditions of a lesson."""
+def faults_of_when(steps: Sequence[Step]) -> Iterator[tuple[int, str, str]]:
+    """Line of the step, condition and fault of each condition of a lesson that has one."""
     for index, step in enumerate(steps):
         conditions = [(0, step.when)]
         conditions += [(i, b.when) for i, b in enumerate(step.blocks) if isinstance(b, Text)]
         for block, when in conditions:
             if when and (fault := _fault(when, question_before(steps, index, block))):
-                yield step.line, f"step {step.title!r}, when {when!r}: {fault}"
+                yield step.line, when, f"when {when!r}: {fault}"
 
 
 def _fault(when: str, found: tuple[str, Judged] | None) -> str:

@@ -28,7 +28,7 @@ def names_markdown() -> str:
         "paths": ((name, "") for name in presets()),
         "laws": ((name, law.label) for name, law in LAWS.items()),
         "plots": ((name, words(f"plot.{name}")) for name in PLOTS),
-        "drawings (show)": ((name, words(f"show.{name}")) for name in DRAWINGS),
+        "drawings, for `show`": ((name, "") for name in DRAWINGS),
         "controls": ((name, "") for name in CONTROLS),
         "quantities": ((name, f"[{unit}]") for name, unit in QUANTITIES.items()),
         "stat": ((name, "") for name in get_args(Stat)),

@@ -54,6 +54,8 @@ def faults(path: Path) -> list[tuple[int, str]]:
         ('controls = ["K1", "hold"]', "marks = [{ at = [0, 50] }]", "has a text"),
         ('controls = ["K1", "hold"]', "start = { across = 500 }", "start: "),
         ('controls = ["K1", "hold"]', "start = { acros = 5 }", "did you mean across"),
+        ('kind = "bound"', 'kind = "bound"\nstat = "setling"', "did you mean settling?"),
+        ('kind = "bound"', 'kind = "bond"', "did you mean bound?"),
         ("{ at = 0.5, hold = true }", "{ at = 0.5, rate = 0.01 }", "between 0.125 and 4"),
     ],
 )
