@@ -43,6 +43,7 @@ TRACE = 1.6  # [s]
 TRACE_POINTS = 120
 CURVE_POINTS = 160
 PHASE_WINDOW, PHASE_POINTS = 3.0, 180  # [s]
+FIRST = 1e-6  # [s]
 NO_PHASE = np.zeros((0, 0, 2))
 PLOT_WINDOW = 10.0  # [s]
 PLOT_POINTS = 160
@@ -199,7 +200,7 @@ def _phase(lab: Lab, time: float) -> Array:
     if not lab.draws_phase:
         return NO_PHASE
     xi, rate = (session.sample_layout.slices[name].start for name in ("xi", "xi_rate"))
-    since = max(time - PHASE_WINDOW, session.across_since)
+    since = max(time - PHASE_WINDOW, session.across_since, FIRST)  # at 0 nothing is measured yet
     _, samples = session.history.samples(since, time, PHASE_POINTS, slice(xi, rate + 1))
     return samples[..., [0, rate - xi]] if samples.size else NO_PHASE
 

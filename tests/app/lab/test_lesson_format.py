@@ -190,3 +190,17 @@ def test_the_lab_compares_a_run_with_the_one_before(lab: Lab) -> None:
     do(lab, c.Hold(True))
     run(lab, 2.0)
     assert "hold" in lab.lessons.notes.tasks, lab.lessons.verdicts
+
+
+def test_the_phase_plane_is_in_a_snapshot_only_when_it_is_drawn(lab: Lab) -> None:
+    run(lab, 0.5)
+    phase = take_page_snapshot(lab, 1.0).phase
+    assert phase.shape[1:] == (2, 2) and len(phase) > 25  # every frame
+    assert phase[0, :, 0] == pytest.approx([0.01, 0.01], abs=2e-3)  # from the start beside the path
+    own = lab.session.sample_layout.unpack(lab.session.history.samples(0.0, 1.0, 100)[1][-1])
+    np.testing.assert_allclose(phase[-1], np.column_stack([own["xi"], own["xi_rate"]]))
+    do(lab, c.CloseLesson())
+    run(lab, 0.2)
+    assert take_page_snapshot(lab, 1.0).phase.size == 0
+    do(lab, c.AskPhase(True))
+    assert take_page_snapshot(lab, 1.0).phase.size > 0
