@@ -17,9 +17,6 @@ from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.simulation.display_rate import STRIDES, is_turn
 
 AT_EASE = STRIDES[0]  # the stride of a thread that is not overloaded
-SLOW, SLOWER = 3, 5
-"""Frames of display per update of traces, plots and readouts: at ease, 10 Hz; else 5, 4 or 3 Hz."""
-
 TRIES = 5  # to read a lab that is being changed
 
 
@@ -39,7 +36,7 @@ class LabFeed:
     """Shows a lab on a page; see `app.simulation.simulation_thread.Display`.
 
     Args:
-        offset: spreads the pages' slow updates over the frames.
+        offset: spreads the pages over the frames.
         nickname: the student's in the class; empty for none.
         followed: on a teacher's page, which student's lab to show instead; else None.
     """
@@ -58,21 +55,41 @@ class LabFeed:
         self._last: PageSnapshot | Motion | None = None
         self._whole: PageSnapshot | None = None
 
-    def show(self, lab: Lab, achieved: float, frame: int, stride: float) -> None:
+    @property
+    def is_outdated(self) -> bool:
         """See `app.simulation.simulation_thread.Display`."""
+        return self.page.is_ready and self.page.is_outdated
+
+    def show(self, lab: Lab, frame: int, stride: float) -> None:
+        """See `app.simulation.simulation_thread.Display`."""
+        lab, _, student = self._source(lab, 1.0)
+        if lab.session.grips.grabbed and stride == AT_EASE:
+            stride = 1.0  # every frame of delay is felt while dragging
+        if not is_turn(frame + self._offset, stride) or not self.page.is_ready:
+            return
+        if self._has_news(lab):
+            self._last = motion = take_motion(lab, self._last, student)
+            self.page.show(motion)
+
+    def refresh(self, lab: Lab, achieved: float) -> None:
+        """See `app.simulation.simulation_thread.Display`."""
+        lab, achieved, student = self._source(lab, achieved)
+        if not self.page.is_ready:
+            return
+        self._has_news(lab)  # is shown now
+        snapshot = take_page_snapshot(lab, achieved, self._whole, student, self._nickname())
+        self._last = self._whole = snapshot
+        self.page.show(snapshot)
+        self.page.exporter.serve(lab)
+
+    def _source(self, lab: Lab, achieved: float) -> tuple[Lab, float, int]:
+        """The lab that is shown, its speed, and whose it is; see `PageKey`."""
         student, other = 0, self._followed.find() if self._followed is not None else None
         if other is not None:
             lab, achieved, student = other[0].lab, other[0].achieved, other[1]
-        at_rest = stride
-        if lab.session.grips.grabbed and stride == AT_EASE:
-            stride = 1.0  # every frame of delay is felt while dragging
-        count = frame + self._offset
-        if not is_turn(count, stride) or not self.page.is_ready:
-            return
-        every = at_rest * (SLOW if at_rest <= AT_EASE else SLOWER)
-        whole = is_turn(count, every) or self.page.is_outdated
-        if self._has_news(lab) or whole:
-            self._show(lab, achieved, student, whole)
+        if lab is not self._lab:
+            self._lab, self._last, self._whole = lab, None, None
+        return lab, achieved, student
 
     def _has_news(self, lab: Lab) -> bool:
         """Whether anything in the scene has changed since it was last shown."""
@@ -82,20 +99,6 @@ class LabFeed:
             *(session.exaggeration, lab.lessons.progress),
         )
         return self._shown != shown
-
-    def _show(self, lab: Lab, achieved: float, student: int, whole: bool) -> None:
-        if lab is not self._lab:
-            self._lab, self._last, self._whole = lab, None, None
-        if whole:
-            name = self._nickname()
-            snapshot = take_page_snapshot(lab, achieved, self._whole, student, name)
-            self._whole = snapshot
-        else:
-            snapshot = take_motion(lab, self._last, student)
-        self._last = snapshot
-        self.page.show(snapshot)
-        if whole:
-            self.page.exporter.serve(lab)
 
     def send(self) -> None:
         """See `app.simulation.simulation_thread.Display`."""

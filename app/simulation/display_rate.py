@@ -9,8 +9,8 @@ from __future__ import annotations
 from math import inf
 
 STRIDES = (2.0, 2.5, 3.0, 4.0)  # frames of simulation per frame of display
-ENOUGH = (0.5, 0.8, 0.85)  # load up to which the first, second, third stride is chosen
-BUSY = (0.8, 0.9, 0.95)  # load that is too much for the first, second, third; frames are late
+ENOUGH = (0.4, 0.65, 0.75)  # load up to which the first, second, third stride is chosen
+BUSY = (0.6, 0.8, 0.9)  # load that is too much for the first, second, third
 FADING = 1 / 60  # low-pass gain of the measured load, per frame
 BEHIND, HURRIED = 1 / 60, 8.0  # [s] of lateness from which this stride is used
 WORTH = 0.1  # share of time spent on drawing above which drawing less helps
@@ -38,7 +38,8 @@ class DisplayRate:
         """Record the time spent on a frame.
 
         Args:
-            busy, drawing, frame: time spent in total, time spent on drawing, frame length, [s].
+            busy, drawing, frame: time spent on all but slow updates, of that on drawing, and
+                length of the frame, [s].
         """
         frame = max(frame, 1e-6)
         self._share += FADING * (busy / frame - self._share)

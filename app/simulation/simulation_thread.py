@@ -16,7 +16,8 @@ from typing import Protocol
 from onpath.app.common.error_log import log_error
 from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.lab import Lab
-from onpath.app.simulation.display_rate import DisplayRate
+from onpath.app.simulation.display_rate import STRIDES, DisplayRate
+from onpath.app.simulation.slow_updates import SHARE, SlowUpdates
 from onpath.models.systems.parameters import TICK
 
 log = logging.getLogger(__name__)
@@ -30,13 +31,24 @@ PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not s
 SELDOM = (1_000, 4, 1_000)  # allocations before a collection, which stops all threads for 10 ms
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
 ALL_COMMANDS = 8e-3  # [s] of a frame for the commands of all labs
+MOST = 0.75  # share of a frame up to which slow updates are made
+NEVER = -1_000_000  # number of a frame long ago
 
 
 class Display(Protocol):
     """Shows a lab; called by the simulation thread only."""
 
-    def show(self, lab: Lab, achieved: float, frame: int, stride: float) -> None:
-        """Show it, at least in every `stride`-th frame; `frame` is the number of the frame."""
+    @property
+    def is_outdated(self) -> bool:
+        """Whether it needs a `refresh` now."""
+        ...
+
+    def show(self, lab: Lab, frame: int, stride: float) -> None:
+        """Show what moves, in every `stride`-th frame; `frame` is the number of the frame."""
+        ...
+
+    def refresh(self, lab: Lab, achieved: float) -> None:
+        """Show everything, also what changes slowly; see `SlowUpdates`."""
         ...
 
     def send(self) -> None:
@@ -52,11 +64,13 @@ class ScheduledLab:
         session: its simulated part.
         view: its viewer, or None.
         used: computing time of its commands in about the last ten seconds, [s].
+        refreshed: see `Updated`.
     """
 
     def __init__(self, lab: Lab) -> None:
         self.lab, self.session = lab, lab.session
         self.view: Display | None = None
+        self.refreshed = NEVER
         self._credit = self.used = 0.0
         self._simulated = self._passed = 1e-6  # recent, low-pass filtered over about a second
 
@@ -104,11 +118,23 @@ class ScheduledLab:
             self._simulated += session.time - before - self._simulated * FADING
             self._passed += seconds - self._passed * FADING
 
-    def show(self, count: int, stride: float) -> None:
-        """Show it to its viewer."""
+    @property
+    def is_outdated(self) -> bool:
+        """See `Updated`."""
         view = self.view  # another thread may remove it
+        return view is not None and view.is_outdated
+
+    def refresh(self, frame: int) -> None:
+        """See `Updated`. An error is logged, and does not affect other labs."""
+        self.refreshed, view = frame, self.view
         if view is not None:
-            view.show(self.lab, self.achieved, count, stride)
+            _do(lambda lab: view.refresh(lab.lab, lab.achieved), [self])
+
+    def show(self, count: int, stride: float) -> None:
+        """Show its viewer what moves."""
+        view = self.view
+        if view is not None:
+            view.show(self.lab, count, stride)
 
     def send(self) -> None:
         """Send what has been shown."""
@@ -138,6 +164,7 @@ class SimulationThread:
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self.run, name="simulation", daemon=True)
         self.frames: deque[tuple[float, float]] = deque(maxlen=3600)
+        self._slow_updates, self._drawing = SlowUpdates(clock), 0.0
 
     def start(self) -> None:
         """Start the thread."""
@@ -182,24 +209,30 @@ class SimulationThread:
             late = now - deadline
             self.frames.append((now, late))
             deadline = now + FRAME if late > LATEST else deadline + FRAME
-            drawing = self._frame(now - last, count, pace.stride_when(late))
-            pace.note(self._clock() - now, drawing, now - last)
+            busy, drawing = self._frame(now - last, count, pace.stride_when(late))
+            pace.note(busy, drawing, now - last)
             last, count = now, count + 1
 
-    def _frame(self, seconds: float, count: int, stride: float) -> float:
+    def _frame(self, seconds: float, count: int, stride: float) -> tuple[float, float]:
         """Run one frame: each step for all labs, which is faster than lab by lab.
 
         Returns:
-            Time spent on the display, [s].
+            Time spent on all but slow updates, and of that on drawing, [s].
         """
-        labs = self._labs
+        labs, begun = self._labs, self._clock()
         apply_commands(labs)
         length = frame_length(count)
         advance_together([lab.frame(seconds, length) for lab in labs], log_error)
-        begun = self._clock()
-        _do(lambda lab: lab.show(count, stride), labs)
-        _do(ScheduledLab.send, labs)
-        return self._clock() - begun
+        advanced = self._clock() - begun
+        left = min(SHARE * FRAME, MOST * FRAME - advanced - self._drawing)
+        seen = [lab for lab in labs if lab.is_seen]
+        self._slow_updates.run(seen, count, left, stride <= STRIDES[0])
+        drawing = self._clock()
+        _do(lambda lab: lab.show(count, stride), seen)
+        _do(ScheduledLab.send, seen)
+        drawing = self._clock() - drawing
+        self._drawing += FADING * (drawing - self._drawing)
+        return advanced + drawing, drawing
 
 
 def frame_length(count: int) -> float:
