@@ -12,6 +12,7 @@ import numpy as np
 from msgspec import Struct
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
+from onpath.app.lab.loop_states import Place, joined
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.faults import not_finite
 from onpath.models.closed_loop.loop_kind import Kind
@@ -48,6 +49,8 @@ class Ticks(Struct, frozen=True, eq=False):
 
 Frame = Generator[Ticks]
 """A lab's frame, see above. If its ticks cannot be simulated, the error is raised inside it."""
+NO_FRAME: Frame = (nothing for nothing in ())
+"""A frame without ticks."""
 Row = tuple[ClosedLoopRun, Ticks]
 """One closed loop of a frame."""
 
@@ -108,8 +111,9 @@ def _simulate(wanted: Iterable[Ticks]) -> dict[int, Exception]:
 def _advance(loop: Loop, members: Sequence[Row]) -> None:
     """Advance closed loops of one robot and kind by equally many ticks, all or none."""
     (first, ticks), log = members[0], loop.kernel.log
+    before, largest = _gathered([run.place for run, _ in members])
     states, rows = loop.run_many(
-        [run.state for run, _ in members],
+        before,
         [run.settings for run, _ in members],
         [own.table for _, own in members],
         ticks.count,
@@ -117,15 +121,29 @@ def _advance(loop: Loop, members: Sequence[Row]) -> None:
     faults = _faults(members, states, rows[..., log.slices["q"]], rows[..., log.slices["v"]])
     good = [i for i, fault in enumerate(faults) if fault is None]
     if good:
-        states, moved = (states, rows) if len(good) == len(rows) else (states[good], rows[good])
+        moved = rows
+        if len(good) < len(rows):
+            states, moved, largest = states[good], rows[good], largest[good]
         curves = [members[i][1].curve for i in good]
         distances = _distances(first.robot, first.kind, curves, moved, log)
-        last, most = distances[:, -1].tolist(), np.fmax.reduce(distances, axis=1).tolist()
-        for i, *result in zip(good, states, moved[:, -1], last, most, strict=True):
-            members[i][0].take(*result)
-    for (run, own), each, fault in zip(members, rows, faults, strict=True):
+        most = np.fmax(largest, np.fmax.reduce(distances, axis=1))
+        after = joined(states, moved[:, -1], distances[:, -1], most)
+        for place, i in enumerate(good):
+            members[i][0].place = after, place
+    for i in set(range(len(members))).difference(good):
+        (run, own), each, fault = members[i], rows[i], faults[i]
         if fault is not None:
             run.stop(fault, each, own.time + fault[0] * own.dt)
+
+
+def _gathered(places: Sequence[Place]) -> tuple[Array | Sequence[Array], Array]:
+    """States and largest distances of closed loops of one kind, one row for each."""
+    first = places[0][0]
+    same = len(first.records) == len(places)
+    if same and all(states is first and row == i for i, (states, row) in enumerate(places)):
+        return first.states, first.largest  # the same loops as in the last frame
+    records = [(states.records[i], states.size) for states, i in places]
+    return [record[:size] for record, size in records], np.array([r[-1] for r, _ in records])
 
 
 def _faults(

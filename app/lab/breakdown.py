@@ -154,7 +154,7 @@ def _after(session: Session, segment: Segment, ticks: int) -> Instant:
         if np.isfinite(state).all() and np.isfinite(rows[-1]).all():
             distance = samples[i, session.sample_layout.slices["distance"].start]
             states[i] = state
-            samples[i] = samples_of(session.robot, session.parameters, [rows[-1]], [distance])[0]
+            samples[i] = samples_of(session.robot, session.parameters, rows[-1:], [distance])[0]
     return Instant(
         first.time + ticks * segment.dt, first.laws, states, first.max_distances, samples
     )

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import is_
 
 import numpy as np
 
+from onpath.app.lab.loop_states import Place, single
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.segments import Drive, Input
 from onpath.models.arrays import Array
@@ -22,6 +24,7 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.closed_loop.start import ON_PATH, Start, start_state
+from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
@@ -48,7 +51,11 @@ class ClosedLoopRun:
     Attributes:
         bench: name of the bench.
         law: name of its control law.
+        is_typed: whether that is a typed law.
+        place: its state, log row and distances; another object as soon as anything changes.
     """
+
+    place: Place
 
     def __init__(
         self,
@@ -61,9 +68,8 @@ class ClosedLoopRun:
         start: Start = ON_PATH,
     ) -> None:
         self._store, self.robot = store, robot
-        self.bench, self.law = bench, law
+        self.bench, self.law, self.is_typed = bench, law, is_text(law)
         self.diverged: Diverged | None = None
-        self.distance = self.max_distance = 0.0
         self._inputs: tuple[Parameters, Curve, Push] | None = None
         self._leg: Leg | None = None
         self.configure(parameters, curve, Push())
@@ -74,16 +80,16 @@ class ClosedLoopRun:
         """Begin anew at a start, which must be within reach."""
         assert self._inputs is not None
         kernel = self._kernel
-        self.state = start_state(self.robot, kernel, curve, self._inputs[0], start)
-        self.row = np.zeros(kernel.log.size)
+        state = start_state(self.robot, kernel, curve, self._inputs[0], start)
+        self.place = single(state, np.zeros(kernel.log.size), 0.0, 0.0)
         self._fill_row(curve)
         self.diverged = None
-        self.max_distance = self.distance
+        self._change(largest=self.distance)
 
     def restore(self, drive: Drive, curve: Curve) -> None:
         """Restore the state of a checkpoint, with the path of that time and the law of now."""
         self._go_on_from(drive.state, drive.kind)
-        self.max_distance = drive.max_distance
+        self._change(largest=drive.max_distance)
         if not drive.frozen:
             self.diverged = None
         self._fill_row(curve)
@@ -96,10 +102,10 @@ class ClosedLoopRun:
     def change_law(self, law: str, parameters: Parameters, curve: Curve, push: Push) -> None:
         """Change the control law; the robot moves on from where it is, with these inputs."""
         state, kind = self.state, self.kind
-        self.law, self._inputs = law, None
+        self.law, self.is_typed, self._inputs = law, is_text(law), None
         self.configure(parameters, curve, push)
         self._go_on_from(state, kind)
-        self.row = self.row.copy()  # the session detects a new row by identity
+        self._change()
         self.shown()["theta_ref"][:] = self.fields()["theta_ref"]
 
     def change_robot(self, robot: Robot, parameters: Parameters, curve: Curve, push: Push) -> None:
@@ -113,7 +119,7 @@ class ClosedLoopRun:
         If that was under another law, the reference point starts at the closest point, and the
         integral and the memory of the present law at 0.
         """
-        self.state = state.copy() if kind.controller == self.law else self._under_law(state, kind)
+        self._change(state if kind.controller == self.law else self._under_law(state, kind))
         self._prime(kind)
 
     def _under_law(self, state: Array, kind: Kind) -> Array:
@@ -135,7 +141,7 @@ class ClosedLoopRun:
 
     def project(self, curve: Curve) -> None:
         """Restart at the globally closest point, after a jump: reference there, integral zero."""
-        self.state = self.state.copy()  # the history may share it
+        self._change()
         fields = self.fields()
         y = self.robot.endpoint(fields["q"])
         fields["theta"][:] = closest_parameter(self.robot.frame, curve, y)
@@ -143,6 +149,45 @@ class ClosedLoopRun:
         fields["theta_ref"][:] = fields["theta"]
         fields["integral"][:] = 0.0
         self._fill_row(curve)
+
+    @property
+    def state(self) -> Array:
+        """State of the loop."""
+        states, i = self.place
+        return states.states[i]
+
+    @property
+    def row(self) -> Array:
+        """Last log row."""
+        states, i = self.place
+        return states.rows[i]
+
+    @property
+    def distance(self) -> float:
+        """Of the actual end-point from the path, [m]."""
+        states, i = self.place
+        return float(states.distances[i])
+
+    @property
+    def max_distance(self) -> float:
+        """Largest distance since reset, [m]."""
+        states, i = self.place
+        return float(states.largest[i])
+
+    def _change(
+        self,
+        state: Array | None = None,
+        row: Array | None = None,
+        distance: float | None = None,
+        largest: float | None = None,
+    ) -> None:
+        """Go on with other values, and copies of the present ones, which may then be modified."""
+        self.place = single(
+            self.state if state is None else state,
+            self.row if row is None else row,
+            self.distance if distance is None else distance,
+            self.max_distance if largest is None else largest,
+        )
 
     def fields(self) -> dict[str, np.ndarray]:
         """Views of the state by name."""
@@ -164,26 +209,11 @@ class ClosedLoopRun:
         size, rest = self._kernel.changed, self._kernel.state.size - self._kernel.changed
         return Input(self.kind, self.settings, frozen, size, rest, self._inputs[0])
 
-    @property
-    def recorded(self) -> Array:
-        """The part of the state that the loop changes."""
-        return self.state[: self._kernel.changed]
-
     def loop(self) -> Loop:
         """The fastest loop of its kind available now."""
         if not isinstance(self._loop, CompiledLoop):
             self._loop = self._store.get(self.robot, self.kind, self._loop)
         return self._loop
-
-    def take(self, state: Array, row: Array, distance: float, largest: float) -> None:
-        """Take over the results of some ticks.
-
-        Args:
-            state, row: at the end; copied, because they may be parts of large arrays.
-            distance, largest: at the end, and the largest during these ticks, [m].
-        """
-        self.state, self.row, self.distance = state.copy(), row.copy(), distance
-        self.max_distance = max(self.max_distance, largest)
 
     def stop(self, fault: tuple[int, Message], rows: Array, time: float) -> None:
         """Stop at the last good state, and show the last good row before the fault.
@@ -196,7 +226,7 @@ class ClosedLoopRun:
         self.diverged = Diverged(fault[1], time)
         good = np.flatnonzero(np.isfinite(rows[: fault[0]]).all(axis=1))
         if good.size:
-            self.row = rows[good[-1]].copy()
+            self._change(row=rows[good[-1]])
 
     def configure(
         self,
@@ -215,6 +245,9 @@ class ClosedLoopRun:
             tick: of the lab, in this part.
         """
         before, self._inputs = self._inputs, (parameters, curve, push)
+        unpaced = leg is None and self._leg is None
+        if before is not None and unpaced and all(map(is_, before, self._inputs)):
+            return
         ended, self._leg = self._leg, leg
         same = before is not None and before[0] is parameters and before[1] is curve
         same = same and (ended is None or leg is not None)
@@ -225,7 +258,7 @@ class ClosedLoopRun:
         if leg is not None:
             self.settings = paced(self._kernel, self.settings, leg)
         if leg is not None and leg != ended:
-            self.state = self.state.copy()  # the history may share it
+            self._change()
             self.fields()["speed_ref"][:] = leg.at(tick)
 
     def _pack(
@@ -253,17 +286,16 @@ class ClosedLoopRun:
     def _prime(self, before: Kind) -> None:
         """Fill the queue of delayed torques if the loop of this kind did not keep it."""
         if self.kind.delay and not before.delay:
-            self.state = primed(self._kernel, self.state)
+            self._change(primed(self._kernel, self.state))
 
     def _fill_row(self, curve: Curve) -> None:
         """Fill the log row of a robot that has not moved yet."""
-        self.row = self.row.copy()  # the session detects a new row by identity
+        self._change()
         row, state = self.shown(), self.fields()
         for name in ("q", "v", "theta", "theta_rate", "theta_ref", "speed_ref", "u"):
             row[name][:] = state[name]
         row["y"][:] = self.robot.endpoint(state["q"])
         row["force"][:] = 0.0
         row["speed"][:] = state["theta_rate"] * np.linalg.norm(curve.at(state["theta"], 1), axis=1)
-        self.distance = float(
-            near_distance(self.robot.frame, curve, row["y"][None], row["theta"])[0]
-        )
+        found = near_distance(self.robot.frame, curve, row["y"][None], row["theta"])
+        self.place[0].distances[:] = found

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Sequence
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 from msgspec.structs import replace
 
-from onpath.app.lab.segments import HistoryCopy, HistoryFrame, Segment, segment_at
+from onpath.app.lab.segments import HistoryCopy, HistoryFrame, Inputs, Segment, segment_at
+from onpath.models.arrays import Array
 
 SECONDS = 60.0
 LONGEST = 17  # maximum ticks in a segment
@@ -33,10 +35,11 @@ class History:
     frames are buffered until they are needed.
 
     Args:
-        sample: computes the plotted values of some frames, shape (frames, robots, fields).
+        sample: computes plotted values, shape (n, fields), from log rows, shape (n, row size), and
+            distances from the path, shape (n,), [m].
     """
 
-    def __init__(self, sample: Callable[[Sequence[HistoryFrame]], np.ndarray]) -> None:
+    def __init__(self, sample: Callable[[Array, Array], Array]) -> None:
         self._sample = sample
         self._lock = threading.Lock()  # a page that is being built reads it, too
         self.clear()
@@ -78,24 +81,29 @@ class History:
                 self._put(frames)
 
     def _put(self, frames: Sequence[HistoryFrame]) -> None:
-        self._list, samples = None, self._sample(frames)
-        states = [np.concatenate(frame.states) for frame in frames]
-        width, columns = max(state.size for state in states), self._columns
-        if not columns or self._end + len(frames) > len(columns["time"]):
-            self._make_room(len(frames), samples)
-        if width > self._columns["state"].shape[1]:
-            self._widen(width)
-        columns, rows = self._columns, slice(self._end, self._end + len(frames))
-        columns["time"][rows] = [frame.time for frame in frames]
-        columns["ticks"][rows] = [frame.ticks for frame in frames]
-        columns["inputs"][rows] = [frame.inputs for frame in frames]
-        for row, state in enumerate(states, rows.start):
-            columns["state"][row, : state.size] = state
-        columns["most"][rows] = [frame.max_distances for frame in frames]
-        columns["sample"][rows] = samples
-        self._end = rows.stop
+        self._list = None
+        for inputs, alike in groupby(frames, lambda frame: frame.inputs):
+            self._put_alike(inputs, list(alike))
         reached = self._find(frames[-1].time - SECONDS, "right") - 1
         self._begin = max(self._begin, reached, self._end - MOST)
+
+    def _put_alike(self, inputs: Inputs, frames: Sequence[HistoryFrame]) -> None:
+        """Store frames with the same inputs."""
+        states, rows, distances, most = _columns_of(inputs, frames)
+        samples = self._sample(rows.reshape(-1, rows.shape[-1]), distances.ravel())
+        samples = samples.reshape(*distances.shape, -1)
+        if not self._columns or self._end + len(frames) > len(self._columns["time"]):
+            self._make_room(len(frames), samples)
+        if states.shape[1] > self._columns["state"].shape[1]:
+            self._widen(states.shape[1])
+        columns, place = self._columns, slice(self._end, self._end + len(frames))
+        columns["time"][place] = [frame.time for frame in frames]
+        columns["ticks"][place] = [frame.ticks for frame in frames]
+        columns["inputs"][place] = inputs
+        columns["state"][place, : states.shape[1]] = states
+        columns["most"][place] = most
+        columns["sample"][place] = samples
+        self._end = place.stop
 
     def all(self) -> list[Segment]:
         """All segments, oldest first; the same objects until something changes."""
@@ -201,3 +209,24 @@ class History:
         """Time at which a row ends, [s]."""
         columns = self._columns
         return columns["time"][row] + columns["ticks"][row] * columns["inputs"][row].dt
+
+
+def _columns_of(
+    inputs: Inputs, frames: Sequence[HistoryFrame]
+) -> tuple[Array, Array, Array, Array]:
+    """States as recorded, log rows, distances and largest distances of frames with the same inputs.
+
+    Returns:
+        Shapes (frames, size), (frames, robots, row size), and twice (frames, robots).
+    """
+    flat = np.concatenate([states.records[i] for frame in frames for states, i in frame.places])
+    records, begin = flat.reshape(len(frames), -1), 0
+    states, rows, numbers = list[Array](), list[Array](), list[Array]()
+    for (place, _), own in zip(frames[0].places, inputs.of.values(), strict=True):
+        part = records[:, begin : begin + place.records.shape[1]]
+        begin += part.shape[1]
+        states.append(part[:, : own.size])
+        rows.append(part[:, place.size : -2])
+        numbers.append(part[:, -2:])
+    distances, most = np.stack(numbers, axis=2).transpose(1, 0, 2)
+    return np.concatenate(states, axis=1), np.stack(rows, axis=1), distances, most

@@ -46,11 +46,11 @@ def places(robot: Robot) -> np.ndarray:
 
 
 def samples_of(
-    robot: Robot, parameters: Parameters, rows: Sequence[Array], distances: Sequence[float]
+    robot: Robot, parameters: Parameters, rows: Array, distances: Sequence[float] | Array
 ) -> Array:
-    """Samples of log rows and their distances, shape (n, fields)."""
+    """Samples of log rows, (n, row size), and their distances, (n,): shape (n, fields)."""
     layout = sample_layout(robot)
-    samples = np.concatenate(rows).reshape(len(rows), -1).take(places(robot), axis=1)
+    samples = rows.take(places(robot), axis=1)
     samples[:, layout.slices["distance"].start] = distances
     if robot.extra_fields:
         log = log_layout(robot.system)

@@ -9,6 +9,7 @@ from operator import is_
 import numpy as np
 from msgspec import Struct
 
+from onpath.app.lab.loop_states import Place
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
@@ -102,19 +103,13 @@ class HistoryFrame(Struct, frozen=True, eq=False):
         time: at the beginning, [s].
         ticks: number of ticks.
         inputs: the same object until something changes.
-        states: of each robot, at the beginning, as far as recorded; not modified later.
-        max_distances: of each robot, at the beginning, [m].
-        rows: log row of each robot, at the beginning.
-        distances: of each robot, at the beginning, [m].
+        places: of each robot's closed loop, at the beginning.
     """
 
     time: float
     ticks: int
     inputs: Inputs
-    states: Sequence[np.ndarray]
-    max_distances: Sequence[float]
-    rows: Sequence[np.ndarray]
-    distances: Sequence[float]
+    places: Sequence[Place]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

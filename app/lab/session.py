@@ -6,11 +6,11 @@ It does not know its user: commands, lessons, class and messages belong to `app.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
-from onpath.app.lab.advance_together import Frame, advance_together
+from onpath.app.lab.advance_together import NO_FRAME, Frame, Ticks, advance_together
 from onpath.app.lab.belongings import Belongings
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.external_forces import ExternalForces
@@ -18,16 +18,11 @@ from onpath.app.lab.history import History
 from onpath.app.lab.loops.law_changes import LawChanges, suits
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
-from onpath.app.lab.plot_samples import sample_layout
-from onpath.app.lab.recorder import (
-    CurrentInstant,
-    FramePart,
-    Recorder,
-    sample_of,
-    samples_of_frames,
-)
-from onpath.app.lab.segments import HistoryFrame, Instant
+from onpath.app.lab.plot_samples import sample_layout, samples_of
+from onpath.app.lab.recorder import CurrentInstant, Recorder, sample_of
+from onpath.app.lab.segments import Instant
 from onpath.app.lab.timeline import LabEvent, Timeline
+from onpath.models.arrays import Array
 from onpath.models.closed_loop.obstacles import ALONG, Wall
 from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.start import ON_PATH, Start, check_start
@@ -187,18 +182,16 @@ class Session:
 
     def frame(self, seconds: float) -> Frame:
         """Simulate `seconds` of simulated time, if running; see `advance_together`."""
-        can_run = self._follow_laws()
-        if not self.running or not can_run:
+        if not self._follow_laws() or not self.running:
             self._owed = 0.0
             if self.viewing is None:
                 self._bend(seconds)
-            return
+            return NO_FRAME
         dt = time_step(self.parameters)
-        self._owed += seconds
-        ticks = min(int(self._owed / dt + 1e-9), MOST_TICKS)
-        self._owed = min(self._owed - ticks * dt, MOST_TICKS * dt)
-        if ticks:
-            yield from self.frame_of(ticks)
+        owed = self._owed + seconds
+        ticks = min(int(owed / dt + 1e-9), MOST_TICKS)
+        self._owed = min(owed - ticks * dt, MOST_TICKS * dt)
+        return self.frame_of(ticks)
 
     def simulate(self, ticks: int) -> None:
         """Simulate some ticks of this session alone."""
@@ -209,19 +202,26 @@ class Session:
 
         The parts of a speed profile are simulated one after the other.
         """
-        dt, profile = time_step(self.parameters), profile_of(self.parameters)
-        self._bend(ticks * dt)
-        runs, pushes, editor = list(self.runs.values()), self.grips.pushes, self.editor
+        parameters, editor, runs = self.parameters, self.editor, list(self.runs.values())
+        dt, profile = time_step(parameters), profile_of(parameters)
+        if ticks:
+            self._bend(ticks * dt)
+        curve, table, pushes = editor.curve, editor.table, self.grips.pushes
         while ticks > 0:
             now = round(self.time / dt)
             leg = None if profile is None else profile.leg(now, dt)
             count = ticks if leg is None or leg.end is None else min(ticks, leg.end - now)
-            part = FramePart(self.time, count, dt, self.parameters, editor.curve, editor.table, leg)
-            frame, stopped = yield from self._recorder.simulate(part, runs, pushes)
-            self.history.append(frame)
-            for run in stopped:
-                self.note("diverged", benches=(run.bench,))
-                self.faults.append(run.bench)
+            for run in runs:
+                run.configure(parameters, curve, pushes[run.bench], leg, now)
+            moving = [(run, run.loop()) for run in runs if run.diverged is None]
+            part = Ticks(moving, count, self.time, dt, parameters, curve, table)
+            begun = [run.place for run in runs]
+            yield part
+            self.history.append(self._recorder.record(part, runs, begun))
+            for run, _ in moving:
+                if run.diverged is not None:
+                    self.note("diverged", benches=(run.bench,))
+                    self.faults.append(run.bench)
             self.time += count * dt
             ticks -= count
 
@@ -316,6 +316,6 @@ class Session:
         """The current sample, shape (robots, sample_layout.size)."""
         return sample_of(self.robot, self.parameters, self.runs.values())
 
-    def _samples(self, frames: Sequence[HistoryFrame]) -> np.ndarray:
-        """Plotted values of some frames, shape (frames, robots, sample_layout.size)."""
-        return samples_of_frames(self.robot, self.parameters, frames)
+    def _samples(self, rows: Array, distances: Array) -> Array:
+        """Plotted values; see `History`."""
+        return samples_of(self.robot, self.parameters, rows, distances)

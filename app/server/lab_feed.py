@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from operator import is_
 
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
@@ -94,11 +95,12 @@ class LabFeed:
     def _has_news(self, lab: Lab) -> bool:
         """Whether anything in the scene has changed since it was last shown."""
         session, shown = lab.session, self._shown
-        self._shown = (
-            *(session.instant(), session.viewing, session.editor.version),
+        places = [run.place for run in session.runs.values()]
+        self._shown = now = (
+            *(*places, session.viewing, session.editor.version),
             *(session.exaggeration, lab.lessons.progress),
         )
-        return self._shown != shown
+        return len(now) != len(shown) or not all(map(is_, now, shown))
 
     def send(self) -> None:
         """See `app.simulation.simulation_thread.Display`."""

@@ -88,7 +88,7 @@ class LawChanges:
         Returns:
             Whether time can run: no robot is under a typed law that needs another loop.
         """
-        typed = [bench for bench, run in runs.items() if is_text(run.law)]
+        typed = [bench for bench, run in runs.items() if run.is_typed]
         if not (typed or self.coming or self._asked):
             return True
         found = {b: runs[b].lacks(parameters, curve, pushes[b]) for b in typed}

@@ -7,19 +7,21 @@ the robot's own frame (x right, y away, z up); the scene places the robots.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 
 from onpath.app.common.per_thread import per_thread
+from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Instant
 from onpath.app.lab.snapshots.part_poses import MARKER_DEPTHS, bar_quaternions, waist_angle
 from onpath.app.lab.snapshots.snapshot import END, Counts, RobotView
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
+from onpath.models.closed_loop.loop_vectors import log_layout
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.registry import law_named
 from onpath.models.paths.curves import ORDERS, TERMS, Curve
@@ -77,6 +79,18 @@ def drawn_robots(
     return geometry(instant, curve, exaggeration), geometry.counts
 
 
+def drawn_now(
+    robot: Robot, runs: Iterable[ClosedLoopRun], curve: Curve, table: Array, exaggeration: float
+) -> tuple[Array, Counts]:
+    """`drawn_robots` of the present instant, without making an `Instant`.
+
+    Args:
+        table: `Curve.table()` of the path.
+    """
+    geometry = _geometry_of(robot, curve.closed, curve.dimension)
+    return geometry.of_runs(runs, table, exaggeration), geometry.counts
+
+
 class RobotGeometry:
     """The geometry of one kind of robot on one kind of path. Not thread-safe.
 
@@ -93,13 +107,36 @@ class RobotGeometry:
         """See `Motion.drawn`."""
         q = [state[: self._joints] for state in instant.states]
         seen = instant.sample.take(_seen(self._robot, instant.laws))
-        flat = self._draw(np.concatenate(q), seen, curve.table(), exaggeration)[0]
-        return flat.reshape(len(BENCHES), -1).copy()
+        return self._drawn(q, [seen], curve.table(), exaggeration)
+
+    def of_runs(self, runs: Iterable[ClosedLoopRun], table: Array, exaggeration: float) -> Array:
+        """See `drawn_now`."""
+        q, seen = list[Array](), list[Array]()
+        for run in runs:
+            states, i = run.place
+            record = states.records[i]
+            q.append(record[: self._joints])
+            seen.append(record[states.size :].take(_logged(self._robot, run.law)))
+        return self._drawn(q, seen, table, exaggeration)
+
+    def _drawn(
+        self, q: Sequence[Array], seen: Sequence[Array], table: Array, exaggeration: float
+    ) -> Array:
+        given = np.concatenate(q), np.concatenate(seen), table, exaggeration
+        return self._draw(*given)[0].reshape(len(BENCHES), -1).copy()
 
 
 @per_thread
 def _geometry_of(robot: Robot, closed: bool, dimension: int) -> RobotGeometry:
     return RobotGeometry(robot, closed, dimension)
+
+
+@lru_cache(maxsize=256)
+def _logged(robot: Robot, law: str) -> np.ndarray:
+    """Indices of a robot's end-point, force and aim in its log row."""
+    slices = log_layout(robot.system).slices
+    fields = [slices[name] for name in ("y", "force", law_named(law).aim)]
+    return np.concatenate([np.arange(field.start, field.stop) for field in fields])
 
 
 @lru_cache(maxsize=256)

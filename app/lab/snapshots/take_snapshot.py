@@ -27,7 +27,7 @@ from onpath.app.lab.snapshots.page_snapshot import (
     PlotSamples,
     RunState,
 )
-from onpath.app.lab.snapshots.robot_geometry import drawn_robots, robot_views
+from onpath.app.lab.snapshots.robot_geometry import drawn_now, drawn_robots, robot_views
 from onpath.app.lab.snapshots.snapshot import Motion, PageKey, PathView
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Sketch
@@ -58,8 +58,13 @@ def take_motion(lab: Lab, before: PageSnapshot | Motion | None = None, student: 
         student: see `PageKey`.
     """
     session, key = lab.session, page_key(lab, student)
-    instant, curve, _ = _shown(lab)
-    drawn, counts = drawn_robots(session.robot, curve, instant, session.exaggeration)
+    robot, larger = session.robot, session.exaggeration
+    if session.viewing is None and not lab.breakdown.replaying:
+        curve, table = session.editor.curve, session.editor.table
+        drawn, counts = drawn_now(robot, session.runs.values(), curve, table, larger)
+    else:
+        instant, curve, _ = _shown(lab)
+        drawn, counts = drawn_robots(robot, curve, instant, larger)
     path = _path_view(session, curve, key, before)
     return Motion(key, path, counts, drawn, drawn_wall(session), _drawn_start(session))
 

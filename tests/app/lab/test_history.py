@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from onpath.app.lab import commands as c
 from onpath.app.lab.history import COARSE, LONGEST, MOST, RECENT, SECONDS, History
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.loop_states import single
 from onpath.app.lab.segments import HistoryFrame, Input, Inputs, Segment
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
@@ -39,7 +40,7 @@ def add(
 ) -> None:
     """A segment of one robot, whose state and sample are the time."""
     state, inputs = np.array([time]), inputs_of(curve, dt, id(settings), frozen)
-    history.append(HistoryFrame(time, ticks, inputs, [state], [0.0], [state], [0.0]))
+    history.append(HistoryFrame(time, ticks, inputs, [single(state, state, 0.0, 0.0)]))
 
 
 @lru_cache
@@ -49,7 +50,7 @@ def inputs_of(curve: Curve, dt: float, settings: int, frozen: bool) -> Inputs:
 
 
 def new_history() -> History:
-    return History(lambda frames: np.array([frame.rows for frame in frames]))
+    return History(lambda rows, _: rows)
 
 
 def contiguous(history: History) -> bool:
@@ -127,11 +128,12 @@ def memory_of_a_minute(lab: Lab, one: Segment) -> tuple[int, int]:
     """What a history has in the end, and what all threads had meanwhile at most, [B]."""
     names, rows = list(lab.session.runs), list(one.sample)
     inputs = Inputs(one.curve, one.dt, {name: lab.session.runs[name].input() for name in names})
-    states = [lab.session.runs[name].recorded for name in names]
+    states = [lab.session.runs[name].state for name in names]
+    places = [single(state, row, 0.0, 0.0) for state, row in zip(states, rows, strict=True)]
     tracemalloc.start()
     history = new_history()
     for k in range(8000):
-        history.append(HistoryFrame(k * 0.017, 17, inputs, states, [0.0, 0.0], rows, [0.0, 0.0]))
+        history.append(HistoryFrame(k * 0.017, 17, inputs, places))
     assert history.span() > 59
     _, peak = tracemalloc.get_traced_memory()
     snapshot = tracemalloc.take_snapshot()

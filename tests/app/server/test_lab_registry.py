@@ -45,7 +45,12 @@ class Desk:
 
 
 class _View:
-    def show(self, lab: object, achieved: float, frame: int, stride: float) -> None:
+    is_outdated = False
+
+    def refresh(self, lab: object, achieved: float) -> None:
+        pass
+
+    def show(self, lab: object, frame: int, stride: float) -> None:
         pass
 
     def send(self) -> None:

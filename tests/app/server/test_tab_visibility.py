@@ -42,7 +42,12 @@ class Browser:
         self.scheduled = ScheduledLab(new_lab())
         self.onlooker.watch(self.scheduled, self)
 
-    def show(self, lab: object, achieved: float, frame: int, stride: float) -> None:
+    is_outdated = False
+
+    def refresh(self, lab: object, achieved: float) -> None:
+        pass
+
+    def show(self, lab: object, frame: int, stride: float) -> None:
         self.updates += 1
 
     def send(self) -> None:

@@ -59,9 +59,14 @@ class View:
         self.work = work
         self.shown: list[tuple[float, float, int]] = []
 
-    def show(self, lab: Lab, achieved: float, frame: int, stride: float) -> None:
-        self.shown.append((lab.session.time, achieved, frame))
+    is_outdated = False
+
+    def show(self, lab: Lab, frame: int, stride: float) -> None:
+        self.shown.append((lab.session.time, 0.0, frame))
         self.work(frame)
+
+    def refresh(self, lab: Lab, achieved: float) -> None:
+        pass
 
     def send(self) -> None:
         pass
@@ -74,10 +79,15 @@ class Screen:
         self.clock, self.offset, self.cost = clock, offset, cost
         self.drawn = list[int]()
 
-    def show(self, lab: Lab, achieved: float, frame: int, stride: float) -> None:
+    is_outdated = False
+
+    def show(self, lab: Lab, frame: int, stride: float) -> None:
         if is_turn(frame + self.offset, stride):
             self.drawn.append(frame)
             self.clock.work(self.cost)
+
+    def refresh(self, lab: Lab, achieved: float) -> None:
+        pass
 
     def send(self) -> None:
         pass
