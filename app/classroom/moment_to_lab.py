@@ -18,6 +18,7 @@ from onpath.app.classroom.moment import (
 )
 from onpath.app.lab.closed_loop_run import ClosedLoopRun, Diverged
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.loop_states import single
 from onpath.app.lab.path_editor import Blend, PathEditor
 from onpath.app.lab.plot_samples import places
 from onpath.app.lab.session import Session
@@ -85,13 +86,13 @@ def _pull(robot: RobotMoment) -> dict[str, Any]:
 
 def _take_robot(session: Session, run: ClosedLoopRun, robot: RobotMoment) -> None:
     fields, log = session.sample_layout.slices, log_layout(session.robot.system)
-    run.state = np.array(robot.state)
-    now, row = run.fields(), np.zeros(log.size)
+    row, most = np.zeros(log.size), robot.max_distance
+    run.place = single(np.array(robot.state), row, 0.0, most)
+    now = run.fields()
     sample, known = np.array(robot.sample), places(session.robot)
     row[known[known > 0]] = sample[known > 0]
     log.unpack(row)["q"][:], log.unpack(row)["v"][:] = now["q"], now["v"]
-    run.row, run.distance = row, float(sample[fields["distance"].start])
-    run.max_distance = robot.max_distance
+    run.place = single(run.state, row, float(sample[fields["distance"].start]), most)
     run.diverged = (
         None if robot.diverged is None else Diverged(robot.diverged.reason(), robot.diverged.time)
     )

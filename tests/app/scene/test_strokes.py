@@ -18,6 +18,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.scene.sketch_line import MOST, SketchLine
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
+from onpath.app.simulation.slow_updates import FREQUENT
 from onpath.lessons.schema import Sketch
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support import waiting
@@ -53,18 +54,20 @@ class Page:
                 self.told_by_mouse += not self._showing
         self._queue(message)
 
-    def show(self) -> None:
-        """A frame, as the simulation thread does it."""
+    def show(self, whole: bool = False) -> None:
+        """A frame as in the simulation thread, with a slow update if it is due, or `whole`."""
         self._showing = True
         self.lab.drain()
-        self.view.show(self.lab, 1.0, self.frame, 2.0)
+        if whole or self.frame % FREQUENT == 0:
+            self.view.refresh(self.lab, 1.0)
+        self.view.show(self.lab, self.frame, 2.0)
         self.view.send()
         self._showing = False
         self.frame += 1
 
     def shown(self, node: str) -> bool:
-        """Whether a node has come after another frame."""
-        self.show()
+        """Whether a node is there after another slow update."""
+        self.show(whole=True)
         return self.client.scene.get_handle_by_name(node) is not None
 
     def scribble(self, node: str, place: Callable[[int], np.ndarray]) -> None:
