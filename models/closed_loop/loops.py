@@ -44,7 +44,7 @@ class Loop(Protocol):
 
     def run_many(
         self,
-        states: Sequence[Array],
+        states: Sequence[Array] | Array,
         settings: Sequence[Array],
         tables: Sequence[Array],
         ticks: int,
@@ -81,7 +81,7 @@ class InterpretedLoop:
 
     def run_many(
         self,
-        states: Sequence[Array],
+        states: Sequence[Array] | Array,
         settings: Sequence[Array],
         tables: Sequence[Array],
         ticks: int,
@@ -120,7 +120,7 @@ class CompiledLoop:
 
     def run_many(
         self,
-        states: Sequence[Array],
+        states: Sequence[Array] | Array,
         settings: Sequence[Array],
         tables: Sequence[Array],
         ticks: int,
@@ -136,7 +136,7 @@ class CompiledLoop:
         return after, rows
 
 
-def _stacked(vectors: Sequence[Array], count: int, size: int) -> Array:
+def _stacked(vectors: Sequence[Array] | Array, count: int, size: int) -> Array:
     """A new array (count, size) of flat vectors; faster than `np.stack`.
 
     Raises:
