@@ -1,4 +1,4 @@
-"""What a README points to is there."""
+"""What a README points to exists."""
 
 from __future__ import annotations
 
@@ -21,3 +21,13 @@ def test_files_and_pictures_that_are_linked_exist(file: Path) -> None:
     text = re.sub(r"```.*?```|`[^`]*`", "", file.read_text("utf-8"), flags=re.DOTALL)
     links = re.findall(r"\]\(([^)#\s]+)", text)
     assert not [link for link in links if "://" not in link and not (file.parent / link).exists()]
+
+
+@pytest.mark.parametrize("name", ["app/README.md", "models/README.md"])
+def test_modules_that_are_named_exist(name: str) -> None:
+    """A module is named by its path, or by the end of it."""
+    named = set(re.findall(r"`([\w/]+\.(?:py|js|ts))`", (ROOT / name).read_text("utf-8")))
+    folders = ("app", "models", "lessons", "assets", "tests")
+    files = [str(file) for folder in folders for file in (ROOT / folder).rglob("*.[pjt]*")]
+    assert len(named) > 10
+    assert [each for each in named if not any(file.endswith(f"/{each}") for file in files)] == []
