@@ -48,7 +48,7 @@ test: $(TOOLS)
 
 thorough: $(TOOLS)
 	$(call BOTH_PARTS,thorough)
-	$(PYTEST) -n 0 -m soak $(ARGS)
+	$(PYTEST) -n 0 -m soak tests/app/bench $(ARGS)
 
 fuzz: $(TOOLS)
 	$(PYTEST) -m hypothesis --hypothesis-profile fuzz $(ARGS)
