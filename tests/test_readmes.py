@@ -31,3 +31,8 @@ def test_modules_that_are_named_exist(name: str) -> None:
     files = [str(file) for folder in folders for file in (ROOT / folder).rglob("*.[pjt]*")]
     assert len(named) > 10
     assert [each for each in named if not any(file.endswith(f"/{each}") for file in files)] == []
+
+
+@pytest.mark.parametrize("file", READMES, ids=lambda file: str(file.relative_to(ROOT)))
+def test_no_text_breaks_off(file: Path) -> None:
+    assert re.search(r"(\.|\||```)\n\Z", file.read_text("utf-8"))
