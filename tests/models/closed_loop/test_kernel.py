@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from onpath.app.bench.reference import LANES, reference_loop
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle, ellipse, segment
 from onpath.models.paths.frames import Plane
 from onpath.models.systems.five_bar import end_point, inverse_kinematics
@@ -376,6 +375,15 @@ def test_row_tells_the_instant_a_tick_begins(rig: Rig) -> None:
     )  # left of the curve is inside
 
 
+@pytest.fixture(scope="module")
+def hand_written(
+    rig: Rig, tmp_path_factory: pytest.TempPathFactory
+) -> dict[int, CompiledLoop | None]:
+    """The loop in C by its number of lanes; see `reference_loop`."""
+    folder, kernel = tmp_path_factory.mktemp("reference"), rig.kernel(FOLLOWING)
+    return {lanes: reference_loop(kernel, folder, lanes) for lanes in LANES}
+
+
 @pytest.mark.parametrize(
     "changes",
     [
@@ -394,11 +402,11 @@ def test_row_tells_the_instant_a_tick_begins(rig: Rig) -> None:
 def test_hand_written_c_loop_agrees(
     rig: Rig,
     random_curve: Callable[[int], Curve],
-    tmp_path: Path,
+    hand_written: dict[int, CompiledLoop | None],
     changes: dict[str, object],
     lanes: int,
 ) -> None:
-    reference = reference_loop(rig.kernel(FOLLOWING), tmp_path, lanes)
+    reference = hand_written[lanes]
     if reference is None:
         pytest.skip("no C compiler, or no such lanes")
     settings = rig.settings(FOLLOWING, plant=rig.spoiled, **changes)

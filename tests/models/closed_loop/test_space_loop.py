@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.kernel import build_kernel
+from onpath.models.closed_loop.kernel import Kernel, build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop
 from onpath.models.closed_loop.simulation import (
     FREE,
     Push,
@@ -152,6 +153,12 @@ def test_contouring_decays_in_the_turning_frame_as_its_gains_say(axis: int) -> N
     assert np.abs(errors - expected).max() < 0.02 * size
 
 
+@cache
+def compiled(kernel: Kernel) -> CompiledLoop:
+    """Curves of one kind and all forces share a loop."""
+    return translate_loop(kernel)
+
+
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("shape", ["saddle", "clover", "open"])
 def test_the_compiled_loop_gives_the_same_bits(law: str, shape: str) -> None:
@@ -170,7 +177,7 @@ def test_the_compiled_loop_gives_the_same_bits(law: str, shape: str) -> None:
         settings = settings_vector(ARM, kernel, parameters, curve, push)
         inputs = [state, state], [settings, settings], [curve.table(), SADDLE.table()], 150
         slow, fast = (
-            loop.run_many(*inputs) for loop in (InterpretedLoop(kernel), translate_loop(kernel))
+            loop.run_many(*inputs) for loop in (InterpretedLoop(kernel), compiled(kernel))
         )
         for one, other in zip(slow, fast, strict=True):
             assert np.isfinite(one).all()
