@@ -35,4 +35,4 @@ def test_modules_that_are_named_exist(name: str) -> None:
 
 @pytest.mark.parametrize("file", READMES, ids=lambda file: str(file.relative_to(ROOT)))
 def test_no_text_breaks_off(file: Path) -> None:
-    assert re.search(r"(\.|\||```)\n\Z", file.read_text("utf-8"))
+    assert re.search(r"(\.|\||```|-->)\n\Z", file.read_text("utf-8"))
