@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from onpath.app.classroom.classroom import Classroom
+from onpath.app.classroom.classroom import Classroom, Orders
 from onpath.app.common.periodic import Periodic
-from onpath.app.lab.commands import Freeze
+from onpath.app.lab.commands import Freeze, KeepWithin
 from onpath.app.lab.lab import Lab
 
 SYNC_INTERVAL = 0.25  # [s]
+GAINS = ("K1", "K2", "K3", "K4", "K5")
 
 
 Find = Callable[[str], tuple[Lab, bool] | None]
@@ -46,11 +47,13 @@ class ClassSync:
             self._follow(code)
 
     def _let_go(self, code: str) -> None:
-        """Unfreeze a lab whose student has left the class."""
+        """Let a lab go whose student has left the class."""
         lab = self._bound.pop(code)
         self._asked.pop(code, None)
         if lab.frozen:
             lab.post(Freeze(False))
+        if lab.lessons.pace is not None:
+            lab.post(KeepWithin(None))
 
     def _follow(self, code: str) -> None:
         member = self._class.member(code)
@@ -68,14 +71,34 @@ class ClassSync:
             changes["progress"] = lab.lessons.progress
         if connected != member.connected:
             changes["connected"] = connected
+        gains = gains_of(lab)
+        if gains != member.gains:
+            changes["gains"] = gains
         if lab.asked != self._asked.get(code):
             self._asked[code], changes["active"] = lab.asked, self._class.clock()
         orders = self._class.orders
         if orders.pushes > member.taken:
             changes["taken"] = orders.pushes
-            if orders.push is not None:
-                lab.post(orders.push)
-        if orders.frozen != lab.frozen:
-            lab.post(Freeze(orders.frozen))
+        _give(orders, lab, is_new=orders.pushes > member.taken)
         if changes:
             self._class.note(code, **changes)
+
+
+def _give(orders: Orders, lab: Lab, is_new: bool) -> None:
+    """Tell a lab what the teacher has ordered, unless it is so already.
+
+    Args:
+        is_new: whether what was sent last has not been sent to this lab.
+    """
+    if is_new and orders.push is not None:
+        lab.post(orders.push)
+    if orders.frozen != lab.frozen:
+        lab.post(Freeze(orders.frozen))
+    if orders.pace != lab.lessons.pace:
+        lab.post(KeepWithin(orders.pace))
+
+
+def gains_of(lab: Lab) -> tuple[float, ...]:
+    """The gains of a lab, as in `GAINS`; its parameters are an immutable record."""
+    parameters = lab.session.parameters
+    return tuple(float(getattr(parameters, name)) for name in GAINS)

@@ -13,6 +13,7 @@ from typing import Protocol
 from onpath.app.classroom.admission import cleaned, not_among
 from onpath.app.common.visible_text import comparison_key
 from onpath.app.lab.commands import TakeSetup, TakeStep
+from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress
 from onpath.models.errors import CodedError
 
@@ -32,6 +33,7 @@ class Member:
         connected: whether a browser is connected to the lab.
         active: time of the last command in the lab, by the class's clock, [s].
         taken: number of the last push applied by the lab; 0 for none.
+        gains: the lab's K1 to K5 at the last update; empty before the first one.
     """
 
     number: int
@@ -40,6 +42,7 @@ class Member:
     connected: bool = True
     active: float = 0.0
     taken: int = 0
+    gains: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +53,13 @@ class Orders:
         frozen: whether all labs are stopped.
         pushes: number of pushes so far.
         push: the last one, which later joiners receive as well; None if there is none.
+        pace: the steps within which students may go; None if they may go anywhere.
     """
 
     frozen: bool = False
     pushes: int = 0
     push: Push | None = None
+    pace: Pace | None = None
 
 
 class Classroom(Protocol):
@@ -142,7 +147,15 @@ class Classroom(Protocol):
         """Send a set-up or a step to all members once, and to those who join later.
 
         It remains in effect until another is sent or the class ends. Sending None clears it
-        without changing any lab; later joiners then keep their own set-up.
+        without changing any lab; later joiners then keep their own set-up. A step outside the
+        range of the pace ends that.
+        """
+        ...
+
+    def keep_within(self, pace: Pace | None) -> None:
+        """Let students go within a range of steps only; None lets them go anywhere.
+
+        Whoever is outside, also when joining later, is brought to its first step.
         """
         ...
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass, field, replace
 from onpath.app.classroom.admission import Admission, new_class_code, new_pass
 from onpath.app.classroom.classroom import Member, Orders, Push, noted, seated
 from onpath.app.common.access_codes import new_code
+from onpath.app.lab.commands import TakeStep
+from onpath.lessons.pace import Pace
 
 
 @dataclass(slots=True)
@@ -110,14 +112,21 @@ class LocalClassroom:
     def push(self, push: Push | None) -> None:
         """See `Classroom.push`."""
         with self._lock:
-            count = self._orders.pushes + (push is not None)
-            self._orders = replace(self._orders, pushes=count, push=push)
+            count, pace = self._orders.pushes + (push is not None), self._orders.pace
+            if isinstance(push, TakeStep) and pace and not pace.holds(push.lesson, push.step):
+                pace = None
+            self._orders = replace(self._orders, pushes=count, push=push, pace=pace)
+
+    def keep_within(self, pace: Pace | None) -> None:
+        """See `Classroom.keep_within`."""
+        with self._lock:
+            self._orders = replace(self._orders, pace=pace)
 
     def end(self) -> int:
         """See `Classroom.end`."""
         with self._lock:
             count = len(self._members)
             self._members.clear()
-            self._orders = replace(self._orders, frozen=False, push=None)
+            self._orders = replace(self._orders, frozen=False, push=None, pace=None)
             self.code = new_class_code()
             return count

@@ -83,6 +83,7 @@ class LessonRun(LessonState):
         Raises:
             ValueError: there is no such lesson.
         """
+        self.check_within(name, self.left_at(name))
         self.open_at(name, self.left_at(name), lab)
         self.progress = replace(self.progress, route="")
 
@@ -95,6 +96,7 @@ class LessonRun(LessonState):
         if name not in self.course.routes:
             raise unknown_name(name, list(self.course.routes), "route")
         first = self.course.routes[name].stop[0]
+        self.check_within(first.lesson, first.steps[0] - 1)
         self.open_at(first.lesson, first.steps[0] - 1, lab, name)
 
     def open_at(self, name: str, index: int, lab: LessonLab, route: str = "") -> None:
@@ -137,7 +139,8 @@ class LessonRun(LessonState):
         self.version += 1
 
     def close(self, lab: LessonLab) -> None:
-        """Close the lesson and restore the lab as it was before."""
+        """Close the lesson and restore the lab as it was before; ValueError if the class waits."""
+        self.check_within("", 0)
         self.progress = replace(self.progress, lesson="", route="", ended=False)
         self.plots = ()
         self._begin_again(lab, running=lab.session.running)
@@ -148,8 +151,9 @@ class LessonRun(LessonState):
         self.version += 1
 
     def finish(self) -> None:
-        """Show the end of the open lesson; a test is handed in."""
+        """Show the end of the open lesson, which belongs to its last step; a test is handed in."""
         if self.lesson is not None:
+            self.check_within(self.lesson.name, len(self.lesson.steps) - 1)
             self.note(**({"handed_in": True} if self.is_test else {}))
             self.progress = replace(self.progress, ended=True)
             self.version += 1
@@ -167,11 +171,14 @@ class LessonRun(LessonState):
             self.finish() if by > 0 else self._go(self.index, lab)
             return
         name, target = self.beside(by)
+        stays = by > 0 and self.waits and self.step_is("run")
+        if not stays:
+            self.check_within(name, target)
         if by > 0 and self.waits:
             self.note_answer(Answer())
-            if self.step_is("run"):
-                self._lock(lab.session)
-                return
+        if stays:
+            self._lock(lab.session)
+            return
         if name == lesson.name:
             self._go(target, lab)
         else:

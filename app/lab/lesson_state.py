@@ -13,6 +13,7 @@ from onpath.app.lab.answers import kept_number, kept_text
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import mark_of, marks_of
 from onpath.lessons.kept.option_keys import second_key
+from onpath.lessons.pace import Pace
 from onpath.lessons.personal.branches import is_shown
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.routes import Route
@@ -37,6 +38,7 @@ class LessonState:
         progress: the part that is saved.
         words: texts in the student's language.
         version: changes whenever the page must be redrawn.
+        pace: the steps within which the teacher lets the student go; None if anywhere.
     """
 
     def __init__(
@@ -46,6 +48,7 @@ class LessonState:
         self.progress = progress or Progress()
         self.words = words or Words(self.progress.language)
         self.version = 0
+        self.pace: Pace | None = None
 
     @property
     def lesson(self) -> Lesson | None:
@@ -124,6 +127,21 @@ class LessonState:
     def ended(self) -> bool:
         """Whether the end of the open lesson is shown in place of a step."""
         return self.progress.ended and self.lesson is not None
+
+    def set_pace(self, pace: Pace | None) -> None:
+        """Let the student go within some steps only, or anywhere."""
+        self.pace = pace
+        self.version += 1
+
+    def may_go(self, by: int) -> bool:
+        """Whether the teacher lets the student go `by` steps from the open one."""
+        return self.pace is None or self.pace.holds(*self.beside(by))
+
+    def check_within(self, name: str, index: int) -> None:
+        """Raise ValueError if the teacher does not let the student go to a step."""
+        pace = self.pace
+        if pace is not None and not pace.holds(name, index):
+            raise CodedError("lesson.out_of_pace", first=pace.first + 1, last=pace.last + 1)
 
     def past_optional(self) -> int | None:
         """Number of steps to the next one that is not optional, if the very next one is optional.

@@ -12,12 +12,12 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
 from onpath.app.page.answer_boxes import AnswerBox, PredictionForm, add_letters
 from onpath.app.page.concept_test.end import add_test_end
-from onpath.app.page.concept_test.entry import answered_line
 from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.lesson_end import LessonEnd
 from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.panels.widgets import Post, add_buttons, on_press
+from onpath.app.page.panels.widgets import Post, on_press
 from onpath.app.page.sketch_answer import SketchAnswer
+from onpath.app.page.step_ways import add_ways
 from onpath.app.scene.scene import Scene
 from onpath.lessons.course import Course
 from onpath.lessons.schema import (
@@ -26,7 +26,6 @@ from onpath.lessons.schema import (
     Prediction,
     Quiz,
     Sketch,
-    Step,
     Text,
 )
 from onpath.lessons.task_schema import Task
@@ -141,7 +140,7 @@ class LessonPanel:
                     self._add(number, block, run)
             else:
                 self._add_reading(run)
-            self._add_ways(step, run)
+            self._handles += add_ways(self._gui, run, self._post)
 
     def _add_reading(self, run: LessonView) -> None:
         """A button that shows the text before the experiment has run."""
@@ -275,39 +274,6 @@ class LessonPanel:
         what = block, answer, run.laws_shown, run.words
         self._chart = PredictionChart(self._gui, *what, run.truth)
         self._handles.append(self._chart)
-
-    def _add_ways(self, step: Step, run: LessonView) -> None:
-        """Navigation buttons: back, next, restore the set-up, close."""
-        if run.is_test:
-            self._html(page.remark(answered_line(run)))
-        if run.at_end:
-            label = run.words("test.hand_in" if run.is_test else "lesson.finish")
-            self._button(label, c.FinishLesson(), None, viser.Icon.CHECK)
-        else:
-            unseen = step.script is not None and not run.has_played()
-            label, colour = run.words("lesson.next"), "gray" if run.shows_next else None
-            if run.waits or unseen:
-                colour = "gray"
-                label = run.words("lesson.skip" if run.waits else "lesson.next_unseen")
-            self._button(label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)
-            self._add_way_past(run)
-        lesson = run.lesson
-        first = lesson is None or run.beside(-1) == (lesson.name, run.index)
-        keys = [*([] if first else ["back"]), *([] if run.is_test else ["again"]), "close"]
-        commands = {"back": c.GoToStep(-1), "again": c.BeginStepAnew(), "close": c.CloseLesson()}
-        asked = {run.words(f"lesson.{key}"): commands[key] for key in keys}
-        self._handles.append(add_buttons(self._gui, "", asked, self._post))
-
-    def _add_way_past(self, run: LessonView) -> None:
-        """A button that leads past the optional steps that come next, or to the end."""
-        past, command = run.past_optional(), c.FinishLesson()
-        if past is None:
-            return
-        label = run.words("lesson.finish")
-        if past:
-            label = run.words("lesson.past_optional", step=run.index + 1 + past)
-            command = c.GoToStep(past)
-        self._button(label, command, "gray", viser.Icon.PLAYER_TRACK_NEXT)
 
     def _html(self, content: str) -> viser.GuiHtmlHandle:
         handle = self._gui.add_html(content)

@@ -24,7 +24,7 @@ class LessonView(LessonState):
         student: session code of the lab; decides the order of options.
 
     Attributes:
-        playing, verdicts, truth: see `LessonSnapshot`.
+        playing, verdicts, truth, pace: see `LessonSnapshot`.
     """
 
     def __init__(
@@ -34,6 +34,7 @@ class LessonView(LessonState):
         self._student = student
         self.version, self.playing = shown.version, shown.playing
         self.verdicts, self.truth = shown.verdicts, shown.truth
+        self.pace = shown.pace
 
     @property
     def laws_shown(self) -> dict[str, str]:
@@ -46,6 +47,8 @@ class LessonView(LessonState):
         """Whether the open step's prediction is made and the next step lets it happen."""
         lesson = self.lesson
         if lesson is None or self.answer() is None or self.step_is("run") or self.at_end:
+            return False
+        if not self.may_go(1):
             return False
         name, index = self.beside(1)
         return name == lesson.name and lesson.steps[index].kind == "run"

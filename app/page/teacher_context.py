@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from onpath.app.classroom.classroom import Classroom
-from onpath.lessons.progress import Progress
+from onpath.lessons.progress import Answer, Progress
 from onpath.lessons.words import Words
 
 
@@ -19,6 +19,8 @@ class TeacherChoices:
         shown: whether the answers are shown, and not only how many there are.
         revealed: whether the truth is shown as well.
         followed: session code of the student whose lab is shown; empty for the teacher's own lab.
+        picked: numbers of the sketches that are shown; empty for all.
+        numbered: sketches in the order in which they came, by where they were asked, for `picked`.
     """
 
     lesson: str = ""
@@ -26,6 +28,8 @@ class TeacherChoices:
     shown: bool = True
     revealed: bool = False
     followed: str = ""
+    picked: tuple[int, ...] = ()
+    numbered: dict[tuple[str, int, bool], list[Answer]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

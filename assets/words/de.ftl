@@ -86,6 +86,8 @@ lesson-continue = Lektion { $number } fortsetzen
 lesson-continue_name = Lektion { $number } fortsetzen: { $title }
 lesson-close = Freies Labor
 lesson-back = Zurück
+lesson-wait = Die Klasse wartet hier, bis die Lehrkraft weitergeht.
+lesson-out_of_pace = Die Lehrkraft lässt die Klasse vorerst nur in die Schritte { $first } bis { $last }.
 lesson-next = Weiter
 lesson-skip = Vorhersage überspringen
 lesson-finish = Fertig
@@ -326,6 +328,26 @@ class-forgotten =
     }
 class-yes = Ja
 class-no = Nein
+class-picked = Gezeigte Skizzen
+class-picked_hint = Nummern wie 2, 5; leer für alle
+class-whereabouts = { $ended } am Ende der Lektion, { $elsewhere } woanders
+pace-title = Tempo
+pace-first = Von Schritt
+pace-last = Bis Schritt
+pace-keep = Die Klasse in diesen Schritten halten
+pace-end = Die Klasse überallhin lassen
+pace-none = Die Klasse darf überallhin.
+pace-kept = Die Klasse darf in die Schritte { $first } bis { $last } von { $lesson }.
+gains-title = Verstärkungen
+gains-axes = Achsen
+gains-pair = { $across } und { $up }
+gains-scatter = Die Verstärkungen aller
+gains-border = Grenze zwischen Schwingen (darunter) und Kriechen (darüber)
+gains-students =
+    { $count ->
+        [one] 1 Person
+       *[other] { $count } Personen
+    }
 
 ## Die beiden Prüfstände
 

@@ -88,6 +88,8 @@ lesson-continue = Go on with lesson { $number }
 lesson-continue_name = Go on with lesson { $number }: { $title }
 lesson-close = Free lab
 lesson-back = Back
+lesson-wait = The class waits here until the teacher goes on.
+lesson-out_of_pace = The teacher keeps the class within steps { $first } to { $last } for now.
 lesson-next = Next
 lesson-skip = Skip the prediction
 lesson-finish = Finish
@@ -328,6 +330,26 @@ class-forgotten =
     }
 class-yes = Yes
 class-no = No
+class-picked = Sketches to show
+class-picked_hint = Numbers such as 2, 5; empty for all
+class-whereabouts = { $ended } at the end of the lesson, { $elsewhere } elsewhere
+pace-title = Pace
+pace-first = From step
+pace-last = To step
+pace-keep = Keep the class within these steps
+pace-end = Let the class go anywhere
+pace-none = The class may go anywhere.
+pace-kept = The class may go from step { $first } to { $last } of { $lesson }.
+gains-title = Gains
+gains-axes = Axes
+gains-pair = { $across } and { $up }
+gains-scatter = Everyone's gains
+gains-border = border between swinging (below) and creeping (above)
+gains-students =
+    { $count ->
+        [one] 1 student
+       *[other] { $count } students
+    }
 
 ## The two benches; the names of the control laws stand in models/
 

@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from onpath.app.classroom.class_html import MOST_POINTS, prediction_view
+from onpath.app.classroom.class_html import prediction_view
 from onpath.app.classroom.results import Distribution
+from onpath.app.classroom.sketches_html import MOST_POINTS
 from onpath.app.page.lesson_chart import together
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.schema import Sketch

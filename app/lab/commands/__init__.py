@@ -1,6 +1,12 @@
 """Commands to a lab: frozen records with an `apply` method."""
 
-from onpath.app.lab.commands.classroom import Freeze, ReportState, TakeSetup, TakeStep
+from onpath.app.lab.commands.classroom import (
+    Freeze,
+    KeepWithin,
+    ReportState,
+    TakeSetup,
+    TakeStep,
+)
 from onpath.app.lab.commands.forces import (
     Grab,
     Hold,
@@ -89,6 +95,7 @@ __all__ = [
     "Grab",
     "Hold",
     "Identify",
+    "KeepWithin",
     "LookAt",
     "LookBack",
     "MoveHand",

@@ -9,6 +9,7 @@ from typing import ClassVar
 from onpath.app.lab.commands.path import finish
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.setups.setup import Setup
+from onpath.lessons.pace import Pace
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +74,23 @@ class TakeStep(Command):
             run.begin_anew(lab)
             said = "class.step_again"
         lab.show_message(run.words(said))
+        _tell(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class KeepWithin(Command):
+    """Let the student go within some steps only, and bring them there; None ends that."""
+
+    from_teacher: ClassVar[bool] = True
+    pace: Pace | None
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        run = lab.lessons
+        run.set_pace(self.pace)
+        if self.pace is not None and not self.pace.holds(run.progress.lesson, run.index):
+            run.open_at(self.pace.lesson, self.pace.first, lab)
+            lab.show_message(run.words("class.step"))
         _tell(lab)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.lessons.checks import Verdict
+from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress, Truth
 from onpath.models.control.place import Place
 from onpath.models.systems.catalogue import ROBOTS
@@ -114,6 +115,7 @@ class LessonSnapshot:
         playing: whether the lab is playing the step's demonstration.
         verdicts: on the checks of the open step's tasks, by task.
         truth: actual curves of the quantity that the open step predicts, or None.
+        pace: the steps within which the teacher lets the student go; None if anywhere.
     """
 
     version: int
@@ -121,6 +123,7 @@ class LessonSnapshot:
     playing: bool
     verdicts: dict[str, list[Verdict]]
     truth: Truth | None
+    pace: Pace | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -269,6 +269,7 @@ def _lesson(lab: Lab) -> LessonSnapshot:
         playing=run.playing,
         verdicts=dict(run.verdicts),
         truth=_truth(lab),
+        pace=run.pace,
     )
 
 

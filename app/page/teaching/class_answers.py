@@ -5,11 +5,13 @@ from __future__ import annotations
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.concept_test_results import gain_view, item_distribution, question_at
 from onpath.app.classroom.results import (
+    Distribution,
     distribution,
     is_asked_again,
     prediction_at,
     truth_of,
 )
+from onpath.app.classroom.sketches_html import Picks
 from onpath.app.lab.step_truth import computed_truth
 from onpath.app.page.panels.widgets import note
 from onpath.app.page.teacher_context import TeacherContext
@@ -65,9 +67,25 @@ class ClassAnswers:
         if not self._teaching.chosen.shown:
             return page.hidden_view(block, second or counted, words, large)
         laws = lesson.laws_shown(at)
-        view = page.prediction_view(block, counted, truth, revealed, words, large, laws, second)
+        picks = self._picks(lesson.name, at, counted, second)
+        view = page.prediction_view(
+            block, counted, truth, revealed, words, large, laws, second, picks
+        )
         missing = revealed and not counted.counts and truth is None
         return view + note(words("class.no_truth")) if missing else view
+
+    def _picks(
+        self, lesson: str, at: int, counted: Distribution, second: Distribution | None
+    ) -> Picks:
+        """The sketches that the teacher has picked; each is numbered when it is first seen."""
+        chosen, numbers = self._teaching.chosen, []
+        for again, found in ((False, counted), (True, second)):
+            if found is None:
+                continue
+            seen = chosen.numbered.setdefault((lesson, at, again), [])
+            seen.extend(each for each in found.sketches if each not in seen)
+            numbers.append(tuple(seen.index(each) + 1 for each in found.sketches))
+        return Picks(chosen.picked, tuple(numbers))
 
     def _truth_at(self, lesson: Lesson, at: int) -> Truth | None:
         """What happens, computed once if nobody has run it."""

@@ -18,9 +18,12 @@ from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.app.page.teaching.ask_again import AskAgain
 from onpath.app.page.teaching.class_answers import ClassAnswers
+from onpath.app.page.teaching.gains_tab import GainsTab
+from onpath.app.page.teaching.lesson_menu_labels import lesson_titles, step_titles
+from onpath.app.page.teaching.pace_tab import PaceTab
 from onpath.app.page.teaching.route_sender import RouteSender
+from onpath.app.page.teaching.sketch_choice import SketchChoice
 from onpath.lessons.concept_test.concept_test import BEFORE
-from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.words import Words
@@ -32,7 +35,7 @@ Submit = Callable[[Callable[[], None]], None]
 
 
 class TeacherPanel:
-    """Three tabs. The second one shows no names and suits a projector.
+    """Five tabs. Only the first one shows names; predictions, pace and gains suit a projector.
 
     Args:
         post: receives the commands for the teacher's own lab.
@@ -53,6 +56,7 @@ class TeacherPanel:
         self._course, self._words, self._post = course, words, post
         self._next, self._busy = 0.0, False
         self._answers = ClassAnswers(course, words, teaching)
+        self._lessons = lesson_titles(course, words)
         self._codes: list[viser.GuiHtmlHandle] = []
         self._large = teaching.progress().presenting
         panel = self._gui.add_panel(order=0)
@@ -61,6 +65,10 @@ class TeacherPanel:
         if self._course.lessons:
             with panel.add_tab(words("class.predictions"), viser.Icon.CHALKBOARD):
                 self._build_predictions()
+            with panel.add_tab(words("pace.title"), viser.Icon.WALK):
+                self._pace = PaceTab(self._gui, words, course, teaching)
+        with panel.add_tab(words("gains.title"), viser.Icon.CHART_DOTS):
+            self._gains = GainsTab(self._gui, words, teaching)
         with panel.add_tab(words("class.record"), viser.Icon.FILE_TEXT):
             self._build_record()
         panel.dock_left()
@@ -87,6 +95,8 @@ class TeacherPanel:
             self._show_standing()
             if self._course.lessons:
                 _show(self._prediction, self._answers.view(self._large))
+                self._pace.look(self._large)
+            self._gains.look(self._large)
         finally:
             self._busy = False
 
@@ -127,7 +137,8 @@ class TeacherPanel:
         if push is None:
             said = ""
         elif isinstance(push, TakeStep):
-            title = {name: label for label, name in self._lessons().items()}.get(push.lesson, "")
+            titles = {name: title for title, name in self._lessons.items()}
+            title = titles.get(push.lesson, "")
             said = self._words("class.standing_step", lesson=title, step=push.step + 1)
         else:
             said = self._words("class.standing_setup")
@@ -143,7 +154,7 @@ class TeacherPanel:
         words, gui, chosen = self._words, self._gui, self._chosen
         if not self._course.has(chosen.lesson):
             chosen.lesson, chosen.step = next(iter(self._course.lessons)), 0
-        lessons, steps = self._lessons(), self._steps()
+        lessons, steps = self._lessons, self._steps()
         own = next(label for label, name in lessons.items() if name == chosen.lesson)
         self._codes.append(gui.add_html(""))
         lesson = gui.add_dropdown(words("class.lesson"), list(lessons), initial_value=own)
@@ -153,6 +164,7 @@ class TeacherPanel:
         push = gui.add_button(words("class.push_step"), icon=viser.Icon.SEND)
         self._sent = gui.add_html("")
         AskAgain(gui, words, self._course, self._teaching, self._look_again)
+        self._sketches = SketchChoice(gui, words, chosen, self._look_again)
         RouteSender(gui, words, self._course, self._class)
         reveal = gui.add_checkbox(words("class.truth"), chosen.revealed)
         large = gui.add_checkbox(words("lesson.presenting"), self._large)
@@ -165,31 +177,20 @@ class TeacherPanel:
         on_user_update(large, self._present)
         on_press(push, self._push_step)
 
-    def _lessons(self) -> dict[str, str]:
-        """Names of lessons and tests by title."""
-        course, language = self._course, self._words.language
-        lessons = {
-            f"{number}. {course.lesson(name, language).front.title}": name
-            for name, number in course.numbers().items()
-        }
-        tests = {title: name for name, title in titles_of_tests(course, self._words).items()}
-        return {**lessons, **tests}
-
     def _steps(self) -> list[str]:
         lesson = self._course.lesson(self._chosen.lesson, self._words.language)
-        return [
-            f"{number}. {self._words(f'kind.{step.kind}')}: {step.title}"
-            for number, step in enumerate(lesson.steps, start=1)
-        ]
+        return step_titles(lesson, self._words)
 
     def _choose_lesson(self, name: str) -> None:
         self._chosen.lesson, self._chosen.step = name, 0
         self._step.options = self._steps()
         self._step.value = self._step.options[0]
+        self._sketches.clear()
         self._look_again()
 
     def _choose_step(self, label: str) -> None:
         self._chosen.step = self._steps().index(label)
+        self._sketches.clear()
         self._look_again()
 
     def _reveal(self, on: bool) -> None:

@@ -1,0 +1,99 @@
+"""Everyone's gains as points of a diagram, without names, as HTML."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import sqrt
+
+from onpath.app.classroom.class_sync import GAINS
+from onpath.app.common.templates import render
+from onpath.lessons.labels import setting_label
+from onpath.lessons.words import Words
+from onpath.models.systems.catalogue import FIVE_BAR
+from onpath.models.systems.parameters import specs
+
+PAIRS = (("K1", "K2"), ("K4", "K5"), ("K1", "K3"), ("K1", "K5"))
+"""Gains along the two axes: which spring goes with which damping first."""
+SPRINGS = (("K1", "K2"), ("K4", "K5"))
+"""Pairs of a spring and its damping, which have a border between swinging and creeping."""
+WIDTH, HEIGHT, LEFT, BELOW, MARGIN = 640, 380, 62, 52, 14  # size of the diagram, [px]
+POINTS = 60  # of the border
+
+
+@dataclass(frozen=True, slots=True)
+class Dot:
+    """Students with the same gains: place and radius, [px], and how many they are."""
+
+    x: float
+    y: float
+    radius: float
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """Converts gains to places; what is beyond the range of a slider is drawn at its end."""
+
+    across: tuple[float, float]
+    up: tuple[float, float]
+
+    def place(self, x: float, y: float) -> tuple[float, float]:
+        """Place of a point, [px]."""
+        part = [
+            min(max((value - low) / (high - low), 0.0), 1.0)
+            for value, (low, high) in ((x, self.across), (y, self.up))
+        ]
+        return (
+            LEFT + part[0] * (WIDTH - LEFT - MARGIN),
+            MARGIN + (1 - part[1]) * (HEIGHT - BELOW - MARGIN),
+        )
+
+
+def gains_view(
+    pair: tuple[str, str],
+    gains: Iterable[tuple[float, ...]],
+    words: Words,
+    large: bool = False,
+) -> str:
+    """A point for each student; students with the same gains share a larger one.
+
+    Args:
+        pair: names of the gains along the two axes.
+        gains: as in `Member.gains`; those of students whose lab is not known yet are empty.
+        large: whether to use large type for a projector.
+    """
+    known = [each for each in gains if each]
+    at = [GAINS.index(name) for name in pair]
+    counted = Counter((each[at[0]], each[at[1]]) for each in known)
+    declared = specs(FIVE_BAR.lab)
+    ranges = [(declared[name].low, declared[name].high) for name in pair]
+    scale = Scale(*ranges)
+    dots = [
+        Dot(*scale.place(*values), 5 + 3 * sqrt(count), count) for values, count in counted.items()
+    ]
+    marks = [
+        (*scale.place(*(low + part * (high - low) for low, high in ranges)), values)
+        for part in (0.0, 0.25, 0.5, 0.75, 1.0)
+        for values in [tuple(f"{low + part * (high - low):g}" for low, high in ranges)]
+    ]
+    return render(
+        "class/gains.html",
+        titles=[f"{setting_label(n, FIVE_BAR.lab, words)} [{declared[n].unit}]" for n in pair],
+        dots=dots,
+        marks=marks,
+        border=_border(scale) if pair in SPRINGS else "",
+        box=(WIDTH, HEIGHT, LEFT, MARGIN, HEIGHT - BELOW),
+        students=len(known),
+        words=words,
+        large=large,
+    )
+
+
+def _border(scale: Scale) -> str:
+    """Damping at which a spring neither swings nor creeps, as points of an SVG polyline."""
+    most = min(scale.across[1], (scale.up[1] / 2) ** 2)
+    springs = [most * (i / POINTS) ** 2 for i in range(POINTS + 1)]
+    places = [scale.place(spring, 2 * sqrt(spring)) for spring in springs]
+    return " ".join(f"{x:.1f},{y:.1f}" for x, y in places)

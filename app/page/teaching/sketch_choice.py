@@ -1,0 +1,45 @@
+"""Which of the class's sketches are shown, by numbers that tell nothing of who drew them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import viser
+
+from onpath.app.classroom.classroom import MOST_MEMBERS
+from onpath.app.page.panels.widgets import on_user_update
+from onpath.app.page.teacher_context import TeacherChoices
+from onpath.lessons.words import Words
+
+
+class SketchChoice:
+    """A field for the numbers of some sketches; empty for all."""
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        words: Words,
+        chosen: TeacherChoices,
+        look_again: Callable[[], None],
+    ) -> None:
+        self._chosen, self._look_again = chosen, look_again
+        typed = ", ".join(map(str, chosen.picked))
+        self._box = gui.add_text(words("class.picked"), typed, hint=words("class.picked_hint"))
+        on_user_update(self._box, self._choose)
+
+    def clear(self) -> None:
+        """Show all sketches again, as those of another step are other ones."""
+        self._chosen.picked = ()
+        if self._box.value:
+            self._box.value = ""
+
+    def _choose(self, typed: str) -> None:
+        self._chosen.picked = picked(typed)
+        self._look_again()
+
+
+def picked(typed: str) -> tuple[int, ...]:
+    """The numbers in a text, each once; whatever else is in it is ignored."""
+    found = (int(number) for number in re.findall(r"(?a:\d{1,4})", typed[:200]))
+    return tuple(dict.fromkeys(number for number in found if 0 < number <= MOST_MEMBERS))
