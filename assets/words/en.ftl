@@ -241,7 +241,7 @@ test-students = { $count ->
     }
 test-means = Right answers: { $before } % before, { $after } % after.
 test-gain = Normalised gain: { $gain }
-test-gain_means = Of what the class did not know before, it has learnt this share: (after − before) / (100 % − before).
+test-gain_means = Of what the class did not know before, it has learned this share: (after − before) / (100 % − before).
 test-gain_none = Normalised gain: not defined, since all answers were right before.
 test-waiting = { $part } of { $all } have handed in the test before the course, { $after } the one after it.
 test-number = No.

@@ -1,4 +1,4 @@
-"""What a class has learnt, by its answers to the concept test before and after the course."""
+"""What a class has learned, by its answers to the concept test before and after the course."""
 
 from __future__ import annotations
 

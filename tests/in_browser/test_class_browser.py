@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser, FloatRect, Locator
+from playwright.sync_api import Browser, FloatRect, Locator, Page
 
 from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.common.access_codes import shown
@@ -26,6 +26,11 @@ pytestmark = pytest.mark.thorough
 
 LESSON = "01-path-or-timetable"
 HOSTILE = "<img src=x onerror=1>"
+SMALLEST = """() => Math.min(...[...document.querySelectorAll(".op-class *")]
+    .filter(each => each.checkVisibility())
+    .filter(each => [...each.childNodes].some(node => node.nodeType === 3 && node.data.trim()))
+    .map(each => [each, each.getScreenCTM?.() ?? {a: 1, b: 0}])
+    .map(([each, to]) => parseFloat(getComputedStyle(each).fontSize) * Math.hypot(to.a, to.b)))"""
 WINDOWS = ((1100, 600), (800, 400), (800, 400))
 
 
@@ -60,6 +65,11 @@ def placed(what: Locator) -> FloatRect:
     box = what.bounding_box()
     assert box is not None
     return box
+
+
+def smallest(page: Page) -> float:
+    """Size of the smallest letters in what the teacher's page shows of the class, [px]."""
+    return page.evaluate(SMALLEST)
 
 
 def fill(tab: Tab, label: str, text: str) -> None:
@@ -123,19 +133,77 @@ def test_a_pushed_step_opens_and_predictions_show_without_names(tabs: Class) -> 
         student.page.get_by_role("heading", name="Draw what the tracker does").wait_for()
     for student, height in ((first, 40.0), (second, 10.0)):
         student.ask(c.Predict(times=(0.0, 4.0, 8.0), values=(0.0, height, 0.0)))
-    picture = teacher.page.locator(".op-class")
-    wait_for(lambda: picture.locator("polyline").count() == 2)
+    picture = teacher.page.locator(".op-class").filter(visible=True)
+    curves = picture.locator("svg:has(text) polyline")
+    wait_for(lambda: curves.count() == 2)
     assert "2 predicted" in picture.inner_text() and "Ada" not in picture.inner_text()
     assert all(not student.lab.lessons.progress.notes[LESSON].truths for student in (first, second))
     teacher.page.get_by_text("Show the truth").click()
-    wait_for(lambda: picture.locator("polyline").count() == 4)  # though nobody has run it
+    wait_for(lambda: curves.count() == 4)  # though nobody has run it
     teacher.page.get_by_text("Show the truth").click()
-    wait_for(lambda: picture.locator("polyline").count() == 2)
+    wait_for(lambda: curves.count() == 2)
+
+
+def test_one_of_the_sketches_is_picked_by_its_number(tabs: Class) -> None:
+    teacher = tabs.teacher
+    picture = teacher.page.locator(".op-class").filter(visible=True)
+    curves = picture.locator("svg:has(text) polyline")
+    fill(teacher, "Sketches to show", "2")
+    wait_for(lambda: curves.count() == 1)
+    assert picture.locator("svg text[font-weight='700']").all_text_contents() == ["2"]
+    fill(teacher, "Sketches to show", "")
+    wait_for(lambda: curves.count() == 2)
+
+
+def test_a_class_is_kept_within_steps_until_the_teacher_goes_on(tabs: Class) -> None:
+    teacher, (first, second) = tabs.teacher, tabs.students
+    teacher.page.get_by_role("tab", name="Pace").click()
+    bars = teacher.page.locator(".op-class").filter(visible=True)
+    bars.get_by_text("2", exact=True).wait_for()  # students, in step 2
+    teacher.field("To step").click()
+    teacher.page.get_by_role("option", name=re.compile("^2. Predict")).click()
+    teacher.press("Keep the class within these steps")
+    for student in (first, second):
+        student.page.get_by_text("The class waits here").wait_for()
+        student.wait_until_built()
+        assert student.button("Next").count() == student.button("Free lab").count() == 0
+        assert student.button("Let it happen").count() == 0 and student.button("Back").count() == 1
+    first.page.keyboard.press("PageDown")
+    wait_for(lambda: "within steps 1 to 2" in first.said())
+    assert first.lab.lessons.index == 1
+    teacher.page.get_by_text("may go from step 1 to 2").wait_for()
+    teacher.press("Let the class go anywhere")
+    for student in (first, second):
+        student.button("Let it happen").wait_for()
+    teacher.page.get_by_text("The class may go anywhere").wait_for()
+
+
+def test_gains_of_all_are_points_that_can_be_read_from_afar(tabs: Class) -> None:
+    teacher, (first, second) = tabs.teacher, tabs.students
+    teacher.page.get_by_role("tab", name="Gains").click()
+    shown = teacher.page.get_by_role("img", name="Everyone's gains")
+    first.ask(c.SetParameter("K1", 900.0))
+    wait_for(lambda: shown.locator("circle").count() == 2)
+    second.ask(c.SetParameter("K1", 900.0))
+    wait_for(lambda: shown.locator("circle").count() == 1)
+    page = teacher.page
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    page.get_by_role("tab", name="Predictions").click()
+    page.get_by_text("Presentation: large type").click()
+    for tab in ("Gains", "Pace"):
+        page.get_by_role("tab", name=tab).click()
+        wait_for(lambda: smallest(page) >= 24)
+    page.get_by_role("tab", name="Predictions").click()
+    page.get_by_text("Presentation: large type").click()
+    page.set_viewport_size({"width": WINDOWS[0][0], "height": WINDOWS[0][1]})
+    for student in (first, second):
+        student.ask(c.BeginStepAnew())
 
 
 def test_on_a_projector_the_prediction_is_large_and_comes_first(tabs: Class) -> None:
     page = tabs.teacher.page
-    picture, size = page.locator(".op-class"), "each => parseFloat(getComputedStyle(each).fontSize)"
+    picture = page.locator(".op-class").filter(visible=True)
+    size = "each => parseFloat(getComputedStyle(each).fontSize)"
     page.get_by_text("Presentation: large type").click()
     wait_for(lambda: picture.evaluate(size) >= 24)
     wait_for(lambda: placed(picture)["y"] < placed(tabs.teacher.field("Lesson"))["y"])

@@ -107,7 +107,7 @@ def test_a_course_may_have_a_test_of_its_own_or_none(tmp_path: Path) -> None:
 
 
 @given(st.floats(0, 99.9), st.floats(0, 100))
-def test_the_gain_is_the_learnt_part_of_what_was_not_known(before: float, after: float) -> None:
+def test_the_gain_is_the_learned_part_of_what_was_not_known(before: float, after: float) -> None:
     gain = normalised_gain(before, after)
     assert gain is not None and gain <= 1.0 + 1e-9
     assert before + gain * (100 - before) == pytest.approx(after, abs=1e-9)

@@ -263,11 +263,18 @@ def test_the_integral_brings_it_back_to_the_path_against_the_brake() -> None:
     within = said("06", "is then back within # mm of the circle")[0]
     later = said("06", "the follower gets up to # mm off, and within # mm after")
     assert [within, *later] == told[1:]
+    asked = said("06", "After letting go the follower gets up to # mm off: that is what")
+    assert asked == later[:1]
     assert said("01", "after two seconds of holding it is within # mm of the circle") == [within]
     readme = "the follower ends within # mm of the circle,"
     assert stated_in_readme(readme) == [within]
     readme = "when let go, it is up to # mm off, and within # mm after one second."
     assert stated_in_readme(readme) == told[2:]
+
+
+def test_without_K5_the_follower_stays_where_it_starts() -> None:
+    robot = Driven(FOLLOWER, speed=FAST, K5=0.0).run(3.0)
+    assert abs(robot.place) < 1e-9 and robot.distance.max() < 1e-9
 
 
 def test_round_the_circle_as_lesson_1_tells_it() -> None:
