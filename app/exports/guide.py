@@ -10,6 +10,7 @@ from pathlib import Path
 
 from onpath.app.common.templates import render
 from onpath.app.exports.course_material import taught_lesson
+from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.words import Words
@@ -18,6 +19,8 @@ from onpath.lessons.words import Words
 def guide(course: Course, folder: Path, names: Iterable[str], words: Words) -> str:
     """The teacher's guide to some lessons as a standalone page.
 
+    The guide to all lessons has the concept test, too.
+
     Args:
         folder: contains the lessons' own folders.
 
@@ -25,7 +28,9 @@ def guide(course: Course, folder: Path, names: Iterable[str], words: Words) -> s
         ValueError: the reference solutions of a lesson cannot be read.
     """
     lessons = [taught_lesson(course, folder, name, words) for name in names]
-    return render("guide/guide.html", lessons=lessons, words=words, letters=LETTERS)
+    whole = {taught.lesson.name for taught in lessons} == {*course.lessons}
+    test = course.lesson(BEFORE, words.language) if whole and course.tests else None
+    return render("guide/guide.html", lessons=lessons, test=test, words=words, letters=LETTERS)
 
 
 def worksheet(course: Course, folder: Path, name: str, words: Words) -> tuple[str, str]:

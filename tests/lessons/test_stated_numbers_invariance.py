@@ -272,7 +272,7 @@ def test_the_integral_brings_it_back_to_the_path_against_the_brake() -> None:
     assert stated_in_readme(readme) == told[2:]
 
 
-def test_without_K5_the_follower_stays_where_it_starts() -> None:
+def test_without_k5_the_follower_stays_where_it_starts() -> None:
     robot = Driven(FOLLOWER, speed=FAST, K5=0.0).run(3.0)
     assert abs(robot.place) < 1e-9 and robot.distance.max() < 1e-9
 

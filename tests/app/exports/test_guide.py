@@ -16,6 +16,7 @@ from onpath.app.lab.step_truth import computed_truth
 from onpath.assets.messages import languages
 from onpath.lessons.action_schema import Action, Laws, Script
 from onpath.lessons.action_words import script_words
+from onpath.lessons.concept_test.concept_test import BEFORE, questions
 from onpath.lessons.course import BUILT_IN, Course
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Block, Choice, NumberQuestion, OpenQuestion, Quiz, Sketch, Text
@@ -58,6 +59,11 @@ def asked(name: str, language: str) -> Iterator[tuple[str, Block]]:
                 yield f"{name}.{index}.{place}", block
 
 
+def concept_questions(language: str) -> list[Quiz]:
+    """The questions of the concept test."""
+    return list(questions(course().lesson(BEFORE, language)).values())
+
+
 def texts(block: Block) -> list[str]:
     """What the guide says of a block."""
     if isinstance(block, Task):
@@ -68,7 +74,9 @@ def texts(block: Block) -> list[str]:
         return [block.question, block.answer]
     assert isinstance(block, Choice | Quiz)
     told = [text for option in block.options for text in (option.text, option.answer)]
-    return [block.question, *told, getattr(block, "ask", ""), *getattr(block, "reasons", ())]
+    asks = [block.ask] if isinstance(block, Choice) else []
+    aims = [block.misconception] if isinstance(block, Quiz) and block.misconception else []
+    return [block.question, *told, *asks, *aims, *getattr(block, "reasons", ())]
 
 
 @in_every_language
@@ -77,6 +85,7 @@ def test_the_guide_has_every_question_once_with_its_answer(language: str) -> Non
     page = guide(course(), BUILT_IN, course().lessons, Words(language))
     articles = ARTICLE.findall(page)
     every = {key: block for name in course().lessons for key, block in asked(name, language)}
+    every |= {f"test.{i}": block for i, block in enumerate(concept_questions(language))}
     assert [key for key, _ in articles] == list(every)
     for key, article in articles:
         for text in texts(every[key]):
