@@ -35,11 +35,16 @@ class Stop(Data, frozen=True):
 
 
 class Route(Data, frozen=True):
-    """A route: its texts by language, and its stops in order, no step twice."""
+    """A route: its texts by language, and its stops in order, no step twice.
+
+    Attributes:
+        test: whether the concept test comes before and after it.
+    """
 
     title: Texts
     summary: Texts
     stop: tuple[Stop, ...]
+    test: bool = False
 
     @property
     def minutes(self) -> float:

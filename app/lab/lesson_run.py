@@ -95,9 +95,9 @@ class LessonRun(LessonState):
         """
         if name not in self.course.routes:
             raise unknown_name(name, list(self.course.routes), "route")
-        first = self.course.routes[name].stop[0]
-        self.check_within(first.lesson, first.steps[0] - 1)
-        self.open_at(first.lesson, first.steps[0] - 1, lab, name)
+        first = self.first_of(self.course.routes[name])
+        self.check_within(*first)
+        self.open_at(*first, lab, name)
 
     def open_at(self, name: str, index: int, lab: LessonLab, route: str = "") -> None:
         """Open a step of a lesson, and set the lab up for it.

@@ -8,6 +8,7 @@ from onpath.app.common.palette import AZURE, BORDER, GREEN
 from onpath.app.common.templates import render
 from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.checks import Verdict
+from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Answer
@@ -155,6 +156,10 @@ def route_entry(route: Route, run: LessonState) -> str:
         first, last = stop.steps
         told = {"first": first, "last": last, "minutes": f"{stop.minutes:g}"}
         stops.append(words("route.stop", lesson=f"{numbers[stop.lesson]}. {lesson}", **told))
+    if route.test and run.course.tests:
+        before, after = titles_of_tests(run.course, words).items()
+        tests = [_test_stop(name, title, run) for name, title in (before, after)]
+        stops = [tests[0], *stops, tests[1]]
     title = route.text(route.title, words.language)
     return render(
         "lesson/route.html",
@@ -164,6 +169,11 @@ def route_entry(route: Route, run: LessonState) -> str:
         minutes=words("lesson.minutes", minutes=f"{route.minutes:g}"),
         stops=stops,
     )
+
+
+def _test_stop(name: str, title: str, run: LessonState) -> str:
+    minutes, _ = lesson_minutes(run.course.lesson(name, run.words.language))
+    return f"{title}, {run.words('lesson.minutes', minutes=minutes)}"
 
 
 def route_line(run: LessonState) -> str:

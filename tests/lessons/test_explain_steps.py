@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.schema import Choice, Lesson, OpenQuestion, Quiz, Sketch, Step, Text
+from tests.support.built_in import built_in_course
 
-COURSE = read_course([BUILT_IN])[0]
+COURSE = built_in_course()[0]
 ASKS = Choice | Sketch | Quiz | OpenQuestion
 LITERATURE = {"en": "In the literature", "de": "In der Literatur"}
 ASKED = {

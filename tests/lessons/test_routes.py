@@ -7,9 +7,17 @@ from pathlib import Path
 import pytest
 
 from onpath.app.cli.main import run_command
-from onpath.app.lab.commands import FollowRoute, GoToStep, OpenLesson, TakeStep
+from onpath.app.lab.commands import (
+    FinishLesson,
+    FollowRoute,
+    GoToStep,
+    OpenLesson,
+    Predict,
+    TakeStep,
+)
 from onpath.app.lab.lab import Lab
 from onpath.assets.messages import languages
+from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.minutes import step_minutes
 from onpath.lessons.progress import Progress, read_progress
@@ -148,6 +156,21 @@ def test_the_built_in_routes_have_time_for_what_they_name() -> None:
             assert "lecture" in name or stop.minutes >= estimated - 1, (name, stop, estimated)
     minutes = [route.minutes for route in course.routes.values()]
     assert minutes[0] <= 90 and minutes[1] <= 20
+
+
+def test_a_route_begins_and_ends_with_the_concept_test() -> None:
+    course, _ = built_in_course()
+    (name,) = [name for name, route in course.routes.items() if route.test]
+    lab = Lab(store(), course=course)
+    do(lab, FollowRoute(name))
+    assert place(lab) == (BEFORE, 0) and lab.lessons.progress.route == name
+    do(lab, FinishLesson(), FollowRoute(name))
+    first, *_, last = course.routes[name].stop
+    assert place(lab) == (first.lesson, first.steps[0] - 1)
+    do(lab, TakeStep(last.lesson, last.steps[1] - 1, name), Predict(option=0), FinishLesson())
+    assert lab.lessons.ended and lab.lessons.test_after() == AFTER
+    do(lab, OpenLesson(AFTER), FinishLesson())
+    assert lab.lessons.test_after() == ""
 
 
 def test_routes_are_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

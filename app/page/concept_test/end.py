@@ -12,6 +12,7 @@ from onpath.app.common.templates import render
 from onpath.app.exports.concept_test_facts import told_tests
 from onpath.app.lab import commands as c
 from onpath.app.page.panels.widgets import Post, add_buttons
+from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.concept_test.titles import titles_of_tests
 
 if TYPE_CHECKING:
@@ -30,7 +31,11 @@ def add_test_end(
     title = titles_of_tests(run.course, words)[run.progress.lesson]
     shown = {"run": run, "title": title, "told": told, "colour": AZURE.hex}
     content = gui.add_html(render("lesson/test_end.html", words=words, **shown))
-    ways: dict[str, Callable[[], None]] = {
+    ways: dict[str, Callable[[], None]] = {}
+    route = run.progress.route
+    if run.progress.lesson == BEFORE and route in run.course.routes:
+        ways[words("route.follow")] = lambda: post(c.FollowRoute(route))
+    ways |= {
         words("end.record"): report,
         words("lesson.close"): lambda: post(c.CloseLesson()),
     }
