@@ -147,15 +147,7 @@ class Classroom(Protocol):
         """Send a set-up or a step to all members once, and to those who join later.
 
         It remains in effect until another is sent or the class ends. Sending None clears it
-        without changing any lab; later joiners then keep their own set-up. A step outside the
-        range of the pace ends that.
-        """
-        ...
-
-    def keep_within(self, pace: Pace | None) -> None:
-        """Let students go within a range of steps only; None lets them go anywhere.
-
-        Whoever is outside, also when joining later, is brought to its first step.
+        without changing any lab; later joiners then keep their own set-up.
         """
         ...
 

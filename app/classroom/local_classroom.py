@@ -118,7 +118,11 @@ class LocalClassroom:
             self._orders = replace(self._orders, pushes=count, push=push, pace=pace)
 
     def keep_within(self, pace: Pace | None) -> None:
-        """See `Classroom.keep_within`."""
+        """Let students go within a range of steps only; None lets them go anywhere.
+
+        Whoever is outside, also when joining later, is brought to its first step. A step that is
+        sent and lies outside ends it.
+        """
         with self._lock:
             self._orders = replace(self._orders, pace=pace)
 

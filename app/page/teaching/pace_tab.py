@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import viser
 
+from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.classroom.pace_html import pace_view
 from onpath.app.page.panels.widgets import note, on_press, on_user_update
-from onpath.app.page.teacher_context import TeacherContext
+from onpath.app.page.teacher_context import TeacherChoices
 from onpath.app.page.teaching.lesson_menu_labels import lesson_titles, step_titles
 from onpath.lessons.course import Course
 from onpath.lessons.pace import Pace
@@ -17,12 +18,17 @@ class PaceTab:
     """A lesson, a first and a last step, and for each step a bar of the students who are there."""
 
     def __init__(
-        self, gui: viser.GuiApi, words: Words, course: Course, teaching: TeacherContext
+        self,
+        gui: viser.GuiApi,
+        words: Words,
+        course: Course,
+        chosen: TeacherChoices,
+        classroom: LocalClassroom,
     ) -> None:
-        self._words, self._course, self._class = words, course, teaching.classroom
+        self._words, self._course, self._class = words, course, classroom
         pace, self._names = self._class.orders.pace, lesson_titles(course, words)
         titles = {name: title for title, name in self._names.items()}
-        self._lesson = pace.lesson if pace else teaching.chosen.lesson or next(iter(course.lessons))
+        self._lesson = pace.lesson if pace else chosen.lesson or next(iter(course.lessons))
         steps = self._steps()
         menu = gui.add_dropdown(
             words("class.lesson"), list(self._names), initial_value=titles[self._lesson]

@@ -9,6 +9,7 @@ import viser
 
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.concept_test_results import rows_without_names
+from onpath.app.classroom.local_classroom import LocalClassroom
 from onpath.app.classroom.results import class_csv
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
@@ -59,14 +60,14 @@ class TeacherPanel:
         self._lessons = lesson_titles(course, words)
         self._codes: list[viser.GuiHtmlHandle] = []
         self._large = teaching.progress().presenting
+        self._pace: PaceTab | None = None
         panel = self._gui.add_panel(order=0)
         with panel.add_tab(words("class.title"), viser.Icon.USERS):
             self._build_class()
         if self._course.lessons:
             with panel.add_tab(words("class.predictions"), viser.Icon.CHALKBOARD):
                 self._build_predictions()
-            with panel.add_tab(words("pace.title"), viser.Icon.WALK):
-                self._pace = PaceTab(self._gui, words, course, teaching)
+            self._build_pace(panel)
         with panel.add_tab(words("gains.title"), viser.Icon.CHART_DOTS):
             self._gains = GainsTab(self._gui, words, teaching)
         with panel.add_tab(words("class.record"), viser.Icon.FILE_TEXT):
@@ -95,10 +96,19 @@ class TeacherPanel:
             self._show_standing()
             if self._course.lessons:
                 _show(self._prediction, self._answers.view(self._large))
-                self._pace.look(self._large)
+                if self._pace is not None:
+                    self._pace.look(self._large)
             self._gains.look(self._large)
         finally:
             self._busy = False
+
+    def _build_pace(self, panel: viser.GuiPanelHandle) -> None:
+        """Not for a class of several processes, which knows no pace."""
+        room = self._class
+        if isinstance(room, LocalClassroom):
+            with panel.add_tab(self._words("pace.title"), viser.Icon.WALK):
+                chosen = self._chosen
+                self._pace = PaceTab(self._gui, self._words, self._course, chosen, room)
 
     # Progress
 
