@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import viser
 
@@ -102,7 +103,7 @@ class TeacherPanel:
         finally:
             self._busy = False
 
-    def _build_pace(self, panel: viser.GuiPanelHandle) -> None:
+    def _build_pace(self, panel: Any) -> None:
         """Not for a class of several processes, which knows no pace."""
         room = self._class
         if isinstance(room, LocalClassroom):
