@@ -18,6 +18,7 @@ from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.step_setup import setup_of
 from onpath.lessons.checks import Verdict, judge, statistic
+from onpath.lessons.concept_test.on_route import first_step
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.measures.earlier_run import EarlierRun
@@ -95,7 +96,7 @@ class LessonRun(LessonState):
         """
         if name not in self.course.routes:
             raise unknown_name(name, list(self.course.routes), "route")
-        first = self.first_of(self.course.routes[name])
+        first = first_step(self.course.routes[name], self.course, self.progress)
         self.check_within(*first)
         self.open_at(*first, lab, name)
 

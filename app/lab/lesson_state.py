@@ -10,7 +10,6 @@ from typing import Any
 from msgspec.structs import replace
 
 from onpath.app.lab.answers import kept_number, kept_text
-from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import mark_of, marks_of
 from onpath.lessons.kept.option_keys import second_key
@@ -88,20 +87,6 @@ class LessonState:
         if self.is_test:
             return None
         return self.course.routes.get(self.progress.route)
-
-    def first_of(self, route: Route) -> tuple[str, int]:
-        """Lesson and index of the step with which a route begins, or goes on after its test."""
-        stop, notes = route.stop[0], self.progress.notes.get(BEFORE, Notes())
-        has_test = route.test and BEFORE in self.course.tests
-        if has_test and not notes.handed_in:
-            return BEFORE, 0
-        return stop.lesson, stop.steps[0] - 1
-
-    def test_after(self) -> str:
-        """The test that comes after the route that is followed; empty if none is left to do."""
-        route, notes = self.route, self.progress.notes.get(AFTER, Notes())
-        left = route is not None and route.test and AFTER in self.course.tests
-        return AFTER if left and not notes.handed_in else ""
 
     def beside(self, by: int) -> tuple[str, int]:
         """Lesson and index of a step `by` steps from the open one; at an end, of the last one.

@@ -23,6 +23,7 @@ from onpath.app.lab import commands as c
 from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.panels.widgets import Post, add_buttons, on_press
 from onpath.lessons.benches import robot_names
+from onpath.lessons.concept_test.on_route import last_test
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.progress import Answer
 from onpath.lessons.schema import Choice, Prediction, Sketch
@@ -127,8 +128,9 @@ class LessonEnd:
             on = self._gui.add_button(words("end.next", lesson=title), icon=viser.Icon.ARROW_RIGHT)
             on_press(on, lambda: self._post(c.OpenLesson(name)))
             self.handles.append(on)
-        if test := self._run.test_after():
-            title = titles_of_tests(self._run.course, words)[test]
+        run = self._run
+        if test := last_test(run.route, run.course, run.progress):
+            title = titles_of_tests(run.course, words)[test]
             label = words("test.open_name", title=title)
             last = self._gui.add_button(label, icon=viser.Icon.ARROW_RIGHT)
             on_press(last, lambda: self._post(c.OpenLesson(test)))

@@ -17,6 +17,7 @@ from onpath.app.lab.commands import (
 )
 from onpath.app.lab.lab import Lab
 from onpath.assets.messages import languages
+from onpath.lessons.concept_test import on_route
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.minutes import step_minutes
@@ -168,9 +169,10 @@ def test_a_route_begins_and_ends_with_the_concept_test() -> None:
     first, *_, last = course.routes[name].stop
     assert place(lab) == (first.lesson, first.steps[0] - 1)
     do(lab, TakeStep(last.lesson, last.steps[1] - 1, name), Predict(option=0), FinishLesson())
-    assert lab.lessons.ended and lab.lessons.test_after() == AFTER
+    route = lab.lessons.route
+    assert lab.lessons.ended and on_route.last_test(route, course, lab.lessons.progress) == AFTER
     do(lab, OpenLesson(AFTER), FinishLesson())
-    assert lab.lessons.test_after() == ""
+    assert on_route.last_test(route, course, lab.lessons.progress) == ""
 
 
 def test_routes_are_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
