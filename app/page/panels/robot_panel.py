@@ -9,8 +9,8 @@ import viser
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseRobot
 from onpath.app.page.panels.dialog import dialog
+from onpath.app.page.panels.robot_picture import picture_of
 from onpath.app.page.panels.widgets import Post, on_menu_press, on_press
-from onpath.app.page.robot_picture import picture_of
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 

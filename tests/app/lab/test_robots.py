@@ -26,7 +26,7 @@ from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.snapshots.robot_geometry import geometry_function, robot_views
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.page import panel_factory
-from onpath.app.page.robot_picture import picture_of
+from onpath.app.page.panels.robot_picture import picture_of
 from onpath.app.scene.poses import poses_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models import systems
