@@ -39,9 +39,9 @@ class Picks:
     numbers: tuple[tuple[int, ...], ...] = ()
 
     def of(self, number: int, sketches: Sequence[Answer]) -> Numbered:
-        """The sketches of a round that are shown, with their numbers."""
+        """The sketches of a round that are shown, in the order of their numbers."""
         known = self.numbers[number] if number < len(self.numbers) else range(1, 1 + len(sketches))
-        both = zip(known, sketches, strict=True)
+        both = sorted(zip(known, sketches, strict=True), key=lambda each: each[0])
         return tuple(each for each in both if not self.picked or each[0] in self.picked)
 
 

@@ -132,7 +132,7 @@ def test_picked_sketches_keep_their_numbers_while_others_come_in(course: Course)
     teaching.chosen.picked = (1, 3)
     shown = answers.view(True)
     assert set(polylines(shown)) == {small[0], small[2]}
-    assert re.findall(r'font-weight="700"[^>]*>(\d+)</text>', shown) == ["3", "1"]
+    assert re.findall(r'font-weight="700"[^>]*>(\d+)</text>', shown) == ["1", "3"]
 
 
 def polylines(shown: str) -> list[str]:
