@@ -132,7 +132,8 @@ class Action(Data, frozen=True):
         run: run or pause.
         identify: fit the controller's model to the measured motion.
         start: put both robots to another start, and begin anew there.
-        rate: simulated seconds per second from now to the end of the script; 0.25 is slow motion.
+        rate: how fast time goes from now on, compared with the student's own tempo; 0.25 is slow
+            motion.
         only: the robot that hold and pull act on; empty for both.
     """
 

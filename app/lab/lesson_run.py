@@ -76,6 +76,11 @@ class LessonRun(LessonState):
         """Whether the lab is playing the step's demonstration."""
         return self._player is not None
 
+    @property
+    def rate_before(self) -> float:
+        """Simulated seconds per second before a demonstration that changes them; 1 without one."""
+        return 1.0 if self._rate is None else self._rate
+
     # Requests
 
     def open(self, name: str, lab: LessonLab) -> None:

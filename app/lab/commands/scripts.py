@@ -13,10 +13,11 @@ from onpath.app.lab.commands.forces import Release
 from onpath.app.lab.commands.laws import ChooseLaw
 from onpath.app.lab.commands.parameters import ChooseRobot, Identify, SetParameter
 from onpath.app.lab.commands.path import ChoosePath, MovePoint
-from onpath.app.lab.commands.time import Reset, SetRate, SetRunning
+from onpath.app.lab.commands.time import Reset, SetRunning
 from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.script_player import ScriptPlayer
+from onpath.app.lab.setups.setup import RATES
 from onpath.lessons.action_schema import Action, Laws, RobotName, Script, StartState
 from onpath.lessons.benches import BENCH_OF
 from onpath.models.closed_loop.start import Start
@@ -70,6 +71,18 @@ class ScriptLaws(Command):
         """See `Command.apply`."""
         for bench, law in checked_laws(self.laws.named, lab.session.entry).items():
             lab.session.change_law(bench, law)
+
+
+@dataclass(frozen=True, slots=True)
+class ScriptRate(Command):
+    """Change how fast time goes, compared with the rate that the user had chosen."""
+
+    rate: float
+
+    def apply(self, lab: Lab) -> None:
+        """See `Command.apply`."""
+        wanted = self.rate * lab.lessons.rate_before
+        lab.session.rate = min(max(wanted, RATES[0]), RATES[-1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,5 +161,5 @@ _COMMANDS: dict[str, Callable[[Action], list[Command]]] = {
     "run": lambda action: [SetRunning(action.run)],
     "identify": lambda _: [Identify()],
     "start": lambda action: [ScriptStart(action.start or StartState())],
-    "rate": lambda action: [SetRate(action.rate or 1.0)],
+    "rate": lambda action: [ScriptRate(action.rate or 1.0)],
 }
