@@ -35,7 +35,8 @@ def test_the_numbers_are_those_of_the_motion(capsys: Capture) -> None:
     for part in run["parts"]:
         for robot in ("tracker", "follower"):
             own, numbers = motion[robot], part["numbers"][robot]
-            rows = own.during(part["begin"], part["end"] + 2e-3)
+            # a frame's sample is that of the last tick before it
+            rows = own.during(max(part["begin"] - 1e-3, 0.0), part["end"] + 2e-3)
             for quantity in ("distance", "across"):
                 said, column = numbers[quantity], getattr(own, quantity)[rows]
                 single = 1e-6 * np.abs(column).max()  # samples are kept in single precision
