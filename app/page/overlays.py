@@ -201,7 +201,7 @@ class Overlays:
 
     def _follow_errors(self, snapshot: PageSnapshot) -> None:
         if self.switches.errors:
-            parts = self._scene, self.stage, snapshot.motion, self._letters
+            parts = self._scene, self.stage, snapshot.motion
             self._errors.show(True, lambda: ErrorNodes(*parts))
         else:
             self._errors.remove()

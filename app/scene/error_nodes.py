@@ -8,8 +8,8 @@ import numpy as np
 
 from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import END, MARKER, Motion
-from onpath.app.scene.stage import Stage, add_text
-from onpath.app.viser_adapter.frame_channel import move_node, update_node
+from onpath.app.scene.stage import Stage
+from onpath.app.viser_adapter.frame_channel import update_node
 
 if TYPE_CHECKING:
     import viser
@@ -27,7 +27,7 @@ CLOCK = 0
 class ErrorNodes:
     """Both arrows at each robot; made when they are to be shown, and then removed."""
 
-    def __init__(self, scene: viser.SceneApi, stage: Stage, motion: Motion, letters: float) -> None:
+    def __init__(self, scene: viser.SceneApi, stage: Stage, motion: Motion) -> None:
         self._origins, self._toward = stage.origins, -0.012 * stage.away
         self._drawn = self._points(motion)
         self._arrows = [
@@ -41,13 +41,6 @@ class ErrorNodes:
             )
             for i, (name, colour) in enumerate(ARROWS.items())
         ]
-        self._texts = [
-            [
-                add_text(scene, f"/show/error_names/{name}/{k}", name, _beside(pair), letters)
-                for k, pair in enumerate(self._drawn[:, i])
-            ]
-            for i, name in enumerate(ARROWS)
-        ]
 
     def follow(self, motion: Motion) -> None:
         """Move the arrows with the robots; sends nothing while they stand still."""
@@ -55,15 +48,13 @@ class ErrorNodes:
         if not np.isfinite(points).all() or np.abs(points - self._drawn).max() < MOVED:
             return
         self._drawn = points
-        for i, (arrow, texts) in enumerate(zip(self._arrows, self._texts, strict=True)):
+        for i, arrow in enumerate(self._arrows):
             update_node(arrow, points=points[:, i])
-            for text, pair in zip(texts, points[:, i], strict=True):
-                move_node(text, _beside(pair))
 
     def remove(self) -> None:
         """Remove all nodes."""
-        for node in (*self._arrows, *(text for texts in self._texts for text in texts)):
-            node.remove()
+        for arrow in self._arrows:
+            arrow.remove()
 
     def _points(self, motion: Motion) -> np.ndarray:
         """Beginning and end of each arrow, shape (robots, 2 errors, 2, 3), in the world."""
@@ -90,13 +81,3 @@ def _arrow(begin: np.ndarray, end: np.ndarray) -> np.ndarray:
     if np.linalg.norm(end - begin) >= SHORTEST:
         return np.stack([begin, end])
     return np.stack([begin, begin + [0.0, 0.0, 1e-6]])
-
-
-def _beside(pair: np.ndarray) -> np.ndarray:
-    """Where the name of an arrow stands: beside its middle; far below without an arrow."""
-    begin, end = pair
-    size = float(np.linalg.norm(end - begin))
-    if size < SHORTEST:
-        return begin - [0.0, 0.0, 10.0]
-    side = np.cross(end - begin, [0.0, 1.0, 0.0]) / size
-    return (begin + end) / 2 + 0.014 * side

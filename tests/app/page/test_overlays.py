@@ -129,7 +129,7 @@ def test_the_arrows_lead_to_the_timetable_and_to_the_path(shown: Shown) -> None:
     run(shown.lab, 0.6)
     motion, snapshot = take_motion(shown.lab), take_page_snapshot(shown.lab, 1.0)
     stage = shown.overlays.stage
-    nodes = ErrorNodes(shown.overlays._scene, stage, motion, 0.02)
+    nodes = ErrorNodes(shown.overlays._scene, stage, motion)
     moved = stage.origins - 0.012 * stage.away
     for i, view in enumerate(snapshot.robots.values()):
         (begin, clock), (again, path) = nodes._drawn[i] - moved[i]
