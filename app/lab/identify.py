@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import groupby
 
 import numpy as np
 
-from onpath.app.lab.segments import Drive, Segment
+from onpath.app.lab.segments import Drive, HistoryCopy, Segment
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
@@ -29,7 +30,7 @@ from onpath.models.studies.identification import (
 from onpath.models.systems.parameters import Parameters, changed, specs
 from onpath.models.systems.robots import BalancedLinkage, Robot
 
-MOST_TICKS = 3000  # maximum ticks to use, to keep the lab responsive
+MOST_TICKS = 3000  # maximum ticks to use
 MEASURED = RIGHT  # the bench whose record is used; any would do, under any law
 # the robot is the same while these are unchanged
 PLANT = ("plant", "coulomb", "stiction", "encoder_step", "sensor_noise")
@@ -37,34 +38,44 @@ UNITS = {"M": "kg m²", "b": "N m s", "c": "N m", "G": "N m"}
 POOR = 0.05  # unexplained share of the torque above which the report warns
 
 
-def identify_model(
-    robot: Robot, parameters: Parameters, history: list[Segment], words: Words
-) -> tuple[Parameters, str]:
+@dataclass(frozen=True, slots=True)
+class Learned:
+    """What was learned of a robot.
+
+    Attributes:
+        robot: as it was then.
+        model: the estimates.
+        seconds: duration of the data, [s].
+    """
+
+    robot: Robot
+    model: Identified
+    seconds: float
+
+    def believed(self, parameters: Parameters) -> Parameters:
+        """These parameters with the controllers' model as identified."""
+        linkage = self.robot.linkage
+        return parameters if linkage is None else believing(linkage, parameters, self.model)
+
+    def report(self, before: Parameters, words: Words) -> str:
+        """What was identified, applied and left out, for the user.
+
+        Args:
+            before: the parameters until now.
+        """
+        return _sentence(self, before, self.believed(before), words)
+
+
+def learn(robot: Robot, history: HistoryCopy) -> Learned:
     """Identify the model from the right robot's last seconds.
-
-    Args:
-        history: of the lab, oldest first.
-        words: for the report.
-
-    Returns:
-        The parameters with the identified controllers' model, and a report for the user.
 
     Raises:
         ValueError: unsuitable robot, no data, or insufficient excitation.
     """
-    linkage = robot.linkage
-    if linkage is None:
+    if robot.linkage is None:
         raise CodedError("identified.other_robot")
-    found, duration = _learned(robot, tuple(_same_robot(robot, history)))
-    after = believing(linkage, parameters, found)
-    return after, _sentence(robot, parameters, after, found, duration, words)
-
-
-@lru_cache(maxsize=4)  # repeated clicks do not compute again
-def _learned(robot: Robot, segments: tuple[Segment, ...]) -> tuple[Identified, float]:
-    """The identified model and the duration of its data, [s]."""
-    record = last_record(robot, list(segments))
-    return simplest(record), len(record.q) * record.dt
+    record = last_record(robot, history.latest(MOST_TICKS))
+    return Learned(robot, simplest(record), len(record.q) * record.dt)
 
 
 def last_record(robot: Robot, history: list[Segment]) -> JointRecord:
@@ -139,19 +150,13 @@ def _rows(robot: Robot, segments: list[Segment]) -> Array:
 
 @lru_cache(maxsize=16)
 def _loop(robot: Robot, kind: Kind) -> InterpretedLoop:
-    """A loop for the simulation thread, the only one that applies commands."""
+    """A loop for one thread alone: that of `identification`."""
     return InterpretedLoop(kernel_of(robot, kind))
 
 
-def _sentence(
-    robot: Robot,
-    before: Parameters,
-    after: Parameters,
-    found: Identified,
-    duration: float,
-    words: Words,
-) -> str:
+def _sentence(learned: Learned, before: Parameters, after: Parameters, words: Words) -> str:
     """Report of what was identified, applied and left out."""
+    robot, found, duration = learned.robot, learned.model, learned.seconds
     believed = dict(zip(robot.system.parameter_names, robot.model(before), strict=True))
     values = "; ".join(
         words("identified.value", value=_value(found, name), before=f"{believed[name]:.4f}")

@@ -14,6 +14,7 @@ from typing import ClassVar
 
 from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.breakdown import Breakdown
+from onpath.app.lab.identification import Identification
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.script_player import ScriptPlayer
@@ -78,6 +79,7 @@ class Lab:
         unsaved: whether the latest changes cannot be saved at present.
         breakdown: what can be done when a robot has stopped.
         phase_asked: whether the page draws a phase plane of its own accord.
+        identification: of the controllers' model.
         watch: called in every frame, or None.
     """
 
@@ -95,6 +97,7 @@ class Lab:
         self.unsaved = False
         self.breakdown = Breakdown()
         self.phase_asked = False
+        self.identification = Identification(store.at_once)
         self.watch: Callable[[Lab], None] | None = None
 
     @property
@@ -146,6 +149,7 @@ class Lab:
         taken = perf_counter() - begun
         if not self.frozen:
             self._play()
+        self._adopt_identified()
         self._end_level_set()
         self.lessons.follow(self)
         if self.watch is not None:
@@ -164,6 +168,19 @@ class Lab:
         except ValueError as error:
             self.show_message(self.words.sentence(error), "warning")
         self.show_faults()
+
+    def _adopt_identified(self) -> None:
+        """Give the controllers the model that was asked for, if it has been identified."""
+        session = self.session
+        try:
+            learned = self.identification.take()
+            if learned is not None and learned.robot.core == session.robot.core:
+                before = session.parameters
+                session.set_parameters(learned.believed(before))
+                session.note("identify")
+                self.show_message(learned.report(before, self.words))
+        except ValueError as error:
+            self.show_message(self.words.sentence(error), "warning")
 
     def _end_level_set(self) -> None:
         """Measure the distance again, and say so, if the path has no level set any more."""

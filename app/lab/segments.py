@@ -156,6 +156,14 @@ class HistoryCopy:
         """The segments, oldest first."""
         return [segment_at(self.columns, row) for row in range(len(self))]
 
+    def latest(self, ticks: int) -> list[Segment]:
+        """The last segments, as many as have at most so many ticks together, oldest first."""
+        if not len(self):
+            return []
+        together = np.cumsum(self.columns["ticks"][::-1])
+        begin = len(self) - int(np.searchsorted(together, ticks, "right"))
+        return [segment_at(self.columns, row) for row in range(begin, len(self))]
+
 
 def segment_at(columns: dict[str, np.ndarray], row: int) -> Segment:
     """Make a segment from one row of the columns."""

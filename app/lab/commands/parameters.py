@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from onpath.app.lab.identify import identify_model
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.session import Session
 from onpath.lessons.benches import law_label
@@ -87,15 +86,11 @@ class ResetParameters(Command):
 
 @dataclass(frozen=True, slots=True)
 class Identify(Command):
-    """Give the controllers the model identified from the follower's recent motion."""
+    """Give the controllers the model identified from the follower's recent motion, once it is."""
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        session, history = lab.session, lab.session.history.all()
-        found, said = identify_model(session.robot, session.parameters, history, lab.words)
-        session.set_parameters(found)
-        session.note("identify")
-        lab.show_message(said)
+        lab.identification.begin(lab.session.robot, lab.session.history.copy())
 
 
 @dataclass(frozen=True, slots=True)

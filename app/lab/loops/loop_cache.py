@@ -35,13 +35,16 @@ class LoopCache:
         at_once: whether loops of typed laws are made while they are asked for, not in the
             background.
         clock: monotonic time, [s].
+
+    Attributes:
+        at_once: see above; whoever uses the loops does other long work at once, too.
     """
 
     def __init__(self, at_once: bool = False, clock: Callable[[], float] = time.monotonic) -> None:
         self._made: WeakValueDictionary[Key, Loop] = WeakValueDictionary()
         self._kept: OrderedDict[Key, Loop] = OrderedDict()  # the one used last comes last
         self._waiting, self._making = CompileQueue[Key](clock), set[Key]()
-        self._typed, self._at_once = TypedLoops(self._submit, clock), at_once
+        self._typed, self.at_once = TypedLoops(self._submit, clock), at_once
         self._pool: ThreadPoolExecutor | None = ThreadPoolExecutor(1, "compile")
         self._lock = threading.RLock()
 
@@ -73,7 +76,7 @@ class LoopCache:
         """
         key = (robot.core, kind)
         if is_text(kind.controller):
-            if self._typed.find(key) is None and (self._at_once or self._pool is None):
+            if self._typed.find(key) is None and (self.at_once or self._pool is None):
                 self._typed.make(key)
             return self._typed.find(key) is not None
         if self._find(key) is not None:
@@ -83,7 +86,7 @@ class LoopCache:
 
     def want(self, lab: object, keys: Collection[Key]) -> None:
         """Make these loops of typed laws in the background, and no others for this lab."""
-        if not self._at_once and self._pool is not None:
+        if not self.at_once and self._pool is not None:
             self._typed.want(lab, [(robot.core, kind) for robot, kind in keys])
 
     def prepare(self, robot: Robot, kind: Kind) -> None:
