@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import gc
 import logging
+import sys
 import threading
 import time
 from collections import deque
@@ -29,6 +30,7 @@ FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; when further behind, the schedule restarts
 PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not starved
 SELDOM = (1_000, 4, 1_000)  # allocations before a collection, which stops all threads for 10 ms
+HANDOVER = 2e-4  # [s] that another thread goes on once this one wants the interpreter back
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
 ALL_COMMANDS = 8e-3  # [s] of a frame for the commands of all labs
 MOST = 0.75  # share of a frame up to which slow updates are made
@@ -170,6 +172,7 @@ class SimulationThread:
         """Start the thread."""
         gc.freeze()  # excludes loaded modules from collections, which would take 0.2 s longer
         gc.set_threshold(*SELDOM)
+        sys.setswitchinterval(HANDOVER)
         self._thread.start()
 
     def stop(self) -> None:

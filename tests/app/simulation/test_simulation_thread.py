@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import logging
+import sys
 import threading
 from collections.abc import Callable
 from math import ceil
@@ -343,3 +344,15 @@ def test_labs_that_began_at_different_frames_need_equally_many_ticks() -> None:
     longest = max(labs.values(), key=len)
     assert all(needed == longest[-len(needed) :] for needed in labs.values())
     assert sum(longest[:60]) == sum(longest[7:67]) == 1000
+
+
+def test_other_threads_soon_hand_the_interpreter_over() -> None:
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(FRAME)
+    thread = SimulationThread()
+    thread.start()
+    try:
+        assert sys.getswitchinterval() <= FRAME / 50
+    finally:
+        thread.stop()
+        sys.setswitchinterval(before)
