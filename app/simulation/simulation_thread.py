@@ -32,7 +32,7 @@ PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not s
 SELDOM = (1_000, 4, 1_000)  # allocations before a collection, which stops all threads for 10 ms
 HANDOVER = 2e-4  # [s] that another thread goes on once this one wants the interpreter back
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
-ALL_COMMANDS = 8e-3  # [s] of a frame for the commands of all labs
+ALL_COMMANDS, FEWEST = 8e-3, 2e-3  # [s] of a frame for the commands of all labs: most, and least
 MOST = 0.75  # share of a frame up to which slow updates are made
 NEVER = -1_000_000  # number of a frame long ago
 
@@ -167,6 +167,7 @@ class SimulationThread:
         self._thread = threading.Thread(target=self.run, name="simulation", daemon=True)
         self.frames: deque[tuple[float, float]] = deque(maxlen=3600)
         self._slow_updates, self._drawing = SlowUpdates(clock), 0.0
+        self._advancing = 0.0  # [s] of a frame, without commands, low-pass filtered as `_drawing`
 
     def start(self) -> None:
         """Start the thread."""
@@ -212,22 +213,24 @@ class SimulationThread:
             late = now - deadline
             self.frames.append((now, late))
             deadline = now + FRAME if late > LATEST else deadline + FRAME
-            busy, drawing = self._frame(now - last, count, pace.stride_when(late))
+            busy, drawing = self._frame(now - last, late, count, pace.stride_when(late))
             pace.note(busy, drawing, now - last)
             last, count = now, count + 1
 
-    def _frame(self, seconds: float, count: int, stride: float) -> tuple[float, float]:
+    def _frame(self, seconds: float, late: float, count: int, stride: float) -> tuple[float, float]:
         """Run one frame: each step for all labs, which is faster than lab by lab.
 
         Returns:
             Time spent on all but slow updates, and of that on drawing, [s].
         """
         labs, begun = self._labs, self._clock()
-        apply_commands(labs)
-        length = frame_length(count)
+        spare = FRAME - late - self._advancing - self._drawing
+        apply_commands(labs, min(max(spare, FEWEST), ALL_COMMANDS))
+        applied, length = self._clock(), frame_length(count)
         advance_together([lab.frame(seconds, length) for lab in labs], log_error)
-        advanced = self._clock() - begun
-        left = min(SHARE * FRAME, MOST * FRAME - advanced - self._drawing)
+        ended = self._clock()
+        self._advancing += FADING * (ended - applied - self._advancing)
+        left = min(SHARE * FRAME, MOST * FRAME - (ended - begun) - self._drawing)
         seen = [lab for lab in labs if lab.is_seen]
         self._slow_updates.run(seen, count, left, stride <= STRIDES[0])
         drawing = self._clock()
@@ -235,7 +238,7 @@ class SimulationThread:
         _do(ScheduledLab.send, seen)
         drawing = self._clock() - drawing
         self._drawing += FADING * (drawing - self._drawing)
-        return advanced + drawing, drawing
+        return ended - begun + drawing, drawing
 
 
 def frame_length(count: int) -> float:
@@ -247,14 +250,14 @@ def frame_length(count: int) -> float:
     return (end - begin) * TICK
 
 
-def apply_commands(labs: list[ScheduledLab]) -> None:
-    """Apply the commands of one frame within `ALL_COMMANDS`, exceeded by one command at most.
+def apply_commands(labs: list[ScheduledLab], most: float) -> None:
+    """Apply the commands of one frame within `most` [s], exceeded by one command at most.
 
     Labs whose commands took least time recently come first, so that no lab waits for another one
     that keeps asking for long work.
     """
-    share = min(COMMANDS, ALL_COMMANDS / max(sum(lab.lab.has_commands for lab in labs), 1))
-    left = ALL_COMMANDS
+    share = min(COMMANDS, most / max(sum(lab.lab.has_commands for lab in labs), 1))
+    left = most
 
     def drain(lab: ScheduledLab) -> None:
         nonlocal left

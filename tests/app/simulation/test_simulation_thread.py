@@ -319,13 +319,35 @@ def test_long_work_for_many_labs_takes_a_part_of_each_frame_and_no_other_lab_wai
     honest, frames, most = labs[-1].lab, 4000, 0.0
     for _ in range(frames):
         before = spent(labs)
-        apply_commands([*labs])
+        apply_commands([*labs], ALL_COMMANDS)
         most = max(most, spent(labs) - before)
     assert most <= ALL_COMMANDS + cost
     assert spent(labs) <= frames * ALL_COMMANDS + 2 * cost * count
     assert honest.begun[1:] == list(range(honest.begun[1], frames + 1)) and honest.begun[1] < 60
     turns = [len(lab.lab.begun) for lab in labs[:-1]]
     assert min(turns) > 0 and max(turns) <= 2 * min(turns) + 2  # all get their turn
+
+
+def test_commands_take_what_is_left_of_a_frame() -> None:
+    """Frames stay on time when labs are many and some ask for long work without end."""
+    clock, thread = clocked(10.0)
+
+    class Greedy(Asking):
+        def drain(self, most: float = 0.0) -> float:
+            taken = super().drain(most)
+            clock.work(taken)
+            return taken
+
+    honest = ScheduledLab(new_lab())
+    honest.view = View(lambda _: clock.work(0.011))
+    for _ in range(20):
+        asked = Asked(1e-3)
+        asked.lab, asked.view, asked.session = Greedy(1e-3), None, honest.session
+        thread.add(asked)
+    thread.add(honest)
+    thread.run()
+    assert sorted(thread.lateness)[-60] < FRAME  # all but those of the first second
+    assert honest.session.time == pytest.approx(10.0, abs=0.2)
 
 
 def test_labs_that_began_at_different_frames_need_equally_many_ticks() -> None:
