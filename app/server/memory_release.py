@@ -10,6 +10,7 @@ from onpath.app.viser_adapter.connection_limits import CountedConnection
 
 INTERVAL = 10.0  # [s] between looks
 MANY = 20  # connections
+CALM = 3  # looks
 LARGE = 256 * 1024  # [B]
 M_MMAP_THRESHOLD, M_ARENA_MAX = -3, -8  # of glibc's malloc.h
 
@@ -20,17 +21,21 @@ class MemoryRelease:
     What is kept of a connection or a tab refers to itself, so that only a complete collection finds
     it. That stops all threads, with 60 labs for some 170 ms, so `SELDOM` in
     `app.simulation.simulation_thread` makes it rare, and it is done here only when many connections
-    have ended.
+    have ended, or when a tab has been closed and no other one for a while.
     """
 
     def __init__(self) -> None:
-        self._seen = CountedConnection.ended
+        self._ended, self._tabs_ended = CountedConnection.ended, CountedConnection.tabs_ended
+        self._tabs_seen, self._calm = self._tabs_ended, 0
 
     def look(self) -> None:
-        """Collect garbage and give free memory back if many connections have ended since."""
-        ended = CountedConnection.ended
-        if ended - self._seen >= MANY:
-            self._seen = ended
+        """Collect garbage, and give free memory back, if it is time to."""
+        ended, tabs_ended = CountedConnection.ended, CountedConnection.tabs_ended
+        self._calm = self._calm + 1 if tabs_ended == self._tabs_seen else 0
+        self._tabs_seen = tabs_ended
+        is_calm = tabs_ended > self._tabs_ended and self._calm >= CALM
+        if is_calm or ended >= self._ended + MANY:
+            self._ended, self._tabs_ended = ended, tabs_ended
             gc.collect()
             _call_glibc("malloc_trim", 0)
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
+from http import HTTPStatus
 from ipaddress import IPv4Address, IPv6Address, ip_address, ip_network
 from typing import Any, ClassVar, Generic, TypeVar
 
@@ -163,9 +164,11 @@ class CountedConnection(ServerConnection):
         peer: the address at its other end, which may be a proxy's.
         address: the client's, as the limits count it.
         ended: number of all connections of this process that have ended.
+        tabs_ended: those of them that were websockets.
     """
 
     ended: ClassVar[int] = 0
+    tabs_ended: ClassVar[int] = 0
 
     def __init__(self, *args: Any, connections: ConnectionLimits, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -183,4 +186,7 @@ class CountedConnection(ServerConnection):
         """See `asyncio.Protocol`."""
         self._connections.closed(self)
         CountedConnection.ended += 1
+        response = self.response
+        if response is not None and response.status_code == HTTPStatus.SWITCHING_PROTOCOLS:
+            CountedConnection.tabs_ended += 1
         super().connection_lost(exc)

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import gc
+import socket
 import weakref
 from collections.abc import Iterator
 
 import pytest
 
-from onpath.app.server.memory_release import MANY, MemoryRelease
+from onpath.app.bench.raw_socket import knock
+from onpath.app.server.memory_release import CALM, MANY, MemoryRelease
 from onpath.app.simulation.simulation_thread import SELDOM
 from onpath.app.viser_adapter.connection_limits import CountedConnection
+from onpath.app.viser_adapter.secure_server import make_server
+from tests.support.waiting import wait_for
+
+WAIT = 20.0  # [s]
 
 
 class Circle:
@@ -50,3 +56,38 @@ def test_garbage_is_collected_when_many_connections_have_ended(
     left = old_garbage()
     memory.look()
     assert left() is not None  # nobody has left since
+
+
+def test_what_a_tab_leaves_is_collected_once_no_other_is_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    memory = MemoryRelease()
+    monkeypatch.setattr(CountedConnection, "tabs_ended", CountedConnection.tabs_ended)
+    for closed in (0, 1, 1):
+        garbage = old_garbage()
+        CountedConnection.tabs_ended += closed
+        for _ in range(CALM):
+            memory.look()
+            assert garbage() is not None
+    memory.look()
+    assert garbage() is None
+    left = old_garbage()
+    for _ in range(3 * CALM):
+        memory.look()
+    assert left() is not None  # nobody has left since
+
+
+def test_websockets_that_end_are_counted() -> None:
+    server = make_server(port=0)
+    try:
+        port, before = server.get_port(), CountedConnection.tabs_ended
+        all_before = CountedConnection.ended
+        socket.create_connection(("127.0.0.1", port)).close()
+        wait_for(lambda: CountedConnection.ended == all_before + 1, WAIT)
+        assert CountedConnection.tabs_ended == before
+        tab = knock(port)
+        assert tab.recv(1)  # the answer
+        tab.close()
+        wait_for(lambda: CountedConnection.tabs_ended == before + 1, WAIT)
+    finally:
+        server.stop()
