@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
 from ipaddress import ip_network
@@ -11,6 +12,7 @@ import pytest
 import yaml
 from sqlalchemy import make_url
 
+from onpath.app.classroom.class_opening import KEY, given_keys
 from onpath.app.cli.serve import Serve
 from onpath.app.storage.database_url import DATABASE
 from onpath.app.viser_adapter.connection_limits import Proxies
@@ -64,8 +66,8 @@ def test_the_pod_starts_an_existing_command_with_few_rights(
     manifest: dict[str, Any], container: dict[str, Any]
 ) -> None:
     assert {word for word in container["args"] if word.startswith("--")} <= options()
-    (variable,) = container["env"]
-    assert variable["name"] == DATABASE and "secretKeyRef" in variable["valueFrom"]
+    assert {variable["name"] for variable in container["env"]} == {DATABASE, KEY}
+    assert all("secretKeyRef" in variable["valueFrom"] for variable in container["env"])
     assert not any("--database" in word or "$(" in word for word in container["args"])
     for probe in ("startupProbe", "readinessProbe", "livenessProbe"):
         assert container[probe]["httpGet"]["path"] == HEALTH
@@ -82,13 +84,13 @@ def test_trusted_proxies_pass_on_the_client_address(container: dict[str, Any]) -
     assert Proxies((networks,)).client_address(pod, ["203.0.113.7"]) == "203.0.113.7"
 
 
-def test_browsers_stay_with_their_pod_and_websockets_stay_open(manifest: dict[str, Any]) -> None:
+def test_an_address_stays_with_its_pod_and_websockets_stay_open(manifest: dict[str, Any]) -> None:
     notes = manifest["Ingress"]["metadata"]["annotations"]
     prefix = "nginx.ingress.kubernetes.io/"
     assert all(isinstance(value, str) for value in notes.values())
-    assert notes[prefix + "affinity"] == "cookie"
+    assert notes[prefix + "upstream-hash-by"] == "$request_uri"
     assert all(int(notes[f"{prefix}proxy-{way}-timeout"]) > 60 for way in ("read", "send"))
-    assert manifest["Service"]["spec"]["sessionAffinity"] == "ClientIP"
+    assert "sessionAffinity" not in manifest["Service"]["spec"]
 
 
 def test_the_container_has_no_root_a_health_check_and_its_dependencies(
@@ -113,11 +115,25 @@ def test_the_container_has_no_root_a_health_check_and_its_dependencies(
         assert f"!{needed}" in (ROOT / ".containerignore").read_text().splitlines()
 
 
-def test_the_commands_of_the_administrators_page_exist() -> None:
+def test_the_commands_of_the_administrators_page_exist(monkeypatch: pytest.MonkeyPatch) -> None:
     text = (DEPLOY / "README.md").read_text()
     commands = re.findall(r"onpath((?: --[a-z-]+(?: [\w./:]+)?)+)", text)
     assert commands and {word for c in commands for word in re.findall("--[a-z-]+", c)} <= options()
-    (url,) = re.findall(r"ONPATH_DATABASE=(postgresql\S+?)`", text)
+    (url,) = re.findall(rf"{DATABASE}=(postgresql\S+)$", text, re.MULTILINE)
     assert make_url(url).get_backend_name() == "postgresql"
+    (keys,) = re.findall(rf"{KEY}=(.+)$", text, re.MULTILINE)
+    monkeypatch.setenv(KEY, keys)
+    assert len(given_keys()) == 2 and KEY not in os.environ
     for name in re.findall(r"\]\(([\w.]+)\)", text):
         assert (DEPLOY / name).is_file()
+
+
+def test_the_unit_runs_what_nginx_expects_and_starts_it_again() -> None:
+    unit = (DEPLOY / "onpath@.service").read_text()
+    (command,) = re.findall(r"^ExecStart=\S+/onpath (.+)$", unit, re.MULTILINE)
+    assert set(re.findall(r"--[a-z-]+", command)) <= options() and "--port %i" in command
+    assert "Restart=on-failure" in unit.splitlines()
+    ports = re.findall(r"server 127\.0\.0\.1:(\d+)", NGINX)
+    assert [f"onpath@{port}" for port in ports] == re.findall(r"--now (.+)$", unit, re.M)[0].split()
+    (origin,) = re.findall(r"--origin (\S+)", command)
+    assert f'"{origin}"' in NGINX and f"server_name {origin.removeprefix('https://')};" in NGINX

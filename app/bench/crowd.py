@@ -19,7 +19,6 @@ import msgspec
 from onpath.app.bench.server_process import Server, serving
 from onpath.app.bench.simulated_browser import Observations
 from onpath.app.server.admission_queue import RESERVED
-from onpath.app.server.workers import MOST as MOST_WORKERS
 from onpath.app.simulation.metrics import LONGEST, Metrics
 from onpath.app.viser_adapter.message_filter import Limits
 
@@ -36,7 +35,7 @@ class ClientLoad:
     """What to measure.
 
     Attributes:
-        clients, workers: numbers of them.
+        clients: number of them.
         seconds: duration of each row, [s].
         rows: number of consecutive rows with the same clients.
 
@@ -45,15 +44,12 @@ class ClientLoad:
     """
 
     clients: int
-    workers: int = 1
     seconds: float = 15.0
     rows: int = 1
 
     def __post_init__(self) -> None:
         if not 1 <= self.clients <= MOST:
             raise ValueError(f"--clients {self.clients}: expected 1 to {MOST}")
-        if not 1 <= self.workers <= MOST_WORKERS:
-            raise ValueError(f"--workers {self.workers}: expected 1 to {MOST_WORKERS}")
         if not SHORTEST <= self.seconds <= LONGEST:
             raise ValueError(f"--seconds {self.seconds:g}: expected {SHORTEST:g} to {LONGEST:g}")
 
@@ -65,19 +61,19 @@ class Row:
     Attributes:
         seen: what the browsers observed.
         settled: time until all were shown moving robots, [s].
-        labs: number of labs of each worker.
-        simulation_hz: frames per second of the simulation, of the slowest worker.
+        labs: number of labs.
+        simulation_hz: frames per second of the simulation.
         slowest_lab: simulated seconds per second.
-        late_ms: lateness of frames, three quantiles, each of the worst worker, [ms].
-        overdue: share of the frames more than 50 ms late, of the worst worker.
-        cpu: of all workers, in cores.
+        late_ms: lateness of frames, three quantiles, [ms].
+        overdue: share of the frames more than 50 ms late.
+        cpu: of the server, in cores.
         stolen: share of this machine's time that its host gave to others; nan if unknown.
-        memory_mb: increase of all workers' memory, per client, [MB]; nan if unknown.
+        memory_mb: increase of the server's memory, per client, [MB]; nan if unknown.
     """
 
     seen: Observations
     settled: float
-    labs: tuple[int, ...]
+    labs: int
     simulation_hz: float
     slowest_lab: float
     late_ms: tuple[float, float, float]
@@ -87,7 +83,7 @@ class Row:
     memory_mb: float
 
     def __str__(self) -> str:
-        seen, labs = self.seen, "+".join(map(str, self.labs))
+        seen, labs = self.seen, self.labs
         p50, p95, p99 = self.late_ms
         return (
             f"{seen.clients:7d}{self.settled:8.1f}{self.simulation_hz:5.1f}{self.slowest_lab:5.2f}"
@@ -106,7 +102,7 @@ def measured(crowd: ClientLoad, environment: Mapping[str, str]) -> Iterator[Row]
     Raises:
         ValueError: the server does not serve all clients.
     """
-    with serving(environment, crowd.workers, places_for(crowd.clients)) as server:
+    with serving(environment, places_for(crowd.clients)) as server:
         alone = server.at_rest()
         with simulated_crowd(server, crowd.clients, crowd.seconds) as seen:
             settled = next(seen).seconds
@@ -160,26 +156,22 @@ def _row(
     seen: Observations,
     settled: float,
     stolen: float,
-    alone: dict[int, Metrics],
-    before: dict[int, Metrics],
-    after: dict[int, Metrics],
+    alone: Metrics,
+    before: Metrics,
+    after: Metrics,
 ) -> Row:
-    if not alone.keys() == before.keys() == after.keys():
-        raise ValueError("a worker has ended meanwhile")
-    pairs = [(before[pid], after[pid]) for pid in after]
-    p50, p95, p99 = (max(late) for late in zip(*(v.late_ms for v in after.values()), strict=True))
-    grown = [(v.rss_mb or nan) - (alone[pid].rss_mb or nan) for pid, v in after.items()]
+    grown = (after.rss_mb or nan) - (alone.rss_mb or nan)
     return Row(
         seen=seen,
         settled=settled,
-        labs=tuple(v.labs for v in after.values()),
-        simulation_hz=min(v.frames_per_s for v in after.values()),
-        slowest_lab=min((speed for a, b in pairs for speed in _speeds(a, b)), default=nan),
-        late_ms=(p50, p95, p99),
-        overdue=max(v.overdue for v in after.values()),
-        cpu=sum((b.cpu_s - a.cpu_s) / (b.clock - a.clock) for a, b in pairs),
+        labs=after.labs,
+        simulation_hz=after.frames_per_s,
+        slowest_lab=min(_speeds(before, after), default=nan),
+        late_ms=after.late_ms,
+        overdue=after.overdue,
+        cpu=(after.cpu_s - before.cpu_s) / (after.clock - before.clock),
         stolen=stolen,
-        memory_mb=sum(grown) / max(seen.clients, 1),
+        memory_mb=grown / max(seen.clients, 1),
     )
 
 

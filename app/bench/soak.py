@@ -99,7 +99,7 @@ def _rows(server: Server, honest: int, seconds: float, attacks: list[str]) -> It
             attackers.stdin.write(f"{attack}\n".encode())
             attackers.stdin.flush()
             during = next(seen)
-            (metrics,) = server.metrics(max(seconds, 1.0)).values()
+            metrics = server.metrics(max(seconds, 1.0))
             simulated = max(simulated, min(metrics.simulated_s, default=0.0))
             yield SoakRow(
                 began=number * seconds,

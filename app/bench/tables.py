@@ -55,7 +55,7 @@ def bench(quick: bool = False) -> None:
         _modes(10 if quick else 30)
     _making(3 if quick else 9)
     if not quick:
-        _crowds([ClientLoad(1), ClientLoad(20), ClientLoad(20, workers=2)])
+        _crowds([ClientLoad(1), ClientLoad(20)])
         _start_up()
         _mouse()
 

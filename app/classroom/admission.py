@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import hmac
 import secrets
 import time
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from onpath.app.common.access_codes import ALPHABET, normalised
 from onpath.app.common.throttle import Throttle
@@ -37,12 +38,12 @@ class Admission:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._codes, self._keys = Throttle(clock), Throttle(clock)
 
-    def check_key(self, typed: str, key: str, who: str) -> None:
-        """Check the teacher's key.
+    def check_key(self, typed: str, keys: Iterable[str], who: str) -> str:
+        """Check a teacher's key; returns the one that was entered.
 
         Args:
             typed: what was entered.
-            key: in its stored form, see `app.common.access_codes`.
+            keys: in their stored form, see `app.common.access_codes`.
             who: session code of the tab.
 
         Raises:
@@ -53,19 +54,22 @@ class Admission:
         except ValueError:
             given = ""
         with self._keys.attempt(who):
-            _compare(given, key, CodedError("error.not_the_key"))
+            return _found(given, keys, CodedError("error.not_the_key"))
 
-    def check_code(self, typed: str, code: str, who: str) -> None:
-        """Check the class code; see `check_key`."""
+    def check_code(self, typed: str, codes: Iterable[str], who: str) -> str:
+        """Check a class code; see `check_key`."""
         given = "".join(typed[:40].split()).lower()
         with self._codes.attempt(who):
-            _compare(given, code, CodedError("error.not_the_class_code"))
+            return _found(given, codes, CodedError("error.not_the_class_code"))
 
 
-def _compare(typed: str, right: str, refusal: CodedError) -> None:
+def _found(typed: str, right: Iterable[str], refusal: CodedError) -> str:
     """Compare in constant time, so that timing does not reveal partial matches."""
-    if not hmac.compare_digest(typed.encode(errors="replace"), right.encode()):
+    given = typed.encode(errors="replace")
+    found = [each for each in right if hmac.compare_digest(given, each.encode())]
+    if not found:
         raise refusal
+    return found[0]
 
 
 def new_pass() -> str:
@@ -108,3 +112,24 @@ def not_among(others: set[str], name: str) -> str:
 def new_class_code() -> str:
     """A random class code."""
     return "".join(secrets.choice(ALPHABET) for _ in range(CODE_LENGTH))
+
+
+def class_code_of(key: str) -> str:
+    """The class code that belongs to a teacher's key, the same in every process.
+
+    Whoever tries keys needs a twentieth of a second for each, and 2^29 of them have the same code.
+    """
+    number, digits = int.from_bytes(_derived(key, b"onpath class code"), "big"), []
+    for _ in range(CODE_LENGTH):
+        number, digit = divmod(number, len(ALPHABET))
+        digits.append(ALPHABET[digit])
+    return "".join(digits)
+
+
+def class_id_of(key: str) -> str:
+    """The name of a class in the database, which does not reveal the key."""
+    return _derived(key, b"onpath").hex()
+
+
+def _derived(key: str, purpose: bytes) -> bytes:
+    return hashlib.scrypt(key.encode(), salt=purpose, n=2**14, r=8, p=1, dklen=20)

@@ -39,7 +39,6 @@ class ClassSync:
 
     def look(self) -> None:
         """Synchronize once: send orders to the labs and report their state to the class."""
-        self._class.look()
         members = self._class.members()
         for code in [code for code in self._bound if code not in members]:
             self._let_go(code)
@@ -57,7 +56,7 @@ class ClassSync:
 
     def _follow(self, code: str) -> None:
         member = self._class.member(code)
-        found = None if self._class.is_elsewhere(code) else self._find(code)
+        found = self._find(code)
         if member is None:
             return
         if found is None:

@@ -1,16 +1,26 @@
-"""Records of a class and the interface through which pages and labs use it.
+"""A class in memory: its members, its teachers' passes, and what a teacher wants. Thread-safe.
 
-`app.classroom.local_classroom` implements it for one process, `app.classroom.shared_classroom`
-for several.
+class_keeper.py keeps it in the database; class_sync.py brings it together with the labs.
 """
 
 from __future__ import annotations
 
+import hashlib
+import hmac
+import threading
+import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from typing import Protocol
+from dataclasses import dataclass, field, replace
 
-from onpath.app.classroom.admission import cleaned, not_among
+from onpath.app.classroom.admission import (
+    Admission,
+    class_code_of,
+    cleaned,
+    new_class_code,
+    new_pass,
+    not_among,
+)
+from onpath.app.common.access_codes import new_code
 from onpath.app.common.visible_text import comparison_key
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.lessons.pace import Pace
@@ -53,36 +63,64 @@ class Orders:
         frozen: whether all labs are stopped.
         pushes: number of pushes so far.
         push: the last one, which later joiners receive as well; None if there is none.
+        sent: time of the last push by the class's clock, [s].
         pace: the steps within which students may go; None if they may go anywhere.
     """
 
     frozen: bool = False
     pushes: int = 0
     push: Push | None = None
+    sent: float = 0.0
     pace: Pace | None = None
 
 
-class Classroom(Protocol):
-    """A class. Thread-safe.
+@dataclass(frozen=True, slots=True)
+class ClassState:
+    """Everything of a class that is kept.
 
-    Reads are cached. `look`, `admit`, `is_pass`, `revoke`, `join`, `leave` and `end` may block on
-    a database and may raise OSError.
+    Attributes:
+        joined: number of students that have ever joined.
+        passes: hashes of the teachers' passes.
+        members: students by session code, in order of joining.
     """
 
-    @property
-    def clock(self) -> Callable[[], float]:
-        """Monotonic time with an arbitrary origin, [s]; independent of the system clock."""
-        ...
+    joined: int = 0
+    orders: Orders = field(default_factory=Orders)
+    passes: frozenset[str] = frozenset()
+    members: Mapping[str, Member] = field(default_factory=dict)
 
-    @property
-    def code(self) -> str:
-        """The class code that students type to join."""
-        ...
 
-    @property
-    def orders(self) -> Orders:
-        """The current orders."""
-        ...
+@dataclass(slots=True)
+class Classroom:
+    """A class.
+
+    Attributes:
+        clock: monotonic time, [s].
+        code: the class code that students type to join.
+        key: the teacher's, as stored by `app.common.access_codes`.
+        has_address: whether the class has an address, which contains its code; see
+            `class_with_address`.
+        state: everything that is kept; replaced at each change.
+    """
+
+    clock: Callable[[], float] = time.monotonic
+    code: str = ""
+    key: str = field(default_factory=new_code, repr=False)
+    has_address: bool = False
+    state: ClassState = field(default_factory=ClassState)
+    _lock: threading.RLock = field(default_factory=threading.RLock)
+    _door: Admission = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.code = self.code or new_class_code()
+        self._door = Admission(self.clock)
+
+    def restore(self, state: ClassState) -> None:
+        """Replace everything by what was kept."""
+        with self._lock:
+            self.state = state
+
+    # Teachers
 
     def admit(self, typed: str, who: str) -> str:
         """Issue a pass for a teacher's browser in exchange for the key.
@@ -93,15 +131,23 @@ class Classroom(Protocol):
         Raises:
             ValueError: a wrong key, or too many wrong keys.
         """
-        ...
+        self._door.check_key(typed, [self.key], who)
+        new = new_pass()
+        with self._lock:
+            self.state = replace(self.state, passes=self.state.passes | {_hash(new)})
+        return new
 
     def is_pass(self, shown: str | None) -> bool:
         """Whether a browser's pass is valid."""
-        ...
+        given = _hash(shown or "")
+        return any([hmac.compare_digest(given, own) for own in self.state.passes])
 
     def revoke(self, shown: str | None) -> None:
         """Revoke a browser's pass."""
-        ...
+        with self._lock:
+            self.state = replace(self.state, passes=self.state.passes - {_hash(shown or "")})
+
+    # Members
 
     def join(self, session: str, typed: str, name: str) -> Member:
         """Add a student, or change the nickname of one who has already joined.
@@ -113,35 +159,48 @@ class Classroom(Protocol):
         Raises:
             ValueError: a wrong code or too many of them, no nickname, or the class is full.
         """
-        ...
+        self._door.check_code(typed, [self.code], session)
+        with self._lock:
+            old = self.state
+            new = Member(old.joined + 1, "", active=self.clock())
+            member = seated(old.members, session, name, new)
+            members, joined = {**old.members, session: member}, max(old.joined, member.number)
+            self.state = replace(old, members=members, joined=joined)
+            return member
 
     def leave(self, session: str) -> None:
         """Remove a student and all of the student's data from the class."""
-        ...
+        with self._lock:
+            others = {code: each for code, each in self.state.members.items() if code != session}
+            self.state = replace(self.state, members=others)
 
     def member(self, session: str) -> Member | None:
         """The member of a session code, if any."""
-        ...
+        return self.state.members.get(session)
 
     def members(self) -> dict[str, Member]:
         """All members by session code, in order of joining."""
-        ...
-
-    def look(self) -> None:
-        """Synchronize this process's state of the class with the other processes."""
-        ...
-
-    def is_elsewhere(self, session: str) -> bool:
-        """Whether another process last owned the lab, so that the local state is outdated."""
-        ...
+        return dict(self.state.members)
 
     def note(self, session: str, **changes: object) -> None:
         """Update a member; without effect if the student has left."""
-        ...
+        with self._lock:
+            old = self.state.members.get(session)
+            if old is not None:
+                new = replace(old, **changes)  # pyright: ignore[reportArgumentType]
+                self.state = replace(self.state, members={**self.state.members, session: new})
+
+    # Orders
+
+    @property
+    def orders(self) -> Orders:
+        """The current orders."""
+        return self.state.orders
 
     def freeze(self, on: bool) -> None:
         """Stop or resume all labs."""
-        ...
+        with self._lock:
+            self.state = replace(self.state, orders=replace(self.orders, frozen=on))
 
     def push(self, push: Push | None) -> None:
         """Send a set-up or a step to all members once, and to those who join later.
@@ -149,14 +208,39 @@ class Classroom(Protocol):
         It remains in effect until another is sent or the class ends. Sending None clears it
         without changing any lab; later joiners then keep their own set-up.
         """
-        ...
+        with self._lock:
+            count, pace = self.orders.pushes + (push is not None), self.orders.pace
+            if isinstance(push, TakeStep) and pace and not pace.holds(push.lesson, push.step):
+                pace = None
+            new = replace(self.orders, pushes=count, push=push, sent=self.clock(), pace=pace)
+            self.state = replace(self.state, orders=new)
+
+    def keep_within(self, pace: Pace | None) -> None:
+        """Let students go within a range of steps only; None lets them go anywhere.
+
+        Whoever is outside, also when joining later, is brought to its first step. A step that is
+        sent and lies outside ends it.
+        """
+        with self._lock:
+            self.state = replace(self.state, orders=replace(self.orders, pace=pace))
 
     def end(self) -> int:
-        """End the class: remove all members and choose a new code for the next class.
+        """End the class: remove all members; returns their number.
 
-        Returns the number of members removed.
+        The next class has a new code, unless the code is that of an address.
         """
-        ...
+        with self._lock:
+            old = self.state
+            orders = replace(old.orders, frozen=False, push=None, pace=None)
+            self.state = replace(old, members={}, orders=orders)
+            if not self.has_address:
+                self.code = new_class_code()
+            return len(old.members)
+
+
+def class_with_address(key: str, clock: Callable[[], float] = time.monotonic) -> Classroom:
+    """The class of a teacher's key; every process with this key gives it the same code."""
+    return Classroom(clock, class_code_of(key), key, has_address=True)
 
 
 def seated(members: Mapping[str, Member], session: str, name: str, new: Member) -> Member:
@@ -178,6 +262,5 @@ def seated(members: Mapping[str, Member], session: str, name: str, new: Member) 
     return replace(old or new, name=not_among(others, name))
 
 
-def noted(member: Member, changes: Mapping[str, object]) -> Member:
-    """An updated copy of a member; see `Classroom.note`."""
-    return replace(member, **changes)  # pyright: ignore[reportArgumentType]
+def _hash(shown: str) -> str:
+    return hashlib.sha256(shown[:100].encode(errors="replace")).hexdigest()

@@ -44,8 +44,6 @@ class BenchCommand:
     """Run fewer repetitions, and no clients."""
     clients: tuple[int, ...] = ()
     """Only measure a server with this many simulated browsers; several numbers run in turn."""
-    workers: int = 1
-    """Number of server processes."""
     seconds: float = 15.0
     """Duration of the measurement, once all browsers are shown moving robots."""
     minutes: int = 0
@@ -74,12 +72,12 @@ class BenchCommand:
 
         if self.minutes < 0:
             raise ValueError(f"--minutes {self.minutes}: expected 1 or more")
-        if not self.clients and (self.workers, self.seconds, self.minutes) != (1, 15.0, 0):
-            raise ValueError("--workers, --seconds and --minutes go with --clients")
+        if not self.clients and (self.seconds, self.minutes) != (15.0, 0):
+            raise ValueError("--seconds and --minutes go with --clients")
         if self.clients and self.quick:
             raise ValueError("--quick leaves out what --clients asks for")
         seconds, rows = (60.0, self.minutes) if self.minutes else (self.seconds, 1)
-        crowds = [ClientLoad(clients, self.workers, seconds, rows) for clients in self.clients]
+        crowds = [ClientLoad(clients, seconds, rows) for clients in self.clients]
         if crowds:
             bench_crowds(crowds)
         else:

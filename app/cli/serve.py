@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -13,8 +12,6 @@ import tyro
 
 if TYPE_CHECKING:
     from onpath.app.classroom.classroom import Classroom
-    from onpath.app.storage.records import Records
-
 
 SHORTEST_HANG = 1.0  # [s]
 
@@ -39,7 +36,8 @@ class Serve:
     most_labs: int = 100_000
     """If the database holds more labs, the least recently used are deleted, but none in use."""
     classroom: bool = False
-    """Open a class, and print a code for the students and a key for the teacher."""
+    """Open a class, and print a code for the students and a key for the teacher. With teachers'
+    keys in the environment, ONPATH_TEACHER_KEY, each has a class with an address of its own."""
     origin: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Address of the page behind a proxy, https://lab.example.org; repeat for more."""
     trusted_proxy: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -47,14 +45,10 @@ class Serve:
     socket: Path | None = None
     """Listen on this Unix socket instead, for your own proxy, such as Jupyter's."""
     most_clients: int = 64
-    """Maximum number of browsers in each process; further ones wait."""
-    workers: int = 1
-    """Number of processes; they share the port and the database."""
+    """Maximum number of browsers; further ones wait."""
     hang_seconds: float = 10.0
     """A process whose simulation or network hangs for this time answers 503 at /health, and ends
     after twice this time, so that whatever supervises it starts another; 0 for never."""
-    successive_ports: bool = False
-    """Give each worker its own port, counting from --port, for a proxy in front."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     """Least level of log messages."""
 
@@ -64,18 +58,12 @@ class Serve:
             raise ValueError(f"--most-clients {self.most_clients}: expected 1 or more")
         if self.hang_seconds and self.hang_seconds < SHORTEST_HANG:
             raise ValueError(f"--hang-seconds {self.hang_seconds:g}: expected 1 or more, or 0")
-        from onpath.app.server.workers import is_worker
+        from onpath.app.server.lab_server import serve
         from onpath.app.storage.database_url import database_url
         from onpath.app.storage.expiry import Retention
 
         retention, database = Retention(self.keep_days, self.most_labs), database_url(self.database)
-        if self.workers != 1:
-            replace(self, database=database)._supervise()
-            return
-        from onpath.app.server.handover import handover_socket
-        from onpath.app.server.lab_server import serve
-
-        worker = is_worker()
+        classrooms = self._classrooms()
         level = getattr(logging, self.log_level.upper())
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
         logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
@@ -85,51 +73,36 @@ class Serve:
             self.lessons,
             database,
             open_browser=self.open,
-            open_class=_opener(silent=worker) if self.classroom else None,
+            classrooms=classrooms,
             most_clients=self.most_clients,
             retention=retention,
             hang_seconds=self.hang_seconds,
             allowed_origins=self.origin,
             trusted_proxies=self.trusted_proxy,
             unix_socket=self.socket,
-            share_port=worker,
-            listener=handover_socket(self.host, self.port),
         )
 
-    def _supervise(self) -> None:
-        from onpath.app.server.workers import check, supervise
+    def _classrooms(self) -> list[Classroom]:
+        """Open the classes, if there are to be any, and print how to come in."""
+        from onpath.app.classroom.class_opening import given_keys, open_classes
 
-        check(self)
+        keys = given_keys()
         if not self.classroom:
-            supervise(self)
-            return
-        from onpath.app.classroom.class_opening import KEY, class_of_workers
-
-        with class_of_workers(self.database) as (room, is_new):
-            _print_class(room.code, room.key if is_new else None)
-            supervise(self, {KEY: room.key})
+            return []
+        classrooms = open_classes(keys)
+        for room in classrooms:
+            _print_class(room, self.origin[0] if self.origin else "")
+        return classrooms
 
 
-def _opener(silent: bool) -> Callable[[Records], Classroom]:
-    """Return the function that opens a class; it prints code and key unless `silent`."""
-    from onpath.app.classroom.class_opening import given_key, open_class
-
-    key = given_key()
-
-    def opened(records: Records) -> Classroom:
-        room = open_class(records, key)
-        if not silent:
-            _print_class(room.code, room.key if key is None else None)
-        return room
-
-    return opened
-
-
-def _print_class(code: str, key: str | None) -> None:
-    """Print the class code, and the teacher's key if there is one to print."""
+def _print_class(room: Classroom, site: str) -> None:
+    """Print the class code with its address if it has one; else the teacher's key, too."""
     from onpath.app.common.access_codes import shown
+    from onpath.app.viser_adapter.places import class_address
 
-    print(f"class code:    {code.upper()}     for the students, under Class")
-    if key is not None:
-        print(f"teacher's key: {shown(key)}     under Class, Teacher; tell it nobody")
+    if room.has_address:
+        print(f"class code:    {room.code.upper()}     at {site}{class_address(room.code)}")
+    else:
+        print(f"class code:    {room.code.upper()}     for the students, under Class")
+        print(f"teacher's key: {shown(room.key)}     under Class, Teacher; tell it nobody")
     sys.stdout.flush()

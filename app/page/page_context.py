@@ -14,14 +14,17 @@ class ClassSeat:
     """A lab's place in the class.
 
     Attributes:
-        join: joins with the class code and a nickname; raises ValueError with a message.
+        join: joins with the class code and a nickname; raises ValueError with a message. Returns
+            the address of the class if its pages are elsewhere.
         leave: leaves the class but stays in the lab.
-        teach: opens the teacher's page, given the key; raises ValueError with a message.
+        teach: opens the teacher's page, given the key; see `join`.
+        code: the class code, if the page's address has it.
     """
 
-    join: Callable[[str, str], object]
+    join: Callable[[str, str], str]
     leave: Callable[[], None]
-    teach: Callable[[str], None]
+    teach: Callable[[str], str]
+    code: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,8 @@ local storage would block one of its 32 threads until the answer arrives.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from uuid import uuid4
 
 import viser
@@ -17,8 +18,27 @@ from websockets.frames import CloseCode
 from onpath.app.common.error_log import log_error
 from onpath.app.viser_adapter.connection_limits import PerAddress
 from onpath.app.viser_adapter.message_filter import warn_once
+from onpath.app.viser_adapter.places import storage_key
 
 Kept = dict[str, str | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Arrival:
+    """A client that has answered.
+
+    Attributes:
+        kept: values of the keys, by the names that were asked for.
+        address: the client's, as the limits on connections count it.
+        place: of its page; see `app.viser_adapter.places`.
+    """
+
+    client: viser.ClientHandle
+    kept: Kept
+    address: str
+    place: str
+
+
 MOST, MOST_EACH = 300, 100  # clients that have not answered, in total and per address
 
 
@@ -26,9 +46,8 @@ class Arrivals:
     """Clients that have not answered yet. Runs on viser's event loop, except `enter`.
 
     Args:
-        keys: of local storage.
-        enter: called in one of viser's threads, with the values of these keys and the client's
-            address.
+        keys: of local storage, and whether each class has a value of its own.
+        enter: called in one of viser's threads.
         most, most_each: clients that may be unanswered, in total and per address; beyond that the
             oldest is disconnected.
     """
@@ -36,8 +55,8 @@ class Arrivals:
     def __init__(
         self,
         server: viser.ViserServer,
-        keys: list[str],
-        enter: Callable[[viser.ClientHandle, Kept, str], None],
+        keys: Mapping[str, bool],
+        enter: Callable[[Arrival], None],
         most: int = MOST,
         most_each: int = MOST_EACH,
     ) -> None:
@@ -54,6 +73,7 @@ class Arrivals:
         if socket is None:  # disconnected already
             return
         address: str = getattr(socket, "address", "")
+        place: str = getattr(socket, "place", "")
         surplus = self._silent.add(client.client_id, address)
         if surplus is not None:
             self._turn_away(surplus)
@@ -66,19 +86,21 @@ class Arrivals:
             if key is not None:
                 kept[key] = message.value
                 if not waits and self._silent.discard(client.client_id):
-                    self._threads.submit(self._let_in, client, kept, address)
+                    arrival = Arrival(client, kept, address, place)
+                    self._threads.submit(self._let_in, arrival)
 
         connection.register_handler(wire.LocalStorageGetItemResponseMessage, answered)
         for question, key in waits.items():
-            connection.queue_message(wire.LocalStorageGetItemRequestMessage(key, question))
+            stored = storage_key(key, place) if self._keys[key] else key
+            connection.queue_message(wire.LocalStorageGetItemRequestMessage(stored, question))
         client.flush()
 
     async def _forget(self, client: viser.ClientHandle) -> None:
         self._silent.discard(client.client_id)
 
-    def _let_in(self, client: viser.ClientHandle, kept: Kept, address: str) -> None:
+    def _let_in(self, arrival: Arrival) -> None:
         try:
-            self._enter(client, kept, address)
+            self._enter(arrival)
         except Exception as error:
             log_error(error)
 

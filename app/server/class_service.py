@@ -1,4 +1,4 @@
-"""Connects the server to the class: decides which page each client gets."""
+"""Connects the server to a class: decides which page each client gets."""
 
 from __future__ import annotations
 
@@ -7,11 +7,9 @@ from functools import partial
 
 import viser
 
+from onpath.app.classroom.class_keeper import ClassKeeper
 from onpath.app.classroom.class_sync import ClassSync
 from onpath.app.classroom.classroom import Classroom
-from onpath.app.classroom.relay import Relay
-from onpath.app.classroom.shared_classroom import SharedClassroom
-from onpath.app.classroom.watches import Watches
 from onpath.app.lab.commands import CloseLesson, ReportState, TakeSetup
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
@@ -23,56 +21,63 @@ from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import Records
 from onpath.app.storage.write_behind import WriteBehind
+from onpath.app.viser_adapter.places import storage_key
 
 TEACHER_KEY = "onpath_teacher"  # in the browser's storage
 
 
 class ClassService:
-    """The class of one server process.
+    """A class of one server process.
 
     Args:
-        records, keeper: delete a student's data when the teacher asks for it.
+        place: of its page; empty if it is that of every page. See `app.viser_adapter.places`.
+        records, keeper: delete a student's data when the teacher asks for it. A class with a place
+            is kept in the records, too.
+        lost: called with the clients of the class when another process has taken it over.
     """
 
     def __init__(
         self,
         classroom: Classroom,
         sessions: LabRegistry,
+        place: str = "",
         records: Records | None = None,
         keeper: WriteBehind | None = None,
+        lost: Callable[[set[int]], None] = lambda _: None,
     ) -> None:
-        self._class, self._sessions = classroom, sessions
-        self._records, self._keeper = records, keeper
+        self._class, self._sessions, self._place = classroom, sessions, place
+        self._records, self._keeper, self._lost = records, keeper, lost
+        self._clients = set[int]()
         self._teachers: dict[int, tuple[str, TeacherChoices]] = {}
+        self._teacher_key = storage_key(TEACHER_KEY, place)
         self._attendance = ClassSync(classroom, self._student)
         self._attendance.rounds.start()
-        self._relay: Relay | None = None
-        if isinstance(classroom, SharedClassroom) and records is not None:
-            watches = Watches(records, classroom.id)
-            simulation = sessions.simulation
-            self._relay = Relay(watches, self._here, self._wanted, sessions.make, simulation)
-            self._relay.rounds.start()
+        self._class_keeper: ClassKeeper | None = None
+        if place and records is not None:
+            self._class_keeper = ClassKeeper(classroom, records, self._give_up)
+            self._class_keeper.rounds.start()
 
     def stop(self) -> None:
         """Stop, with the server."""
         self._attendance.rounds.stop()
-        if self._relay is not None:
-            self._relay.rounds.stop()
+        if self._class_keeper is not None:
+            self._class_keeper.stop()
 
     def greet(self, client: viser.ClientHandle, shown: str | None) -> None:
-        """Make a browser that was a teacher's a teacher's again.
+        """Receive a client, and make a browser that was a teacher's a teacher's again.
 
         Args:
             shown: the value that it keeps under `TEACHER_KEY`.
         """
-        try:
-            if shown is not None and self._class.is_pass(shown):
-                self._teachers[client.client_id] = (shown, TeacherChoices())
-        except OSError:
-            return  # a student's page is open to everybody
+        self._clients.add(client.client_id)
+        if self._class_keeper is not None:
+            self._class_keeper.open()
+        if shown is not None and self._class.is_pass(shown):
+            self._teachers[client.client_id] = (shown, TeacherChoices())
 
     def gone(self, client: int) -> None:
         """Forget a client that has disconnected."""
+        self._clients.discard(client)
         self._teachers.pop(client, None)
 
     def nickname(self, code: str) -> str:
@@ -88,24 +93,27 @@ class ClassService:
             reopen: rebuilds the client's page.
         """
 
-        def teach(key: str) -> None:
+        def teach(key: str) -> str:
             shown = self._class.admit(key, code)
             self._class.leave(code)
             self._teachers[client.client_id] = (shown, TeacherChoices())
-            client.local_storage.set_item(TEACHER_KEY, shown)
+            client.local_storage.set_item(self._teacher_key, shown)
             reopen()
+            return ""
 
-        def join(typed: str, nickname: str) -> None:
+        def join(typed: str, nickname: str) -> str:
             self._class.join(code, typed, nickname)
             entry, keeper = self._sessions.find(code), self._keeper
-            if entry is not None and keeper is not None:  # so that other processes find it
+            if entry is not None and keeper is not None:  # the class needs it in the database
                 submit = partial(keeper.submit, code)
                 entry.scheduled.lab.post(ReportState(lambda lab: keep(lab, submit)))
+            return ""
 
         return ClassSeat(
             join=join,
             leave=lambda: self._class.leave(code),
             teach=teach,
+            code=self._class.code if self._place else "",
         )
 
     def teaches(self, client: int) -> bool:
@@ -117,7 +125,7 @@ class ClassService:
         teacher = self._teachers.get(client)
         if teacher is None:
             return None
-        return FollowedLab(self._class, teacher[1], partial(self._lab, client))
+        return FollowedLab(self._class, teacher[1], self._lab)
 
     def teaching(
         self, client: viser.ClientHandle, lab: Lab, reopen: Callable[[], None]
@@ -140,7 +148,7 @@ class ClassService:
 
         def stop() -> None:
             self._teachers.pop(client.client_id, None)
-            client.local_storage.remove_item(TEACHER_KEY)
+            client.local_storage.remove_item(self._teacher_key)
             reopen()
             self._class.revoke(shown)
 
@@ -158,23 +166,14 @@ class ClassService:
         entry = self._sessions.find(code)
         return None if entry is None else (entry.scheduled.lab, entry.client is not None)
 
-    def _lab(self, client: int, code: str) -> ScheduledLab | None:
+    def _lab(self, code: str) -> ScheduledLab | None:
         """The lab with this code, for a teacher's page."""
-        here = self._here(code)
-        if here is None and self._relay is not None:
-            return self._relay.mirror(client, code)
-        return here
-
-    def _here(self, code: str) -> ScheduledLab | None:
-        """The lab with this code, if it is in this process."""
         entry = self._sessions.find(code)
-        return None if entry is None or self._class.is_elsewhere(code) else entry.scheduled
+        return None if entry is None else entry.scheduled
 
-    def _wanted(self) -> dict[int, str]:
-        """Codes of the students' labs that teachers in this process follow, by client."""
-        chosen = {client: chosen.followed for client, (_, chosen) in [*self._teachers.items()]}
-        there = self._class.members()
-        return {c: code for c, code in chosen.items() if code in there and not self._here(code)}
+    def _give_up(self) -> None:
+        """Send everybody of a class that is in another process away, to come back there."""
+        self._lost(set(self._clients))
 
     def _forget(self) -> int:
         self._class.end()

@@ -16,7 +16,7 @@ class FollowedLab:
     """The lab chosen on one teacher's page.
 
     Attributes:
-        lab: finds a lab by session code, local or mirrored; None if there is none to show.
+        lab: finds a lab by session code; None if there is none to show.
     """
 
     classroom: Classroom
@@ -39,5 +39,5 @@ class FollowedLab:
             return words("class.absent")
         found = self.find()
         if found is None:
-            return words("class.fetching")
+            return words("class.absent")
         return "" if found[0].is_seen else words("class.hidden")

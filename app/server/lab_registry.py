@@ -19,7 +19,6 @@ from onpath.app.common.throttle import Throttle
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.simulation_thread import ScheduledLab, SimulationThread
 from onpath.app.storage.lab_state import LabState, StateObserver, put_back
-from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import NotKept
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.models.errors import CodedError, Message
@@ -55,17 +54,17 @@ class LabRegistry:
 
     Attributes:
         make: makes a new lab.
-        load: returns the state stored under a code, or None.
+        load: takes over the state stored under a code and returns it, or None.
+        is_current: whether no other process has had a lab of this one meanwhile.
         keeper: stores changes, or None.
-        leases: tells which labs other processes own, or None.
     """
 
     simulation: SimulationThread
     make: Callable[[], Lab]
     clock: Callable[[], float] = time.monotonic
     load: Callable[[str], LabState | None] = lambda _: None
+    is_current: Callable[[str], bool] = lambda _: True
     keeper: WriteBehind | None = None
-    leases: Leases | None = None
     _entries: dict[str, RegisteredLab] = field(default_factory=dict)
     _opening: set[str] = field(default_factory=set)
     _lock: threading.Condition = field(default_factory=threading.Condition)
@@ -79,8 +78,6 @@ class LabRegistry:
             known: the list of codes that its browser keeps, as returned by `remembered`.
         """
         codes = CODE.findall(known[:200]) if known else []
-        if self.leases is not None and codes:
-            codes = self.leases.available(codes)
         refusal: NotKept | None = None
         try:
             for code in self._in_turn(codes):
@@ -104,8 +101,7 @@ class LabRegistry:
         """
         with self._throttle.attempt(str(client)):
             entry = self._entries.get(code)
-            taken = entry is not None and entry.client is not None
-            if taken or (self.leases is not None and not self.leases.available([code])):
+            if entry is not None and entry.client is not None:
                 raise CodedError("error.lab_is_open")
             found = self._open(client, code)
             if found is None:
@@ -136,12 +132,11 @@ class LabRegistry:
             entry = self._entries.get(code)
             if entry is not None and entry.client is not None:
                 return None
-            if entry is not None and not self._is_up_to_date(entry):
-                with self._lock:
-                    self._remove(entry)
+            if entry is not None and not self._is_current(code):
+                self._drop(entry)
                 entry = None
             if entry is None:
-                state = self._kept(code)
+                state = self.load(code)
                 if state is None:
                     return None
                 entry = self._made(code, state)
@@ -151,8 +146,7 @@ class LabRegistry:
     def _alone(self, code: str) -> Iterator[None]:
         """Lock one code, so that nobody else opens or releases its lab.
 
-        This may block on the database or on other processes; the lock of all sessions is never
-        held meanwhile.
+        This may block on the database; the lock of all sessions is never held meanwhile.
         """
         with self._lock:
             self._lock.wait_for(lambda: code not in self._opening)
@@ -192,7 +186,7 @@ class LabRegistry:
             return entry
 
     def find(self, code: str) -> RegisteredLab | None:
-        """Release a lab that another process has taken while this one was suspended."""
+        """The lab with this code, if it is in this process."""
         return self._entries.get(code)
 
     def leave(self, client: int) -> RegisteredLab | None:
@@ -201,8 +195,8 @@ class LabRegistry:
             entry = self._abandon(client)
             if entry is not None:
                 self._drop_old()
-        if entry is not None:
-            self._let_go(entry)
+        if entry is not None and self.keeper is not None:
+            self.keeper.flush(entry.code)  # it may return to another process
         return entry
 
     def held(self) -> list[str]:
@@ -211,38 +205,25 @@ class LabRegistry:
             return [entry.code for entry in self._entries.values() if entry.client is not None]
 
     def lose(self, code: str) -> int | None:
-        """Remove a lab that another process owns now. Returns the client that it had here."""
+        """Remove a lab that another process has now. Returns the client that it had here."""
         with self._lock:
             entry = self._entries.get(code)
             if entry is not None:
                 self._remove(entry)
             return entry.client if entry is not None else None
 
-    def _kept(self, code: str) -> LabState | None:
-        """Load the stored state of a code and own it, unless another process owns it.
-
-        Raises:
-            NotKept: the database is unavailable.
-        """
-        state = self.load(code)
-        if state is None or self.leases is None:
-            return state
-        return None if self.leases.claim(code) is None else self.load(code)
-
-    def _is_up_to_date(self, entry: RegisteredLab) -> bool:
-        """Whether no other process has owned a waiting lab meanwhile; if so, own it again."""
+    def _is_current(self, code: str) -> bool:
         try:
-            return self.leases is None or self.leases.claim(entry.code) is True
+            return self.is_current(code)
         except NotKept:
             return True
 
-    def _let_go(self, entry: RegisteredLab) -> None:
-        """Store a lab and release it to other processes."""
+    def _drop(self, entry: RegisteredLab) -> None:
+        """Remove a lab that is outdated, and what was still to be stored of it."""
         if self.keeper is not None:
-            self.keeper.flush(entry.code)
-        with self._alone(entry.code):
-            if self.leases is not None and entry.client is None:
-                self.leases.release(entry.code)
+            self.keeper.discard(entry.code)
+        with self._lock:
+            self._remove(entry)
 
     def _remove(self, entry: RegisteredLab) -> None:
         self.simulation.remove(entry.scheduled)

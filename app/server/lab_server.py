@@ -6,7 +6,7 @@ import logging
 import signal
 import threading
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -26,7 +26,8 @@ from onpath.app.page.teacher_view import TeacherView
 from onpath.app.scene.stage import set_initial_camera
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.admission_queue import AdmissionQueue
-from onpath.app.server.arrivals import Arrivals, Kept
+from onpath.app.server.arrivals import Arrival, Arrivals
+from onpath.app.server.class_directory import ClassDirectory
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
 from onpath.app.server.lab_feed import LabFeed, first_snapshot
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
@@ -38,10 +39,10 @@ from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.expiry import Expiry, Retention
-from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import Records
 from onpath.app.storage.write_behind import WriteBehind
-from onpath.app.viser_adapter.secure_server import make_server
+from onpath.app.viser_adapter.places import storage_key
+from onpath.app.viser_adapter.secure_server import disconnect, make_server
 from onpath.lessons.course import BUILT_IN, Course, read_course
 from onpath.lessons.problems import LessonError
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -49,7 +50,7 @@ from onpath.models.systems.catalogue import FIVE_BAR
 log = logging.getLogger(__name__)
 DARK_KEY = "dark"  # whether the browser asks for dark pages; see assets/page/dark.js
 STORAGE_KEY = "onpath_sessions"
-ASKED = [STORAGE_KEY, TEACHER_KEY, DARK_KEY]  # of every browser that comes
+ASKED = {STORAGE_KEY: True, TEACHER_KEY: True, DARK_KEY: False}  # see `Arrivals`
 MOST_CLIENTS = 64
 
 
@@ -61,7 +62,7 @@ class LabServer:
         store: where the loops come from.
         course: the lessons; the built-in ones if None.
         records: where labs are stored; None stores nothing.
-        classroom: the class that students may join, or None.
+        classrooms: the classes that students may join: one, or several with addresses.
         most_clients: maximum number at once; others wait. A teacher is always admitted.
         retention: how long labs are kept, and how many; by default that of the command line.
         hang_seconds: see `Watchdog`; 0 for no watchdog.
@@ -78,7 +79,7 @@ class LabServer:
         store: LoopCache,
         course: Course | None = None,
         records: Records | None = None,
-        classroom: Classroom | None = None,
+        classrooms: Sequence[Classroom] = (),
         most_clients: int = MOST_CLIENTS,
         retention: Retention | None = None,
         hang_seconds: float = 0.0,
@@ -94,16 +95,15 @@ class LabServer:
         well = {"health": health, "trouble": lambda: self._watchdog.trouble}
         self.server = make_server(host, port, label="OnPath", **well, **listening)
         self._records = records
-        self._leases = Leases(records) if records else None
-        self._keeper = WriteBehind(self._leases) if self._leases else None
-        self._expiry = Expiry(records, retention or Retention()) if records else None
         self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons))
+        self._keeper = self._expiry = None
         if records is not None:
-            self.sessions.load, self.sessions.keeper = records.load, self._keeper
-            self.sessions.leases = self._leases
-        self._class: ClassService | None = None
-        if classroom is not None:
-            self._class = ClassService(classroom, self.sessions, records, self._keeper)
+            self._keeper = WriteBehind(records, lost=self._lost)
+            self._expiry = Expiry(records, retention or Retention(), self.sessions.held)
+            self.sessions.load, self.sessions.is_current = records.claim, records.is_current
+            self.sessions.keeper = self._keeper
+        self._classes = ClassDirectory(classrooms, self._class_service)
+        self._places = dict[int, str]()
         self._views, self._dark = dict[int, LabFeed](), set[int]()  # dark: clients that ask for it
         self._newcomers, self._onlookers = BuildQueue(self.server), TabVisibilities(self.server)
         set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.lab)))
@@ -114,8 +114,6 @@ class LabServer:
     def _start(self) -> None:
         self.simulation.start()
         self._memory.start()
-        if self._leases is not None:
-            self._leases.keep(self.sessions.held, self._lost)
         if self._expiry is not None:
             self._expiry.start()
         self._watchdog.start(signs_of_life(self.simulation, self.server.get_event_loop()))
@@ -132,8 +130,6 @@ class LabServer:
         self._watchdog.stop()
         self._memory.stop()
         self._newcomers.stop()
-        if self._class is not None:
-            self._class.stop()
         self.simulation.stop()
         self._store.close()
         for view in list(self._views.values()):
@@ -144,19 +140,28 @@ class LabServer:
             self._expiry.stop()
         if self._keeper is not None and self._records is not None:
             self._keeper.close()
-            if self._leases is not None:
-                self._leases.close()
+            self._classes.stop()
             self._records.close()
 
-    def _connected(self, client: viser.ClientHandle, kept: Kept, address: str) -> None:
-        if self._class is not None:
-            self._class.greet(client, kept[TEACHER_KEY])
+    def _class_service(self, classroom: Classroom, place: str) -> ClassService:
+        away = self._send_away
+        return ClassService(classroom, self.sessions, place, self._records, self._keeper, away)
+
+    def _class_of(self, client: int) -> ClassService | None:
+        return self._classes.at(self._places.get(client, ""))
+
+    def _connected(self, arrival: Arrival) -> None:
+        client, kept, number = arrival.client, arrival.kept, arrival.client.client_id
+        self._places[number] = arrival.place
+        service = self._class_of(number)
+        if service is not None:
+            service.greet(client, kept[TEACHER_KEY])
         if kept[DARK_KEY] == "yes":
-            self._dark.add(client.client_id)
-        teaches = self._class and self._class.teaches(client.client_id)
+            self._dark.add(number)
+        teaches = service is not None and service.teaches(number)
         enter = partial(self._entered, client, kept[STORAGE_KEY])
-        self._room.admit(client, enter, address, always=bool(teaches))
-        if client.client_id not in self.server.get_clients():
+        self._room.admit(client, enter, arrival.address, always=teaches)
+        if number not in self.server.get_clients():
             self._disconnected(client)
 
     def _entered(self, client: viser.ClientHandle, known: str | None) -> None:
@@ -173,7 +178,8 @@ class LabServer:
         if self.sessions.find(entry.code) is not entry or entry.client != client.client_id:
             return  # another process owns it now
         try:
-            client.local_storage.set_item(STORAGE_KEY, self.sessions.remembered(entry.code, known))
+            key = storage_key(STORAGE_KEY, self._places.get(client.client_id, ""))
+            client.local_storage.set_item(key, self.sessions.remembered(entry.code, known))
             view = self._view(client, entry)
         except Exception as error:
             log_error(error)
@@ -186,10 +192,15 @@ class LabServer:
 
     def _view(self, client: viser.ClientHandle, entry: RegisteredLab) -> LabFeed:
         """Build the page of a lab, or of a teacher, and return its feed."""
-        number, code, service = client.client_id, entry.code, self._class
-        lab = entry.scheduled.lab
+        number, code = client.client_id, entry.code
+        service, lab = self._class_of(number), entry.scheduled.lab
         reopen, enter = partial(self._reopen, client, entry), partial(self._enter, client)
-        seat = service.seat(client, code, reopen) if service else None
+        place = self._places.get(number, "")
+        seat = (
+            service.seat(client, code, reopen)
+            if service
+            else self._classes.seat_elsewhere(place, code)
+        )
         teaching = service.teaching(client, lab, reopen) if service else None
         post, keeps = lab.post, self._records is not None and not self._records.warning
         dark = number in self._dark
@@ -210,11 +221,19 @@ class LabServer:
         self._reopen(client, self.sessions.enter(client.client_id, normalised(text)))
 
     def _lost(self, code: str) -> None:
-        """Release a lab that another process has taken while this one was suspended."""
+        """Send away the client of a lab that another process has."""
+        if self._records is None or self._records.is_current(code):
+            return  # it has come back meanwhile
         number = self.sessions.lose(code)
-        client = self.server.get_clients().get(-1 if number is None else number)
-        if client is not None:
-            self._reopen(client, self.sessions.join(client.client_id, None))
+        if number is not None:
+            disconnect(self.server, {number})
+
+    def _send_away(self, clients: set[int]) -> None:
+        """Store all labs, and close the connections of clients; their pages come back at once."""
+        if self._keeper is not None:
+            for code in self.sessions.held():
+                self._keeper.flush(code)
+        disconnect(self.server, clients)
 
     def _reopen(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:
         """Rebuild a client's page for a session that it already has."""
@@ -230,8 +249,9 @@ class LabServer:
         self._onlookers.forget(client.client_id)
         self._dark.discard(client.client_id)
         self.sessions.leave(client.client_id)
-        if self._class is not None:
-            self._class.gone(client.client_id)
+        if (service := self._class_of(client.client_id)) is not None:
+            service.gone(client.client_id)
+        self._places.pop(client.client_id, None)
         view = self._views.pop(client.client_id, None)
         if view is not None:
             view.page.close()
@@ -244,7 +264,7 @@ def serve(
     lessons: Path | None = None,
     database: str | None = None,
     open_browser: bool = False,
-    open_class: Callable[[Records], Classroom] | None = None,
+    classrooms: Sequence[Classroom] = (),
     **listening: Any,
 ) -> None:
     """Serve the lab until Ctrl-C or SIGTERM.
@@ -252,7 +272,7 @@ def serve(
     Args:
         lessons: folder of the user's own lessons.
         database: URL of the database of labs; by default a file of the user's.
-        open_class: opens the class that students may join; None for no class.
+        classrooms: see `LabServer`.
         listening: further arguments of `LabServer`.
 
     Raises:
@@ -266,8 +286,7 @@ def serve(
     if records.warning:
         log.warning("%s", records.warning)
     store = LoopCache()
-    classroom = open_class(records) if open_class else None
-    lab = LabServer(host, port, store, course, records, classroom, **listening)
+    lab = LabServer(host, port, store, course, records, classrooms, **listening)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     warm_up(store)
     log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)

@@ -1,7 +1,6 @@
 """Notices when the simulation thread or the event loop hangs, and ends the process.
 
-What supervises the process starts it again: the parent of workers, systemd, a container's restart
-policy.
+What supervises the process starts it again: systemd, Kubernetes, a container's restart policy.
 """
 
 from __future__ import annotations

@@ -1,31 +1,36 @@
-"""Deletes stored labs that have not been used for long, and the oldest if there are too many."""
+"""Deletes stored labs that have not been used for long, and the oldest if there are too many.
+
+Classes are deleted a week after their last change.
+"""
 
 from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import sqlalchemy as sa
 
 from onpath.app.common.periodic import Periodic
-from onpath.app.storage.leases import NONSENSE
 from onpath.app.storage.records import NotKept, Records
-from onpath.app.storage.schema import labs, leases
+from onpath.app.storage.schema import classes, labs
 
 log = logging.getLogger(__name__)
 
 DAY = 24 * 3600.0  # [s]
 KEEP_DAYS, MOST_LABS = 365, 100_000
+CLASS_DAYS = 7
+TOUCH_INTERVAL = 300.0  # [s] between marks on the labs that are in use
+IN_USE = 3 * TOUCH_INTERVAL  # [s] after its last mark, a lab may still be in use
 
 
 @dataclass(frozen=True, slots=True)
 class Retention:
     """How long labs are kept, and how many.
 
-    A lab is used when it is opened and whenever it changes. One that is in use, in any process that
-    shares the database, is never deleted.
+    A lab is used when it is opened, whenever it changes, and as long as it is open. One that was in
+    use within the last `IN_USE` seconds, in any process that shares the database, is not deleted.
 
     Attributes:
         days: a lab that has not been used for this number of days is deleted.
@@ -49,36 +54,47 @@ class Expiry:
     """Applies a retention to a database: at the start, and daily.
 
     Args:
+        in_use: returns the codes of the labs that are open in this process.
         clock: seconds since 1970.
     """
 
     def __init__(
-        self, records: Records, retention: Retention, clock: Callable[[], float] = time.time
+        self,
+        records: Records,
+        retention: Retention,
+        in_use: Callable[[], Iterable[str]] = tuple,
+        clock: Callable[[], float] = time.time,
     ) -> None:
         self._records, self._retention, self._clock = records, retention, clock
+        self._in_use = in_use
         self._rounds = Periodic("expiry", DAY, self._run)
+        self._touches = Periodic("use of labs", TOUCH_INTERVAL, self._touch)
 
     def start(self) -> None:
         """Delete now, and daily from now on."""
         self._run()
         self._rounds.start()
+        self._touches.start()
 
     def stop(self) -> None:
         """Stop the daily deletion."""
         self._rounds.stop()
+        self._touches.stop()
 
     def delete(self) -> int:
-        """Delete labs by age and by number. Returns how many were deleted.
+        """Delete labs by age and by number, and old classes. Returns how many labs were deleted.
 
         Raises:
             NotKept: the database cannot be used.
         """
+        self._records.touch(self._in_use())
         now, newest = self._clock(), labs.c.updated.desc()
         surplus = sa.select(labs.c.code).order_by(newest, labs.c.code).offset(self._retention.most)
-        used = sa.select(leases.c.code).where(leases.c.expires > now - NONSENSE)
         old = labs.c.updated < now - self._retention.days * DAY
-        wanted = (old | labs.c.code.in_(surplus)) & labs.c.code.not_in(used)
+        wanted = (old | labs.c.code.in_(surplus)) & (labs.c.updated < now - IN_USE)
         with self._records.transaction() as connection:
+            ended = classes.c.updated < now - CLASS_DAYS * DAY
+            connection.execute(sa.delete(classes).where(ended))
             return connection.execute(sa.delete(labs).where(wanted)).rowcount
 
     def _run(self) -> None:
@@ -87,3 +103,9 @@ class Expiry:
                 log.info("%d labs deleted: not used for long, or too many", count)
         except NotKept as error:
             log.warning("old labs are not deleted: %s", error)
+
+    def _touch(self) -> None:
+        try:
+            self._records.touch(self._in_use())
+        except NotKept as error:
+            log.debug("labs in use are not marked: %s", error)

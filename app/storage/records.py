@@ -1,4 +1,7 @@
-"""The stored states of labs, by session code: in an SQLite file of the user, or a database by URL.
+"""The stored states of labs and classes: in an SQLite file of the user, or a database by URL.
+
+Several processes may share a database. A state belongs to the process that claimed it last, and no
+other can save it; so a process whose copy in memory is outdated notices it.
 
 An SQLite file that cannot be used never stops the lab: `Records.warning` then says why, and the
 records are in memory. engine.py opens the database.
@@ -9,8 +12,9 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -36,24 +40,44 @@ from onpath.app.storage.engine import (
     words,
 )
 from onpath.app.storage.private_files import make_private_folder
-from onpath.app.storage.schema import LONGEST_CODE, labs, leases, meta, metadata
+from onpath.app.storage.schema import LONGEST_CODE, classes, labs
 
 log = logging.getLogger(__name__)
 
 LARGEST = 1_000_000  # [B], of one state
 
-_of = sa.bindparam("of")  # a code. Prebuilt statements take half the time
-# The last owner of a lab. The row is locked until the transaction ends
-_OWNER = sa.select(leases.c.owner).where(leases.c.code == _of).with_for_update()
-_CHANGE = (
-    sa.update(labs)
-    .where(labs.c.code == _of, labs.c.version <= VERSION)
-    .values({name: sa.bindparam(name) for name in ("version", "updated", "state")})
-)
+
+@dataclass(frozen=True, slots=True)
+class _Statements:
+    """The statements for one table; prebuilt, they take half the time."""
+
+    read: sa.Select[Any]
+    lock: sa.Select[Any]
+    claim: sa.Update
+    change: sa.Update
+    insert: sa.Insert
+
+
+def _statements(table: sa.Table) -> _Statements:
+    this = table.c.code == sa.bindparam("of")
+    read = sa.select(table.c.state, table.c.version, table.c.owner).where(this)
+    used = {"owner": sa.bindparam("own"), "updated": sa.bindparam("updated")}
+    state = {"version": VERSION, "state": sa.bindparam("state"), "updated": used["updated"]}
+    mine = (table.c.owner == used["owner"]) & (table.c.version <= VERSION)
+    return _Statements(
+        read=read,
+        lock=read.with_for_update(),
+        claim=sa.update(table).where(this).values(used),
+        change=sa.update(table).where(this, mine).values(state),
+        insert=sa.insert(table).values({"code": sa.bindparam("of"), **used, **state}),
+    )
+
+
+_STATEMENTS = {table: _statements(table) for table in (labs, classes)}
 
 
 class HeldElsewhere(Exception):
-    """Another process has the lab now; the state in this process is stale."""
+    """Another process has claimed the state; the copy in this process is outdated."""
 
 
 def default_file() -> Path:
@@ -67,7 +91,7 @@ def file_url(file: Path) -> sa.URL:
 
 
 class Records:
-    """States by session code. Thread-safe.
+    """States of labs by session code, and of classes. Thread-safe.
 
     Args:
         url: of the database as SQLAlchemy takes it, "postgresql+psycopg://user@host/onpath"; None
@@ -100,53 +124,69 @@ class Records:
         self._engine = self._opened()
         self._journals = journals_of(self._file, self._identity)
 
-    def load(self, code: str) -> dict[str, Any] | None:
-        """The state of a lab; None if there is none.
+    def load(self, code: str, table: sa.Table = labs) -> dict[str, Any] | None:
+        """A state; None if there is none.
 
         Raises:
             NotKept: the database cannot be used, or the state cannot be read; the caller must then
                 not save under this code.
         """
-        wanted = sa.select(labs.c.state, labs.c.version).where(labs.c.code == code)
         with self.transaction() as connection:
-            row = connection.execute(wanted).first()
-        if row is None:
-            return None
-        if row.version > VERSION:
-            raise NotKept("error.lab_newer")
-        try:
-            return msgspec.json.decode(row.state, type=dict[str, Any])
-        except (ValueError, RecursionError):
-            raise NotKept("error.lab_unreadable") from None
+            row = connection.execute(_STATEMENTS[table].read, {"of": code}).first()
+        return None if row is None else _state(row)
 
-    def save(self, code: str, state: dict[str, Any], owner: str | None = None) -> None:
-        """Replace the state of a lab.
+    def claim(self, code: str, table: sa.Table = labs) -> dict[str, Any] | None:
+        """Take over a state, which counts as its use; see `load`."""
+        values = {"of": code, "own": self.owner, "updated": self._clock()}
+        with self.transaction() as connection:
+            row = connection.execute(_STATEMENTS[table].lock, {"of": code}).first()
+            if row is None:
+                return None
+            state = _state(row)
+            connection.execute(_STATEMENTS[table].claim, values)
+            return state
 
-        Args:
-            owner: who saves. Nothing is saved if another owner has leased the lab.
+    def is_current(self, code: str, table: sa.Table = labs) -> bool:
+        """Whether no other process has claimed or saved a state since this one did.
+
+        Raises:
+            NotKept: the database cannot be used.
+        """
+        with self.transaction() as connection:
+            row = connection.execute(_STATEMENTS[table].read, {"of": code}).first()
+        return row is None or row.owner == self.owner
+
+    def save(self, code: str, state: dict[str, Any], table: sa.Table = labs) -> None:
+        """Replace a state that belongs to this process, or save one under a new code.
 
         Raises:
             ValueError: the state is too large or not JSON, or the code is invalid.
             NotKept: the database cannot be used (disk full, server away); the previous state
                 remains.
-            HeldElsewhere: another owner has the lab.
+            HeldElsewhere: the state belongs to another process.
         """
-        text = _text(code, state)
-        values = {"version": VERSION, "updated": self._clock(), "state": text}
-        for last in (False, True):
-            try:
-                with self.transaction() as connection:
-                    if owner is not None:
-                        leased = connection.execute(_OWNER, {"of": code}).scalar()
-                        if leased not in (None, owner):
-                            raise HeldElsewhere
-                    changed = connection.execute(_CHANGE, {"of": code, **values})
-                    if not changed.rowcount:
-                        connection.execute(sa.insert(labs).values(code=code, **values))
-                return
-            except exc.IntegrityError:  # another process inserted it first, or is a newer version
-                if last:
-                    raise NotKept("error.lab_newer") from None
+        statements, text = _STATEMENTS[table], _text(code, state)
+        values = {"of": code, "own": self.owner, "updated": self._clock(), "state": text}
+        try:
+            with self.transaction() as connection:
+                if not connection.execute(statements.change, values).rowcount:
+                    connection.execute(statements.insert, values)
+        except exc.IntegrityError:  # it is there: of another process, or of a newer version
+            with self.transaction() as connection:
+                row = connection.execute(statements.read, {"of": code}).first()
+            if row is not None and row.version > VERSION:
+                raise NotKept("error.lab_newer") from None
+            raise HeldElsewhere from None
+
+    def touch(self, codes: Iterable[str]) -> None:
+        """Count labs of this process as used now.
+
+        Raises:
+            NotKept: the database cannot be used.
+        """
+        ours = labs.c.code.in_(list(codes)) & (labs.c.owner == self.owner)
+        with self.transaction() as connection:
+            connection.execute(sa.update(labs).where(ours).values(updated=self._clock()))
 
     def delete_all(self) -> int:
         """Delete all labs and classes. Returns the number of labs.
@@ -155,15 +195,8 @@ class Records:
             NotKept: they could not be deleted.
         """
         with self.transaction() as connection:
-            for table in metadata.tables.values():
-                if table not in (meta, labs):
-                    connection.execute(sa.delete(table))
+            connection.execute(sa.delete(classes))
             return connection.execute(sa.delete(labs)).rowcount
-
-    @property
-    def is_shared(self) -> bool:
-        """Whether other processes with the same URL see the same records."""
-        return not self.warning and self._url.database not in (None, "", ":memory:")
 
     def close(self) -> None:
         """Close the database."""
@@ -227,6 +260,15 @@ class Records:
             self.warning = f"Nothing outlives the server: {self._url.database}: {reason}."
             log.warning("%s", self.warning)
         return opened_memory()
+
+
+def _state(row: sa.Row[Any]) -> dict[str, Any]:
+    if row.version > VERSION:
+        raise NotKept("error.lab_newer")
+    try:
+        return msgspec.json.decode(row.state, type=dict[str, Any])
+    except (ValueError, RecursionError):
+        raise NotKept("error.lab_unreadable") from None
 
 
 def _text(code: str, state: dict[str, Any]) -> str:

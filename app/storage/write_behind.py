@@ -33,13 +33,21 @@ class Store(Protocol):
 class WriteBehind:
     """Saves the latest state of each lab, at most once per interval.
 
+    Args:
+        lost: called with the code of a lab that another process has claimed.
+
     Attributes:
         warning: why the latest states are not saved yet, in words; empty when they are. Failed
             writes are repeated.
     """
 
-    def __init__(self, records: Store, interval: float = INTERVAL) -> None:
-        self._records = records
+    def __init__(
+        self,
+        records: Store,
+        interval: float = INTERVAL,
+        lost: Callable[[str], object] = lambda _: None,
+    ) -> None:
+        self._records, self._lost = records, lost
         self._interval = interval
         self._pending: dict[str, Callable[[], dict[str, Any]]] = {}
         self._failed = set[str]()
@@ -76,6 +84,12 @@ class WriteBehind:
                 self._pending.clear()
                 self._failed.clear()
             return delete()
+
+    def discard(self, code: str) -> None:
+        """Discard the pending state of a lab that is outdated."""
+        with self._writing, self._lock:
+            self._pending.pop(code, None)
+            self._failed.discard(code)
 
     def flush(self, code: str) -> None:
         """Write the pending state of one lab in the caller's thread; it is saved on return."""
@@ -129,7 +143,8 @@ class WriteBehind:
                 failed = set(self._pending)  # the others wait behind this one
             return str(error)
         except HeldElsewhere:
-            log.info("a lab has gone to another process")
+            log.info("a lab has moved to another process")
+            self._lost(code)
         except Exception as error:  # must not affect other labs
             failed = {code}
             log_error(error)

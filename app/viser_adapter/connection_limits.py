@@ -163,6 +163,7 @@ class CountedConnection(ServerConnection):
     Attributes:
         peer: the address at its other end, which may be a proxy's.
         address: the client's, as the limits count it.
+        place: see places.py.
         ended: number of all connections of this process that have ended.
         tabs_ended: those of them that were websockets.
     """
@@ -173,7 +174,7 @@ class CountedConnection(ServerConnection):
     def __init__(self, *args: Any, connections: ConnectionLimits, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self._connections = connections
-        self.peer = self.address = ""
+        self.peer = self.address = self.place = ""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """See `asyncio.Protocol`."""

@@ -72,7 +72,7 @@ class RequestFilter:
         """
         self.open = False
         self._health, self._trouble = health, trouble
-        self._allowed = frozenset(origin.lower().rstrip("/") for origin in allowed_origins)
+        self.allowed = frozenset(origin.lower().rstrip("/") for origin in allowed_origins)
         self._local_only = local_only
 
     def refusal(self, request: Request, peer: str = "") -> tuple[HTTPStatus, str] | None:
@@ -108,7 +108,7 @@ class RequestFilter:
         if not origins:  # not a browser; other programs could send any origin anyway
             return True
         origin = origins[0].lower()
-        if len(origins) > 1 or origin in self._allowed:
+        if len(origins) > 1 or origin in self.allowed:
             return len(origins) == 1
         try:
             site = urlsplit(origin)

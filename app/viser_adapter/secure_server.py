@@ -34,6 +34,7 @@ from onpath.app.viser_adapter.compression import share_compressors
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
 from onpath.app.viser_adapter.message_filter import Limits, MessageFilter
 from onpath.app.viser_adapter.page_scripts import add_scripts
+from onpath.app.viser_adapter.places import place_of, redirection, without_place
 from onpath.app.viser_adapter.request_filter import (
     RequestFilter,
     add_headers,
@@ -45,7 +46,7 @@ from onpath.app.viser_adapter.secure_connection import SecureConnection, Unfinis
 from onpath.app.viser_adapter.sockets import PortInUse, listen, listen_unix
 from onpath.app.viser_adapter.viser_caches import keep_what_is_constant
 
-__all__ = ["Limits", "PortInUse", "harden", "make_server"]
+__all__ = ["Limits", "PortInUse", "disconnect", "harden", "make_server"]
 
 _SUBPROTOCOL = f"viser-v{viser.__version__}"
 _SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
@@ -62,9 +63,7 @@ def make_server(
     limits: Limits = Limits(),
     allowed_origins: tuple[str, ...] = (),
     trusted_proxies: tuple[str, ...] = (),
-    share_port: bool = False,
     unix_socket: Path | None = None,
-    listener: socket.socket | None = None,
     health: Callable[[str], str] = well,
     trouble: Callable[[], str] = str,
     verbose: bool = False,
@@ -73,12 +72,11 @@ def make_server(
 
     Args:
         allowed_origins: pages of other sites that may connect, "https://lab.example:8443". The
-            server's own page always may, and so may clients that are not browsers.
+            server's own page always may, and so may clients that are not browsers. With such an
+            address, visitors are spread over places of their own; see places.py.
         trusted_proxies: see `app.viser_adapter.connection_limits.Proxies`.
-        share_port: whether other processes of this user may listen on the same port.
         unix_socket: listen on this file only, for a proxy of the same user that serves the page in
             a folder of its own.
-        listener: listen with this socket instead.
         health, trouble: see `RequestFilter`.
 
     Raises:
@@ -90,8 +88,7 @@ def make_server(
     share_compressors()
     keep_what_is_constant()
     logging.getLogger("websockets.server").addFilter(_is_news)
-    if listener is None:
-        listener = listen_unix(unix_socket) if unix_socket else listen(host, port, share_port)
+    listener = listen_unix(unix_socket) if unix_socket else listen(host, port)
     port = 0 if unix_socket else listener.getsockname()[1]
     local_only = is_loopback(host) and not unix_socket
     door = RequestFilter(allowed_origins, local_only=local_only, health=health, trouble=trouble)
@@ -119,6 +116,16 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
 
     MessageFilter(server, websock, server.gui, limits)
     websock.on_client_connect(guard)
+
+
+def disconnect(server: viser.ViserServer, clients: set[int]) -> None:
+    """Close the connections of clients. Their pages connect again within about a second."""
+    sockets = server._websock_server._live_connections
+    reason = "this lab has moved to another process"
+    for client in clients:
+        if (connection := sockets.get(client)) is not None:
+            closing = connection.close(CloseCode.SERVICE_RESTART, reason)
+            asyncio.run_coroutine_threadsafe(closing, server.get_event_loop())
 
 
 def _to_page(connection: ServerConnection, request: Request) -> Response:
@@ -163,6 +170,10 @@ def _guarded_serve(
                 return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
             if in_folder and request.path.partition("?")[0] == "/":
                 return _to_page(connection, request)
+            if elsewhere := redirection(connection, request, bool(requests.allowed)):
+                return elsewhere
+            connection.place = place_of(request.path)
+            request.path = without_place(request.path)
             return add_scripts(process_request(connection, request))
 
         options["max_size"] = limits.max_message_bytes

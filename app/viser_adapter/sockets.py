@@ -1,4 +1,4 @@
-"""Sockets to listen on: a port, a port shared by several processes, or a file."""
+"""Sockets to listen on: a port or a file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class PortInUse(OSError):
     """The port is taken; the message names it and suggests what to do."""
 
 
-def listen(host: str, port: int, share_port: bool = False) -> socket.socket:
+def listen(host: str, port: int) -> socket.socket:
     """Listen on exactly this address; port 0 takes a free one.
 
     Raises:
@@ -23,7 +23,7 @@ def listen(host: str, port: int, share_port: bool = False) -> socket.socket:
         ValueError: the port is out of range.
     """
     with _address_named(host, port):
-        return socket.create_server((host, port), family=_family(host), reuse_port=share_port)
+        return socket.create_server((host, port), family=_family(host))
 
 
 def listen_unix(file: Path) -> socket.socket:
@@ -43,25 +43,6 @@ def listen_unix(file: Path) -> socket.socket:
         os.umask(before)
     listener.listen()
     return listener
-
-
-def reserve(host: str, port: int) -> socket.socket:
-    """Bind an address for a process that will listen there, without listening.
-
-    Raises:
-        PortInUse: another program listens there, sharing the port or not.
-        OSError: the address cannot be bound; the message names it.
-        ValueError: the port is out of range.
-    """
-    with _address_named(host, port):
-        if port:
-            socket.create_server((host, port), family=_family(host)).close()
-        place = socket.socket(_family(host))
-        place.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        if hasattr(socket, "SO_REUSEPORT"):
-            place.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
-        place.bind((host, port))
-        return place
 
 
 def _family(host: str) -> socket.AddressFamily:

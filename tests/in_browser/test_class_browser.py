@@ -12,7 +12,7 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser, FloatRect, Locator, Page
 
-from onpath.app.classroom.local_classroom import LocalClassroom
+from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import shown
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
@@ -38,16 +38,16 @@ WINDOWS = ((1100, 600), (800, 400), (800, 400))
 class Class:
     """The tabs of a teacher and two students."""
 
-    room: LocalClassroom
+    room: Classroom
     teacher: Tab
     students: list[Tab]
 
 
 @pytest.fixture(scope="module")
 def tabs(browser: Browser) -> Iterator[Class]:
-    room = LocalClassroom()
+    room = Classroom()
     store = LoopCache()
-    server = LabServer("127.0.0.1", 0, store, classroom=room)
+    server = LabServer("127.0.0.1", 0, store, classrooms=[room])
     made: list[Tab] = []
     for width, height in WINDOWS:
         context = browser.new_context(viewport={"width": width, "height": height})

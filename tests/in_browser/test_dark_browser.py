@@ -14,7 +14,7 @@ pytest.importorskip("playwright")
 from PIL import Image
 from playwright.sync_api import Browser, expect
 
-from onpath.app.classroom.local_classroom import LocalClassroom
+from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import shown
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
@@ -151,8 +151,8 @@ def test_every_step_of_a_dark_lesson_can_be_read(
 
 @pytest.mark.thorough
 def test_a_dark_teachers_page_can_be_read(browser: Browser) -> None:
-    room = LocalClassroom()
-    server = LabServer("127.0.0.1", 0, LoopCache(), classroom=room)
+    room = Classroom()
+    server = LabServer("127.0.0.1", 0, LoopCache(), classrooms=[room])
     tab = visit(browser, server)
     tab.open("Teacher…")
     tab.field("Teacher's key").fill(shown(room.key))

@@ -10,7 +10,7 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser, ConsoleMessage, expect
 
-from onpath.app.classroom.local_classroom import LocalClassroom
+from onpath.app.classroom.classroom import Classroom
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
@@ -116,7 +116,7 @@ def test_what_a_step_speaks_of_is_on_the_first_screen(tab: Tab) -> None:
 
 
 def test_a_teachers_key_is_not_shown_while_it_is_typed(browser: Browser) -> None:
-    server = LabServer("127.0.0.1", 0, LoopCache(), classroom=LocalClassroom())
+    server = LabServer("127.0.0.1", 0, LoopCache(), classrooms=[Classroom()])
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     tab = Tab(server, context, draws=False)
     tab.open("Teacher…")

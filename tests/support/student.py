@@ -8,6 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from types import TracebackType
 from typing import Any, Self
+from urllib.parse import urlsplit
 
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
@@ -15,6 +16,7 @@ from websockets.typing import Subprotocol
 
 from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from onpath.app.bench.simulated_browser import MOVING
+from onpath.app.viser_adapter.places import place_of, storage_key
 
 PATIENCE = 60.0  # [s]; only ends a test that would hang
 
@@ -55,7 +57,8 @@ class Student:
     @property
     def code(self) -> str:
         """Session code of the lab."""
-        return self.kept.get("onpath_sessions", "").partition(",")[0]
+        key = storage_key("onpath_sessions", place_of(urlsplit(self.address).path))
+        return self.kept.get(key, "").partition(",")[0]
 
     def open(self) -> None:
         """Open the page, or open it again."""

@@ -22,7 +22,9 @@ class ClassPanel:
         self._words = words
         with gui.add_folder(words("class.title"), expand_by_default=not first.nickname):
             self._member = gui.add_html("")
-            self._code = gui.add_text(words("class.code"), "", hint=words("class.code_hint"))
+            self._code = gui.add_text(
+                words("class.code"), seat.code.upper(), hint=words("class.code_hint")
+            )
             self._name = gui.add_text(
                 words("class.nickname"), "", hint=words("class.nickname_hint")
             )
@@ -34,7 +36,7 @@ class ClassPanel:
                 key = gui.add_text(words("class.key"), "", hint=words("class.key_hint"))
                 teach = gui.add_button(words("class.teach"), color="gray", icon=viser.Icon.KEY)
         self._try(self._join, lambda: seat.join(self._code.value, self._name.value))
-        self._try(self._leave, seat.leave)
+        self._try(self._leave, lambda: seat.leave() or "")
         self._try(teach, lambda: seat.teach(key.value))
         self._shown: str | None = None
         self.follow(first)
@@ -51,11 +53,15 @@ class ClassPanel:
             handle.visible = not name
         self._leave.visible = bool(name)
 
-    def _try(self, button: viser.GuiButtonHandle, act: Callable[[], object]) -> None:
+    def _try(self, button: viser.GuiButtonHandle, act: Callable[[], str]) -> None:
         def tried() -> None:
             self._said.content = ""
             try:
-                act()  # may rebuild the page without this panel
+                address = act()  # may rebuild the page without this panel
+                if address:
+                    self._said.content = render(
+                        "panel/class_link.html", address=address, words=self._words
+                    )
             except (ValueError, OSError) as error:
                 self._said.content = note(self._words.sentence(error), small=True)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import viser
 
-from onpath.app.classroom.local_classroom import LocalClassroom
+from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.pace_html import pace_view
 from onpath.app.page.panels.widgets import note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherChoices
@@ -23,7 +23,7 @@ class PaceTab:
         words: Words,
         course: Course,
         chosen: TeacherChoices,
-        classroom: LocalClassroom,
+        classroom: Classroom,
     ) -> None:
         self._words, self._course, self._class = words, course, classroom
         pace, self._names = self._class.orders.pace, lesson_titles(course, words)

@@ -6,7 +6,6 @@ import csv
 import io
 import re
 import threading
-from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,10 +17,9 @@ from hypothesis import strategies as st
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.admission import CODE_LENGTH, LONGEST_NAME, cleaned
 from onpath.app.classroom.class_sync import ClassSync
-from onpath.app.classroom.local_classroom import LocalClassroom
+from onpath.app.classroom.classroom import Classroom, class_with_address
 from onpath.app.classroom.results import HEADER, class_csv, distribution, prediction_at, truth_of
-from onpath.app.classroom.shared_classroom import SharedClassroom
-from onpath.app.common.access_codes import ALPHABET, new_code, shown
+from onpath.app.common.access_codes import ALPHABET, shown
 from onpath.app.common.throttle import TRIES, WITHIN, Throttle
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import Freeze, TakeSetup, TakeStep
@@ -29,7 +27,6 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.storage.forget import forget
-from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import Records, file_url
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.lessons.course import Course, read_course
@@ -56,20 +53,17 @@ class Watched:
     """A class whose clock and labs are in the test's hands.
 
     Attributes:
-        records: where the class is shared; None for the class of one process.
+        key: of a class with an address; empty for the class of one process.
     """
 
     course: Course
-    records: Records | None = None
+    key: str = ""
     now: float = 1000.0
     labs: dict[str, tuple[Lab, bool]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.room: LocalClassroom | SharedClassroom = LocalClassroom(lambda: self.now)
-        if self.records is not None:
-            wall = lambda: 1.8e9 + self.now  # noqa: E731
-            self.room = SharedClassroom(self.records, new_code(), lambda: self.now, wall)
-            self.leases = Leases(self.records, clock=wall)
+        clock = lambda: self.now  # noqa: E731
+        self.room = class_with_address(self.key, clock) if self.key else Classroom(clock)
         self.attendance = ClassSync(self.room, self.labs.get)
 
     def student(self, name: str) -> Lab:
@@ -83,22 +77,14 @@ class Watched:
 
     def look(self) -> None:
         """As the class's thread does; then a frame of every lab."""
-        if self.records is not None:
-            self.leases.release()
-            self.leases.renew([code for code, (_, connected) in self.labs.items() if connected])
         self.attendance.look()
         for lab, _ in self.labs.values():
             lab.drain()
 
 
-@pytest.fixture(params=["one process", "several"])
-def klass(request: pytest.FixtureRequest, course: Course, tmp_path: Path) -> Iterator[Watched]:
-    if request.param == "one process":
-        yield Watched(course)
-        return
-    records = Records(file_url(tmp_path / "class.db"))
-    yield Watched(course, records)
-    records.close()
+@pytest.fixture(params=["", "k7mf2xqa9tzr"], ids=["of a process", "with an address"])
+def klass(request: pytest.FixtureRequest, course: Course) -> Watched:
+    return Watched(course, request.param)
 
 
 # Who may come in.

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.classroom.class_sync import ClassSync
-from onpath.app.classroom.local_classroom import LocalClassroom
+from onpath.app.classroom.classroom import Classroom
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import KeepWithin, TakeStep
 from onpath.app.lab.lab import Lab
@@ -35,7 +35,7 @@ class Room:
     """A class, its labs, and the rounds of its thread."""
 
     def __init__(self, course: Course) -> None:
-        self.room, self._course = LocalClassroom(lambda: 0.0), course
+        self.room, self._course = Classroom(lambda: 0.0), course
         self.labs: dict[str, tuple[Lab, bool]] = {}
         self._sync = ClassSync(self.room, self.labs.get)
 

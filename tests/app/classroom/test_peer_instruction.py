@@ -11,12 +11,11 @@ from typing import Any
 
 import msgspec
 import pytest
+from onpath.app.classroom.class_rows import push_text, read_push
 
 from onpath.app.classroom import class_html as page
-from onpath.app.classroom.class_rows import push_text, read_push
 from onpath.app.classroom.class_sync import ClassSync
-from onpath.app.classroom.classroom import Member
-from onpath.app.classroom.local_classroom import LocalClassroom
+from onpath.app.classroom.classroom import Classroom, Member
 from onpath.app.classroom.results import class_csv, distribution
 from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
@@ -126,7 +125,7 @@ def test_sketches_of_both_rounds_have_a_plot_each(course: Course) -> None:
 class Teaching:
     """What the teacher's page knows of a class."""
 
-    def __init__(self, room: LocalClassroom) -> None:
+    def __init__(self, room: Classroom) -> None:
         self.classroom, self.chosen = room, TeacherChoices(LESSON, CHOICE)
 
     def progress(self) -> Progress:
@@ -134,7 +133,7 @@ class Teaching:
 
 
 def test_the_teacher_sees_them_or_only_how_many_there_are(course: Course) -> None:
-    room = LocalClassroom(lambda: 0.0)
+    room = Classroom(lambda: 0.0)
     lab = Lab(store(), FIVE_BAR, course)
     room.join("lab", room.code, "Ada")
     sync = ClassSync(room, {"lab": (lab, True)}.get)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from onpath.app.classroom.class_sync import GAINS, ClassSync
 from onpath.app.classroom.gains_html import HEIGHT, PAIRS, WIDTH, gains_view
-from onpath.app.classroom.local_classroom import LocalClassroom
+from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.pace_html import pace_view, whereabouts
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
@@ -68,7 +68,7 @@ def test_on_a_projector_no_title_tells_what_will_happen(course: Course) -> None:
 
 
 def test_the_gains_of_a_lab_reach_the_class(course: Course) -> None:
-    room, lab = LocalClassroom(lambda: 0.0), Lab(store(), FIVE_BAR, course)
+    room, lab = Classroom(lambda: 0.0), Lab(store(), FIVE_BAR, course)
     room.join("lab", room.code, "Ada")
     sync = ClassSync(room, {"lab": (lab, True)}.get)
     do(lab, c.SetParameter("K1", 123.0), c.SetParameter("K5", 7.0))
@@ -102,7 +102,7 @@ def test_students_with_the_same_gains_are_counted() -> None:
 class Teaching:
     """What the teacher's page knows of a class."""
 
-    def __init__(self, room: LocalClassroom) -> None:
+    def __init__(self, room: Classroom) -> None:
         self.classroom, self.chosen = room, TeacherChoices(LESSON, SKETCH)
 
     def progress(self) -> Progress:
@@ -110,7 +110,7 @@ class Teaching:
 
 
 def test_picked_sketches_keep_their_numbers_while_others_come_in(course: Course) -> None:
-    room = LocalClassroom(lambda: 0.0)
+    room = Classroom(lambda: 0.0)
     labs = {f"lab {i}": (Lab(store(), FIVE_BAR, course), True) for i in range(3)}
     sync = ClassSync(room, labs.get)
     for code, (lab, _) in labs.items():

@@ -200,7 +200,6 @@ BAD = [
     ["experiment", "obstruction", "--csv", "file/x.csv"],
     ["--port", "99999"],
     ["--port", "-1"],
-    ["--workers", "2", "--port", "99999"],
     ["--socket", "missing/x"],
     ["--socket", "x" * 200],
     ["--host", "256.0.0.1"],

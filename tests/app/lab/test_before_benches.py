@@ -14,11 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from onpath.app.classroom.results import truth_of
-from onpath.app.classroom.shared_classroom import SharedClassroom
 from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
-from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.setups.capture import capture
@@ -27,7 +24,7 @@ from onpath.app.lab.setups.share_code import decode
 from onpath.app.storage.lab_state import put_back
 from onpath.app.storage.records import Records, file_url
 from onpath.models.closed_loop.trajectory import read_csv
-from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
+from onpath.models.control.benches import DEFAULT_LAWS, LEFT
 from tests.support.built_in import built_in_course
 from tests.support.checkout import ROOT
 from tests.support.lab import do, new_lab, store
@@ -36,7 +33,6 @@ DATA = ROOT / "tests" / "data" / "two_laws"
 COURSE = built_in_course()[0]
 LESSON = "01-path-or-timetable"
 DAY = datetime(2026, 11, 23)
-KEY = "k7mf2xqa9tzr"
 ELLIPSE = (
     "ONPATH1-VNDISD44OEAHFNRFFBKGVCNRJ7LRYGECAY5EAO4MFXGQZDMB62MBXGUYQD42MIAJCNBYRKAFJAKKMFRCBAITHUEB"
     "FDKEKEUMVUC5UXKSTYHYZOV45T4MJIS4FSXAIBVRWEY5BEKAAAAA-MX2GGNI"
@@ -84,22 +80,6 @@ def test_a_kept_lab_opens_in_its_lesson(records: Records) -> None:
     assert "Tracker" in page and "Follower" in page
     do(lab, c.CloseLesson())
     assert lab.session.parameters.K1 == 900.0 and lab.session.editor.design.name == "edited"
-    records.close()
-
-
-def test_a_stored_class_continues(records: Records) -> None:
-    room = SharedClassroom(records, KEY, lambda: 5.0, lambda: 1.8e9)
-    room.look()
-    assert [member.name for member in room.members().values()] == ["Ada", "Emmy"]
-    ways = [member.progress for member in room.members().values()]
-    assert truth_of(LESSON, 1, ways) is not None
-    push = room.orders.push
-    assert isinstance(push, TakeSetup) and push.setup.laws == {}
-    lab = new_lab()
-    lab.session.change_law(RIGHT, "set_point")
-    lab.post(push)
-    lab.drain()
-    assert lab.session.entry.name == "flexible" and lab.session.laws == DEFAULT_LAWS
     records.close()
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from onpath.app.classroom.class_rows import push_text, read_push
+from onpath.app.classroom.class_state import push_data, read_push
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.lab import Lab
@@ -75,10 +75,10 @@ def test_an_old_stored_lab_is_restored_and_stored_with_its_version() -> None:
 
 
 def test_an_old_push_of_a_teacher_is_accepted() -> None:
-    sent = read_push('{"setup":{"benches":{"five_bar":{"parameters":{"K2":60.0}}}}}')
+    sent = read_push({"setup": {"benches": {"five_bar": {"parameters": {"K2": 60.0}}}}})
     assert isinstance(sent, TakeSetup)
     assert sent.setup.robots["five_bar"] == RobotSetup({"K2": 60.0, "K3": 0.0})
-    assert read_push(push_text(sent)) == sent
+    assert read_push(push_data(sent)) == sent
 
 
 def test_a_robot_added_since_has_its_own_defaults(

@@ -7,12 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
 
-from onpath.app.classroom.moment import parameters_of
-from onpath.app.classroom.moment_check import read_moment
-from onpath.app.classroom.moment_of_lab import tell
 from onpath.app.cli.main import run_command
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup
@@ -21,7 +17,6 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.stored import from_data
-from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.lessons.checks import judge
 from onpath.lessons.course import Course, read_course
@@ -71,14 +66,6 @@ def test_an_old_set_up_of_a_teacher_is_accepted() -> None:
     lab.post(TakeSetup(from_data(SETUP)))
     lab.drain()
     assert plant(lab) == NEW
-
-
-def test_a_lab_on_a_worker_of_the_old_version_is_mirrored() -> None:
-    lab = new_lab()
-    do(lab, c.UseShared(SHARED))
-    text = msgspec.json.encode(tell(ScheduledLab(lab))).decode().replace(NEW, OLD)
-    assert plant(lab) == NEW and OLD in text
-    assert parameters_of(read_moment(text)) == lab.session.parameters
 
 
 @pytest.fixture

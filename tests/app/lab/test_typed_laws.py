@@ -13,9 +13,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onpath.app.classroom.mirror import Mirror
-from onpath.app.classroom.moment_check import read_moment
-from onpath.app.classroom.moment_of_lab import tell
 from onpath.app.exports.files import csv_bytes
 from onpath.app.exports.history_figure import draw_history
 from onpath.app.exports.recording import record_scene
@@ -30,7 +27,6 @@ from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.setups.stored import from_data
 from onpath.app.lab.snapshots.snapshot import MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
-from onpath.app.simulation.simulation_thread import ScheduledLab
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.app.viser_adapter.message_filter import Limits
 from onpath.lessons.action_schema import Laws, StepSetup
@@ -271,20 +267,6 @@ def test_lessons_take_it() -> None:
     assert lab.session.laws[LEFT] == "across = -K1*xi - K2*dxi; along = 1"
     run(lab, 0.1)
     assert_sound(lab)
-
-
-def test_a_teacher_sees_it() -> None:
-    lab = typed(left=SLOW, right=CHASING)
-    text = msgspec.json.encode(tell(ScheduledLab(lab))).decode()
-    assert [robot.law for robot in read_moment(text).robots] == [SLOW, CHASING]
-    mirror = Mirror(Lab(STORE), text)
-    list(mirror.frame(FRAME))
-    assert mirror.session.laws == lab.session.laws
-    for bench, state in states(lab.session).items():
-        assert np.array_equal(mirror.session.runs[bench].state, state)
-    for wrong in ("across = 1", "across = 0;\\nalong = 1", "a=" * 251):
-        with pytest.raises(ValueError, match=r"."):
-            read_moment(text.replace(SLOW, wrong))
 
 
 def test_a_set_up_begins_with_it_even_if_its_loop_has_to_be_made() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from onpath.app.classroom.class_rows import push_text, read_push
+from onpath.app.classroom.class_state import push_data, read_push
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
@@ -46,5 +46,5 @@ def test_a_student_follows_a_route_from_the_list_to_its_end(tmp_path: Path) -> N
 def test_what_the_teacher_sends_keeps_its_route() -> None:
     """In the database of a class, and as earlier versions kept it."""
     for push in (TakeStep("01-a", 1, "short"), TakeStep("01-a", 1)):
-        assert read_push(push_text(push)) == push
-    assert read_push('{"lesson": "01-a", "step": 1}') == TakeStep("01-a", 1)
+        assert read_push(push_data(push)) == push
+    assert read_push({"lesson": "01-a", "step": 1}) == TakeStep("01-a", 1)

@@ -339,7 +339,7 @@ def test_no_language_translates_anything_that_does_not_exist(language: str) -> N
 
 # Errors and reasons have a code in every language.
 
-HANDED_ON = {"models/errors.py", "app/classroom/moment.py"}
+HANDED_ON = {"models/errors.py"}
 """Modules that make messages of codes that others have chosen."""
 
 

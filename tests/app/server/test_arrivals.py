@@ -16,7 +16,7 @@ from websockets.typing import Subprotocol
 from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from onpath.app.bench.raw_socket import frames, is_closed, knock
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.server.arrivals import MOST_EACH, Arrivals, Kept
+from onpath.app.server.arrivals import MOST_EACH, Arrival, Arrivals, Kept
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.support import waiting
@@ -91,9 +91,11 @@ class Inn:
     def __init__(self) -> None:
         self.server = make_server(port=0, limits=Limits(farewell=0.1))
         self.let_in: list[Kept] = []
-        self.arrivals = Arrivals(
-            self.server, ["a", "b"], lambda _, kept, __: self.let_in.append(kept), 5, 3
-        )
+        keys = {"a": True, "b": False}
+        self.arrivals = Arrivals(self.server, keys, self._enter, 5, 3)
+
+    def _enter(self, arrival: Arrival) -> None:
+        self.let_in.append(arrival.kept)
 
     def visit(self) -> ClientConnection:
         """A browser that has answered nothing yet."""

@@ -1,157 +1,122 @@
-"""The supplied nginx configuration, in front of two real workers, one of which is killed."""
+"""The supplied nginx configuration, in front of two real processes, one of which is killed."""
 
 from __future__ import annotations
 
-import http.client
-import os
-import random
 import re
-import shutil
-import signal
-import socket
-import subprocess
 from collections.abc import Iterator
-from contextlib import ExitStack, suppress
-from dataclasses import dataclass
-from pathlib import Path
+from contextlib import ExitStack
+from typing import Any
 
 import pytest
 from websockets.exceptions import InvalidStatus
 
+from onpath.app.classroom.admission import class_code_of, class_id_of
+from onpath.app.classroom.class_opening import KEY
+from onpath.app.common.access_codes import new_code, shown
+from onpath.app.storage.records import Records
+from onpath.app.storage.schema import classes
 from tests.support.built_in import built_in_course
-from tests.support.checkout import ROOT
-from tests.support.student import Student
-from tests.support.supervisor import Supervisor
+from tests.support.site import (
+    ORIGIN,
+    Site,
+    needs_nginx,
+    needs_postgres,
+    postgres,
+    site,
+)
 from tests.support.waiting import wait_for
 
-pytestmark = pytest.mark.thorough
+pytestmark = [pytest.mark.thorough, needs_nginx]
 
-NGINX = shutil.which("nginx", path=os.environ.get("PATH", "") + ":/usr/sbin")
-HOST, ORIGIN = "lab.example.org", "https://lab.example.org"
-CONFIGURATION = ROOT / "assets" / "deploy" / "nginx.conf"
-needs_nginx = pytest.mark.skipif(NGINX is None, reason="nginx is not installed (apt install nginx)")
-
-
-def free_ports(count: int) -> list[int]:
-    """Successive ones, of those that no system gives to whoever asks for any."""
-    while True:
-        ports = [random.randrange(20000, 32000)]
-        ports += [ports[0] + i for i in range(1, count)]
-        with ExitStack() as probes, suppress(OSError):
-            for port in ports:
-                probes.enter_context(socket.create_server(("127.0.0.1", port)))
-            return ports
+KEYS = "k7mf2xqa9tzr", "k7mf2xqa9tzs"
+CODES = [class_code_of(key) for key in KEYS]
+NUMBERS = built_in_course()[0].numbers()
 
 
-def _answers(port: int) -> bool:
-    with socket.socket() as probe:
-        return probe.connect_ex(("127.0.0.1", port)) == 0
+class Running:
+    """A site, and what it keeps."""
+
+    def __init__(self, found: Site, database: str) -> None:
+        self.site, self.records = found, Records(database)
+
+    def has_kept(self, code: str, *words: str) -> bool:
+        state = str(self.records.load(code))
+        return all(word in state for word in words)
+
+    def kept_class(self) -> dict[str, Any]:
+        return self.records.load(class_id_of(KEYS[0]), classes) or {}
 
 
-@dataclass
-class Site:
-    """The proxy and what is behind it."""
-
-    port: int
-    supervisor: Supervisor
-
-    def get(self, path: str = "/", host: str = HOST, **headers: str) -> http.client.HTTPResponse:
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
-        connection.request("GET", path, headers={"Host": host, **headers})
-        return connection.getresponse()
-
-    def cookie(self) -> str:
-        """What a browser is given with the page."""
-        reply = self.get()
-        assert reply.status == 200 and b"<html" in reply.read(200).lower()
-        return (reply.getheader("Set-Cookie") or "").partition(";")[0]
-
-    def student(self, cookie: str, origin: str = ORIGIN) -> Student:
-        return Student(f"ws://{HOST}", self.port, Origin=origin, Cookie=cookie)
-
-
-def proxied(folder: Path, port: int, workers: list[int]) -> list[str]:
-    """The supplied file with this test's ports, and the command that starts nginx with it."""
-    text = CONFIGURATION.read_text()
-    for given, here in zip(("8081", "8082"), workers, strict=True):
-        text = text.replace(f"127.0.0.1:{given}", f"127.0.0.1:{here}")
-    text = re.sub(r"^(\s+listen) 80\b", rf"\1 127.0.0.1:{port}", text, flags=re.MULTILINE)
-    (folder / "onpath.conf").write_text(text)
-    kinds = ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
-    paths = "".join(f"{kind}_temp_path {folder / kind};" for kind in kinds)
-    main = f"daemon off; pid {folder / 'pid'}; error_log stderr; events {{}}"
-    (folder / "nginx.conf").write_text(
-        f"{main} http {{ access_log off; {paths} include {folder / 'onpath.conf'}; }}"
-    )
-    return [NGINX or "", "-e", "stderr", "-p", str(folder), "-c", str(folder / "nginx.conf")]
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+@pytest.fixture(scope="module", params=["sqlite", pytest.param("postgres", marks=needs_postgres)])
+def running(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Running]:
     folder = tmp_path_factory.mktemp("site")
-    first, second, port = free_ports(3)
-    options = ["--workers", "2", "--successive-ports", "--port", str(first), "--origin", ORIGIN]
-    supervisor = Supervisor(folder, *options)
-    command = proxied(folder, port, [first, second])
-    nginx = subprocess.Popen(command, stderr=subprocess.DEVNULL)
-    supervisor.wait_for("OnPath is ready", times=2)
-    wait_for(lambda: _answers(port) or nginx.poll() is not None, 60.0)
-    assert nginx.poll() is None
-    yield Site(port, supervisor)
-    nginx.terminate()
-    nginx.wait()
-    supervisor.end()
-    wait_for(lambda: not (_answers(first) or _answers(second)), 60.0)
+    with ExitStack() as stack:
+        database = f"sqlite:///{folder / 'labs.db'}"
+        if request.param == "postgres":
+            database = stack.enter_context(postgres())
+        given: Any = {KEY: " ".join(KEYS)}
+        made = Running(
+            stack.enter_context(site(folder, database, ["--classroom"], **given)), database
+        )
+        yield made
+        made.records.close()
 
 
-def worker_of(site: Site, student: Student) -> int:
-    """The process that has opened a student's websocket: the only one with a held lab."""
-    assert student.code
-    served = [p for p in site.supervisor.workers() if site.supervisor.sockets(p) > 0]
-    (process,) = served
-    return process
+def alone(running: Running) -> str:
+    """The place of a new browser in no class."""
+    reply = running.site.get()
+    location = reply.getheader("Location") or ""
+    assert reply.status == 302 and re.fullmatch("/l/[a-z0-9]{12}/", location)
+    return location.strip("/")
 
 
-@needs_nginx
-def test_the_same_browser_stays_with_its_worker_and_browsers_are_spread(site: Site) -> None:
+def quiet(running: Running) -> None:
+    """Wait until nobody is connected."""
+    wait_for(lambda: not any(p.connections() for p in running.site.processes), 60.0)
+
+
+def test_who_belongs_together_is_served_by_one_process_and_places_are_spread(
+    running: Running,
+) -> None:
     served: dict[str, set[int]] = {}
     while len(served) < 6 or len(set.union(*served.values())) < 2:
-        assert len(served) < 40  # by chance all would be with one worker once in 2^39 times
-        cookie = site.cookie()
-        assert re.fullmatch("onpath=[0-9a-f]{32}", cookie)
+        assert len(served) < 40  # by chance all would be with one process once in 2^39 times
+        place = alone(running)
         for _ in range(2):
-            with site.student(cookie) as student:
+            with running.site.student(place) as student:
                 student.open()
-                student.read(lambda: student.kept)
-                served.setdefault(cookie, set()).add(worker_of(site, student))
-            wait_for(lambda: not any(map(site.supervisor.sockets, site.supervisor.workers())), 60.0)
-    assert all(len(processes) == 1 for processes in served.values())
-    assert site.get("/", Cookie="onpath=" + "a" * 32).getheader("Set-Cookie") is None
-    assert site.get("/", Cookie="onpath=evil").getheader("Set-Cookie") is not None
+                student.read(lambda: student.code)
+                served.setdefault(place, set()).add(running.site.serving().port)
+            quiet(running)
+    assert all(len(ports) == 1 for ports in served.values())
 
 
-@needs_nginx
-def test_strangers_and_monsters_are_refused(site: Site) -> None:
-    cookie = site.cookie()
+def test_strangers_and_monsters_are_refused(running: Running) -> None:
+    get = running.site.get
     for origin in ("https://evil.example", f"{ORIGIN}.evil.example", "null"):
         with pytest.raises(InvalidStatus) as refused:
-            site.student(cookie, origin).open()
+            running.site.student(alone(running), origin).open()
         assert refused.value.response.status_code == 403
-    assert site.get("/", host="evil.example").status == 421
-    assert site.get("/", X="x" * 20_000).status == 400
-    assert site.get("/" + "x" * 5_000).status == 414
-    assert site.get("/..%2f..%2fetc/passwd").status in (400, 404)
-    assert site.get("/health").status == 200
+    assert get("/", host="evil.example").status == 421
+    assert get("/", X="x" * 20_000).status == 400
+    assert get("/" + "x" * 5_000).status == 414
+    for path in ("/..%2f..%2fetc/passwd", f"/c/{CODES[0]}/..%2f..%2fetc/passwd"):
+        assert get(path).status in (400, 404)
+    assert get("/health").status == 200
+    page = get(f"/c/{CODES[0]}/")
+    assert page.status == 200 and b"<html" in page.read(400).lower()
+    assert get(f"/c/{CODES[0].upper()}/").getheader("Location") == f"/c/{CODES[0]}/"
 
 
-@needs_nginx
-def test_a_student_whose_worker_is_killed_continues_on_another(site: Site) -> None:
-    with site.student(site.cookie()) as student:
+def test_a_student_whose_process_is_killed_goes_on_with_the_other(running: Running) -> None:
+    with running.site.student(alone(running)) as student:
         student.open()
         student.set("K2", 44.0)
         student.set("Path", "clover")
         student.set("Lessons", True)
-        numbers = built_in_course()[0].numbers().values()
+        numbers = NUMBERS.values()
         student.read(lambda: all(student.has_widget(f"Open lesson {each}") for each in numbers))
         student.set(f"Open lesson {[*numbers][-1]}", True)
         student.set("Next", True)
@@ -160,17 +125,121 @@ def test_a_student_whose_worker_is_killed_continues_on_another(site: Site) -> No
         student.set("Commit to this prediction: B", True)
         student.read(lambda: student.has_widget("Next") and not student.has_widget("Commit"))
         kept = ("'answers': {'1'", "'K2': 44.0", "'clover'")
-        student.read(lambda: site.supervisor.has_kept(student.code, *kept))
-        serving, code = worker_of(site, student), student.code
-        os.kill(serving, signal.SIGKILL)
+        student.read(lambda: running.has_kept(student.code, *kept))
+        killed, code = running.site.serving(), student.code
+        killed.kill()
         student.wait_until_closed()
         student.reopen()
         student.read(lambda: student.sees("Step 2 of"))
-        assert worker_of(site, student) != serving and student.code == code
+        assert running.site.serving() is not killed and student.code == code
         student.read(lambda: student.has_widget("Next"))
-        assert not student.has_widget("Commit") and not student.has_widget(
-            "Skip"
-        )  # it stays predicted
+        assert not student.has_widget("Commit") and not student.has_widget("Skip")  # predicted
         student.set("Free lab", "Free lab")
         student.read(lambda: not student.sees("Step 2 of"))
         assert student.find("Path")["value"] == "clover" and student.find("K2")["value"] == 44.0
+        killed.start_again()
+    quiet(running)
+
+
+class Class:
+    """A teacher and two students of one class."""
+
+    def __init__(self, running: Running, stack: ExitStack) -> None:
+        self.running = running
+        place = f"c/{CODES[0]}"
+        self.all = [stack.enter_context(running.site.student(place)) for _ in range(3)]
+        self.teacher, self.students = self.all[0], self.all[1:]
+
+    def come_in(self) -> None:
+        for student, name in zip(self.students, ("Ada", "Bob"), strict=True):
+            student.open()
+            assert student.find("Class code")["value"] == CODES[0].upper()  # from the address
+            student.set("Nickname", name)
+            student.set("Join the class", True)
+            student.read(lambda student=student: student.sees("You are in the class as"))
+        self.teacher.open()
+        self.teacher.set("Teacher's key", shown(KEYS[0]))
+        self.teacher.set("Open the teacher's page", True)
+        self.sees_both()
+
+    def sees_both(self) -> None:
+        """The teacher's page has both students, who are there."""
+        teacher = self.teacher
+        teacher.read(lambda: teacher.has_widget("1. Ada") and teacher.has_widget("2. Bob"))
+        teacher.read(lambda: not teacher.sees(">away<"))
+
+    def come_back(self) -> None:
+        """Everybody, as their pages do by themselves."""
+        for each in self.all:
+            each.wait_until_closed()
+        for each in self.all:
+            each.reopen()
+        for student, name in zip(self.students, ("Ada", "Bob"), strict=True):
+            student.read(lambda s=student, name=name: s.sees(name) and s.sees("You are in the"))
+        self.sees_both()
+        assert {each.moving for each in self.all} - {0}
+
+
+def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_returns(
+    running: Running,
+) -> None:
+    with ExitStack() as stack:
+        klass = Class(running, stack)
+        klass.come_in()
+        ada, bob = klass.students
+        codes = [ada.code, bob.code]
+        klass.teacher.set("Open this step for all", True)
+        for student in klass.students:
+            student.read(lambda student=student: student.sees("Step 1 of"))
+        ada.set("Next", True)
+        ada.read(lambda: ada.sees("Step 2 of"))
+        wait_for(lambda: {each["taken"] for each in running.kept_class()["members"]} == {1}, 60.0)
+        ada.read(lambda: running.has_kept(ada.code, "'index': 1"))
+        klass.teacher.set("Freeze all labs", True)
+        bob.read(lambda: bob.sees("stopped all labs"))
+        wait_for(lambda: running.kept_class()["frozen"], 60.0)
+        killed = running.site.serving()
+        killed.kill()
+        klass.come_back()
+        assert running.site.serving() is not killed and [ada.code, bob.code] == codes
+        ada.read(lambda: ada.sees("Step 2 of") and ada.sees("stopped all labs"))
+        bob.read(lambda: bob.sees("Step 1 of") and bob.sees("stopped all labs"))
+        klass.teacher.set("Let all labs go on", True)
+        bob.read(lambda: not bob.sees("stopped all labs"))
+        # The class returns when somebody comes to the first process, which is there again.
+        killed.start_again()
+        with running.site.student(f"c/{CODES[0]}") as late:
+
+            def comes_to_the_first() -> bool:
+                late.close()
+                late.reopen()
+                late.read(lambda: late.code)
+                return bool(killed.connections())
+
+            wait_for(comes_to_the_first, 60.0)
+            klass.come_back()
+            assert running.site.serving() is killed and [ada.code, bob.code] == codes
+            ada.read(lambda: ada.sees("Step 2 of"))
+    quiet(running)
+
+
+def test_a_class_is_joined_at_its_own_address_only(running: Running) -> None:
+    with running.site.student(alone(running)) as student:
+        student.open()
+        student.set("Class code", CODES[1])
+        student.set("Nickname", "Eve")
+        student.set("Join the class", True)
+        student.read(lambda: student.sees(f'href="/c/{CODES[1]}/"'))
+        student.set("Teacher's key", shown(KEYS[0]))
+        student.set("Open the teacher's page", True)
+        student.read(lambda: student.sees(f'href="/c/{CODES[0]}/"'))
+        student.set("Teacher's key", shown(new_code()))
+        student.set("Open the teacher's page", True)
+        student.read(lambda: student.sees("not the teacher"))
+    with running.site.student(f"c/{CODES[1]}") as other:
+        other.open()
+        other.set("Class code", CODES[0])  # of the class next door
+        other.set("Nickname", "Eve")
+        other.set("Join the class", True)
+        other.read(lambda: other.sees("not the class code"))
+    quiet(running)

@@ -7,9 +7,7 @@ import signal
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import suppress
 from functools import partial
-from http.client import HTTPConnection
 from pathlib import Path
 
 import pytest
@@ -17,10 +15,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.app.server.watchdog import EXIT_CODE, LOOKS, Watchdog
-from onpath.app.server.workers import Worker
 from onpath.app.storage.records import Records
-from onpath.app.viser_adapter.sockets import reserve
 from tests.support import waiting
+from tests.support.lab_process import LabProcess, free_ports
 from tests.support.student import Student
 
 WAIT = 60.0  # [s]; only ends a test that would hang
@@ -81,53 +78,30 @@ def test_anything_without_a_sign_of_life_for_long_enough_hangs(lives: list[set[s
         assert (look.ended > ended) == (max(silent.values()) >= 2 * LOOKS)
 
 
-class Served:
-    """The lab of `HANGING` as one worker of a supervisor, which keeps its labs in a file."""
+class Served(LabProcess):
+    """The lab of `HANGING`, which keeps its labs in a file."""
 
-    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        with reserve("127.0.0.1", 0) as place:
-            self.port: int = place.getsockname()[1]
-        monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, sys.path)))
-        options = ["--port", str(self.port), "--hang-seconds", str(HANG)]
+    def __init__(self, folder: Path) -> None:
         self._records = Records(database := f"sqlite:///{folder / 'labs.db'}")
-        options += ["--database", database]
-        self.worker = Worker(1, [sys.executable, "-c", HANGING, *options])
-        self.worker.start()
-        wait_for(lambda: self.health() == (200, "well\n"))
-
-    def health(self) -> tuple[int, str]:
-        connection = HTTPConnection("127.0.0.1", self.port, timeout=1.0)
-        with suppress(OSError):
-            connection.request("GET", "/health", headers={"Host": "elsewhere"})
-            answer = connection.getresponse()
-            return answer.status, answer.read().decode()
-        return 0, ""
+        options = ["--hang-seconds", str(HANG), "--database", database]
+        path = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+        super().__init__(free_ports(1)[0], options, path, ["-c", HANGING])
+        self.wait_until_well()
 
     def has_kept(self, code: str, word: str) -> bool:
         return word in str(self._records.load(code))
 
     def end(self) -> None:
-        assert self.worker.process is not None
-        self.worker.process.kill()
-        self.worker.process.wait()
+        self.kill()
         self._records.close()
 
     def student(self) -> Student:
         return Student(f"ws://127.0.0.1:{self.port}")
 
-    def exit_code(self) -> int:
-        assert self.worker.process is not None
-        return self.worker.process.wait(WAIT)
-
-    def is_started_again(self) -> bool:
-        """Whether the supervisor has replaced the process; to be asked again and again."""
-        self.worker.look()
-        return self.health()[0] == 200
-
 
 @pytest.fixture
-def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Served]:
-    served = Served(tmp_path, monkeypatch)
+def served(tmp_path: Path) -> Iterator[Served]:
+    served = Served(tmp_path)
     yield served
     served.end()
 
@@ -144,7 +118,7 @@ def test_a_simulation_that_hangs_is_replaced_and_its_labs_go_on(
         student.set("K1", 401.0)
         wait_for(lambda: served.health() == (503, "the simulation thread hangs\n"))
         assert served.exit_code() == EXIT_CODE
-        wait_for(served.is_started_again)
+        served.start_again()
         code = student.code
         student.reopen()
         assert student.code == code and student.find("K2")["value"] == 44.0
@@ -167,7 +141,7 @@ def test_whatever_hangs_ends_the_process(
         student.open()
         student.set("K1", value)
         assert served.exit_code() == code
-        wait_for(served.is_started_again)
+        served.start_again()
     assert "most recent call first" in capfd.readouterr().err  # where each thread was
 
 
@@ -176,8 +150,7 @@ def test_whatever_hangs_ends_the_process(
 def test_a_suspended_process_does_not_hang(
     served: Served, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    process = served.worker.process
-    assert process is not None
+    process = served.process
     with served.student() as student:
         student.open()
         student.read(lambda: student.moving > 10)

@@ -26,7 +26,6 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage import records as database
 from onpath.app.storage.engine import TRANSACTION_WAIT
-from onpath.app.storage.leases import Leases
 from onpath.app.storage.records import LARGEST, NotKept, Records, file_url
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.lessons.words import ENGLISH, Words
@@ -43,10 +42,13 @@ class Server:
 
     def __init__(self, file: Path) -> None:
         self.file, self.records = file, Records(file_url(file))
-        leases = Leases(self.records)
-        self.keeper = WriteBehind(leases, interval=0.0)
+        self.keeper = WriteBehind(self.records, interval=0.0)
         self.registry = LabRegistry(
-            SimulationThread(), new_lab, load=self.records.load, keeper=self.keeper, leases=leases
+            SimulationThread(),
+            new_lab,
+            load=self.records.claim,
+            is_current=self.records.is_current,
+            keeper=self.keeper,
         )
 
     def stop(self) -> None:

@@ -7,18 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from onpath.app.storage.expiry import DAY, Expiry, Retention
-from onpath.app.storage.leases import Leases
+from onpath.app.storage.expiry import CLASS_DAYS, DAY, IN_USE, Expiry, Retention
 from onpath.app.storage.records import Records, file_url
+from onpath.app.storage.schema import classes
 
 
 class World:
-    """A database under a clock."""
+    """A database under a clock, and the labs that are open."""
 
     def __init__(self, file: Path) -> None:
-        self.now = 1.8e9
+        self.now, self.open = 1.8e9, list[str]()
         self.records = Records(file_url(file), clock=lambda: self.now)
-        self.leases = Leases(self.records, clock=lambda: self.now)
 
     def save(self, *codes: str) -> None:
         """Store labs one after the other."""
@@ -27,7 +26,7 @@ class World:
             self.now += 1.0
 
     def expiry(self, days: int = 365, most: int = 1000) -> Expiry:
-        return Expiry(self.records, Retention(days, most), lambda: self.now)
+        return Expiry(self.records, Retention(days, most), lambda: self.open, lambda: self.now)
 
     def there(self) -> str:
         return "".join(code for code in "abcdef" if self.records.load(code) is not None)
@@ -44,14 +43,12 @@ def test_a_lab_is_deleted_a_year_after_its_last_use(world: World) -> None:
     world.save("a", "b", "c", "d")
     world.now += 200 * DAY
     world.save("b")  # changed
-    world.leases.claim("c")  # opened
-    world.leases.release("c")
+    world.records.claim("c")  # opened
     assert world.expiry().delete() == 0
     world.now += 165 * DAY
-    world.leases.claim("d")  # opened, and open
+    world.open = ["d"]
     assert world.expiry().delete() == 1 and world.there() == "bcd"
     world.now += 300 * DAY
-    world.leases.renew(["d"])
     assert world.expiry().delete() == 2 and world.there() == "d"
 
 
@@ -59,20 +56,45 @@ def test_beyond_the_limit_the_least_recently_used_labs_are_deleted_but_none_in_u
     world: World,
 ) -> None:
     world.save(*"abcdef")
-    world.leases.renew(["a"])  # has been open for long
     world.save("b")
-    assert world.expiry(most=3).delete() == 2 and world.there() == "abef"
+    world.open = ["a"]  # has been open for long
+    assert world.expiry(most=3).delete() == 0  # any may be open in another process
+    world.now += IN_USE
+    assert world.expiry(most=3).delete() == 3 and world.there() == "abf"
     assert world.expiry(most=3).delete() == 0
+
+
+def test_a_lab_that_another_process_has_open_is_not_deleted(world: World) -> None:
+    world.save(*"ab")
+    world.now += 2 * DAY
+    other = Records(world.records._url, clock=lambda: world.now)
+    assert other.claim("a") is not None
+    world.now += IN_USE / 2
+    other.touch(["a", "b"])  # b is not its own
+    world.now += IN_USE / 2 + 1
+    assert world.expiry(days=1, most=1).delete() == 1 and world.there() == "a"
+    other.close()
+
+
+def test_a_class_is_deleted_a_week_after_its_last_change(world: World) -> None:
+    world.records.save("x", {}, classes)
+    world.now += CLASS_DAYS * DAY - 1
+    world.expiry().delete()
+    assert world.records.load("x", classes) == {}
+    world.now += 2
+    world.expiry().delete()
+    assert world.records.load("x", classes) is None
 
 
 def test_it_is_done_at_the_start_and_a_database_that_is_away_does_not_matter(world: World) -> None:
     world.save(*"abc")
+    world.now += IN_USE
     expiry = world.expiry(most=1)
     expiry.start()
     expiry.stop()
     assert world.there() == "c"
     with world.records.transaction() as connection:
-        connection.exec_driver_sql("DROP TABLE leases")
+        connection.exec_driver_sql("DROP TABLE classes")
     again = world.expiry(most=1)
     again.start()
     again.stop()

@@ -1,0 +1,53 @@
+"""The classes of a server, by the place of a page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from onpath.app.classroom.admission import Admission
+from onpath.app.classroom.classroom import Classroom
+from onpath.app.page.page_context import ClassSeat
+from onpath.app.server.class_service import ClassService
+from onpath.app.viser_adapter.places import CLASS, class_address, class_code_in
+
+
+class ClassDirectory:
+    """One class for all pages, or several classes with an address each.
+
+    Args:
+        classrooms: one, or several that have addresses.
+        serve: starts the service of a class at a place.
+    """
+
+    def __init__(
+        self, classrooms: Iterable[Classroom], serve: Callable[[Classroom, str], ClassService]
+    ) -> None:
+        self._rooms = {f"{CLASS}/{r.code}" if r.has_address else "": r for r in classrooms}
+        self._services = {place: serve(room, place) for place, room in self._rooms.items()}
+        self._door = Admission()
+
+    def at(self, place: str) -> ClassService | None:
+        """The class of those who come to a place."""
+        return self._services.get("") or self._services.get(place)
+
+    def seat_elsewhere(self, place: str, code: str) -> ClassSeat | None:
+        """The seat of a lab that is at the place of no class; None if there are no classes.
+
+        Args:
+            code: session code of the lab.
+        """
+        if not self._rooms:
+            return None
+        codes = {room.code: room for room in self._rooms.values()}
+        keys = {room.key: room for room in self._rooms.values()}
+        return ClassSeat(
+            join=lambda typed, _: class_address(self._door.check_code(typed, codes, code)),
+            leave=lambda: None,
+            teach=lambda typed: class_address(keys[self._door.check_key(typed, keys, code)].code),
+            code=class_code_in(place),
+        )
+
+    def stop(self) -> None:
+        """Stop all services."""
+        for service in self._services.values():
+            service.stop()

@@ -1,0 +1,83 @@
+"""The addresses of a lab behind a proxy: /c/CODE/ for a class, and /l/NAME/ for who is in none.
+
+All of them serve the same page. They exist so that a proxy can send everybody who belongs together
+to one process, by the path alone: viser's page opens its websocket at its own address.
+"""
+
+from __future__ import annotations
+
+import re
+from http import HTTPStatus
+
+from websockets.asyncio.server import ServerConnection
+from websockets.http11 import Request, Response
+
+from onpath.app.common.access_codes import new_code
+
+CLASS, ALONE = "c", "l"
+COOKIE = "onpath"  # brings a browser back to its /l/NAME/
+_PLACE = re.compile(r"/([cl])/([A-Za-z0-9]{1,32})(?=[/?]|$)")
+_KNOWN = re.compile(rf"(?:^|;\s*){COOKIE}=([a-z0-9]{{12}})(?:;|$)")
+_START = ("/", "/index.html")
+_YEAR = 31_536_000  # [s]
+
+
+def class_address(code: str) -> str:
+    """The path of a class's page."""
+    return f"/{CLASS}/{code}/"
+
+
+def place_of(path: str) -> str:
+    """The place in a path, "c/CODE" or "l/NAME"; empty for the others."""
+    found = _PLACE.match(path)
+    return f"{found[1]}/{found[2].lower()}" if found else ""
+
+
+def class_code_in(place: str) -> str:
+    """The class code of a place; empty if it is not that of a class."""
+    kind, _, name = place.partition("/")
+    return name if kind == CLASS else ""
+
+
+def storage_key(key: str, place: str) -> str:
+    """The key in a browser's storage for a value that each class has of its own."""
+    code = class_code_in(place)
+    return f"{key}_{code}" if code else key
+
+
+def without_place(path: str) -> str:
+    """A path within its place."""
+    rest = _PLACE.sub("", path, count=1)
+    return rest if rest.startswith("/") else f"/{rest}"
+
+
+def redirection(connection: ServerConnection, request: Request, spreads: bool) -> Response | None:
+    """Where a page is, if it is asked for at a similar address.
+
+    Args:
+        spreads: whether visitors without a class are spread over places of their own.
+    """
+    if "Upgrade" in request.headers:
+        return None
+    path, mark, query = request.path.partition("?")
+    found = _PLACE.match(path)
+    if found and (path == found[0] or found[2] != found[2].lower()):
+        rest = path[found.end() :] or "/"
+        return _redirect(connection, f"/{found[1]}/{found[2].lower()}{rest}{mark}{query}")
+    if found or not spreads or path not in _START:
+        return None
+    cookies = "; ".join(request.headers.get_all("Cookie"))
+    known = _KNOWN.search(cookies)
+    name = known[1] if known else new_code()
+    response = _redirect(connection, f"/{ALONE}/{name}/{mark}{query}")
+    if not known:
+        cookie = f"{COOKIE}={name}; Path=/; HttpOnly; SameSite=Strict; Max-Age={_YEAR}"
+        response.headers["Set-Cookie"] = cookie
+    return response
+
+
+def _redirect(connection: ServerConnection, address: str) -> Response:
+    response = connection.respond(HTTPStatus.FOUND, "")
+    response.headers["Location"] = address
+    response.headers["Cache-Control"] = "no-store"
+    return response

@@ -1,0 +1,201 @@
+"""A class with an address is kept, and goes on in another process as it was."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from onpath.app.classroom.class_keeper import ClassKeeper
+from onpath.app.classroom.class_state import SETTLED, from_stored, to_stored
+from onpath.app.classroom.classroom import (
+    NOTHING_DONE,
+    Classroom,
+    ClassState,
+    class_with_address,
+)
+from onpath.app.common.access_codes import shown
+from onpath.app.lab.commands import TakeSetup, TakeStep
+from onpath.app.lab.setups.setup import Setup
+from onpath.app.storage.records import NotKept, Records, file_url
+from onpath.app.storage.schema import classes
+from onpath.lessons.progress import Progress
+
+KEY, OTHER_KEY = "k7mf2xqa9tzr", "k7mf2xqa9tzs"
+ADA, BOB = "a" * 12, "b" * 12
+
+
+class Process:
+    """A class in one process, under a clock."""
+
+    def __init__(self, file: Path, now: float, key: str = KEY) -> None:
+        self.now, self.given_up = now, 0
+        self.records = Records(file_url(file))
+        self.room: Classroom = class_with_address(key, lambda: self.now)
+        self.keeper = ClassKeeper(self.room, self.records, self._give_up)
+
+    def _give_up(self) -> None:
+        self.given_up += 1
+
+    def settle(self) -> None:
+        """Some time passes, and the class is stored."""
+        self.now += SETTLED + 1
+        self.keeper.look()
+
+
+@pytest.fixture
+def two(tmp_path: Path) -> Iterator[list[Process]]:
+    made = [Process(tmp_path / "labs.db", 1000.0), Process(tmp_path / "labs.db", 77.0)]
+    yield made
+    for process in made:
+        process.records.close()
+
+
+def names(process: Process) -> list[str]:
+    return [member.name for member in process.room.members().values()]
+
+
+def test_every_process_with_the_key_has_the_same_class(two: list[Process], tmp_path: Path) -> None:
+    one, other = two
+    stranger = Process(tmp_path / "labs.db", 0.0, OTHER_KEY)
+    assert one.room.code == other.room.code != stranger.room.code
+    one.keeper.open()
+    one.room.join(ADA, one.room.code, "Ada")
+    one.keeper.look()
+    stranger.keeper.open()
+    assert names(stranger) == []
+    stranger.records.close()
+    (row,) = rows(one.records)
+    assert KEY not in str(row) and one.room.code not in str(row)
+
+
+def rows(records: Records) -> list[Any]:
+    with records.transaction() as connection:
+        return list(connection.execute(classes.select()))
+
+
+@pytest.mark.parametrize("push", [TakeStep("01-a", 2, "short"), TakeSetup(Setup(rate=0.5))])
+def test_a_class_goes_on_in_another_process(two: list[Process], push: TakeStep | TakeSetup) -> None:
+    one, other = two
+    one.keeper.open()
+    room = one.room
+    teacher = room.admit(shown(KEY), "desk")
+    for session, name in ((ADA, "Ada"), (BOB, "Bob <b>")):
+        room.join(session, room.code, name)
+    one.records.save(ADA, {"lessons": {"lesson": "01-a"}})
+    room.leave(BOB)
+    room.join("c" * 12, room.code, "Cid")
+    room.push(push)
+    room.freeze(True)
+    room.note(ADA, taken=1)
+    one.settle()
+    other.keeper.open()
+    assert names(other) == ["Ada", "Cid"]
+    ada, cid = other.room.members().values()
+    assert (ada.number, ada.taken, ada.progress) == (1, 1, Progress(lesson="01-a"))
+    assert (cid.number, cid.taken, cid.progress) == (3, 0, NOTHING_DONE)
+    assert not ada.connected and ada.active == other.now
+    assert other.room.orders.frozen and other.room.orders.push == push
+    assert other.room.is_pass(teacher) and not other.room.is_pass("x")
+    assert other.room.join("d" * 12, room.code, "ada").number == 4
+    assert [each for each in names(other) if each.lower().startswith("ada")] == ["Ada", "ada 2"]
+
+
+def test_who_has_lost_the_class_gives_it_up_and_takes_it_back_as_it_is_then(
+    two: list[Process],
+) -> None:
+    one, other = two
+    one.keeper.open()
+    one.room.join(ADA, one.room.code, "Ada")
+    one.keeper.look()
+    other.keeper.open()
+    other.room.join(BOB, other.room.code, "Bob")
+    other.keeper.look()
+    one.room.freeze(True)  # its teacher does not know yet
+    for _ in range(2):
+        one.keeper.look()
+    assert one.given_up == 1 and names(one) == [] and not one.room.orders.frozen
+    assert other.given_up == 0 and names(other) == ["Ada", "Bob"]
+    one.keeper.open()
+    assert names(one) == ["Ada", "Bob"] and not one.room.orders.frozen
+    other.keeper.look()
+    assert other.given_up == 1
+
+
+def test_who_comes_while_the_class_is_here_finds_it_as_it_is(two: list[Process]) -> None:
+    one, _ = two
+    one.keeper.open()
+    one.room.join(ADA, one.room.code, "Ada")  # not stored yet
+    one.keeper.open()
+    assert names(one) == ["Ada"] and one.given_up == 0
+
+
+def test_a_push_that_labs_may_not_have_stored_yet_is_sent_again(two: list[Process]) -> None:
+    one, other = two
+    one.keeper.open()
+    one.room.join(ADA, one.room.code, "Ada")
+    one.room.push(TakeStep("01-a", 0))
+    one.room.note(ADA, taken=1)
+    one.settle()
+    one.room.push(TakeStep("01-a", 1))
+    one.room.note(ADA, taken=2)
+    one.keeper.look()
+    other.keeper.open()
+    member = other.room.member(ADA)
+    assert member is not None and member.taken == 1 < other.room.orders.pushes == 2
+
+
+def test_a_database_that_is_away_ends_no_class(
+    two: list[Process], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise NotKept("error.database_busy")
+
+    one, other = two
+    with monkeypatch.context() as away:
+        for name in ("save", "claim", "is_current"):
+            away.setattr(one.records, name, refuse)
+        one.keeper.open()
+        one.room.join(ADA, one.room.code, "Ada")
+        one.keeper.look()
+        one.keeper.open()
+        assert names(one) == ["Ada"]
+    one.keeper.look()
+    other.keeper.open()
+    assert names(other) == ["Ada"]
+
+
+@pytest.mark.parametrize(
+    ("field", "broken"),
+    [
+        ("members", [7, {}, {"session": ADA, "number": -1, "name": "x", "taken": 0}]),
+        ("members", [{"session": "", "number": 1, "name": "x", "taken": 0}]),
+        ("members", [{"session": BOB, "number": 1, "name": "\u200b", "taken": 0}]),
+        ("push", {"setup": {"rate": "fast"}}),
+        ("push", {"lesson": 3}),
+    ],
+)
+def test_what_is_broken_is_left_out_and_the_class_goes_on(field: str, broken: Any) -> None:
+    room = class_with_address(KEY)
+    room.join(ADA, room.code, "Ada")
+    stored = to_stored(room.state, room.clock())
+    if field == "members":
+        broken = [*stored["members"], *broken]
+    read = from_stored({**stored, field: broken}, lambda _: NOTHING_DONE, 0.0)
+    assert [member.name for member in read.members.values()] == ["Ada"]
+    assert read.orders.push is None
+
+
+@pytest.mark.parametrize("broken", [{}, {"members": 1}, {"passes": [1]}])
+def test_a_class_that_cannot_be_read_is_begun_anew(broken: dict[str, Any]) -> None:
+    assert from_stored(broken, lambda _: NOTHING_DONE, 0.0) == ClassState()
+
+
+def test_a_class_that_ends_keeps_its_address_and_one_without_gets_a_new_code() -> None:
+    fixed, own = class_with_address(KEY), Classroom()
+    for room, stays in ((fixed, True), (own, False)):
+        code = room.code
+        room.join(ADA, code, "Ada")
+        assert room.end() == 1 and (room.code == code) == stays and room.members() == {}

@@ -1,0 +1,102 @@
+"""The page has an address for each class, so that a proxy can tell by the path who belongs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from http.client import HTTPConnection, HTTPResponse
+
+import pytest
+import viser
+
+from onpath.app.viser_adapter.places import class_code_in, place_of, storage_key, without_place
+from onpath.app.viser_adapter.secure_server import make_server
+
+ORIGIN = "https://lab.example.org"
+
+
+@pytest.fixture(scope="module")
+def alone() -> Iterator[viser.ViserServer]:
+    server = make_server(port=0)
+    yield server
+    server.stop()
+
+
+@pytest.fixture(scope="module")
+def proxied() -> Iterator[viser.ViserServer]:
+    server = make_server(port=0, allowed_origins=(ORIGIN,))
+    yield server
+    server.stop()
+
+
+def get(server: viser.ViserServer, path: str, **headers: str) -> HTTPResponse:
+    connection = HTTPConnection("127.0.0.1", server.get_port(), timeout=10)
+    connection.request("GET", path, headers=headers)
+    return connection.getresponse()
+
+
+@pytest.mark.parametrize(
+    ("path", "place", "rest"),
+    [
+        ("/", "", "/"),
+        ("/c/abc234/", "c/abc234", "/"),
+        ("/c/abc234", "c/abc234", "/"),
+        ("/c/ABC234/x.js?y", "c/abc234", "/x.js?y"),
+        ("/c/abc234?y", "c/abc234", "/?y"),
+        ("/l/abc/index.html", "l/abc", "/index.html"),
+        ("/c/", "", "/c/"),
+        ("/c/a-b/", "", "/c/a-b/"),
+        ("/d/abc234/", "", "/d/abc234/"),
+        ("/c/" + "a" * 33, "", "/c/" + "a" * 33),
+    ],
+)
+def test_a_place_is_the_beginning_of_a_path(path: str, place: str, rest: str) -> None:
+    assert (place_of(path), without_place(path)) == (place, rest)
+
+
+def test_each_class_has_values_of_its_own_in_a_browser() -> None:
+    keys = {storage_key("labs", place) for place in ("", "l/abc", "c/abc", "c/abd")}
+    assert keys == {"labs", "labs_abc", "labs_abd"}
+    assert class_code_in("l/abc") == "" and class_code_in("c/abc") == "abc"
+
+
+def test_every_place_has_the_same_page(alone: viser.ViserServer) -> None:
+    page = get(alone, "/").read()
+    for path in ("/c/abc234/", "/l/abc/", "/l/abc/index.html", "/index.html"):
+        assert get(alone, path).read() == page
+    for path in ("/c/abc234/nothing.js", "/c/abc234/..%2f..%2f..%2fsetup.py", "/c/a-b/"):
+        assert get(alone, path).status == 404
+
+
+@pytest.mark.parametrize(
+    ("path", "to"),
+    [
+        ("/c/abc234", "/c/abc234/"),
+        ("/c/ABC234/", "/c/abc234/"),
+        ("/c/ABC234?x=1", "/c/abc234/?x=1"),
+        ("/l/abc", "/l/abc/"),
+    ],
+)
+def test_a_similar_address_leads_to_the_page(alone: viser.ViserServer, path: str, to: str) -> None:
+    answer = get(alone, path)
+    assert (answer.status, answer.getheader("Location")) == (302, to)
+
+
+def test_who_is_in_no_class_has_a_place_that_stays(proxied: viser.ViserServer) -> None:
+    first = get(proxied, "/")
+    place, cookie = first.getheader("Location") or "", first.getheader("Set-Cookie") or ""
+    assert first.status == 302 and re.fullmatch("/l/[a-z0-9]{12}/", place)
+    assert "HttpOnly" in cookie and "SameSite=Strict" in cookie
+    again = get(proxied, "/index.html", Cookie=f"other=1; {cookie.partition(';')[0]}")
+    assert again.getheader("Location") == place and again.getheader("Set-Cookie") is None
+    assert get(proxied, "/").getheader("Location") != place
+    for wrong in ("onpath=evil", "onpath=../../../etc", f"onpath={'A' * 12}"):
+        answer = get(proxied, "/", Cookie=wrong)
+        assert re.fullmatch("/l/[a-z0-9]{12}/", answer.getheader("Location") or "")
+        assert answer.getheader("Set-Cookie")
+    assert get(proxied, place).status == 200
+
+
+def test_without_a_proxy_the_page_is_where_it_was(alone: viser.ViserServer) -> None:
+    answer = get(alone, "/")
+    assert answer.status == 200 and answer.getheader("Set-Cookie") is None
