@@ -20,6 +20,7 @@ from onpath.app.storage.schema import classes
 from onpath.lessons.progress import Progress, read_progress
 
 KEEP_INTERVAL = 1.0  # [s] between writes: the most that is lost if the process is killed
+FRESH = 2.5  # [s] in which nobody who comes asks the database again
 
 
 class ClassKeeper:
@@ -35,52 +36,57 @@ class ClassKeeper:
     def __init__(self, classroom: Classroom, records: Records, lost: Callable[[], object]) -> None:
         self._class, self._records, self._lost = classroom, records, lost
         self._id = class_id_of(classroom.key)
-        self._is_open = False
         self._kept: tuple[object, ...] = ()
-        self._lock = threading.Lock()
+        self._asked: float | None = None  # when the database was asked last; None: not here
+        self._claims = 0
+        self._opening = threading.Lock()
         self.rounds = Periodic("class keeper", KEEP_INTERVAL, self.look)
 
     def open(self) -> None:
-        """Take the class over, unless it is here and up to date. Waits for the database."""
-        with self._lock:
+        """Take the class over, unless it is here and up to date. May wait for the database."""
+        with self._opening:
+            if self._asked is not None and self._class.clock() - self._asked < FRESH:
+                return
             try:
-                if self._is_open and self._records.is_current(self._id, classes):
-                    return
-                stored = self._records.claim(self._id, classes)
+                if self._asked is None or not self._records.is_current(self._id, classes):
+                    self._claim()
             except NotKept as error:
                 log_warning("the class is not read from the database: %s", error)
-                self._is_open = True
-                return
-            now = self._class.clock()
-            self._class.restore(from_stored(stored, self._progress, now))
-            self._kept, self._is_open = (), True
+            self._asked = self._class.clock()
 
     def look(self) -> None:
         """Store the class if it has changed; give it up if another process has it."""
-        with self._lock:
-            if not self._is_open:
-                return
-            try:
-                self._store()
-                return
-            except NotKept as error:
-                log_warning("the class is not stored: %s", error)
-                return
-            except HeldElsewhere:
+        if self._asked is None:
+            return
+        claims = self._claims
+        try:
+            self._store()
+            self._asked = self._class.clock()
+        except NotKept as error:
+            log_warning("the class is not stored: %s", error)
+        except HeldElsewhere:
+            with self._opening:
+                if claims != self._claims:
+                    return  # it has been taken back meanwhile
                 log_warning("class %s has moved to another process", self._class.code)
-                self._is_open = False
+                self._asked = None
                 self._class.restore(ClassState())
-        self._lost()
+            self._lost()
 
     def stop(self) -> None:
         """Store the class for the last time."""
         self.rounds.stop()
         self.look()
 
+    def _claim(self) -> None:
+        stored = self._records.claim(self._id, classes)
+        self._class.restore(from_stored(stored, self._progress, self._class.clock()))
+        self._kept = ()
+        self._claims += 1
+
     def _store(self) -> None:
         """Raises: HeldElsewhere, NotKept."""
-        now, state = self._class.clock(), self._class.state
-        stored = to_stored(state, now)
+        stored = to_stored(self._class.state, self._class.clock())
         mark = stored, self._records.generation
         if mark != self._kept:
             self._records.save(self._id, stored, classes)

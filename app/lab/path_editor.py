@@ -194,11 +194,6 @@ class PathEditor:
         self.proposed, self.faults = None, []
         self._follow(Blend(self._raised(self.design)))
 
-    def show(self, shown: PathDesign, followed: Blend, faults: list[Fault]) -> None:
-        """Copy another editor: its points and marks, and the path followed there."""
-        self.design, self.proposed, self.faults = shown, None, faults
-        self._follow(followed)
-
     def points(self) -> np.ndarray:
         """Control points as shown, shape (k, 2), [m]."""
         return (self.proposed or self.design).points

@@ -10,9 +10,11 @@ import faulthandler
 import logging
 import os
 import signal
+import socket
 import sys
 from collections import Counter
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 
 from onpath.app.common.periodic import Periodic
 from onpath.app.simulation.simulation_thread import SimulationThread
@@ -66,6 +68,7 @@ class Watchdog:
     def look(self) -> None:
         """Look once at all signs of life."""
         _limit_processor_time(2 * self._seconds)
+        _tell_systemd()
         for name, sign in self._signs.items():
             seen = sign()
             self._silent[name] = self._silent[name] + 1 if seen == self._seen.get(name) else 0
@@ -107,6 +110,14 @@ def _limit_processor_time(seconds: float) -> None:
     """
     if hasattr(signal, "setitimer"):
         signal.setitimer(signal.ITIMER_PROF, seconds)
+
+
+def _tell_systemd() -> None:
+    """Tell systemd, if it asks (WatchdogSec in the unit), that this process is not suspended."""
+    address = os.environ.get("NOTIFY_SOCKET", "")
+    if address:
+        with suppress(OSError), socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as to:
+            to.sendto(b"WATCHDOG=1", address.replace("@", "\0", 1))
 
 
 def _end_process() -> None:

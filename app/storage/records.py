@@ -51,11 +51,11 @@ LARGEST = 1_000_000  # [B], of one state
 class _Statements:
     """The statements for one table; prebuilt, they take half the time."""
 
-    read: sa.Select[Any]
-    lock: sa.Select[Any]
-    claim: sa.Update
+    read: sa.Executable
+    lock: sa.Executable
+    claim: sa.Executable
     change: sa.Update
-    insert: sa.Insert
+    insert: sa.Executable
 
 
 def _statements(table: sa.Table) -> _Statements:

@@ -93,6 +93,7 @@ class Tab:
         context: a new context stands for another browser, a shared one for another tab.
         draws: whether triangles are drawn.
         newcomer: whether the invitations of the first minute are shown.
+        path: of the page.
     """
 
     def __init__(
@@ -101,6 +102,7 @@ class Tab:
         context: BrowserContext,
         draws: bool = True,
         newcomer: bool = False,
+        path: str = "/",
     ) -> None:
         self.server = server
         if not newcomer:
@@ -111,7 +113,7 @@ class Tab:
         self.page: Page = context.new_page()
         self.errors: list[str] = []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self._join(lambda: self.page.goto(f"{server.address}/?{COARSE if draws else COARSER}"))
+        self._join(lambda: self.page.goto(f"{server.address}{path}?{COARSE if draws else COARSER}"))
 
     def reload(self) -> None:
         """Reload the page, as F5 does."""

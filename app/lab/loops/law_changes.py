@@ -109,15 +109,6 @@ class LawChanges:
         goes_on = [self._goes_on(bench, runs[bench], key) for bench, key in lacking.items()]
         return all(goes_on) and not self.stands_still
 
-    def has_loops(self, keys: Sequence[Key]) -> bool:
-        """Whether these loops of typed laws are made; if not, they are in the background.
-
-        Raises:
-            ValueError: one of the laws cannot be used with its robot and settings.
-        """
-        self._ask(keys)
-        return all([self._store.is_ready(*key) for key in keys])
-
     def _goes_on(self, bench: str, run: ClosedLoopRun, key: Key) -> bool:
         """Whether a typed law can go on; if it never can, the bench gets that of a new lab."""
         if run.kind == key[1] or run.law != key[1].controller:  # or it has just been changed

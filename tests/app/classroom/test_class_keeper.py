@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from onpath.app.classroom.class_keeper import ClassKeeper
+from onpath.app.classroom.class_keeper import FRESH, ClassKeeper
 from onpath.app.classroom.class_state import SETTLED, from_stored, to_stored
 from onpath.app.classroom.classroom import (
     NOTHING_DONE,
@@ -132,6 +132,44 @@ def test_who_comes_while_the_class_is_here_finds_it_as_it_is(two: list[Process])
     assert names(one) == ["Ada"] and one.given_up == 0
 
 
+def test_a_class_that_moved_away_while_its_process_was_suspended_is_read_again(
+    two: list[Process],
+) -> None:
+    one, other = two
+    one.keeper.open()
+    one.room.join(ADA, one.room.code, "Ada")
+    one.keeper.look()
+    other.keeper.open()
+    other.room.join(BOB, other.room.code, "Bob")
+    other.keeper.look()
+    one.now += FRESH  # it wakes up, and somebody comes before it has looked
+    one.keeper.open()
+    assert names(one) == ["Ada", "Bob"]
+    one.keeper.look()
+    assert one.given_up == 0 and names(one) == ["Ada", "Bob"]
+    other.keeper.look()
+    assert other.given_up == 1
+
+
+def test_who_comes_while_the_database_is_away_does_not_ask_it_each_time(
+    two: list[Process], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one, asked = two[0], list[str]()
+
+    def refuse(what: str, *_: object) -> None:
+        asked.append(what)
+        raise NotKept("error.database_busy")
+
+    monkeypatch.setattr(one.records, "claim", refuse)
+    monkeypatch.setattr(one.records, "is_current", refuse)
+    for _ in range(100):
+        one.keeper.open()
+    assert len(asked) == 1
+    one.now += FRESH
+    one.keeper.open()
+    assert len(asked) == 2
+
+
 def test_a_push_that_labs_may_not_have_stored_yet_is_sent_again(two: list[Process]) -> None:
     one, other = two
     one.keeper.open()
@@ -160,6 +198,7 @@ def test_a_database_that_is_away_ends_no_class(
         one.keeper.open()
         one.room.join(ADA, one.room.code, "Ada")
         one.keeper.look()
+        one.now += FRESH
         one.keeper.open()
         assert names(one) == ["Ada"]
     one.keeper.look()

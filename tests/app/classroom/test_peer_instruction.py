@@ -11,9 +11,9 @@ from typing import Any
 
 import msgspec
 import pytest
-from onpath.app.classroom.class_rows import push_text, read_push
 
 from onpath.app.classroom import class_html as page
+from onpath.app.classroom.class_state import push_data, read_push
 from onpath.app.classroom.class_sync import ClassSync
 from onpath.app.classroom.classroom import Classroom, Member
 from onpath.app.classroom.results import class_csv, distribution
@@ -85,8 +85,8 @@ def test_a_step_without_prediction_is_only_opened(course: Course) -> None:
 
 def test_what_is_sent_survives_the_way_through_the_database() -> None:
     for push in (TakeStep("a", 1), TakeStep("a", 1, again=True)):
-        assert read_push(push_text(push)) == push
-    assert read_push('{"lesson": "a", "step": 1, "route": ""}') == TakeStep("a", 1)  # an older one
+        assert read_push(push_data(push)) == push
+    assert read_push({"lesson": "a", "step": 1, "route": ""}) == TakeStep("a", 1)  # an older one
 
 
 def members(course: Course) -> list[Member]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from typing import Any
 
@@ -148,10 +148,21 @@ class Class:
         self.running = running
         place = f"c/{CODES[0]}"
         self.all = [stack.enter_context(running.site.student(place)) for _ in range(3)]
-        self.teacher, self.students = self.all[0], self.all[1:]
+        self.teacher, self.ada, self.bob = self.all
+        self.names = {self.ada: "Ada", self.bob: "Bob"}
+
+    def until(self, condition: Callable[[], Any]) -> None:
+        """Wait for something while all three read what they are sent."""
+
+        def read() -> Any:
+            for each in self.all:
+                each.read_what_was_sent()
+            return condition()
+
+        wait_for(read, 120.0)
 
     def come_in(self) -> None:
-        for student, name in zip(self.students, ("Ada", "Bob"), strict=True):
+        for student, name in self.names.items():
             student.open()
             assert student.find("Class code")["value"] == CODES[0].upper()  # from the address
             student.set("Nickname", name)
@@ -160,13 +171,13 @@ class Class:
         self.teacher.open()
         self.teacher.set("Teacher's key", shown(KEYS[0]))
         self.teacher.set("Open the teacher's page", True)
-        self.sees_both()
+        self.until(self.teacher_sees_both)
 
-    def sees_both(self) -> None:
-        """The teacher's page has both students, who are there."""
+    def teacher_sees_both(self) -> bool:
+        """Whether the teacher's page has both students, and they are there."""
         teacher = self.teacher
-        teacher.read(lambda: teacher.has_widget("1. Ada") and teacher.has_widget("2. Bob"))
-        teacher.read(lambda: not teacher.sees(">away<"))
+        both = teacher.has_widget("1. Ada") and teacher.has_widget("2. Bob")
+        return both and not teacher.sees(">away<")
 
     def come_back(self) -> None:
         """Everybody, as their pages do by themselves."""
@@ -174,10 +185,9 @@ class Class:
             each.wait_until_closed()
         for each in self.all:
             each.reopen()
-        for student, name in zip(self.students, ("Ada", "Bob"), strict=True):
-            student.read(lambda s=student, name=name: s.sees(name) and s.sees("You are in the"))
-        self.sees_both()
-        assert {each.moving for each in self.all} - {0}
+        self.until(self.teacher_sees_both)
+        for student, name in self.names.items():
+            self.until(lambda s=student, name=name: s.sees(name) and s.sees("You are in the"))
 
 
 def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_returns(
@@ -186,26 +196,25 @@ def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_returns(
     with ExitStack() as stack:
         klass = Class(running, stack)
         klass.come_in()
-        ada, bob = klass.students
+        ada, bob, until, press = klass.ada, klass.bob, klass.until, klass.teacher.set
         codes = [ada.code, bob.code]
-        klass.teacher.set("Open this step for all", True)
-        for student in klass.students:
-            student.read(lambda student=student: student.sees("Step 1 of"))
+        press("Open this step for all", True)
+        until(lambda: ada.sees("Step 1 of") and bob.sees("Step 1 of"))
         ada.set("Next", True)
-        ada.read(lambda: ada.sees("Step 2 of"))
-        wait_for(lambda: {each["taken"] for each in running.kept_class()["members"]} == {1}, 60.0)
-        ada.read(lambda: running.has_kept(ada.code, "'index': 1"))
-        klass.teacher.set("Freeze all labs", True)
-        bob.read(lambda: bob.sees("stopped all labs"))
-        wait_for(lambda: running.kept_class()["frozen"], 60.0)
+        until(lambda: ada.sees("Step 2 of"))
+        until(lambda: {each["taken"] for each in running.kept_class()["members"]} == {1})
+        until(lambda: running.has_kept(ada.code, "'step': 1"))
+        press("Freeze all labs", True)
+        until(lambda: bob.sees("stopped all labs"))
+        until(lambda: running.kept_class()["frozen"])
         killed = running.site.serving()
         killed.kill()
         klass.come_back()
         assert running.site.serving() is not killed and [ada.code, bob.code] == codes
-        ada.read(lambda: ada.sees("Step 2 of") and ada.sees("stopped all labs"))
-        bob.read(lambda: bob.sees("Step 1 of") and bob.sees("stopped all labs"))
-        klass.teacher.set("Let all labs go on", True)
-        bob.read(lambda: not bob.sees("stopped all labs"))
+        until(lambda: ada.sees("Step 2 of") and ada.sees("stopped all labs"))
+        until(lambda: bob.sees("Step 1 of") and bob.sees("stopped all labs"))
+        press("Let all labs go on", True)
+        until(lambda: not bob.sees("stopped all labs"))
         # The class returns when somebody comes to the first process, which is there again.
         killed.start_again()
         with running.site.student(f"c/{CODES[0]}") as late:
@@ -216,10 +225,10 @@ def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_returns(
                 late.read(lambda: late.code)
                 return bool(killed.connections())
 
-            wait_for(comes_to_the_first, 60.0)
+            until(comes_to_the_first)
             klass.come_back()
             assert running.site.serving() is killed and [ada.code, bob.code] == codes
-            ada.read(lambda: ada.sees("Step 2 of"))
+            until(lambda: ada.sees("Step 2 of"))
     quiet(running)
 
 

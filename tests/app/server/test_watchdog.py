@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import sys
 import time
 from collections.abc import Iterator
@@ -76,6 +77,24 @@ def test_anything_without_a_sign_of_life_for_long_enough_hangs(lives: list[set[s
         assert bool(hangs) == bool(look.dog.trouble)
         assert not hangs or look.dog.trouble in {f"{name} hangs" for name in hangs}
         assert (look.ended > ended) == (max(silent.values()) >= 2 * LOOKS)
+
+
+@linux_only
+@pytest.mark.parametrize("address", ["{}/notify", "@onpath-test-{}"])
+def test_systemd_hears_from_a_process_at_every_look(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, address: str
+) -> None:
+    address = address.format(tmp_path)[:100]
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as systemd:
+        systemd.bind(address.replace("@", "\0", 1))
+        systemd.settimeout(WAIT)
+        look = Look()
+        look.dog.look()  # nobody asks
+        monkeypatch.setenv("NOTIFY_SOCKET", address)
+        for _ in range(2):
+            look.dog.look()
+            assert systemd.recv(100) == b"WATCHDOG=1"
+    look.dog.look()  # it has gone
 
 
 class Served(LabProcess):

@@ -450,7 +450,7 @@ def test_a_process_that_finds_a_broken_file_waits_while_another_moves_it_aside(f
     other.join(timeout=30.0)
     assert [aside.read_bytes() for aside in broken_files(file)] == [b"broken" * 1000]
     records.save("mine", {"n": 1})
-    assert others[0].load("mine") == {"n": 1} and others[0].is_shared
+    assert others[0].load("mine") == {"n": 1} and not others[0].warning
     for each in (records, *others):
         each.close()
 

@@ -250,7 +250,7 @@ def test_a_file_that_is_deleted_or_replaced_is_noticed_and_labs_in_use_are_kept_
     if lose is put_another:  # the old file's journal has not been applied to it
         assert all(server.kept(f"code{i}") for i in range(40))
     assert "deleted or replaced" in caplog.text and server.records.generation == 1
-    assert server.records.is_shared
+    assert not server.records.warning
 
 
 def test_two_processes_whose_file_is_replaced_go_on_in_the_new_one(tmp_path: Path) -> None:
