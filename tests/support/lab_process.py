@@ -16,7 +16,7 @@ from pathlib import Path
 from tests.support.checkout import ROOT
 from tests.support.waiting import wait_for
 
-WAIT = 60.0  # [s]; only ends a test that would hang
+WAIT = 180.0  # [s]; only ends a test that would hang
 PROGRAM = ("-m", "onpath")
 
 

@@ -389,6 +389,7 @@ from pathlib import Path
 from onpath.app.storage.records import Records, file_url
 records = Records(file_url(Path(sys.argv[1])))
 assert not records.warning
+records.claim(sys.argv[2])
 print("open", flush=True)
 for i in range(int(sys.argv[3])):
     records.save(sys.argv[2], {"n": i, "text": "x" * (i % 7) * 3000})

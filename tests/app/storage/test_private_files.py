@@ -36,6 +36,7 @@ def mode(path: Path) -> int:
 def modes(file: Path) -> dict[str, int]:
     """Of the database and its journals, while it is open."""
     records = Records(file_url(file))
+    records.claim("a")
     records.save("a", {})
     found = {part.name: mode(part) for part in file.parent.iterdir()}
     records.close()
