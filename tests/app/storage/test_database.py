@@ -63,6 +63,7 @@ def filled(file: Path, count: int = 40) -> bytes:
 
 
 def works(records: Records) -> None:
+    records.claim("new")
     records.save("new", {"a": 1})
     assert records.load("new") == {"a": 1}
 
