@@ -128,12 +128,14 @@ def disconnect(server: viser.ViserServer, clients: set[int]) -> None:
             asyncio.run_coroutine_threadsafe(closing, server.get_event_loop())
 
 
-def _to_page(connection: ServerConnection, request: Request) -> Response:
-    """Redirect to index.html.
+def _to_page(connection: ServerConnection, request: Request) -> Response | None:
+    """Redirect from the folder to index.html.
 
     viser's page opens its websocket at its own address without the trailing slash. Behind a proxy
     that serves the lab in a folder, that is another address, while that of a file is the lab's.
     """
+    if request.path.partition("?")[0] != "/":
+        return None
     response = connection.respond(HTTPStatus.FOUND, "")
     response.headers["Location"] = "index.html" + request.path[1:]
     return response
@@ -159,6 +161,7 @@ def _guarded_serve(
 ) -> Iterator[None]:
     """Install our checks in the one call of `websockets.serve` that viser makes."""
     library: Any = websockets.asyncio.server
+    to_page = _to_page if in_folder else partial(redirection, spreads=bool(requests.allowed))
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
         async def answer_request(connection: SecureConnection, request: Request) -> Response | None:
@@ -168,12 +171,9 @@ def _guarded_serve(
                 return connection.respond(*refusal)
             if not counts.admits(connection, request):
                 return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
-            if in_folder and request.path.partition("?")[0] == "/":
-                return _to_page(connection, request)
-            if elsewhere := redirection(connection, request, bool(requests.allowed)):
+            if elsewhere := to_page(connection, request):
                 return elsewhere
-            connection.place = place_of(request.path)
-            request.path = without_place(request.path)
+            connection.place, request.path = place_of(request.path), without_place(request.path)
             return add_scripts(process_request(connection, request))
 
         options["max_size"] = limits.max_message_bytes
