@@ -42,7 +42,7 @@ def test_who_opens_the_address_types_a_nickname_only(browser: Browser, server: L
     lab = tab.lab
     tab.reload()
     assert tab.lab is lab  # a reload comes back to it
-    tab.page.get_by_text("You are in the class as").wait_for()
+    tab.page.get_by_text("You are in the class as").wait_for(state="attached")  # in a closed folder
     other = Tab(server, context, draws=False)  # the same browser, in no class
     assert other.lab is not lab and other.field("Class code").input_value() == ""
     other.field("Class code").fill(second.code)
