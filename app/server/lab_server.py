@@ -7,6 +7,7 @@ import signal
 import threading
 import webbrowser
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -39,7 +40,7 @@ from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.expiry import Expiry, Retention
-from onpath.app.storage.records import Records
+from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.places import storage_key
 from onpath.app.viser_adapter.secure_server import disconnect, make_server
@@ -138,9 +139,10 @@ class LabServer:
         self.server.stop()
         if self._expiry is not None:
             self._expiry.stop()
-        if self._keeper is not None and self._records is not None:
+        if self._keeper is not None:
             self._keeper.close()
-            self._classes.stop()
+        self._classes.stop()
+        if self._records is not None:
             self._records.close()
 
     def _class_service(self, classroom: Classroom, place: str) -> ClassService:
@@ -222,8 +224,9 @@ class LabServer:
 
     def _lost(self, code: str) -> None:
         """Send away the client of a lab that another process has."""
-        if self._records is None or self._records.is_current(code):
-            return  # it has come back meanwhile
+        with suppress(NotKept):
+            if self._records is not None and self._records.is_current(code):
+                return  # it has come back meanwhile
         number = self.sessions.lose(code)
         if number is not None:
             disconnect(self.server, {number})

@@ -144,7 +144,7 @@ class WriteBehind:
             return str(error)
         except HeldElsewhere:
             log.info("a lab has moved to another process")
-            self._lost(code)
+            self._tell_lost(code)
         except Exception as error:  # must not affect other labs
             failed = {code}
             log_error(error)
@@ -153,3 +153,9 @@ class WriteBehind:
                 self._failed.discard(code)
                 self._failed |= failed
         return ""
+
+    def _tell_lost(self, code: str) -> None:
+        try:
+            self._lost(code)
+        except Exception as error:  # must not affect other labs
+            log_error(error)

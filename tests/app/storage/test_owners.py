@@ -18,6 +18,7 @@ from onpath.app.storage.records import HeldElsewhere, NotKept, Records, file_url
 from onpath.app.storage.schema import classes, labs
 from onpath.app.storage.write_behind import WriteBehind
 from tests.support.lab import do, run, store
+from tests.support.waiting import wait_for
 
 CODE = "a" * 12
 
@@ -163,6 +164,23 @@ def test_a_lab_that_waited_here_meanwhile_is_read_again_and_its_late_changes_are
     assert one.registry.join(1, code).code == code and one.gain(code) == 43
     one.keeper.flush(code)
     assert other.registry.join(1, code).code == code and other.gain(code) == 43
+
+
+def test_an_error_while_a_lab_is_given_up_does_not_end_the_writes(two: list[Process]) -> None:
+    one, other = (process.records for process in two)
+    other.save(CODE, {})
+
+    def fail(code: str) -> None:
+        raise RuntimeError(code)
+
+    keeper = WriteBehind(one, interval=0.0, lost=fail)
+    keeper.submit(CODE, lambda: {"n": 1})
+    keeper.submit("b" * 12, lambda: {"n": 2})
+    wait_for(lambda: one.load("b" * 12), 60.0)
+    keeper.submit("c" * 12, lambda: {"n": 3})
+    wait_for(lambda: one.load("c" * 12), 60.0)
+    keeper.close()
+    assert one.load(CODE) == {}
 
 
 def _refuse(*_: object) -> None:
