@@ -77,11 +77,12 @@ class LabProcess:
         """Wait until it has ended."""
         return self.process.wait(WAIT)
 
-    def start_again(self) -> None:
+    def start_again(self, waits: bool = True) -> None:
         """As whatever supervises it does when it has ended."""
         assert self.process.poll() is not None
         self.process = self._started()
-        self.wait_until_well()
+        if waits:
+            self.wait_until_well()
 
     def connections(self) -> int:
         """Number of its open connections."""

@@ -102,6 +102,11 @@ class Student:
         """Read what the server had sent when it heard of this."""
         assert self._socket is not None
         assert self._socket.ping().wait(PATIENCE)
+        self.read_what_has_come()
+
+    def read_what_has_come(self) -> None:
+        """Read what has arrived so far, without waiting."""
+        assert self._socket is not None
         with suppress(TimeoutError):
             while True:
                 self._take_frame(self._socket.recv(timeout=0))
