@@ -97,7 +97,8 @@ class ClassKeeper:
     def _progress(self, session: str) -> Progress:
         """The progress stored with a student's lab."""
         try:
-            return read_progress((self._records.load(session) or {}).get("lessons"))
+            state = self._records.load(session)
+            return NOTHING_DONE if state is None else read_progress(state.get("lessons"))
         except (OSError, ValueError) as error:
             log_warning("a student's progress cannot be read: %s", error)
             return NOTHING_DONE
