@@ -14,6 +14,7 @@ from onpath.app.common.error_log import log_warning
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.setups.setup import to_data
 from onpath.app.lab.setups.stored import from_data
+from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress
 
 SETTLED = 5.0  # [s] after a push, by when the labs that have applied it are stored
@@ -39,6 +40,7 @@ class StoredClass(msgspec.Struct, frozen=True):
     push: Stored | None
     passes: Annotated[list[str], msgspec.Meta(max_length=10_000)]
     members: list[Any]
+    pace: Pace | None = None
 
 
 def to_stored(state: ClassState, now: float) -> Stored:
@@ -58,7 +60,9 @@ def to_stored(state: ClassState, now: float) -> Stored:
     ]
     push = None if orders.push is None else push_data(orders.push)
     passes = sorted(state.passes)
-    kept = StoredClass(state.joined, orders.frozen, orders.pushes, push, passes, members)
+    kept = StoredClass(
+        state.joined, orders.frozen, orders.pushes, push, passes, members, orders.pace
+    )
     return msgspec.to_builtins(kept)
 
 
@@ -82,7 +86,7 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
             session, member = read
             members[session] = replace(member, progress=progress(session), active=now)
     joined = max([kept.joined, *(member.number for member in members.values())])
-    orders = Orders(kept.frozen, kept.pushes, read_push(kept.push), now)
+    orders = Orders(kept.frozen, kept.pushes, read_push(kept.push), now, kept.pace)
     return ClassState(joined, orders, frozenset(kept.passes), members)
 
 

@@ -10,7 +10,6 @@ import viser
 
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.concept_test_results import rows_without_names
-from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.results import class_csv
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
@@ -104,12 +103,9 @@ class TeacherPanel:
             self._busy = False
 
     def _build_pace(self, panel: Any) -> None:
-        """Not for a class of several processes, which knows no pace."""
-        room = self._class
-        if isinstance(room, Classroom):
-            with panel.add_tab(self._words("pace.title"), viser.Icon.WALK):
-                chosen = self._chosen
-                self._pace = PaceTab(self._gui, self._words, self._course, chosen, room)
+        with panel.add_tab(self._words("pace.title"), viser.Icon.WALK):
+            chosen = self._chosen
+            self._pace = PaceTab(self._gui, self._words, self._course, chosen, self._class)
 
     # Progress
 

@@ -21,6 +21,7 @@ from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.storage.records import NotKept, Records, file_url
 from onpath.app.storage.schema import classes
+from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress
 
 KEY, OTHER_KEY = "k7mf2xqa9tzr", "k7mf2xqa9tzs"
@@ -89,6 +90,7 @@ def test_a_class_goes_on_in_another_process(two: list[Process], push: TakeStep |
     room.join("c" * 12, room.code, "Cid")
     room.push(push)
     room.freeze(True)
+    room.keep_within(Pace("01-a", 1, 3))
     room.note(ADA, taken=1)
     one.settle()
     other.keeper.open()
@@ -98,6 +100,7 @@ def test_a_class_goes_on_in_another_process(two: list[Process], push: TakeStep |
     assert (cid.number, cid.taken, cid.progress) == (3, 0, NOTHING_DONE)
     assert not ada.connected and ada.active == other.now
     assert other.room.orders.frozen and other.room.orders.push == push
+    assert other.room.orders.pace == Pace("01-a", 1, 3)
     assert other.room.is_pass(teacher) and not other.room.is_pass("x")
     assert other.room.join("d" * 12, room.code, "ada").number == 4
     assert [each for each in names(other) if each.lower().startswith("ada")] == ["Ada", "ada 2"]

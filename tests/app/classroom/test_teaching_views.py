@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.app.classroom.class_sync import GAINS, ClassSync
-from onpath.app.classroom.gains_html import HEIGHT, PAIRS, WIDTH, gains_view
 from onpath.app.classroom.classroom import Classroom
+from onpath.app.classroom.gains_html import HEIGHT, PAIRS, WIDTH, gains_view
 from onpath.app.classroom.pace_html import pace_view, whereabouts
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
