@@ -35,7 +35,7 @@ from onpath.lessons.task_schema import (
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import short_name
-from onpath.models.systems.parameters import specs
+from onpath.models.systems.parameters import Parameters, specs
 
 TINY = 1e-9  # smallest divisor of a ratio
 INSTANT = 1e-6  # [s], tolerance of durations, shorter than any tick
@@ -74,9 +74,9 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
     unit = unit_of(check.stat, check.quantity)
     names = {
         "robot": robots[check.robot],
-        "stat": _stat_words(check.stat, check.quantity, words),
+        "stat": stat_words(check.stat, check.quantity, words),
         "during": words(f"during.{check.during}"),
-        "wanted": _range_words(check.below, check.above, unit, words),
+        "wanted": range_words(check.below, check.above, unit, words),
     }
     value = statistic(record, check.robot, check.quantity, check.stat, chosen)
     if value is None:
@@ -99,7 +99,7 @@ def _(check: Compare, record: Record, words: Words) -> Verdict:
     ]
     enough, seconds = _seconds(check, record, chosen, words)
     names = {
-        "stat": _stat_words(check.stat, check.quantity, words),
+        "stat": stat_words(check.stat, check.quantity, words),
         "during": words(f"during.{check.during}"),
     }
     large, small = both
@@ -155,7 +155,7 @@ def _(check: Event, record: Record, words: Words) -> Verdict:
     have = sum(_matches(event.name, event.detail, check) for event in record.happenings)
     said = words(
         "check.event",
-        event=_event_words(check, record, words),
+        event=event_words(check, record.parameters, words),
         have=min(have, check.times),
         need=check.times,
     )
@@ -164,13 +164,13 @@ def _(check: Event, record: Record, words: Words) -> Verdict:
 
 @verdict.register
 def _(check: Order, record: Record, words: Words) -> Verdict:
-    wanted = [_event(event) for event in check.events]
+    wanted = [event_named(text) for text in check.events]
     found = 0
     for event in record.happenings:
         if found < len(wanted) and _matches(event.name, event.detail, wanted[found]):
             found += 1
     marked = [
-        ("✓ " if i < found else "") + _event_words(event, record, words)
+        ("✓ " if i < found else "") + event_words(event, record.parameters, words)
         for i, event in enumerate(wanted)
     ]
     return Verdict(found == len(wanted), words("check.order", events=" → ".join(marked)))
@@ -190,7 +190,7 @@ def _(check: Setting, record: Record, words: Words) -> Verdict:
     else:
         passed = isinstance(value, int | float) and _within(value, check.below, check.above)
         unit = "mm" if check.name == "length" else ""
-        wanted = _range_words(check.below, check.above, unit, words)
+        wanted = range_words(check.below, check.above, unit, words)
     name = setting_label(check.name, record.parameters, words)
     shown = value_label(check.name, value, words)
     return Verdict(passed, words("check.setting", name=name, value=shown, wanted=wanted))
@@ -251,7 +251,7 @@ def _same(value: object, wanted: object) -> bool:
     return str(value) == str(wanted)
 
 
-def _event(text: str) -> Event:
+def event_named(text: str) -> Event:
     """The event named by `hold`, or by `set:K1`."""
     event, _, name = text.partition(":")
     return msgspec.convert({"kind": "event", "event": event, "name": name}, Event)
@@ -275,11 +275,13 @@ def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> tuple
     return enough, words("check.seconds", have=shown, need=need)
 
 
-def _stat_words(stat: Stat, quantity: str, words: Words) -> str:
+def stat_words(stat: Stat, quantity: str, words: Words) -> str:
+    """A statistic of a quantity, in words."""
     return words(f"stat.{stat}", quantity=words(f"quantity.{quantity}"))
 
 
-def _range_words(below: float | None, above: float | None, unit: str, words: Words) -> str:
+def range_words(below: float | None, above: float | None, unit: str, words: Words) -> str:
+    """What lies between two bounds, at least one of them given, in words."""
     limits = [
         words(f"check.{way}", limit=f"{limit:g}", unit=unit).rstrip()
         for way, limit in (("above", above), ("below", below))
@@ -288,8 +290,9 @@ def _range_words(below: float | None, above: float | None, unit: str, words: Wor
     return limits[0] if len(limits) == 1 else words("check.and", first=limits[0], second=limits[1])
 
 
-def _event_words(check: Event, record: Record, words: Words) -> str:
+def event_words(check: Event, parameters: Parameters, words: Words) -> str:
+    """What has to happen, in words."""
     key = f"event.{check.event}"
     if check.name:
-        return words(key, detail=event_label(check.event, check.name, record.parameters, words))
+        return words(key, detail=event_label(check.event, check.name, parameters, words))
     return words.get(f"{key}_any", "") or words(key)

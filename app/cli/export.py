@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import tyro
 
 from onpath.app.cli.experiment import assignments
+from onpath.app.cli.export_site import ExportSite
 
 
 @dataclass(frozen=True)
-class ExportCommand:
-    """Write a page that needs no server: it opens from a folder, a web server or an iframe."""
+class ExportFigure:
+    """Write one or two robots that can be held back, pulled, paused and reset, as one page."""
 
-    what: Annotated[Literal["figure"], tyro.conf.Positional]
-    """One or two robots that can be held back, pulled, paused and reset."""
     file: Annotated[Path, tyro.conf.Positional]
     """The .html file to write."""
     robot: str = "five_bar"
@@ -55,3 +54,20 @@ class ExportCommand:
             **dict(assignments(self.set)),
         )
         print(f"{written}: {written.stat().st_size / 1e3:.0f} kB, needs no server")
+
+
+ExportAction = (
+    Annotated[ExportFigure, tyro.conf.subcommand("figure")]
+    | Annotated[ExportSite, tyro.conf.subcommand("site")]
+)
+
+
+@dataclass(frozen=True)
+class ExportCommand:
+    """Write pages that need no server: they open from a folder, a web server or an iframe."""
+
+    do: Annotated[ExportAction, tyro.conf.arg(name="")]
+
+    def run(self) -> None:
+        """Run the chosen action."""
+        self.do.run()

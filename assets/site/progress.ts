@@ -12,14 +12,27 @@ export interface Progress {
 
 const PREFIX = "onpath."
 
-/** In the browser's local storage, for all pages of the site. */
+/** In the browser's local storage, for all pages of the site; in memory where there is none. */
 export class LocalProgress implements Progress {
+    private readonly memory = new Map<string, string>()
+    /** Whether nothing could be kept. */
+    lost = false
+
     get(key: string): string | null {
-        return localStorage.getItem(PREFIX + key)
+        try {
+            return localStorage.getItem(PREFIX + key) ?? this.memory.get(key) ?? null
+        } catch {
+            return this.memory.get(key) ?? null
+        }
     }
 
     set(key: string, value: string): void {
-        localStorage.setItem(PREFIX + key, value)
+        try {
+            localStorage.setItem(PREFIX + key, value)
+        } catch {
+            this.lost = true
+            this.memory.set(key, value)
+        }
     }
 
     score(): void {}

@@ -118,6 +118,16 @@ export class Bench {
         return this.point("aim", this.path.table, this.field(this.data.aim))
     }
 
+    /** The reference point, whatever the law aims at. */
+    reference(): [number, number] {
+        return this.point("aim", this.path.table, this.field("theta_ref"))
+    }
+
+    /** Of a flexible link: the deflection of its tip, [m], and the energy in it, [J]. */
+    measured(): [number, number] {
+        return this.point("measured", this.field("q"), this.field("v"))
+    }
+
     /** The end of the arrow of the force. */
     arrow(): [number, number] {
         return this.point("arrow", this.field("y"), this.field("force"))

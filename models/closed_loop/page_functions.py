@@ -15,6 +15,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.paths.projection import LocalCurve, basis
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import FASTEST_JOINT, Robot
 
 GRID = 128
@@ -63,6 +64,25 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
         "fault": _fault(robot),
         "hand": _hand(robot, kind, seen, y),
     }
+
+
+def measurements(robot: Robot, parameters: Parameters) -> dict[str, ca.Function]:
+    """Of a robot with a flexible link, measured: (q, v) -> the tip's deflection [m], energy [J].
+
+    The first is linear in q, the other a sum of squares of the entries of q and v.
+    """
+    if "deflection" not in dict(robot.extra_fields):
+        return {}
+    n = robot.system.n
+    q, v, zero = ca.SX.sym("q", n), ca.SX.sym("v", n), np.zeros(n)
+    linear, stored, moving = np.zeros((3, n))
+    for i, unit in enumerate(np.eye(n)):
+        found = robot.extras(unit, zero, parameters)
+        linear[i], stored[i] = found["deflection"][0], found["internal_energy"][0]
+        moving[i] = robot.extras(zero, unit, parameters)["internal_energy"][0]
+    energy = ca.dot(ca.DM(stored), q**2) + ca.dot(ca.DM(moving), v**2)
+    both = ca.vertcat(ca.dot(ca.DM(linear), q), energy)
+    return {"measured": ca.Function("measured", [q, v], [_dense(both)])}
 
 
 def grid_of(robot: Robot, curve_points: Array) -> Array:

@@ -145,10 +145,10 @@ def _check(figure: FigureChoice) -> None:
         check_path(robot, raised(curve, figure.parameters))
         check_level_set(figure.parameters, curve)
     for name in figure.sliders:
-        _check_slider(figure, name)
+        check_slider(figure, name)
 
 
-def _check_slider(figure: FigureChoice, name: str) -> None:
+def check_slider(figure: FigureChoice, name: str) -> None:
     """A slider puts its value into the settings, and changes nothing else.
 
     Raises:

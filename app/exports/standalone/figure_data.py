@@ -16,7 +16,12 @@ from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.page_functions import GRID, grid_of, page_functions
+from onpath.models.closed_loop.page_functions import (
+    GRID,
+    grid_of,
+    measurements,
+    page_functions,
+)
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.closed_loop.wasm_loop import wasm_of
 from onpath.models.control.benches import BENCHES, RIGHT
@@ -182,6 +187,7 @@ def _module(figure: FigureChoice) -> bytes:
         for number, law in enumerate(figure.laws):
             loops[f"loop{number}.{name}"] = figure.kernel(law, curve)
         own = page_functions(figure.machine, figure.kind(figure.laws[0], curve))
+        own |= measurements(figure.machine, figure.parameters)
         functions |= {f"{each}.{name}": function for each, function in own.items()}
     return wasm_of(functions, loops)
 

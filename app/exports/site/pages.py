@@ -1,0 +1,132 @@
+"""The pages of the static site as HTML."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from onpath.app.common.templates import environment, inlined, json_block, render
+from onpath.app.exports.site.step_data import SiteStep
+from onpath.app.exports.site.task_data import check_words
+from onpath.lessons.minutes import lesson_minutes
+from onpath.lessons.schema import Lesson
+from onpath.lessons.words import Words
+
+POLICY = (
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; "
+    "img-src 'self' data:; base-uri 'none'; form-action 'none'"
+)
+"""The pages' Content-Security-Policy: scripts and styles of the site alone, no eval but
+WebAssembly, pictures of the site and of the lessons' texts, no request to anybody else."""
+SAID = (
+    *("lesson.playing", "lesson.replay", "lesson.play", "lesson.yours", "lesson.right"),
+    *("lesson.not_quite", "lesson.committed", "lesson.skipped", "lesson.draw_first"),
+    *("lesson.drawn", "lesson.numbers", "lesson.passed", "lesson.predict_before", "lesson.finish"),
+    *("lesson.next", "lesson.no_number", "lesson.skip", "answer.check", "answer.keep"),
+    *("report.right", "report.chosen", "site.forgotten", "site.read_done", "site.no_progress"),
+    *("site.not_kept", "site.link_only_lab", "report.not_happened"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A picture of a run: its file, and what it shows."""
+
+    address: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A lesson in the list of the start page."""
+
+    number: str
+    lesson: Lesson
+    address: str
+    facts: list[str]
+
+
+def start_page(
+    words: Words, figure: dict[str, Any], entries: list[Entry], around: dict[str, Any]
+) -> str:
+    """The start page.
+
+    Args:
+        figure: data of the free lab's figure.
+        around: what all pages have: their own start page, and the same page in other languages.
+    """
+    lessons = {
+        entry.lesson.name: {
+            "steps": len(entry.lesson.steps),
+            "required": entry.lesson.required_steps(),
+            "tasks": [task.id for task in entry.lesson.required_tasks()],
+        }
+        for entry in entries
+    }
+    data = {"words": _said(words), "lesson": "", "figures": [figure], "lessons": lessons}
+    return _page("start", words, words("site.title"), data, around, entries=entries)
+
+
+def entry_of(lesson: Lesson, number: str, address: str, words: Words) -> Entry:
+    """A lesson in the list."""
+    minutes, optional = lesson_minutes(lesson)
+    facts = [words("lesson.minutes", minutes=minutes)]
+    if optional:
+        facts.append(words("lesson.minutes_optional", minutes=optional))
+    if lesson.language != words.language:
+        facts.append(words("lesson.english"))
+    return Entry(number, lesson, address, facts)
+
+
+def lesson_page(
+    lesson: Lesson,
+    number: str,
+    steps: list[SiteStep],
+    pictures: dict[int, Picture],
+    following: dict[str, str] | None,
+    words: Words,
+    around: dict[str, Any],
+) -> str:
+    """The page of a lesson.
+
+    Args:
+        steps: with their figures' modules replaced by the names of their files.
+        pictures: by number of the step.
+        following: address and title of the next lesson, if there is one.
+    """
+    figures = list[dict[str, Any]]()
+    for step in steps:
+        if step.figure not in figures:
+            figures.append(step.figure)
+    data = {
+        "words": _said(words) | check_words(words),
+        "lesson": lesson.name,
+        "figures": figures,
+        "steps": [{**step.data, "figure": figures.index(step.figure)} for step in steps],
+    }
+    title = f"{number}. {lesson.front.title} · OnPath"
+    shown = {"lesson": lesson, "number": number, "steps": steps, "pictures": pictures}
+    return _page("lesson", words, title, data, around, next=following, **shown)
+
+
+def site_style() -> str:
+    """The style sheet of all pages."""
+    return render("site/site.css", figure_style=inlined("standalone/figure.css"))
+
+
+def _page(
+    name: str, words: Words, title: str, data: Any, around: dict[str, Any], **shown: Any
+) -> str:
+    shown |= {"words": words, "title": title, "policy": POLICY, "data": json_block(data)}
+    return environment().get_template(f"site/{name}.html").render({**shown, **around})
+
+
+def _said(words: Words) -> dict[str, str]:
+    said = {key: words(key) for key in SAID}
+    said["lesson.passed_best"] = words("lesson.passed_best", best="{best}", unit="{unit}")
+    said["lesson.step"] = words("lesson.step", step="{step}", steps="{steps}")
+    said["lesson.at"] = words("lesson.at", time="{time}", unit="{unit}")
+    said["site.done"] = words("site.done", done="{done}", all="{all}", tasks="{tasks}")
+    drawn = {name: f"{{{name}}}" for name in ("quantity", "unit", "seconds")}
+    said["site.sketch"] = words("site.sketch", **drawn)
+    return said | {"point": words("report.point")}

@@ -1,0 +1,111 @@
+"""Which numbers of a figure's settings a parameter sets, and what they are for a value."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from onpath.app.exports.standalone.figure_choice import FigureChoice
+from onpath.lessons.action_schema import Value
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.simulation import check_level_set
+from onpath.models.paths.curves import Curve
+from onpath.models.systems.parameters import Parameters, changed, specs, time_step
+
+Writes = list[tuple[int, float]]
+"""Places in the settings, and the numbers that belong there."""
+
+
+class Unsupported(ValueError):
+    """A page without a server cannot do it, because other loops or numbers would be needed."""
+
+
+def with_values(parameters: Parameters, values: Mapping[str, Value]) -> Parameters:
+    """The parameters with other values.
+
+    Raises:
+        ValueError: an unknown name or a value out of range.
+    """
+    for name, value in values.items():
+        parameters = changed(parameters, name, value)
+    return parameters
+
+
+def writes(figure: FigureChoice, values: Mapping[str, Value], before: Parameters) -> Writes:
+    """What has to be written into the settings so that some parameters have other values.
+
+    Args:
+        before: the parameters until then.
+
+    Raises:
+        Unsupported: the loop would be another one, or the benches would need different numbers.
+    """
+    after = with_values(before, values)
+    per_bench = [_writes(figure, law, values, before, after) for law in figure.laws]
+    if any(own != per_bench[0] for own in per_bench):
+        raise Unsupported(f"{', '.join(values)}: another number for each bench")
+    return per_bench[0]
+
+
+def _writes(
+    figure: FigureChoice,
+    law: str,
+    values: Mapping[str, Value],
+    before: Parameters,
+    after: Parameters,
+) -> Writes:
+    curves = list(figure.paths.values())
+    found = set[int]()
+    for name in values:
+        for other in _others(before, name):
+            for curve in curves:
+                if _goes_on(figure, law, curve, before, other):
+                    found |= set(_differing(figure, law, curve, after, other, name).tolist())
+    result: Writes = []
+    for curve in curves:
+        if not _goes_on(figure, law, curve, before, after):
+            raise Unsupported(f"{', '.join(values)}: another loop")
+        now, then = (figure.settings(law, curve, own) for own in (before, after))
+        found |= set(np.flatnonzero(now != then).tolist())
+    for place in sorted(found):
+        numbers = {float(figure.settings(law, curve, after)[place]) for curve in curves}
+        if len(numbers) > 1:
+            raise Unsupported(f"{', '.join(values)}: another number for each path")
+        result.append((place, numbers.pop()))
+    return result
+
+
+def _others(parameters: Parameters, name: str) -> Iterator[Parameters]:
+    """The parameters with the least and the largest value of one, or with each of its options."""
+    spec = specs(parameters)[name]
+    for value in spec.options or (spec.low, spec.high):
+        yield dataclasses.replace(parameters, **{name: value})
+
+
+def _differing(
+    figure: FigureChoice, law: str, curve: Curve, after: Parameters, other: Parameters, name: str
+) -> Array:
+    """Places that depend on one parameter, whatever its value was before."""
+    swapped = dataclasses.replace(after, **{name: getattr(other, name)})
+    if not _goes_on(figure, law, curve, after, swapped):
+        return np.zeros(0, dtype=int)
+    now, then = (figure.settings(law, curve, own) for own in (after, swapped))
+    return np.flatnonzero(now != then)
+
+
+def _goes_on(
+    figure: FigureChoice, law: str, curve: Curve, before: Parameters, after: Parameters
+) -> bool:
+    """Whether the same loop and the same states serve for both."""
+    own, other = (dataclasses.replace(figure, parameters=each) for each in (before, after))
+    try:
+        check_level_set(after, curve)
+        return (
+            own.kind(law, curve) == other.kind(law, curve)
+            and time_step(before) == time_step(after)
+            and np.array_equal(own.start(law, curve), other.start(law, curve))
+        )
+    except ValueError:
+        return False

@@ -1,0 +1,139 @@
+"""A step of a lesson as its page needs it: the words as HTML, the rest as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from onpath.app.exports.site.step_figures import StepFigure, figure_of, lacking_words, step_figure
+from onpath.app.exports.site.task_data import task_data
+from onpath.lessons.benches import robot_names
+from onpath.lessons.record import QUANTITIES
+from onpath.lessons.schema import (
+    Block,
+    Choice,
+    Lesson,
+    NumberQuestion,
+    OpenQuestion,
+    Quiz,
+    Sketch,
+    Step,
+    Text,
+)
+from onpath.lessons.task_schema import Reference, Setting, Task
+from onpath.lessons.words import Words
+
+
+@dataclass(frozen=True, slots=True)
+class SiteBlock:
+    """A part of a step.
+
+    Attributes:
+        kind: "text", "choice", "sketch", "quiz", "number", "open" or "task".
+        here: of a task, whether it can be done on the page.
+    """
+
+    kind: str
+    block: Block
+    here: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class SiteStep:
+    """A step of a lesson.
+
+    Attributes:
+        number: from 1.
+        blocks: its parts.
+        data: for the page's script; see assets/site/data.ts.
+        figure: data of its figure.
+        lacking: what only the lab has here, in words; may be empty.
+        lab_only: whether its run can only be seen in the lab.
+    """
+
+    number: int
+    step: Step
+    blocks: list[SiteBlock]
+    data: dict[str, Any]
+    figure: dict[str, Any]
+    lacking: str
+    lab_only: bool
+
+
+KINDS: dict[type, str] = {
+    Text: "text",
+    Choice: "choice",
+    Sketch: "sketch",
+    Quiz: "quiz",
+    NumberQuestion: "number",
+    OpenQuestion: "open",
+    Task: "task",
+}
+
+
+def site_step(
+    lesson: Lesson, index: int, references: dict[str, Reference], words: Words
+) -> SiteStep:
+    """A step for a page."""
+    step, figure = lesson.steps[index], step_figure(lesson, index)
+    links = [link for block in step.blocks if isinstance(block, Text) for link in block.links]
+    actions = [action for link in links for action in link.actions]
+    blocks = [
+        SiteBlock(
+            KINDS[type(block)],
+            block,
+            not isinstance(block, Task) or figure.can_pass(block, references[block.id], actions),
+        )
+        for block in step.blocks
+    ]
+    script = figure.script(step.script)
+    data = {
+        "kind": step.kind,
+        "optional": step.optional,
+        "running": lesson.scene_at(index).running,
+        "script": script,
+        "values": _values(step, figure),
+        "blocks": [_block(each, lesson, index, figure, words) for each in blocks],
+    }
+    lab_only = step.script is not None and script is None
+    shown = figure_of(figure, words)
+    return SiteStep(
+        index + 1, step, blocks, data, shown, lacking_words(figure, words), lab_only
+    )
+
+
+def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
+    """The settings that the step's tasks look at, as the step begins."""
+    parameters, choice = figure.choice.parameters, figure.choice
+    own: dict[str, Any] = {
+        "path": next(iter(choice.paths)),
+        "robot": choice.robot,
+        "left": choice.laws[0],
+        "right": choice.laws[1],
+        "lengths": [1e3 * curve.length() for curve in choice.paths.values()],
+        "paths": list(choice.paths),
+    }
+    names = [c.name for task in step.tasks() for c in task.check if isinstance(c, Setting)]
+    known = {n: getattr(parameters, n) for n in (*names, *choice.sliders) if hasattr(parameters, n)}
+    return {**known, **own}
+
+
+def _block(
+    own: SiteBlock, lesson: Lesson, index: int, figure: StepFigure, words: Words
+) -> dict[str, Any]:
+    block, laws = own.block, lesson.laws_shown(index)
+    data: dict[str, Any] = {"kind": own.kind}
+    if isinstance(block, Text):
+        data["links"] = [figure.link(link.actions) for link in block.links]
+    elif isinstance(block, Sketch):
+        names = robot_names(laws, words)
+        data |= {name: getattr(block, name) for name in ("quantity", "seconds", "top", "bottom")}
+        data |= {"unit": QUANTITIES[block.quantity], "robots": list(names.values())}
+        data["label"] = words(f"quantity.{block.quantity}")
+    elif isinstance(block, Choice | Quiz):
+        data["right"] = [option.right for option in block.options].index(True)
+    elif isinstance(block, NumberQuestion):
+        data |= {"number": block.number, "tolerance": block.tolerance}
+    elif isinstance(block, Task) and own.here:
+        data |= task_data(block, figure.choice.parameters, lesson.scene_at(index).laws.named, words)
+    return data

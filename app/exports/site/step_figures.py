@@ -1,0 +1,158 @@
+"""The figure of a lesson's step: its set-up, what readers may change, and what only the lab has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from onpath.app.exports.site.settings_places import Unsupported
+from onpath.app.exports.site.step_actions import Act, link_acts, script_acts
+from onpath.app.exports.standalone.figure_choice import FigureChoice, check_slider, chosen
+from onpath.app.exports.standalone.figure_data import figure_data
+from onpath.lessons.action_schema import Action, Script, StepSetup
+from onpath.lessons.labels import setting_label
+from onpath.lessons.record import QUANTITIES
+from onpath.lessons.schema import Lesson, Text
+from onpath.lessons.task_schema import Reference, Task
+from onpath.lessons.words import Words
+from onpath.models.closed_loop.simulation import raised
+from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import specs
+
+ALWAYS = ("pull", "run", "step", "reset", "plot")
+"""Controls that every step of the lab has."""
+RECORDED = ("theta_rate", "speed", "xi", "xi_rate", "u")
+"""Fields of a log row that the checks need, besides those of every figure."""
+
+
+@dataclass(frozen=True, slots=True)
+class StepFigure:
+    """A step's figure.
+
+    Attributes:
+        choice: what it shows.
+        lacking: names of the step's controls that only the lab has.
+        plot: of the lab's plots, the one that the step shows there; empty for none.
+    """
+
+    choice: FigureChoice
+    lacking: tuple[str, ...]
+    plot: str
+
+    def script(self, script: Script | None) -> dict[str, Any] | None:
+        """A script as data; None if there is none, or only the lab can play it."""
+        try:
+            return None if script is None else script_acts(script, self.choice)
+        except Unsupported:
+            return None
+
+    def link(self, actions: Iterable[Action]) -> list[Act] | None:
+        """What a link does; None if only the lab can do it."""
+        try:
+            return link_acts(actions, self.choice)
+        except Unsupported:
+            return None
+
+    def can_pass(self, task: Task, reference: Reference, links: Iterable[Action]) -> bool:
+        """Whether a reader has all that the task's reference solution uses."""
+        within_reach = {*self.choice.sliders}
+        for action in links:
+            if self.link([action]) is not None:
+                within_reach |= set(action.set or {})
+        for action in reference.solution.do:
+            if action.hold is not None and "hold" not in self.choice.controls:
+                return False
+            if not set(action.set or {}) <= within_reach or action.only:
+                return False
+        measured = {getattr(check, "quantity", "distance") for check in task.check}
+        return self.script(reference.solution) is not None and measured <= set(self.quantities)
+
+    @property
+    def quantities(self) -> list[str]:
+        """Quantities that its page records."""
+        robot, own = self.choice.machine, list(QUANTITIES)
+        if "deflection" not in dict(robot.extra_fields):
+            own = [name for name in own if name not in ("deflection", "energy")]
+        if robot.system.p > 2 and "deflection" not in dict(robot.extra_fields):
+            own.remove("lag")  # the picture does not show distances in space
+        if self.choice.parameters.across == "level_set":
+            own = [name for name in own if not name.startswith("across")]
+        return own
+
+
+def step_figure(lesson: Lesson, index: int) -> StepFigure:
+    """The figure of a step.
+
+    Raises:
+        ValueError: its set-up is none that a figure can show.
+    """
+    scene, step = lesson.scene_at(index), lesson.steps[index]
+    robot = scene.robot or lesson.front.robot
+    entry = ROBOTS[robot]
+    values = {"speed": entry.lab.speed, "ramp": entry.lab.ramp, **scene.set}
+    laws = tuple({**DEFAULT_LAWS, **scene.laws.named}.values())
+    first, *others = _paths(lesson, index, scene)
+    curves = {first: presets()[first].curve}
+    controls = (*ALWAYS, "hold") if "hold" in scene.controls else ALWAYS
+    if step.kind == "predict":
+        controls = ()
+    bare = chosen(robot, laws, curves, values, sliders=(), controls=controls)
+    bare = replace(bare, paths={**curves, **_possible(bare, others)})
+    known = specs(type(bare.parameters))
+    sliders = tuple(n for n in scene.controls if n in known and _slides(bare, n))
+    lacking = [name for name in scene.controls if name not in (*sliders, "hold")]
+    return StepFigure(replace(bare, sliders=sliders), tuple(lacking), scene.plot)
+
+
+def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
+    """The data of a step's figure, with its module of kernels as Base64."""
+    data, choice = figure_data(figure.choice, words), figure.choice
+    log = choice.kernel(choice.laws[0], next(iter(choice.paths.values()))).log
+    for name in RECORDED:
+        place = log.slices[name]
+        data["log"][name] = [place.start, place.stop - place.start]
+    return {**data, "names": choice.sliders, "quantities": figure.quantities}
+
+
+def lacking_words(figure: StepFigure, words: Words) -> str:
+    """What a step has in the lab and not here, in words; empty if it has all."""
+    known = specs(type(figure.choice.parameters))
+    named = [
+        setting_label(name, figure.choice.parameters, words)
+        if name in known
+        else words(f"site.control.{name}")
+        for name in figure.lacking
+    ]
+    if figure.plot:
+        named.append(words("site.plot", plot=words(f"plot.{figure.plot}")))
+    return ", ".join(named)
+
+
+def _paths(lesson: Lesson, index: int, scene: StepSetup) -> list[str]:
+    """The step's path, and those that its links and its script choose."""
+    step = lesson.steps[index]
+    links = [link for block in step.blocks if isinstance(block, Text) for link in block.links]
+    actions = [action for link in links for action in link.actions]
+    actions += step.script.do if step.script else ()
+    paths = [scene.path or "circle", *(action.path for action in actions if action.path)]
+    return list(dict.fromkeys(paths))
+
+
+def _possible(figure: FigureChoice, names: Iterable[str]) -> dict[str, Curve]:
+    """The presets of these names that the robot can follow."""
+    margin, parameters = figure.machine.margin, figure.parameters
+    curves = {name: presets()[name].curve for name in names}
+    return {n: c for n, c in curves.items() if not curve_faults(margin, raised(c, parameters))}
+
+
+def _slides(figure: FigureChoice, name: str) -> bool:
+    try:
+        check_slider(figure, name)
+    except ValueError:
+        return False
+    return True

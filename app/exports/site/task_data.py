@@ -1,0 +1,126 @@
+"""The checks of a task as data for a page, with their words; assets/site/checks.ts evaluates them."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+from typing import Any
+
+import msgspec
+
+from onpath.lessons.benches import robot_names
+from onpath.lessons.checks import event_named, event_words, range_words, stat_words
+from onpath.lessons.labels import setting_label, value_label
+from onpath.lessons.measures.responses import unit_of
+from onpath.lessons.record import ROBOTS
+from onpath.lessons.task_schema import Bound, Check, Compare, Event, Order, Setting, Task
+from onpath.lessons.words import Words
+from onpath.models.systems.parameters import Parameters, specs
+
+SAID = {
+    "check.bound": ("robot", "stat", "during", "value", "unit", "wanted"),
+    "check.compare": ("larger", "stat", "during", "ratio", "wanted"),
+    "check.seconds": ("have", "need"),
+    "check.nothing": ("robot", "stat", "during", "seconds", "wanted"),
+    "check.event": ("event", "have", "need"),
+    "check.order": ("events",),
+    "check.setting": ("name", "value", "wanted"),
+    "check.stopped": ("robot",),
+}
+"""Messages, and the values that the page fills in."""
+
+
+def check_words(words: Words) -> dict[str, str]:
+    """The messages of the checks, with places for their values."""
+    return {key: words(key, **{n: f"{{{n}}}" for n in names}) for key, names in SAID.items()}
+
+
+def task_data(
+    task: Task, parameters: Parameters, laws: dict[str, str], words: Words
+) -> dict[str, Any]:
+    """A task for a page.
+
+    Args:
+        parameters, laws: of the step's set-up.
+    """
+    said = robot_names(laws, words)
+    checks = [check_data(check, parameters, said, words) for check in task.check]
+    return {"id": task.id, "best": task.best, "checks": checks}
+
+
+def check_data(
+    check: Check, parameters: Parameters, robots: dict[Any, str], words: Words
+) -> dict[str, Any]:
+    """A check with all its fields, and `said`: the words of it that do not change.
+
+    Args:
+        robots: displayed names.
+    """
+    return {**msgspec.to_builtins(check), **_more(check, parameters, robots, words)}
+
+
+@singledispatch
+def _more(check: Check, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
+    raise TypeError(f"no such check: {check!r}")
+
+
+@_more.register
+def _(check: Bound, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
+    unit = unit_of(check.stat, check.quantity)
+    said = {
+        "robot": robots[check.robot],
+        "stat": stat_words(check.stat, check.quantity, words),
+        "during": words(f"during.{check.during}"),
+        "wanted": range_words(check.below, check.above, unit, words),
+        "unit": unit,
+        "need": f"{check.least:g}",
+    }
+    return {"said": said}
+
+
+@_more.register
+def _(check: Compare, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
+    (smaller,) = set(ROBOTS) - {check.larger}
+    said = {
+        "larger": robots[check.larger],
+        "smaller": robots[smaller],
+        "stat": stat_words(check.stat, check.quantity, words),
+        "during": words(f"during.{check.during}"),
+        "wanted": f"{check.ratio:g}",
+        "need": f"{check.least:g}",
+    }
+    return {"smaller": smaller, "said": said}
+
+
+@_more.register
+def _(check: Event, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
+    return {"said": {"event": event_words(check, parameters, words)}}
+
+
+@_more.register
+def _(check: Order, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
+    events = [event_named(text) for text in check.events]
+    return {
+        "events": [
+            {"event": e.event, "name": e.name, "said": event_words(e, parameters, words)}
+            for e in events
+        ]
+    }
+
+
+@_more.register
+def _(check: Setting, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
+    spec = specs(parameters).get(check.name)
+    equals = check.equals if spec is None or check.equals is None else spec.present(check.equals)
+    if equals is None:
+        unit = "mm" if check.name == "length" else ""
+        wanted = range_words(check.below, check.above, unit, words)
+    else:
+        wanted = words("check.equals", value=value_label(check.name, equals, words))
+    present = getattr(parameters, check.name, None)
+    options = spec.options if spec is not None else ()
+    return {
+        "equals": equals,
+        "whole": isinstance(present, int),
+        "said": {"name": setting_label(check.name, parameters, words), "wanted": wanted},
+        "labels": {str(value): value_label(check.name, value, words) for value in options},
+    }

@@ -1,0 +1,194 @@
+"""Writes the course as a folder of pages, which need no server."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from onpath.app.exports.site.pages import (
+    Picture,
+    entry_of,
+    lesson_page,
+    site_style,
+    start_page,
+)
+from onpath.app.exports.site.run_pictures import run_picture, run_truth
+from onpath.app.exports.site.step_data import SiteStep, site_step
+from onpath.app.exports.standalone.figure_choice import chosen
+from onpath.app.exports.standalone.figure_data import figure_data
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.assets import asset_path
+from onpath.lessons.course import REFERENCE, Course, read_references
+from onpath.lessons.progress import Truth
+from onpath.lessons.words import DEFAULT, Words
+from onpath.models.paths.path_design import presets
+
+SHARED = "site"
+"""Folder of what the pages share: script, style, kernels, pictures."""
+PATHS = ("circle", "ellipse", "rounded square", "clover")
+
+
+def write_site(folder: Path, course: Course, home: Path, languages: Iterable[str]) -> None:
+    """Write all pages; the folder is new or empty.
+
+    Args:
+        home: contains the lessons' own folders.
+        languages: codes; the pages of the first one have plain names.
+
+    Raises:
+        ValueError: the folder holds something else, or a lesson cannot be shown.
+    """
+    with _whole_folder(folder) as scratch:
+        shared = scratch / SHARED
+        (shared / "kernels").mkdir(parents=True)
+        (shared / "pictures").mkdir()
+        for name in ("on.js", "site.js"):
+            shutil.copy(asset_path(f"site/{name}"), shared)
+        (shared / "site.css").write_text(site_style(), "utf-8")
+        truths = _truths(course)
+        writer = _Writer(scratch, course, home, list(languages), truths)
+        writer.write()
+
+
+class _Writer:
+    """Writes the pages of one site."""
+
+    def __init__(
+        self,
+        folder: Path,
+        course: Course,
+        home: Path,
+        languages: list[str],
+        truths: Mapping[tuple[str, int], Truth],
+    ) -> None:
+        self._folder, self._course, self._home = folder, course, home
+        self._languages, self._truths = languages, truths
+
+    def write(self) -> None:
+        for language in self._languages:
+            words = Words(language)
+            self._start(words)
+            for name in self._course.lessons:
+                self._lesson(name, words)
+
+    def _address(self, name: str, language: str) -> str:
+        return f"{name}.html" if language == self._languages[0] else f"{name}.{language}.html"
+
+    def _around(self, name: str, words: Words) -> dict[str, Any]:
+        languages = {language: self._address(name, language) for language in self._languages}
+        return {"start": self._address("index", words.language), "languages": languages}
+
+    def _start(self, words: Words) -> None:
+        curves = {name: presets()[name].curve for name in PATHS}
+        figure = self._shared_kernels(figure_data(chosen("five_bar", paths=curves), words))
+        entries = [
+            entry_of(
+                self._course.lesson(name, words.language),
+                number,
+                self._address(name, words.language),
+                words,
+            )
+            for name, number in self._course.numbers().items()
+        ]
+        page = start_page(words, figure, entries, self._around("index", words))
+        self._write("index", words, page)
+
+    def _lesson(self, name: str, words: Words) -> None:
+        lesson = self._course.lesson(name, words.language)
+        references, problems = read_references(lesson, self._home / name / REFERENCE)
+        if problems:
+            raise ValueError(str(problems[0]))
+        steps = [site_step(lesson, i, references, words) for i in range(len(lesson.steps))]
+        steps = [replace(step, figure=self._shared_kernels(step.figure)) for step in steps]
+        pictures = dict(self._pictures(name, steps, words))
+        page = lesson_page(
+            lesson,
+            self._course.numbers()[name],
+            steps,
+            pictures,
+            self._following(name, words),
+            words,
+            self._around(name, words),
+        )
+        self._write(name, words, page)
+
+    def _following(self, name: str, words: Words) -> dict[str, str] | None:
+        names = list(self._course.lessons)
+        after = names[names.index(name) + 1 :]
+        if not after:
+            return None
+        title = self._course.lesson(after[0], words.language).front.title
+        return {"address": self._address(after[0], words.language), "title": title}
+
+    def _pictures(
+        self, name: str, steps: list[SiteStep], words: Words
+    ) -> Iterator[tuple[int, Picture]]:
+        lesson = self._course.lesson(name, words.language)
+        for step in steps:
+            truth = self._truths.get((name, step.number - 1))
+            if truth is None:
+                continue
+            picture = run_picture(lesson, step.number - 1, truth, words)
+            address = f"{SHARED}/pictures/{name}-{step.number}-{words.language}.svg"
+            (self._folder / address).write_bytes(picture.svg)
+            yield step.number, Picture(address, picture.text)
+
+    def _shared_kernels(self, figure: dict[str, Any]) -> dict[str, Any]:
+        """The figure with the name of a script in place of its module, which other pages share."""
+        module = figure["module"]
+        name = hashlib.sha256(module.encode()).hexdigest()[:16]
+        file = self._folder / SHARED / "kernels" / f"{name}.js"
+        if not file.exists():
+            file.write_text(f"onpathKernels[{json.dumps(name)}]={json.dumps(module)}\n", "utf-8")
+        return {**figure, "module": name}
+
+    def _write(self, name: str, words: Words, page: str) -> None:
+        (self._folder / self._address(name, words.language)).write_text(page, "utf-8")
+
+
+def _truths(course: Course) -> dict[tuple[str, int], Truth]:
+    """What happens in all steps with a script, by lesson and index."""
+    store = LoopCache()
+    store.close()  # nothing is compiled for one run
+    found = dict[tuple[str, int], Truth]()
+    for name in course.lessons:
+        lesson = course.lesson(name, DEFAULT)
+        for index in range(len(lesson.steps)):
+            truth = run_truth(lesson, index, store)
+            if truth is not None:
+                found[name, index] = truth
+    return found
+
+
+@contextmanager
+def _whole_folder(folder: Path) -> Iterator[Path]:
+    """A folder beside it that becomes it once all is written.
+
+    Raises:
+        ValueError: it cannot be written, or has something in it that is no site.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"{folder}: that is a file")
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / SHARED / "site.js").exists():
+        raise ValueError(f"{folder}: not empty, and no site of an earlier export")
+    if not folder.parent.is_dir():
+        raise ValueError(f"{folder}: no folder {folder.parent}")
+    try:
+        scratch = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}-"))
+    except OSError as error:
+        raise ValueError(f"{folder}: {error.strerror}") from None
+    try:
+        scratch.chmod(0o755)
+        yield scratch
+        if folder.exists():
+            shutil.rmtree(folder)
+        scratch.rename(folder)
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)

@@ -1,0 +1,140 @@
+// What Python puts into the pages: see app/exports/site.
+
+import type { FigureData, Place } from "../standalone/data"
+
+export type Robot = "tracker" | "follower"
+export const ROBOTS: Robot[] = ["tracker", "follower"]
+export type Setting = number | string
+
+/** One thing that a script or a link does; it has one of these fields, besides `bench`. */
+export interface Act {
+    hold?: boolean
+    pull?: [number, number]
+    release?: boolean
+    set?: Record<string, Setting>
+    write?: [number, number][]
+    path?: number
+    reset?: boolean
+    run?: boolean
+    bench?: number | null
+}
+
+export interface Script {
+    until: number
+    do: [number, Act][]
+}
+
+export interface SiteFigure extends FigureData {
+    names: string[]
+    quantities: string[]
+    log: FigureData["log"] & Record<"theta_rate" | "speed" | "xi" | "xi_rate" | "u", Place>
+}
+
+export interface Window {
+    during: "always" | "held" | "pulled" | "free"
+    last: number
+    least: number
+}
+
+export type Said = Record<string, string>
+
+export interface Bound extends Window {
+    kind: "bound"
+    quantity: string
+    robot: Robot
+    stat: string
+    below: number | null
+    above: number | null
+    said: Said
+}
+
+export interface Compare extends Window {
+    kind: "compare"
+    quantity: string
+    larger: Robot
+    smaller: Robot
+    stat: string
+    ratio: number
+    said: Said
+}
+
+export interface EventCheck {
+    kind: "event"
+    event: string
+    name: string
+    times: number
+    said: Said
+}
+
+export interface Order {
+    kind: "order"
+    events: { event: string; name: string; said: string }[]
+}
+
+export interface SettingCheck {
+    kind: "setting"
+    name: string
+    equals: Setting | null
+    below: number | null
+    above: number | null
+    whole: boolean
+    said: Said
+    labels: Record<string, string>
+}
+
+export type Check = Bound | Compare | EventCheck | Order | SettingCheck
+
+export interface TaskData {
+    kind: "task"
+    id: string
+    best: string
+    checks?: Check[]
+}
+
+export interface SketchData {
+    kind: "sketch"
+    quantity: string
+    label: string
+    unit: string
+    robots: string[]
+    seconds: number
+    top: number
+    bottom: number
+}
+
+export type BlockData =
+    | { kind: "text"; links: (Act[] | null)[] }
+    | { kind: "choice" | "quiz"; right: number }
+    | { kind: "number"; number: number; tolerance: number }
+    | { kind: "open" }
+    | SketchData
+    | TaskData
+
+export interface StepData {
+    kind: "play" | "predict" | "run" | "explain" | "task" | "quiz"
+    optional: boolean
+    running: boolean
+    script: Script | null
+    values: Record<string, Setting> & { lengths: number[]; paths: string[] }
+    blocks: BlockData[]
+    figure: number
+}
+
+export interface PageData {
+    words: Record<string, string>
+    lesson: string
+    figures: SiteFigure[]
+    steps: StepData[]
+    lessons: Record<string, { steps: number; required: number; tasks: string[] }>
+}
+
+/** A text of the page, with its values filled in. */
+export function said(page: PageData, key: string, values: Said = {}): string {
+    const text = page.words[key]
+    if (text === undefined) throw new Error(`no words for ${key}`)
+    return filled(text, values)
+}
+
+export function filled(text: string, values: Said): string {
+    return text.replace(/\{(\w+)\}/g, (whole, name: string) => values[name] ?? whole)
+}
