@@ -38,7 +38,7 @@ export class LessonPage {
     }
 
     private asked(): number {
-        return Number(/^#step-(\d+)$/.exec(location.hash)?.[1] ?? 0) - 1
+        return Number(/^#(\d+)$/.exec(location.hash)?.[1] ?? 0) - 1
     }
 
     private key(event: KeyboardEvent): void {
@@ -81,7 +81,8 @@ export class LessonPage {
             each.classList.toggle("open", each === section)
             each.classList.toggle("seen", i < notes.seen)
         })
-        history.replaceState(null, "", `#step-${this.index + 1}`)
+        history.replaceState(null, "", `#${this.index + 1}`)
+        dispatchEvent(new Event("resize")) // what was hidden is drawn
         if (move) {
             section.focus({ preventScroll: true })
             scrollTo(0, 0)

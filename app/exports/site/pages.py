@@ -24,7 +24,7 @@ SAID = (
     *("lesson.drawn", "lesson.numbers", "lesson.passed", "lesson.predict_before", "lesson.finish"),
     *("lesson.next", "lesson.no_number", "lesson.skip", "answer.check", "answer.keep"),
     *("report.right", "report.chosen", "site.forgotten", "site.read_done", "site.no_progress"),
-    *("site.not_kept", "site.link_only_lab", "report.not_happened"),
+    *("site.not_kept", "site.link_only_lab", "report.not_happened", "lesson.read"),
 )
 
 
@@ -37,7 +37,7 @@ class Picture:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class LessonEntry:
     """A lesson in the list of the start page."""
 
     number: str
@@ -47,7 +47,7 @@ class Entry:
 
 
 def start_page(
-    words: Words, figure: dict[str, Any], entries: list[Entry], around: dict[str, Any]
+    words: Words, figure: dict[str, Any], entries: list[LessonEntry], around: dict[str, Any]
 ) -> str:
     """The start page.
 
@@ -67,7 +67,7 @@ def start_page(
     return _page("start", words, words("site.title"), data, around, entries=entries)
 
 
-def entry_of(lesson: Lesson, number: str, address: str, words: Words) -> Entry:
+def entry_of(lesson: Lesson, number: str, address: str, words: Words) -> LessonEntry:
     """A lesson in the list."""
     minutes, optional = lesson_minutes(lesson)
     facts = [words("lesson.minutes", minutes=minutes)]
@@ -75,7 +75,7 @@ def entry_of(lesson: Lesson, number: str, address: str, words: Words) -> Entry:
         facts.append(words("lesson.minutes_optional", minutes=optional))
     if lesson.language != words.language:
         facts.append(words("lesson.english"))
-    return Entry(number, lesson, address, facts)
+    return LessonEntry(number, lesson, address, facts)
 
 
 def lesson_page(

@@ -97,9 +97,7 @@ def site_step(
     }
     lab_only = step.script is not None and script is None
     shown = figure_of(figure, words)
-    return SiteStep(
-        index + 1, step, blocks, data, shown, lacking_words(figure, words), lab_only
-    )
+    return SiteStep(index + 1, step, blocks, data, shown, lacking_words(figure, words), lab_only)
 
 
 def _values(step: Step, figure: StepFigure) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any
 from onpath.app.exports.site.settings_places import Unsupported
 from onpath.app.exports.site.step_actions import Act, link_acts, script_acts
 from onpath.app.exports.standalone.figure_choice import FigureChoice, check_slider, chosen
-from onpath.app.exports.standalone.figure_data import figure_data
+from onpath.app.exports.standalone.figure_data import figure_data, slider_data
 from onpath.lessons.action_schema import Action, Script, StepSetup
 from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
@@ -26,6 +26,8 @@ from onpath.models.systems.parameters import specs
 
 ALWAYS = ("pull", "run", "step", "reset", "plot")
 """Controls that every step of the lab has."""
+MOST = 8  # figures that are kept; those of one lesson follow each other
+_SHARED: dict[Any, dict[str, Any]] = {}
 RECORDED = ("theta_rate", "speed", "xi", "xi_rate", "u")
 """Fields of a log row that the checks need, besides those of every figure."""
 
@@ -111,12 +113,27 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
 
 def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
     """The data of a step's figure, with its module of kernels as Base64."""
-    data, choice = figure_data(figure.choice, words), figure.choice
+    data, choice = _shared_data(figure.choice, words), figure.choice
     log = choice.kernel(choice.laws[0], next(iter(choice.paths.values()))).log
-    for name in RECORDED:
-        place = log.slices[name]
-        data["log"][name] = [place.start, place.stop - place.start]
-    return {**data, "names": choice.sliders, "quantities": figure.quantities}
+    places = {n: [(s := log.slices[n]).start, s.stop - s.start] for n in RECORDED}
+    return {
+        **data,
+        "log": data["log"] | places,
+        "sliders": [slider_data(choice, name, words) for name in choice.sliders],
+        "controls": choice.controls,
+        "names": choice.sliders,
+        "quantities": figure.quantities,
+    }
+
+
+def _shared_data(choice: FigureChoice, words: Words) -> dict[str, Any]:
+    """The data of a figure without sliders and controls, which many steps share."""
+    key = choice.robot, choice.laws, tuple(choice.paths), choice.parameters, words.language
+    if key not in _SHARED:
+        while len(_SHARED) >= MOST:
+            _SHARED.pop(next(iter(_SHARED)))
+        _SHARED[key] = figure_data(replace(choice, sliders=(), controls=()), words)
+    return _SHARED[key]
 
 
 def lacking_words(figure: StepFigure, words: Words) -> str:

@@ -1,4 +1,4 @@
-"""The checks of a task as data for a page, with their words; assets/site/checks.ts evaluates them."""
+"""The checks of a task as data for a page, with their words; see assets/site/checks.ts."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ def figure_data(figure: FigureChoice, words: Words, title: str = "") -> dict[str
         "log": _places(kernel.log, ("q", "v", "y", "theta", "theta_ref", "force")),
         "benches": _benches(figure, words),
         "paths": [_path(figure, name, curve, words) for name, curve in curves.items()],
-        "sliders": [_slider(figure, name, words) for name in figure.sliders],
+        "sliders": [slider_data(figure, name, words) for name in figure.sliders],
         "controls": figure.controls,
         "box": _box(figure),
         "off": OFF,
@@ -134,7 +134,8 @@ def _path(figure: FigureChoice, name: str, curve: Curve, words: Words) -> dict[s
     }
 
 
-def _slider(figure: FigureChoice, name: str, words: Words) -> dict[str, Any]:
+def slider_data(figure: FigureChoice, name: str, words: Words) -> dict[str, Any]:
+    """A slider: its words, its range, and the place of its number in the settings."""
     spec = specs(type(figure.parameters))[name]
     kernel = figure.kernel(figure.laws[0], next(iter(figure.paths.values())))
     unit = words.get(f"parameter.{name}.unit", spec.unit)

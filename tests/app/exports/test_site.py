@@ -1,0 +1,150 @@
+"""The static site as files: readable without scripts, and strict about what may run."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from onpath.app.cli.main import run_command
+from onpath.app.exports.site.pages import POLICY, SAID
+from onpath.app.exports.site.step_figures import step_figure
+from onpath.app.exports.site.task_data import SAID as CHECKS
+from onpath.assets import asset_path
+from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
+from onpath.lessons.schema import Text
+from tests.support.site_export import LESSON, exported_site
+
+LINES = 1800
+EVENTS = re.compile(r"^on[a-z]+$")
+
+
+class Seen(HTMLParser):
+    """What a browser without scripts sees of a page, and what it loads."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.text, self.loaded, self.inline, self.tags = "", list[str](), list[str](), list[str]()
+        self.alts = list[str]()
+        self._hidden = 0
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        own = dict(attrs)
+        self.loaded += [v for n, v in attrs if n in ("src", "href") and v]
+        self.inline += [n for n in own if n == "style" or EVENTS.match(n)]
+        if tag == "img":
+            self.alts.append(own.get("alt") or "")
+        if tag in ("script", "style"):
+            self._hidden += 1
+            if own.get("type") != "application/json" and "src" not in own:
+                self.inline.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        self._hidden -= tag in ("script", "style")
+
+    def handle_data(self, data: str) -> None:
+        if not self._hidden:
+            self.text += data
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return exported_site(tmp_path_factory.mktemp("site"))
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_without_scripts_all_of_a_lesson_is_there(site: Path, language: str) -> None:
+    name = f"{LESSON}.html" if language == "en" else f"{LESSON}.{language}.html"
+    seen = Seen((site / name).read_text("utf-8"))
+    lesson = read_course([BUILT_IN])[0].lesson(LESSON, language)
+    words = " ".join(seen.text.split())
+    for step in lesson.steps:
+        for block in step.blocks:
+            for html in (
+                [block.html]
+                if isinstance(block, Text)
+                else [getattr(block, n, "") for n in ("question", "text", "passed")]
+                + [o.answer for o in getattr(block, "options", ())]
+                + list(getattr(block, "hints", ()))
+            ):
+                assert " ".join(Seen(str(html)).text.split()) in words
+    assert seen.tags.count("math") > 10
+    runs = [step for step in lesson.steps if step.script]
+    pictures = list((site / "site" / "pictures").glob(f"*-{language}.svg"))
+    assert len(pictures) == len(runs) and all(seen.alts)
+    assert sum(" 47" in alt or "46.9" in alt for alt in seen.alts) == 1  # the arches
+
+
+def test_nothing_of_a_page_is_inline_or_from_elsewhere(site: Path) -> None:
+    for page in site.glob("*.html"):
+        seen = Seen(page.read_text("utf-8"))
+        assert seen.inline == []
+        for address in seen.loaded:
+            if address.startswith(("https://", "data:image/", "#")):
+                continue  # a reader follows it; a picture in a lesson's text; in the page
+            assert (site / address.partition("#")[0]).is_file(), address
+        assert POLICY.replace("'", "&#39;") in page.read_text("utf-8")
+    assert "unsafe-eval" not in POLICY.replace("wasm-unsafe-eval", "")
+
+
+def test_figures_share_their_kernels(site: Path) -> None:
+    kernels = list((site / "site" / "kernels").iterdir())
+    assert len(kernels) == 1  # the free lab and eleven steps in two languages
+    size = sum(file.stat().st_size for file in site.rglob("*") if file.is_file())
+    assert size / 24 < 600_000
+
+
+def test_what_runs_was_built_from_these_sources() -> None:
+    """After a change: cd assets/standalone; npm ci; cd ../site; npm run build."""
+    own = sorted(asset_path("site").glob("*.ts"))
+    sources = [*own, *sorted(asset_path("standalone").glob("*.ts"))]
+    text = b"".join(file.read_bytes() for file in sources)
+    built = asset_path("site/site.js").read_text("utf-8")
+    assert built.splitlines()[0] == f"// sources: {hashlib.sha256(text).hexdigest()}"
+    assert sum(file.read_bytes().count(b"\n") for file in own) <= LINES
+
+
+def test_all_that_the_scripts_say_is_in_the_pages() -> None:
+    text = "".join(file.read_text("utf-8") for file in asset_path("site").glob("*.ts"))
+    asked = {key for line in text.splitlines() if "said(" in line for key in _keys(line)}
+    given = {*SAID, *CHECKS, "lesson.step", "lesson.at", "site.done", "site.sketch", "point"}
+    assert len(asked) > 15 and asked <= given
+
+
+def _keys(line: str) -> list[str]:
+    return re.findall(r'"((?:lesson|site|report|answer|check)\.[a-z_]+)"', line)
+
+
+def test_a_task_is_offered_if_its_solution_can_be_done_here() -> None:
+    course = read_course([BUILT_IN])[0]
+
+    def offered(name: str) -> dict[str, bool]:
+        lesson = course.lesson(name, "en")
+        references, _ = read_references(lesson, BUILT_IN / name / REFERENCE)
+        return {
+            task.id: step_figure(lesson, i).can_pass(task, references[task.id], [])
+            for i, step in enumerate(lesson.steps)
+            for task in step.tasks()
+        }
+
+    assert all(offered(LESSON).values())
+    assert list(offered("06-exact-cancellation").values()) == [True, False, False]  # identification
+    challenge = offered("08-challenge")
+    assert sorted(challenge.values()) == [False, False, True]  # two of them need the path editor
+
+
+def test_a_folder_with_something_else_in_it_is_left_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "diary.txt").write_text("dear diary")
+    assert run_command(["export", "site", str(tmp_path / "mine")]) == 2
+    assert "not empty" in capsys.readouterr().err
+    assert [file.name for file in (tmp_path / "mine").iterdir()] == ["diary.txt"]
+    assert run_command(["export", "site", str(tmp_path / "a" / "b")]) == 2
+    assert run_command(["export", "site", str(tmp_path / "c"), "--language", "xx"]) == 2
