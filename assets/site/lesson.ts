@@ -14,14 +14,14 @@ const JUDGED = 500 // [ms] between two looks at the tasks
 export class LessonPage {
     index = 0
     stage: Stage | null = null
-    private readonly notes: Notes
+    readonly notes: Notes
     private readonly sections = [...document.querySelectorAll<HTMLElement>("section.step")]
     private readonly next = document.querySelector<HTMLButtonElement>("#next")!
     private readonly back = document.querySelector<HTMLButtonElement>("#back")!
     private tasks: Task[] = []
     private turn = 0 // so that a figure that comes late is not shown
 
-    constructor(private readonly page: PageData, private readonly progress: Progress) {
+    constructor(readonly page: PageData, private readonly progress: Progress) {
         this.notes = notesOf(progress, page.lesson)
         this.page.steps.forEach((_, i) => this.prepare(i))
         this.next.addEventListener("click", () => this.go(1))

@@ -9,7 +9,6 @@ import numpy as np
 
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.lessons.action_schema import Value
-from onpath.models.arrays import Array
 from onpath.models.closed_loop.simulation import check_level_set
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters, changed, specs, time_step
@@ -62,7 +61,7 @@ def _writes(
         for other in _others(before, name):
             for curve in curves:
                 if _goes_on(figure, law, curve, before, other):
-                    found |= set(_differing(figure, law, curve, after, other, name).tolist())
+                    found |= _differing(figure, law, curve, after, other, name)
     result: Writes = []
     for curve in curves:
         if not _goes_on(figure, law, curve, before, after):
@@ -86,13 +85,13 @@ def _others(parameters: Parameters, name: str) -> Iterator[Parameters]:
 
 def _differing(
     figure: FigureChoice, law: str, curve: Curve, after: Parameters, other: Parameters, name: str
-) -> Array:
+) -> set[int]:
     """Places that depend on one parameter, whatever its value was before."""
     swapped = dataclasses.replace(after, **{name: getattr(other, name)})
     if not _goes_on(figure, law, curve, after, swapped):
-        return np.zeros(0, dtype=int)
+        return set()
     now, then = (figure.settings(law, curve, own) for own in (after, swapped))
-    return np.flatnonzero(now != then)
+    return set(np.flatnonzero(now != then).tolist())
 
 
 def _goes_on(

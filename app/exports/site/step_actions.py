@@ -60,7 +60,7 @@ def act_of(action: Action, figure: FigureChoice, parameters: Any) -> Act:
     if what == "set":
         values = action.set or {}
         return {"set": values, "write": writes(figure, values, parameters)}
-    if what == "path" and action.path in figure.paths:
+    if what == "path" and action.path and action.path in figure.paths:
         return {"path": list(figure.paths).index(action.path)}
     if what in ("release", "reset", "run"):
         return {what: getattr(action, what)}
