@@ -165,9 +165,10 @@ export class LessonPage {
             if (found?.data.kind === "sketch") comparison?.draw(stage.simulation.curve(quantity))
             requestAnimationFrame(draw)
         }
-        stage.play(step.script, () => {
+        stage.play(step.script, whole => {
             playing = false
             line.remove()
+            if (!whole) return
             notes.truths[String(found?.step ?? index)] = thinned(stage.simulation.curve(quantity))
             notes.played[String(index)] = true
             this.save()

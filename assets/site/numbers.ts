@@ -37,7 +37,7 @@ export function general(value: number, digits: number): string {
     if (value === 0) return Object.is(value, -0) ? "-0" : "0"
     const sign = value < 0 ? "-" : ""
     const [kept, exponent] = rounded(Math.abs(value), digits)
-    const bare = (text: string) => (text.includes(".") ? text.replace(/\.?0+$/, "") : text)
+    const bare = (text: string) => (text.includes(".") ? text.replace(/\.?0*$/, "") : text)
     if (exponent < -4 || exponent >= digits) {
         const size = String(Math.abs(exponent)).padStart(2, "0")
         return `${sign}${bare(`${kept[0]}.${kept.slice(1)}`)}e${exponent < 0 ? "-" : "+"}${size}`

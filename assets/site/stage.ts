@@ -69,8 +69,8 @@ export class Stage {
         this.figure.controls.show()
     }
 
-    /** Play a script from the step's beginning; `ended` is called unless the reader resets it. */
-    play(script: Script, ended: () => void): void {
+    /** Play a script from the step's beginning; `ended` is told whether all of it, or a reset came. */
+    play(script: Script, ended: (whole: boolean) => void): void {
         const { simulation, figure } = this
         const waiting = [...script.do].sort((a, b) => a[0] - b[0])
         let before = 0 // simulated time before the last reset, [s]
@@ -79,7 +79,11 @@ export class Stage {
         this.sliders()
         let { run } = simulation.record()
         simulation.before = time => {
-            if (simulation.record().run !== run) return this.cancel()
+            if (simulation.record().run !== run) {
+                this.cancel()
+                ended(false)
+                return true
+            }
             while (waiting.length && waiting[0]![0] <= before + time + 1e-9) {
                 const [, act] = waiting.shift()!
                 simulation.act(act)
@@ -91,15 +95,14 @@ export class Stage {
             if (before + time < script.until - 1e-9) return true
             this.cancel()
             this.run(false)
-            ended()
+            ended(true)
             return false
         }
         this.run(true)
     }
 
-    private cancel(): boolean {
+    private cancel(): void {
         this.simulation.before = () => true
-        return true
     }
 
     /** Show the values on the sliders. */

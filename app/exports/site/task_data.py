@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import singledispatch
 from typing import Any
 
@@ -11,9 +12,14 @@ from onpath.lessons.benches import robot_names
 from onpath.lessons.checks import event_named, event_words, range_words, stat_words
 from onpath.lessons.labels import setting_label, value_label
 from onpath.lessons.measures.responses import unit_of
-from onpath.lessons.record import ROBOTS
+from onpath.lessons.record import ROBOTS as ROLES
 from onpath.lessons.task_schema import Bound, Check, Compare, Event, Order, Setting, Task
 from onpath.lessons.words import Words
+from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.laws.own import OWN
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters, specs
 
 SAID = {
@@ -79,7 +85,7 @@ def _(check: Bound, parameters: Parameters, robots: dict[Any, str], words: Words
 
 @_more.register
 def _(check: Compare, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
-    (smaller,) = set(ROBOTS) - {check.larger}
+    (smaller,) = set(ROLES) - {check.larger}
     said = {
         "larger": robots[check.larger],
         "smaller": robots[smaller],
@@ -117,10 +123,17 @@ def _(check: Setting, parameters: Parameters, robots: dict[Any, str], words: Wor
     else:
         wanted = words("check.equals", value=value_label(check.name, equals, words))
     present = getattr(parameters, check.name, None)
-    options = spec.options if spec is not None else ()
+    options = _named(check.name) if spec is None else spec.options
     return {
         "equals": equals,
         "whole": isinstance(present, int),
         "said": {"name": setting_label(check.name, parameters, words), "wanted": wanted},
         "labels": {str(value): value_label(check.name, value, words) for value in options},
     }
+
+
+def _named(setting: str) -> Iterable[str]:
+    """The values of a setting that is no parameter, as far as they have names."""
+    if setting in DEFAULT_LAWS:
+        return (*LAWS, OWN)
+    return {"path": presets(), "robot": ROBOTS}.get(setting, ())

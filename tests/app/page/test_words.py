@@ -27,6 +27,7 @@ from onpath.app.page.teaching.teacher_panel import TeacherPanel
 from onpath.app.storage.records import NotKept
 from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.record import PLOTS
+from onpath.lessons.vocabulary import CONTROLS
 from onpath.lessons.words import ELSEWHERE, ENGLISH, Words
 from onpath.models import systems
 from onpath.models.control.benches import DEFAULT_LAWS
@@ -72,7 +73,7 @@ KEYS_MADE = (
     *("caption.", "invite.", "spoken."),
     *("bench.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
-    *("lesson.back", "lesson.again", "lesson.close"),
+    *("lesson.back", "lesson.again", "lesson.close", "site.control."),
     *("readout.distance", "readout.now", "readout.most"),
     *ELSEWHERE,
 )
@@ -239,6 +240,8 @@ def test_what_the_program_names_has_words(words: Words) -> None:
     assert set(MORE) == set(PLOTS)
     for name in MORE:
         assert words(f"plot.{name}") and words(f"axis.{name}")
+    for name in CONTROLS:
+        assert name == "hold" or words(f"site.control.{name}")
     for key in KEYS:
         assert key.does(words) in help_text(words) and key.shown(words) in help_text(words)
     for channel in channels(FiveBarParameters()):
