@@ -134,7 +134,7 @@ def _(check: Better, record: Record, words: Words) -> Verdict:
     said = words(
         "check.better",
         robot=robots[check.robot],
-        stat=_stat_words(check.stat, check.quantity, words),
+        stat=stat_words(check.stat, check.quantity, words),
         during=words(f"during.{check.during}"),
         value="–" if value is None else f"{_rounded(value, limit, None)} {unit}",
         before="–" if before is None else f"{_rounded(before, None, None)} {unit}",

@@ -91,8 +91,10 @@ export class LessonPage {
         this.marks()
         if (this.index === page.steps.length) return this.end()
         const step = page.steps[this.index]!
+        const figure = page.figures[step.figure]
+        if (!figure) return this.shown() // only the lab shows it
         const into = section.querySelector<HTMLElement>(".stage")!
-        const stage = await Stage.open(page.figures[step.figure]!, step.values, into)
+        const stage = await Stage.open(figure, step.values, into)
         if (turn !== this.turn) return stage.close()
         this.stage = stage
         if (step.kind === "predict" || !step.running) stage.run(false)

@@ -1351,6 +1351,7 @@ site-control-flexible = Ausgang, Zugebene und Überhöhung des elastischen Glied
 site-control-identify = die Identifikation
 site-control-show = Beschriftungen, Schlauch, Koordinaten und Rangtest
 site-control-direction = die Richtung des Festhaltens
+site-control-rate = die Zeitlupe
 site-control-wall = die Wand
 site-control-start = der Start neben der Bahn
 site-control-path = die Wahl der Bahn

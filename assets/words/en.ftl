@@ -1073,6 +1073,7 @@ site-control-flexible = output, pull plane and exaggeration of the flexible link
 site-control-identify = identification
 site-control-show = labels, tube, coordinates and rank test
 site-control-direction = the direction of the hold
+site-control-rate = slow motion
 site-control-wall = the wall
 site-control-start = the start beside the path
 site-control-path = the choice of the path

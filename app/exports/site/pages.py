@@ -96,13 +96,16 @@ def lesson_page(
     """
     figures = list[dict[str, Any]]()
     for step in steps:
-        if step.figure not in figures:
+        if step.figure and step.figure not in figures:
             figures.append(step.figure)
     data = {
         "words": _said(words) | check_words(words),
         "lesson": lesson.name,
         "figures": figures,
-        "steps": [{**step.data, "figure": figures.index(step.figure)} for step in steps],
+        "steps": [
+            {**step.data, "figure": figures.index(step.figure) if step.figure else -1}
+            for step in steps
+        ],
     }
     title = f"{number}. {lesson.front.title} · OnPath"
     shown = {"lesson": lesson, "number": number, "steps": steps, "pictures": pictures}

@@ -5,9 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from msgspec.structs import replace
+
 from onpath.app.exports.site.step_figures import StepFigure, figure_of, lacking_words, step_figure
 from onpath.app.exports.site.task_data import task_data
 from onpath.lessons.benches import robot_names
+from onpath.lessons.personal.own_numbers import filled
+from onpath.lessons.progress import Notes
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import (
     Block,
@@ -46,7 +50,7 @@ class SiteStep:
         number: from 1.
         blocks: its parts.
         data: for the page's script; see assets/site/data.ts.
-        figure: data of its figure.
+        figure: data of its figure; empty if only the lab can show it.
         lacking: what only the lab has here, in words; may be empty.
         lab_only: whether its run can only be seen in the lab.
     """
@@ -81,7 +85,7 @@ def site_step(
     blocks = [
         SiteBlock(
             KINDS[type(block)],
-            block,
+            _unpersonal(block, lesson, index, words),
             not isinstance(block, Task) or figure.can_pass(block, references[block.id], actions),
         )
         for block in step.blocks
@@ -96,8 +100,15 @@ def site_step(
         "blocks": [_block(each, lesson, index, figure, words) for each in blocks],
     }
     lab_only = step.script is not None and script is None
-    shown = figure_of(figure, words)
+    shown = figure_of(figure, words) if figure.faithful else {}
     return SiteStep(index + 1, step, blocks, data, shown, lacking_words(figure, words), lab_only)
+
+
+def _unpersonal(block: Block, lesson: Lesson, index: int, words: Words) -> Block:
+    """A block with what a text says without the student's own numbers."""
+    if not isinstance(block, Text):
+        return block
+    return replace(block, html=filled(block.html, lesson.steps, index, Notes(), words))
 
 
 def _values(step: Step, figure: StepFigure) -> dict[str, Any]:

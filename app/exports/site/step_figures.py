@@ -14,7 +14,7 @@ from onpath.lessons.action_schema import Action, Script, StepSetup
 from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Lesson, Text
-from onpath.lessons.task_schema import Reference, Task
+from onpath.lessons.task_schema import Better, Reference, Task
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.benches import DEFAULT_LAWS
@@ -39,22 +39,28 @@ class StepFigure:
     Attributes:
         choice: what it shows.
         lacking: names of the step's controls that only the lab has.
-        plot: of the lab's plots, the one that the step shows there; empty for none.
+        plots: of the lab's plots, those that the step shows there.
+        faithful: whether the figure begins where the lab does; only then is it shown.
     """
 
     choice: FigureChoice
     lacking: tuple[str, ...]
-    plot: str
+    plots: tuple[str, ...]
+    faithful: bool
 
     def script(self, script: Script | None) -> dict[str, Any] | None:
         """A script as data; None if there is none, or only the lab can play it."""
+        if script is None or not self.faithful:
+            return None
         try:
-            return None if script is None else script_acts(script, self.choice)
+            return script_acts(script, self.choice)
         except Unsupported:
             return None
 
     def link(self, actions: Iterable[Action]) -> list[Act] | None:
         """What a link does; None if only the lab can do it."""
+        if not self.faithful:
+            return None
         try:
             return link_acts(actions, self.choice)
         except Unsupported:
@@ -62,6 +68,8 @@ class StepFigure:
 
     def can_pass(self, task: Task, reference: Reference, links: Iterable[Action]) -> bool:
         """Whether a reader has all that the task's reference solution uses."""
+        if any(isinstance(check, Better) for check in task.check):
+            return False
         within_reach = {*self.choice.sliders}
         for action in links:
             if self.link([action]) is not None:
@@ -107,8 +115,15 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
     bare = replace(bare, paths={**curves, **_possible(bare, others)})
     known = specs(type(bare.parameters))
     sliders = tuple(n for n in scene.controls if n in known and _slides(bare, n))
-    lacking = [name for name in scene.controls if name not in (*sliders, "hold")]
-    return StepFigure(replace(bare, sliders=sliders), tuple(lacking), scene.plot)
+    lacking = {name: None for name in scene.controls if name not in (*sliders, "hold")}
+    if scene.show or scene.marks:
+        lacking["show"] = None
+    if scene.start.numbers:
+        lacking["start"] = None
+    if step.script and any(action.rate for action in step.script.do):
+        lacking["rate"] = None
+    figure = replace(bare, sliders=sliders)
+    return StepFigure(figure, tuple(lacking), scene.plots, not scene.start.numbers)
 
 
 def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
@@ -145,8 +160,7 @@ def lacking_words(figure: StepFigure, words: Words) -> str:
         else words(f"site.control.{name}")
         for name in figure.lacking
     ]
-    if figure.plot:
-        named.append(words("site.plot", plot=words(f"plot.{figure.plot}")))
+    named += [words("site.plot", plot=words(f"plot.{plot}")) for plot in figure.plots]
     return ", ".join(named)
 
 

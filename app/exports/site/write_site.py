@@ -142,6 +142,8 @@ class _Writer:
 
     def _shared_kernels(self, figure: dict[str, Any]) -> dict[str, Any]:
         """The figure with the name of a script in place of its module, which other pages share."""
+        if not figure:
+            return figure
         module = figure["module"]
         name = hashlib.sha256(module.encode()).hexdigest()[:16]
         file = self._folder / SHARED / "kernels" / f"{name}.js"
