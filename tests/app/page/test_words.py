@@ -27,7 +27,7 @@ from onpath.app.page.teaching.teacher_panel import TeacherPanel
 from onpath.app.storage.records import NotKept
 from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.record import PLOTS
-from onpath.lessons.vocabulary import CONTROLS
+from onpath.lessons.vocabulary.names import CONTROLS
 from onpath.lessons.words import ELSEWHERE, ENGLISH, Words
 from onpath.models import systems
 from onpath.models.control.benches import DEFAULT_LAWS
