@@ -145,3 +145,13 @@ def test_a_sheet_to_draw_on_with_every_index(tab: Tab) -> None:
     tab.student.set(ENGLISH("design.draw"), True)
     wait_for(lambda: any("freehand" in name for name in tab.nodes()), WAIT)
     hit_every_node(tab)
+
+
+@pytest.mark.thorough
+def test_a_wall_and_the_start_of_a_run_with_every_index(tab: Tab) -> None:
+    (view,) = tab.server._views.values()
+    scene: Any = view.page._scene
+    scene.show_start(True)
+    tab.lab.post(c.SetWall(True))
+    wait_for(lambda: {"/wall/body", "/wall/ends", "/start/ball"} <= set(tab.nodes()), WAIT)
+    hit_every_node(tab)
