@@ -86,6 +86,8 @@ class LabProcess:
 
     def connections(self) -> int:
         """Number of its open connections."""
+        if self.process.poll() is not None:
+            return 0
         own: set[str] = set()
         for descriptor in Path(f"/proc/{self.process.pid}/fd").iterdir():
             with suppress(OSError):

@@ -47,7 +47,7 @@ class Site:
 
     def serving(self) -> LabProcess:
         """The process that has connections; there must be one only."""
-        (found,) = [p for p in self.processes if p.process.poll() is None and p.connections()]
+        (found,) = [process for process in self.processes if process.connections()]
         return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from typing import Any
 
 import pytest
@@ -154,12 +154,14 @@ class Class:
         self.open: list[Student] = []
 
     def until(self, condition: Callable[[], Any]) -> None:
-        """Wait for something while all read what they are sent; else they would be cut off."""
+        """Wait for something while all read what they are sent, and connect again when cut off."""
 
         def read() -> Any:
             for each in self.open:
-                with suppress(ConnectionClosed):  # by the server, which sends it elsewhere
+                try:
                     each.read_what_has_come()
+                except ConnectionClosed:  # as viser's page does
+                    each.reopen()
             return condition()
 
         wait_for(read, 120.0)
@@ -190,9 +192,13 @@ class Class:
             each.wait_until_closed()
         for each in self.all:
             each.reopen()
-        self.until(self.teacher_sees_both)
-        for student, name in self.names.items():
-            self.until(lambda s=student, name=name: s.sees(name) and s.sees("You are in the"))
+        self.until(self.is_back)
+
+    def is_back(self) -> bool:
+        """Whether everybody is in the class, at one process."""
+        students = [s.sees(name) and s.sees("You are in the") for s, name in self.names.items()]
+        served = [p for p in self.running.site.processes if p.connections()]
+        return self.teacher_sees_both() and all(students) and len(served) == 1
 
 
 def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_returns(
@@ -229,8 +235,7 @@ def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_returns(
                 late.reopen()
                 klass.open = [*klass.all, late]
                 until(lambda: late.code)
-            klass.come_back()  # where nginx sends them now; a busy process may seem to be away
-            until(lambda: sum(bool(p.connections()) for p in running.site.processes) == 1)
+            until(klass.is_back)  # where nginx sends them now; a busy process may seem to be away
             assert [ada.code, bob.code] == codes
             until(lambda: ada.sees("Step 2 of"))
     quiet(running)
