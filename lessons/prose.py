@@ -24,6 +24,7 @@ HTML = re.compile(
     re.IGNORECASE,
 )
 """Typed tags; they are shown, which nobody wants."""
+CODE = re.compile(r"`[^`]*`")
 
 
 @dataclass(slots=True)
@@ -93,7 +94,7 @@ def data_faults(value: Any) -> Iterator[str]:
         if "{{" in value:
             yield f"{value[:40]!r}: {{{{…}}}} belongs into the text of a step, not into a block"
         else:
-            yield from text_faults(value)
+            yield from text_faults(CODE.sub("", value))
         if value.replace("\\$", "").count("$") % 2:
             yield _unclosed(value)
 

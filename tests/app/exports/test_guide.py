@@ -161,7 +161,7 @@ def test_a_solution_is_told_in_words() -> None:
 
 def test_lessons_of_ones_own_have_a_guide_and_a_worksheet(tmp_path: Path) -> None:
     """Also those without any of the teacher's texts; whatever they say is escaped."""
-    write_lesson(tmp_path, LESSON.replace('"Hold back."', '"<script>alert(1)</script>"'))
+    write_lesson(tmp_path, LESSON.replace('"Hold back."', '"`<script>alert(1)</script>`"'))
     files = [tmp_path / name for name in ("g.html", "w.html", "k.html")]
     own = ["--folder", str(tmp_path)]
     assert run_command(["lessons", "guide", "--html", str(files[0]), *own]) == 0
