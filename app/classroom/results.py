@@ -22,6 +22,7 @@ from onpath.lessons.schema import (
     Prediction,
     Quiz,
     Sketch,
+    Step,
 )
 
 HEADER = (
@@ -30,6 +31,7 @@ HEADER = (
 )
 UNKNOWN = "unknown", "", ""
 """Result, correctness and value of a choice of which the options have changed since."""
+QUESTIONS = Quiz, NumberQuestion, OpenQuestion
 FORMULA = frozenset("=+-@|%\u2212\u2795\u2796\ua78a\U0001f7f0")
 """Beginnings of a formula, also as minus, heavy or short sign; other widths and sizes by NFKC."""
 
@@ -116,6 +118,7 @@ def class_csv(
 ) -> bytes:
     """One row per student and prediction, task or question of the opened lessons.
 
+    A student who has opened none has one row, with number and name alone.
     Text that a spreadsheet would interpret as a formula is prefixed with an apostrophe.
 
     Args:
@@ -125,10 +128,12 @@ def class_csv(
     writer = csv.writer(file, lineterminator="\r\n")
     writer.writerow(HEADER)
     for member in members:
-        for name, notes in member.progress.notes.items():
-            if name in course.lessons:
-                for row in _rows(course.lesson(name, language), notes):
-                    writer.writerow(_cells(member.number, member.name, name, *row))
+        opened = {n: notes for n, notes in member.progress.notes.items() if n in course.lessons}
+        for name, notes in opened.items():
+            for row in _rows(course.lesson(name, language), notes):
+                writer.writerow(_cells(member.number, member.name, name, *row))
+        if not opened:
+            writer.writerow(_cells(member.number, member.name))
     for row in without_names:
         writer.writerow(_cells(*row))
     return b"\xef\xbb\xbf" + file.getvalue().encode()  # UTF-8 mark for spreadsheets
@@ -156,20 +161,27 @@ def _rows(lesson: Lesson, notes: Notes) -> Iterator[tuple[object, ...]]:
             best = notes.tasks.get(task.id)
             passed, value = best is not None, best if task.best and best is not None else ""
             yield index + 1, "task", task.id, "passed" if passed else "open", int(passed), value
-        for number, block in enumerate(step.blocks):
-            key = f"{index}.{number}"
-            if isinstance(block, Quiz):
-                chosen = _chosen(block, notes.quiz.get(key))
-                chosen = UNKNOWN if key in notes.unknown else chosen
-                yield index + 1, "question", step.title, *chosen
-            elif isinstance(block, NumberQuestion):
-                given = notes.numbers.get(key)
-                right = "" if given is None else int(block.accepts(given))
-                result = "open" if given is None else "number"
-                yield index + 1, "number", step.title, result, right, "" if given is None else given
-            elif isinstance(block, OpenQuestion):
-                text = notes.written.get(key, "")
-                yield index + 1, "words", step.title, "words" if text else "open", "", text
+        yield from _question_rows(index, step, notes)
+
+
+def _question_rows(index: int, step: Step, notes: Notes) -> Iterator[tuple[object, ...]]:
+    """Rows of the questions of a step, numbered if there are several."""
+    asked = [at for at, block in enumerate(step.blocks) if isinstance(block, QUESTIONS)]
+    for count, at in enumerate(asked, 1):
+        block, key = step.blocks[at], f"{index}.{at}"
+        item = f"{step.title} ({count})" if len(asked) > 1 else step.title
+        if isinstance(block, Quiz):
+            chosen = _chosen(block, notes.quiz.get(key))
+            chosen = UNKNOWN if key in notes.unknown else chosen
+            yield index + 1, "question", item, *chosen
+        elif isinstance(block, NumberQuestion):
+            given = notes.numbers.get(key)
+            right = "" if given is None else int(block.accepts(given))
+            result = "open" if given is None else "number"
+            yield index + 1, "number", item, result, right, "" if given is None else given
+        elif isinstance(block, OpenQuestion):
+            text = notes.written.get(key, "")
+            yield index + 1, "words", item, "words" if text else "open", "", text
 
 
 def _answered(prediction: Prediction, answer: Answer | None) -> tuple[object, object, object]:

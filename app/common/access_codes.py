@@ -37,4 +37,13 @@ def normalised(text: str) -> str:
     return code
 
 
+def is_code(text: str) -> bool:
+    """Whether a text is a code as `normalised` accepts it."""
+    try:
+        normalised(text)
+    except ValueError:
+        return False
+    return True
+
+
 _EXAMPLE = "k7mf2xqa9tzr"

@@ -17,7 +17,7 @@ from onpath.app.page.sketch_answer import SketchAnswer
 from onpath.app.scene.scene import Scene
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import SURENESS, Answer
-from onpath.lessons.schema import Choice, NumberQuestion, Prediction, Sketch
+from onpath.lessons.schema import Choice, NumberQuestion, Prediction, Quiz, Sketch
 from onpath.lessons.words import Words
 
 
@@ -70,8 +70,6 @@ class PredictionForm:
         self.handles: list[Any] = []
         self._draft, self._words = c.Predict(), words
         self.sketching: SketchAnswer | None = None
-        if (first := run.first_answer()) is not None:
-            self.handles.append(gui.add_html(page.remark(_discuss(block, first, run))))
         if isinstance(block, Choice):
             self.handles.append(add_letters(gui, run.order(block), self._chosen))
         else:
@@ -96,7 +94,7 @@ class PredictionForm:
         self._said.content = page.remark(self._words("lesson.drawn"))
 
 
-def _discuss(block: Prediction, first: Answer, run: LessonView) -> str:
+def discuss(block: Prediction, first: Answer, run: LessonView) -> str:
     """That a prediction is asked again, with the letter that the student chose first."""
     if isinstance(block, Sketch) or first.option not in range(len(block.options)):
         return run.words("lesson.discuss")
@@ -109,12 +107,31 @@ def add_letters(
 ) -> viser.GuiButtonGroupHandle:
     """A button for each option, in the order in which they are shown.
 
+    On a page they are pressed by the options themselves, if these come right before them; see
+    assets/page/answers.js.
+
     Args:
         act: is given the option's index and its letter.
     """
     options = {LETTERS[place]: option for place, option in enumerate(order)}
     chosen = {letter: (option, letter) for letter, option in options.items()}
     return add_buttons(gui, "", chosen, lambda pair: act(*pair))
+
+
+def add_quiz(
+    gui: viser.GuiApi, block: Quiz, place: int, run: LessonView, post: Post
+) -> list[viser.GuiHtmlHandle | viser.GuiButtonGroupHandle]:
+    """A question of a step, and what answers it.
+
+    Args:
+        place: of the question in its step.
+    """
+    key = f"{run.index}.{place}"
+    chosen, order = run.notes.quiz.get(key), run.order(block, key)
+    told = chosen is not None and not run.is_test
+    shown = chosen, told, run.words, run.is_unknown(key)
+    asked = gui.add_html(page.question(block, order, *shown, pressable=True))
+    return [asked, add_letters(gui, order, lambda at, _: post(c.AnswerQuiz(place, at)))]
 
 
 @dataclass(frozen=True, slots=True)

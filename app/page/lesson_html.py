@@ -36,6 +36,7 @@ def heading(lesson: Lesson, step: Step, run: LessonState) -> str:
         step=step,
         index=run.index,
         seen=run.notes.seen,
+        waits=run.locked is not None,
         large=run.progress.presenting,
         route=route_line(run),
         words=run.words,
@@ -77,6 +78,7 @@ def question(
     revealed: bool,
     words: Words,
     unknown: bool = False,
+    pressable: bool = False,
 ) -> str:
     """A question with lettered options and, once revealed, the correct one and the explanation.
 
@@ -84,6 +86,7 @@ def question(
         order: the options' indices in the order in which they are shown; see `option_order`.
         chosen: index of the student's answer; None when there is none.
         unknown: whether the answer cannot be known, since the options have changed.
+        pressable: whether the options press the buttons with their letters, which follow.
     """
     return render(
         "lesson/question.html",
@@ -93,6 +96,7 @@ def question(
         own=None if chosen is None else block.options[chosen],
         revealed=revealed,
         unknown=unknown,
+        pressable=pressable,
         words=words,
     )
 

@@ -10,7 +10,7 @@ import viser
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import lesson_html as page
-from onpath.app.page.answer_boxes import AnswerBox, PredictionForm, add_letters
+from onpath.app.page.answer_boxes import AnswerBox, PredictionForm, add_quiz, discuss
 from onpath.app.page.concept_test.end import add_test_end
 from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.lesson_end import LessonEnd
@@ -161,14 +161,7 @@ class LessonPanel:
         elif isinstance(block, Task):
             self._add_task(block, run)
         elif isinstance(block, Quiz):
-            key = f"{run.index}.{number}"
-            chosen, order = run.notes.quiz.get(key), run.order(block, key)
-            told = chosen is not None and not run.is_test
-            self._html(page.question(block, order, chosen, told, run.words, run.is_unknown(key)))
-            answered = add_letters(
-                self._gui, order, lambda at, _: self._post(c.AnswerQuiz(number, at))
-            )
-            self._handles.append(answered)
+            self._handles += add_quiz(self._gui, block, number, run, self._post)
         elif isinstance(block, Prediction):
             self._add_prediction(block, run)
         elif isinstance(block, NumberQuestion | OpenQuestion):
@@ -198,7 +191,9 @@ class LessonPanel:
             self._button(label, c.ShowHint(task.id), "gray", viser.Icon.BULB)
 
     def _add_prediction(self, block: Prediction, run: LessonView) -> None:
-        answer = run.answer()
+        answer, first = run.answer(), run.first_answer()
+        if answer is None and first is not None:
+            self._html(page.remark(discuss(block, first, run)))
         if isinstance(block, Sketch):
             self._html(page.asked(block))
             if answer is None:
@@ -211,7 +206,8 @@ class LessonPanel:
         chosen, order = answer.option if answer else None, run.order(block)
         if answer is not None:
             self._add_let_happen(run)
-        self._html(page.question(block, order, chosen, False, run.words, run.is_unknown()))
+        shown = chosen, False, run.words, run.is_unknown()
+        self._html(page.question(block, order, *shown, pressable=answer is None))
         if answer is None:
             self._add_form(block, run)
         else:
@@ -250,7 +246,8 @@ class LessonPanel:
             self._html(page.remark(run.words("lesson.playing"), italic=True))
         else:
             label = run.words("lesson.replay" if truth else "lesson.play")
-            button = self._button(label, c.PlayStep(), "green", viser.Icon.PLAYER_PLAY)
+            colour = "gray" if truth else None  # to go on is then the primary action
+            button = self._button(label, c.PlayStep(), colour, viser.Icon.PLAYER_PLAY)
             button.disabled = run.waits
         if found is None:
             return

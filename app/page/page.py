@@ -28,6 +28,7 @@ from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.page.saying import Saying
 from onpath.app.page.step_controls import StepControls
 from onpath.app.page.step_drawings import StepDrawings
+from onpath.app.page.step_plot import StepPlot
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
@@ -146,6 +147,7 @@ class Page:
         how = self._switches, self._rebuilds.submit, self._is_phone
         self._overlays = Overlays(*drawn, *how)
         self._parts: list[Part] = []
+        self._step_plot: StepPlot | None = None
         self._client.gui.add_html(render("panel/page.html", words=words))
         self._saying = Saying(self._client.gui, words, self._wanted, self._scene.captions)
         self._parts.append(self._saying)
@@ -159,8 +161,11 @@ class Page:
         gui = self._client.gui
         controls = self._controls(words, post)
         if not first.key.in_lesson:
-            self._build_head(first, words, post)
-            self._parts += controls.everything(first)
+            self._build_numbers(words)
+            self._build_ways(first, words, post)
+            self._parts += controls.run(first)  # the first things to do, and what they do
+            self._build_distance(first, words)
+            self._parts += controls.the_rest(first)
             self._parts.append(FirstMinute(self._client, words))
             return
         change = self._rebuilds.change
@@ -190,6 +195,9 @@ class Page:
         if tab is None:
             self._build_ways(first, words, post)
             self._build_distance(first, words)
+            plot = controls.plot_of_step, change, first, self.reset_view
+            self._step_plot = StepPlot(gui, words, course, *plot)
+            self._parts.append(self._step_plot)
         own = words, post, course, self._scene, change, first, self.exporter.report
         lesson = LessonPanel(self._client, *own, tab=tab, student=self._desk.code)
         self._parts.append(lesson)
@@ -253,8 +261,8 @@ class Page:
         shape = width / max(height, 1)
         if width > 0 and abs(shape - self._framed) > 0.02 * shape:
             self._framed = shape
-            below = 0.6 * height if self._is_phone else 0.0
-            self._scene.frame_camera(Insets(bottom=below))
+            below = 0.0 if self._step_plot is None else self._step_plot.share
+            self._scene.frame_camera(Insets(bottom=height * (0.6 if self._is_phone else below)))
 
 
 def _hooks(post: Post, robot: Robot) -> SceneCallbacks:

@@ -32,11 +32,10 @@ from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 
-ALL = (
-    *("robot", "laws", "hold", "direction", "path", "flexible", "gains", "editor", "wall", "start"),
-    "show",
-    *("plots", "compare", "past", "keep"),
-    "copy",
+RUN = ("hold", "direction")
+REST = (
+    *("robot", "laws", "path", "flexible", "gains", "editor", "wall", "start", "show"),
+    *("plots", "compare", "past", "keep", "copy"),
 )
 
 
@@ -81,16 +80,23 @@ class PanelFactory:
 
     def everything(self, first: PageSnapshot) -> list[Part]:
         """Build all panels."""
-        return [part for name in ALL for part in self._add(name, first)]
+        return self.run(first) + self.the_rest(first)
+
+    def run(self, first: PageSnapshot) -> list[Part]:
+        """Build what runs and holds the robots."""
+        return [part for name in RUN for part in self._add(name, first)]
+
+    def the_rest(self, first: PageSnapshot) -> list[Part]:
+        """Build all other panels."""
+        return [part for name in REST for part in self._add(name, first)]
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Build the run panel, the controls and the plot of a lesson's step."""
+        """Build the run panel and the controls of a lesson's step."""
         if len(_sliders(scene, first)) > FEW:
-            parts = self._add("hold", first) + self.listed_by_step(scene, first)
-        else:  # the button to hold is seen below them
-            parts = self._add_sliders(scene, first) + self._add("hold", first)
-            parts += self._add_others(scene, first)
-        return parts + self.plot_of_step(scene, first)
+            return self._add("hold", first) + self.listed_by_step(scene, first)
+        # the button to hold is seen below them
+        parts = self._add_sliders(scene, first) + self._add("hold", first)
+        return parts + self._add_others(scene, first)
 
     def run_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         """Build the run panel and the plot of a lesson's step."""
@@ -109,7 +115,7 @@ class PanelFactory:
     def _add_others(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         self._scene.mouse.path_first = "editor" in scene.controls
         names = [name for name in scene.controls if name not in first.parameters]
-        return [part for name in names if name != "hold" for part in self._add(name, first)]
+        return [part for name in names if name != "hold" for part in self._add(name, first, True)]
 
     def plot_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         """Build the plots of a lesson's step, if it has any."""
@@ -121,13 +127,14 @@ class PanelFactory:
         """Build the folder "Show" alone, open."""
         return ShowPanel(self._gui, self._words, self._overlays, expanded=True)
 
-    def _add(self, name: str, first: PageSnapshot) -> list[Part]:
+    def _add(self, name: str, first: PageSnapshot, expanded: bool = False) -> list[Part]:
+        """Build a panel, expanded if a step of a lesson speaks of what is in its folder."""
         gui, words, post, exporter = self._gui, self._words, self._post, self._exporter
         make: dict[str, Callable[[], Part | None]] = {
             "hold": lambda: RunPanel(gui, words, post, self._reset_view),
             "direction": lambda: HoldDirection(gui, words, post, first),
             "path": lambda: PathChoice(gui, words, post, first),
-            "editor": lambda: self._editor(first),
+            "editor": lambda: self._editor(first, expanded),
             "gains": lambda: GainsPanel(gui, words, post, first),
             "plots": lambda: MorePlots(gui, words, first.key.fields, post),
             "compare": lambda: ComparePanel(gui, words, first, exporter.compare),
@@ -145,7 +152,7 @@ class PanelFactory:
         part = make[name]()
         return [] if part is None else [part]
 
-    def _editor(self, first: PageSnapshot) -> Part:
+    def _editor(self, first: PageSnapshot, expanded: bool) -> Part:
         robot = robot_of(first)
 
         def draw() -> None:
@@ -159,7 +166,7 @@ class PanelFactory:
         def shade(visible: bool) -> None:
             self._scene.show_singular_zone(visible)
 
-        with self._gui.add_folder(self._words("controls.editor"), expand_by_default=False):
+        with self._gui.add_folder(self._words("controls.editor"), expand_by_default=expanded):
             return PathPanel(self._gui, self._words, self._post, first, draw, shade)
 
     def _flexible(self, first: PageSnapshot) -> Part | None:

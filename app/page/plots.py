@@ -74,7 +74,7 @@ MORE = {
     plot.name: plot
     for plot in (
         PHASE,
-        Plot("speed", "speed", 1.0, _alone),
+        Plot("speed", "speed", 1e3, _alone),
         Plot("torques", "u", 1.0, _numbered("u", "u")),
         Plot("across", "xi", 1e3, _numbered("ξ", "xi"), least=(-1.0, 1.0)),
         Plot("across_rate", "xi_rate", 1e3, _numbered("ξ'", "xi_rate"), least=(-10.0, 10.0)),

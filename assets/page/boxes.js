@@ -1,5 +1,5 @@
-// Boxes over the scene, in the middle of what is seen of it, above what covers its lower part on a
-// telephone. A later one in the document stands above an earlier one.
+// Boxes over the scene, in the middle of what is seen of it, above what covers its lower part: the
+// panel on a telephone, or the window with a step's plot. A later one in the document stands above an earlier one.
 const boxesOverScene = (() => {
   "use strict";
 
@@ -39,7 +39,9 @@ const boxesOverScene = (() => {
     const scene = document.querySelector("canvas[data-engine]")?.getBoundingClientRect();
     if (!scene) return;
     const sheet = document.querySelector('.mantine-Paper-root[style*="bottom: 0"]');
-    const bottom = Math.min(scene.bottom, sheet?.getBoundingClientRect().top ?? scene.bottom);
+    const plot = document.querySelector("[data-step-plot]")?.closest(".mantine-Paper-root");
+    const tops = [sheet, plot].map((each) => each?.getBoundingClientRect().top ?? scene.bottom);
+    const bottom = Math.min(scene.bottom, ...tops);
     let above = innerHeight - bottom + 12;
     for (const each of document.querySelectorAll(BOX)) {
       const onTop = each.dataset.place === "top";  // what it speaks of is below it

@@ -1,6 +1,8 @@
 // A dark page for whoever asks for one: viser's own, by what it offers to pages that embed it, and
 // dark labels in the scene, whose colours are in its shaders. The lab, which draws the rest of the
-// scene, reads the same place; see DARK_KEY in app/server/lab_server.py.
+// scene, reads the same place; see DARK_KEY in app/server/lab_server.py. Who asks for the other kind
+// later gets it by a reload, which comes back to the same lab: at once, or when nothing is being typed
+// or dragged. A printer's page is no reason.
 (() => {
   "use strict";
 
@@ -11,7 +13,22 @@
       "gl_FragColor = vec4(0.09, 0.11, 0.14, 0.8 * vAlpha);"],
   ];
 
-  const dark = matchMedia("(prefers-color-scheme: dark)").matches;
+  const BUSY = 500;  // [ms] until it is tried again
+  const asked = matchMedia("(prefers-color-scheme: dark)"), dark = asked.matches;
+  let pressed = false;
+
+  for (const [name, down] of [["pointerdown", true], ["pointerup", false], ["pointercancel", false]]) {
+    addEventListener(name, () => { pressed = down; }, { capture: true });
+  }
+
+  function renew() {
+    if (asked.matches === dark || matchMedia("print").matches) return;
+    const typing = document.activeElement?.matches("input:not([type=checkbox]), textarea");
+    if (pressed || typing) setTimeout(renew, BUSY);
+    else location.reload();
+  }
+
+  asked.addEventListener("change", renew);
   try {
     localStorage.setItem(KEPT_AS, dark ? "yes" : "no");
   } catch {}  // a browser that keeps nothing has a light scene

@@ -91,7 +91,7 @@ lesson-out_of_pace = Die Lehrkraft lässt die Klasse vorerst nur in die Schritte
 lesson-next = Weiter
 lesson-skip = Vorhersage überspringen
 lesson-finish = Fertig
-lesson-locked = Lege dich erst links auf eine Vorhersage fest, oder überspringe sie.
+lesson-locked = Lege dich erst auf eine Vorhersage fest, oder überspringe sie.
 lesson-nothing_to_predict = hier gibt es nichts vorherzusagen
 lesson-no_such_option = diese Antwort gibt es nicht
 lesson-no_number = das ist keine Zahl
@@ -125,6 +125,7 @@ lesson-passed_best = Geschafft; dein bester Wert: { $best } { $unit }
 lesson-hint = Hinweis (noch { $left })
 lesson-this_step = Dieser Schritt
 lesson-controls = Regler
+lesson-plot = Verlauf
 lesson-all_controls = Alle Regler
 lesson-language = Sprache
 lesson-presenting = Vortrag: große Schrift
@@ -495,7 +496,7 @@ run-hold = Festhalten
 run-let_both_go = Beide loslassen
 run-let_go = Loslassen
 run-hold_hint = Hält die Spitzen längs der Bahn fest, bis du noch einmal drückst. Taste: H
-run-press = Festhalten, solange gedrückt
+run-press = Solange gedrückt
 run-press_hint = Hält die Spitzen fest, solange die Maustaste unten ist.
 run-direction = Halten
 run-direction_along = längs der Bahn
@@ -656,7 +657,7 @@ plot-force = Kraft
 
 axis-distance = Abstand zur Bahn [mm]
 axis-phase = Phasenebene: ξ₂ über ξ₁, die letzten 3 s
-axis-speed = Geschwindigkeit [m/s]
+axis-speed = Geschwindigkeit [mm/s]
 axis-torques = Drehmoment [N m]
 axis-across = ξ₁ [mm]
 axis-across_rate = ξ₂ [mm/s]
@@ -819,6 +820,7 @@ say-laws_replaced = Nicht für diesen Roboter: { $laws }. An dieser Stelle steht
 say-looking_back = Das ist die Vergangenheit. Laufen lassen kehrt in die Gegenwart zurück; Von hier aus weiter vergisst, was danach kam, und lässt sich rückgängig machen.
 say-let_go = Die Spitzen sind losgelassen.
 say-present = Zurück in der Gegenwart.
+say-set_up = Das Labor ist nach dem Code eingerichtet. Rückgängig im Bahneditor holt die frühere Bahn zurück.
 say-went_on = Weiter ab { $time } s. Die { $seconds } s danach sind vergessen; Taste U holt sie zurück.
 say-brought_back = Zurück bei { $time } s, wie vor dem Weitergehen. Was stattdessen geschah, liegt beiseite; Taste U wechselt dorthin zurück.
 
@@ -986,7 +988,7 @@ parameter-encoder_counts-unit = je Umdrehung
 parameter-encoder_counts-help = Schritte der Drehgeber in den Gelenken; 0: genaue Messung
 
 parameter-encoder_filter-label = Filterzeit
-parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern
+parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern; ohne deren Stufen und ohne Rauschen bewirkt sie nichts
 
 parameter-coulomb-label = Trockene Reibung
 parameter-coulomb-help = trockene Reibung in den Gelenken; 0: keine
@@ -1017,32 +1019,32 @@ parameter-strain_noise-help = Standardabweichung der Durchbiegung an der Spitze,
 parameter-control_rate-label = Reglertakt
 parameter-control_rate-help = wie oft der Regler eingreift, Hz
 
-parameter-error_inertia-label = Trägheit falsch
+parameter-error_inertia-label = Fehler der Trägheit
 parameter-error_inertia-help = um so viel liegen die Trägheiten a1, a2 und a3 im Modell des Reglers daneben
 
 parameter-rise-label = Höhe der Bahn
 parameter-rise-help = um so viel steigt und fällt die Bahn, zweimal je Umlauf: ein Sattel
 
-parameter-error_inertias-label = Trägheit falsch
+parameter-error_inertias-label = Fehler der Trägheit
 parameter-error_inertias-help = um so viel liegen die Trägheiten a1, a2, a3 und k im Modell des Reglers daneben
 
-parameter-error_weights-label = Gewicht falsch
+parameter-error_weights-label = Fehler im Gewicht
 parameter-error_weights-help = um so viel liegen die Gewichte g2 und g3 im Modell des Reglers daneben
 
-parameter-error_gravity-label = Gewicht falsch
+parameter-error_gravity-label = Fehler im Gewicht
 parameter-error_gravity-help = um so viel liegen die Gewichte g1 und g2 im Modell des Reglers daneben
 
-parameter-error_M11-label = M11 falsch
-parameter-error_M11-help = um so viel liegt M11 im Modell des Reglers daneben
+parameter-error_M11-label = Fehler in M11
+parameter-error_M11-help = um so viel liegt M11, das Trägheitsmoment an Motor 1, im Modell des Reglers daneben
 
-parameter-error_M22-label = M22 falsch
-parameter-error_M22-help = um so viel liegt M22 im Modell des Reglers daneben
+parameter-error_M22-label = Fehler in M22
+parameter-error_M22-help = um so viel liegt M22, das Trägheitsmoment an Motor 2, im Modell des Reglers daneben
 
-parameter-error_b1-label = b1 falsch
-parameter-error_b1-help = um so viel liegt b1 im Modell des Reglers daneben
+parameter-error_b1-label = Fehler in b1
+parameter-error_b1-help = um so viel liegt b1, die Reibung an Motor 1, im Modell des Reglers daneben
 
-parameter-error_b2-label = b2 falsch
-parameter-error_b2-help = um so viel liegt b2 im Modell des Reglers daneben
+parameter-error_b2-label = Fehler in b2
+parameter-error_b2-help = um so viel liegt b2, die Reibung an Motor 2, im Modell des Reglers daneben
 
 parameter-counterweights_removed-label = Gegengewichte ab
 parameter-counterweights_removed-help = abgenommene Gegengewichte; der Regler weiß nichts davon
@@ -1093,13 +1095,13 @@ parameter-frequency-help = erste Frequenz des eingespannten Balkens
 parameter-zeta-label = Dämpfung ζ
 parameter-zeta-help = Dämpfungsgrad jeder Mode
 
-parameter-error_J0-label = J0 falsch
+parameter-error_J0-label = Fehler in J0
 parameter-error_J0-help = um so viel liegt das Trägheitsmoment J0 der Hüfte im Modell des Reglers daneben
 
-parameter-error_rho-label = ρ falsch
-parameter-error_rho-help = um so viel liegt ρ im Modell des Reglers daneben
+parameter-error_rho-label = Fehler in ρ
+parameter-error_rho-help = um so viel liegt ρ, die Masse je Länge des Balkens, im Modell des Reglers daneben
 
-parameter-error_omega1-label = Frequenz falsch
+parameter-error_omega1-label = Fehler der Frequenz
 parameter-error_omega1-help = um so viel liegt die erste Frequenz im Modell des Reglers daneben
 
 report-title = Bericht über meine Lektionen
@@ -1270,6 +1272,7 @@ error-sketch_without_points = eine Zeichnung braucht Punkte
 
 error-share_too_long = Dieser Text ist viel zu lang: Ein Code zum Teilen hat einige Hundert Zeichen.
 error-share_missing = In diesem Text ist kein Code zum Teilen: Er beginnt mit ONPATH{ $version }-.
+error-share_is_lab = Das ist der Code eines Labors, nicht der eines Aufbaus: Gib ihn bei „Anderer Code“ ein.
 error-share_newer = Dieser Code stammt von einem neueren OnPath: Frage nach dieser Version.
 error-share_incomplete = Dieser Code ist nicht vollständig: Kopiere ihn noch einmal, bis zum letzten Zeichen.
 error-share_mistyped = Dieser Code ist vertippt oder abgeschnitten: Seine Prüfsumme passt nicht.

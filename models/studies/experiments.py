@@ -194,7 +194,7 @@ def _saddle(entry: RobotEntry) -> Experiment:
 def _there_and_back() -> Experiment:
     return Experiment(
         name="flexible",
-        title="Flexible link: there and back along the ellipse",
+        title="Flexible link: there and back along the path",
         make=FLEXIBLE.make,
         parameters=FlexibleParameters(),
         schedule=Schedule(duration=6.0, reverse_at=3.0),

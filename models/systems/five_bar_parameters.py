@@ -12,10 +12,18 @@ from onpath.models.systems.parameters import Parameters
 class FiveBarParameters(Parameters):
     """Parameters of the rigid five-bar: model errors, removed counterweights, payload."""
 
-    error_M11: float = model_error("M11 wrong", "the controller's M11 is off by this")
-    error_M22: float = model_error("M22 wrong", "the controller's M22 is off by this")
-    error_b1: float = model_error("b1 wrong", "the controller's b1 is off by this", on=50.0)
-    error_b2: float = model_error("b2 wrong", "the controller's b2 is off by this", on=50.0)
+    error_M11: float = model_error(
+        "Error in M11", "the controller's M11, the inertia at motor 1, is off by this"
+    )
+    error_M22: float = model_error(
+        "Error in M22", "the controller's M22, the inertia at motor 2, is off by this"
+    )
+    error_b1: float = model_error(
+        "Error in b1", "the controller's b1, the friction of motor 1, is off by this", on=50.0
+    )
+    error_b2: float = model_error(
+        "Error in b2", "the controller's b2, the friction of motor 2, is off by this", on=50.0
+    )
     counterweights_removed: float = number(
         0.0,
         "%",

@@ -163,10 +163,16 @@ class FlexibleParameters(Parameters):
         on=0.0005,
     )
     payload: float = unknown_payload((0, 0.1, 0.005), on=0.02)
-    error_M11: float = model_error("M11 wrong", "the controller's M11 is off by this")
-    error_M22: float = model_error("M22 wrong", "the controller's M22 is off by this")
-    error_J0: float = model_error("J0 wrong", "the controller's waist inertia J0 is off by this")
-    error_rho: float = model_error("ρ wrong", "the controller's ρ is off by this")
+    error_M11: float = model_error(
+        "Error in M11", "the controller's M11, the inertia at motor 1, is off by this"
+    )
+    error_M22: float = model_error(
+        "Error in M22", "the controller's M22, the inertia at motor 2, is off by this"
+    )
+    error_J0: float = model_error("Error in J0", "the controller's waist inertia J0 is off by this")
+    error_rho: float = model_error(
+        "Error in ρ", "the controller's ρ, the mass per length of the link, is off by this"
+    )
     error_omega1: float = model_error(
-        "Frequency wrong", "the controller's first frequency is off by this", on=10.0
+        "Error in frequency", "the controller's first frequency is off by this", on=10.0
     )

@@ -64,7 +64,7 @@ class Parameters(LawParameters):
         0.005,
         "s",
         (0.0005, 0.05, 0.0005),
-        "time constant of the velocity filter behind them",
+        "time constant of the velocity filter behind them; no effect without steps or noise",
         group="realism",
         label="Velocity filter",
     )

@@ -119,10 +119,10 @@ class SpatialParameters(Parameters):
         label="Rise of the path",
     )
     error_inertias: float = model_error(
-        "Inertia wrong", "the controller's inertias a1, a2, a3 and k are off by this"
+        "Error in inertia", "the controller's inertias a1, a2, a3 and k are off by this"
     )
     error_weights: float = model_error(
-        "Gravity wrong", "the controller's weights g2 and g3 are off by this", on=10.0
+        "Error in gravity", "the controller's weights g2 and g3 are off by this", on=10.0
     )
     payload: float = unknown_payload((0, 0.3, 0.01), on=0.1)
 

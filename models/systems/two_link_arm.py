@@ -96,10 +96,10 @@ class TwoLinkParameters(Parameters):
     """Additional parameters of the arm: model errors and payload."""
 
     error_inertia: float = model_error(
-        "Inertia wrong", "the controller's inertias a1, a2 and a3 are off by this"
+        "Error in inertia", "the controller's inertias a1, a2 and a3 are off by this"
     )
     error_gravity: float = model_error(
-        "Gravity wrong", "the controller's weights g1 and g2 are off by this", on=10.0
+        "Error in gravity", "the controller's weights g1 and g2 are off by this", on=10.0
     )
     payload: float = unknown_payload((0, 0.3, 0.01), on=0.1)
 

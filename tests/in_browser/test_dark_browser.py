@@ -21,7 +21,7 @@ from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from tests.support.axe import violations
-from tests.support.browser import Tab, wait_for
+from tests.support.browser import THREE_FRAMES, Tab, wait_for
 from tests.support.cases import some
 
 LESSON = "01-path-or-timetable"
@@ -113,6 +113,25 @@ def test_the_page_is_dark_and_nothing_on_it_is_hard_to_read(tab: Tab) -> None:
     code = tab.page.locator("code", has_text="ONPATH")
     code.scroll_into_view_if_needed()
     assert violations(tab) == []
+
+
+def test_an_open_page_follows_the_browser_s_scheme_but_interrupts_nobody(
+    browser: Browser, server: LabServer
+) -> None:
+    tab = visit(browser, server, scheme="light")
+    lab = tab.lab
+    tab.focus(tab.number("K1"))
+    tab.page.evaluate("window.isFirst = true")
+    tab.page.emulate_media(color_scheme="dark")
+    tab.page.wait_for_function("matchMedia('(prefers-color-scheme: dark)').matches")
+    tab.page.evaluate(THREE_FRAMES)
+    assert tab.page.evaluate("window.isFirst")
+    tab.blur()
+    tab.page.wait_for_function("window.isFirst === undefined")
+    expect(tab.page.locator("html")).to_have_attribute("data-mantine-color-scheme", "dark")
+    wait_for(lambda: tab.scheduled.view is not None and tab.scheduled.view is not tab.view)
+    assert tab.scheduled.lab is lab
+    tab.page.context.close()
 
 
 DIALOGS = "Help and keys", "Language, display", "Robot…", "Lessons"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 pytest.importorskip("playwright")
@@ -42,7 +44,8 @@ class Pupil(Keyboard):
 
     def choose(self, place: int, question: int = 0) -> None:
         """Choose an option of a question."""
-        self.reach(self.tab.page.get_by_role("button", name="ABC"[place], exact=True).nth(question))
+        option = re.compile(f"^{'ABC'[place]} ")
+        self.reach(self.tab.page.get_by_role("button", name=option).nth(question))
         self.press("Space")
 
     def enter(self, label: str, value: str) -> None:

@@ -15,6 +15,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.models.control.benches import BENCHES
 from tests.in_browser.test_pointer_browser import ARROWS, SCENES
 from tests.support.browser import WAIT, Tab, wait_for
 
@@ -67,6 +68,13 @@ def test_one_button_is_the_primary_one_and_help_is_on_the_first_screen(tab: Tab)
     expect(tab.button("Hold both back")).to_be_in_viewport()
 
 
+def test_nothing_but_the_commitment_is_primary_while_a_prediction_is_awaited(tab: Tab) -> None:
+    take(tab, 4)
+    assert tab.page.evaluate(PRIMARY) == []
+    tab.page.locator("[data-answer]").first.click()
+    wait_for(lambda: tab.page.evaluate(PRIMARY) == ["Commit to this prediction: A"])
+
+
 def test_no_number_is_under_a_scroll_bar(tab: Tab) -> None:
     for folder in ("Advanced", "Realism"):
         tab.open(folder)
@@ -113,6 +121,18 @@ def test_what_a_step_speaks_of_is_on_the_first_screen(tab: Tab) -> None:
     for name in ("K1", "K2", "K5", "Speed"):
         expect(tab.slider(name)).to_be_in_viewport()
     expect(tab.button("Hold both back")).to_be_in_viewport()
+
+
+def test_the_plot_a_step_speaks_of_is_seen_with_its_text_and_both_robots(tab: Tab) -> None:
+    plot = tab.page.locator(".mantine-Paper-root:has([data-step-plot]) .uplot canvas").first
+    take(tab, 0, "04-across-and-along")
+    expect(plot).to_be_in_viewport(ratio=1)
+    box = plot.bounding_box()
+    assert box is not None
+    wait_for(lambda: all(tab.placed(name, tab.tip(name))[1] < box["y"] for name in BENCHES))
+    expect(tab.page.get_by_role("heading").first).to_be_in_viewport()
+    take(tab, 1)
+    expect(plot).to_have_count(0)
 
 
 def test_a_teachers_key_is_not_shown_while_it_is_typed(browser: Browser) -> None:

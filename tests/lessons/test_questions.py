@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+import re
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -26,7 +27,7 @@ from onpath.lessons.course import Course, read_course
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.progress import MOST_TEXT, SURENESS, Answer, read_progress
-from onpath.lessons.schema import NumberQuestion
+from onpath.lessons.schema import Choice, NumberQuestion, Quiz
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.errors import CodedError
 from tests.support.built_in import built_in_course
@@ -182,7 +183,10 @@ def test_record_and_class_show_all_of_it(tmp_path: Path) -> None:
     assert "<b>x" not in told
     member = Member(1, "Ada", lab.lessons.progress)
     data = class_csv([member], lab.lessons.course, "en").decode("utf-8-sig")
-    rows = {(row["kind"], row["step"]): row for row in csv.DictReader(io.StringIO(data))}
+    every = list(csv.DictReader(io.StringIO(data)))
+    rows = {(row["kind"], row["step"]): row for row in every}
+    items = [row["item"] for row in every if row["kind"] in ("question", "number", "words")]
+    assert len(items) == len(set(items)) == 3  # several in one step are told apart
     assert (rows["prediction", "4"]["sure"], rows["prediction", "4"]["why"]) == ("fairly", "B")
     assert rows["prediction", "2"]["why"].startswith("<b>x</b>")
     assert (rows["number", "8"]["right"], rows["number", "8"]["value"]) == ("0", "7.0")
@@ -215,3 +219,19 @@ def test_numbers_asked_for_in_the_course_are_those_of_the_formulas() -> None:
     assert problems == [] and {name for name, _ in asked} == set(computed)
     for (name, number), tolerance in asked.items():
         assert abs(number - computed[name]) < tolerance / 2
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_no_answer_begins_with_what_the_page_says_before_it(language: str) -> None:
+    """As in "Right. Yes. A curve", or "The answer: Yes"."""
+    course = read_course([BUILT_IN])[0]
+    lessons = [course.lesson(name, language) for name in course.lessons]
+    blocks = [block for lesson in lessons for step in lesson.steps for block in step.blocks]
+    told = [
+        str(option.answer)
+        for block in blocks
+        if isinstance(block, Choice | Quiz)
+        for option in block.options
+    ]
+    verdict = re.compile(r"(Yes|No|Right|Wrong|Ja|Nein|Richtig|Falsch)[.,]")
+    assert len(told) > 100 and [text for text in told if verdict.match(text)] == []

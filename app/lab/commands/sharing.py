@@ -27,3 +27,4 @@ class UseShared(Command):
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
         lab.set_up(decode(self.text))
+        lab.remark(lab.words("say.set_up"))

@@ -34,6 +34,7 @@ def restore(session: Session, setup: Setup) -> None:
         if (rise := rise_of(robot.parameters)) != session.editor.rise:
             session.editor.raise_to(rise, robot.design)
         session.editor.commit(robot.design)
+        session.editor.select(None)
         session.editor.advance(BLEND)
         session.set_parameters(robot.parameters)
         session.start, session.wall = robot.start, robot.wall

@@ -12,6 +12,7 @@ import zlib
 
 import msgspec
 
+from onpath.app.common.access_codes import is_code
 from onpath.app.lab.setups.setup import Setup, to_data
 from onpath.app.lab.setups.stored import from_data
 from onpath.models.errors import CodedError, said_by
@@ -53,7 +54,8 @@ def decode(text: str) -> Setup:
     text = _SPACE.sub("", text)
     beginning, code = _BEGINNING.search(text), _CODE.search(text)
     if beginning is None:
-        raise CodedError("error.share_missing", version=VERSION)
+        key = "error.share_is_lab" if is_code(text) else "error.share_missing"
+        raise CodedError(key, version=VERSION)
     if int(beginning[1]) > VERSION:
         raise CodedError("error.share_newer")
     if code is None:

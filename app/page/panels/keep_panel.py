@@ -28,7 +28,7 @@ class KeepPanel:
                 go = gui.add_button(words("keep.go"), color="gray", icon=viser.Icon.LOGIN)
                 self._said = gui.add_html("")
                 on_slow_press(go, self._enter)
-            share = gui.add_button(words("keep.share"), icon=viser.Icon.SHARE)
+            share = gui.add_button(words("keep.share"), color="gray", icon=viser.Icon.SHARE)
             self._share = gui.add_html("")
             pasted = gui.add_text(words("keep.paste"), "", hint=words("keep.paste_hint"))
             use = gui.add_button(words("keep.use"), color="gray", icon=viser.Icon.DOWNLOAD)

@@ -231,3 +231,12 @@ def test_presets_that_are_offered_can_be_restored() -> None:
         assert capture_path(PRESETS[name], PRESETS) == Path(name)
         restore(lab.session, own(name=name))
         assert lab.session.editor.design is lab.session.presets[name]
+
+
+def test_no_point_is_selected_after_a_set_up() -> None:
+    """Else the ball that was taken in one step of a lesson would still be marked in the next."""
+    lab = new_lab()
+    do(lab, SelectPoint(2))
+    assert lab.session.editor.selected == 2
+    restore(lab.session, capture(lab.session))
+    assert lab.session.editor.selected is None

@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.common.access_codes import ALPHABET, new_code, normalised, shown
-from onpath.app.lab.commands import DrawPath, SetParameter
+from onpath.app.lab.commands import DrawPath, SetParameter, UseShared
 from onpath.app.lab.setups import share_code
 from onpath.app.lab.setups.capture import capture, capture_path
 from onpath.app.lab.setups.setup import Setup
@@ -256,3 +256,12 @@ def test_session_codes_are_forgiving_and_unambiguous() -> None:
 def test_an_invalid_session_code_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match="session code"):
         normalised(text)
+
+
+def test_who_sets_up_a_lab_is_told_so_and_a_lab_s_code_is_called_one() -> None:
+    lab = new_lab()
+    do(lab, UseShared(shown(new_code())))
+    assert "code of a lab" in lab.message
+    code = encode(drawn_lab())
+    do(lab, UseShared(code))
+    assert encode(capture(lab.session)) == code and "set up from the code" in lab.message

@@ -12,7 +12,8 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page import plots
-from onpath.lessons.words import ENGLISH
+from onpath.lessons.record import QUANTITIES
+from onpath.lessons.words import ENGLISH, Words
 from tests.support.lab import do, run, store
 
 
@@ -34,3 +35,23 @@ def test_a_reset_empties_the_plot(monkeypatch: pytest.MonkeyPatch) -> None:
         assert np.array_equal(data, empty, equal_nan=True)
     times, *lines = shown[-1]
     assert times[0] < times[-1] and np.isnan(lines).all()  # the axis of time is there, no curve
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_a_plot_has_the_unit_that_texts_and_checks_have(language: str) -> None:
+    words = Words(language)
+    units = {"torques": QUANTITIES["torque"], **QUANTITIES}
+    for name in plots.MORE.keys() & units.keys():
+        assert words(f"axis.{name}").endswith(f"[{units[name]}]")
+
+
+def test_the_speed_is_plotted_in_millimetres_a_second(monkeypatch: pytest.MonkeyPatch) -> None:
+    lab, shown = Lab(store()), list[tuple[np.ndarray, ...]]()
+    first = take_page_snapshot(lab, 1.0)
+    gui: Any = SimpleNamespace(add_uplot=lambda data, *_, **__: shown.append(data))
+    plot = plots.LivePlot(gui, ENGLISH, first.key.fields, plots.MORE["speed"], 100)
+    monkeypatch.setattr(plots, "update_gui", lambda _, __, data: shown.append(data))
+    run(lab, 2.0)
+    plot.follow(take_page_snapshot(lab, 1.0))
+    omega, radius = lab.session.parameters.speed, 50.0  # [rad/s], of the circle [mm]
+    assert shown[-1][2][-1] == pytest.approx(omega * radius, rel=0.02)
