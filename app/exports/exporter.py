@@ -47,7 +47,7 @@ class Exporter:
 
     def recording(self) -> None:
         """Request a standalone page with the scene of the last seconds."""
-        self._ask("onpath.html", film_file, in_words=True)
+        self._ask("onpath.html", film_file, in_words=True, names_path=True)
 
     def compare(
         self, laws: Sequence[str], obstruction: str, show: Callable[[Results, bytes], None]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+from base64 import b64encode
 from datetime import datetime
 
+from onpath.app.common.templates import render
 from onpath.app.exports.replay import replay
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.segments import HistoryCopy, Segment
@@ -34,12 +36,19 @@ def picture_file(
     return draw_history(runs, Words(language), parameters, robot, path)
 
 
-def film_file(robot: str, parameters: Parameters, history: HistoryCopy, language: str) -> bytes:
-    """A standalone page with the scene of the last seconds."""
+def film_file(
+    robot: str, parameters: Parameters, history: HistoryCopy, language: str, path: str = "circle"
+) -> bytes:
+    """A standalone page with the scene of the last seconds, and their plots to be unfolded."""
+    from onpath.app.exports.history_figure import draw_history
     from onpath.app.exports.recording import record_scene  # only this file needs viser
 
     made, segments = ROBOTS[robot].make(parameters), last_seconds(history.segments(), FILM)
-    return record_scene(made, segments, Words(language))
+    words = Words(language)
+    picture = draw_history(replay(made, segments), words, parameters, robot, path)
+    plots = render("report/film_plots.html", words=words, picture=b64encode(picture).decode())
+    before, end, after = record_scene(made, segments, words).rpartition(b"</body>")
+    return before + plots.encode() + end + after
 
 
 def report_file(course: Course, progress: Progress, code: str, made: datetime) -> bytes:

@@ -117,11 +117,11 @@ class PanelFactory:
         names = [name for name in scene.controls if name not in first.parameters]
         return [part for name in names if name != "hold" for part in self._add(name, first, True)]
 
-    def plot_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Build the plots of a lesson's step, if it has any."""
+    def plot_of_step(self, scene: StepSetup, first: PageSnapshot, height: int = 200) -> list[Part]:
+        """Build the plots of a lesson's step, if it has any, those over time of a height [px]."""
         fields = first.key.fields
         plots = [MORE[name] for name in scene.plots if MORE[name].field in dict(fields)]
-        return [add_plot(self._gui, self._words, fields, plot) for plot in plots]
+        return [add_plot(self._gui, self._words, fields, plot, height) for plot in plots]
 
     def show(self) -> Part:
         """Build the folder "Show" alone, open."""

@@ -15,8 +15,8 @@ from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 
 GAP = 12  # to the edges of the scene, [px]
-WIDTH, HEIGHT = 520, 232  # [px]
-SHARE = 0.3
+WIDTH, HEIGHT, PLOT = 520, 240, 160  # of the window, and height of its plot, [px]
+SHARE = 0.31
 """Of the scene's height, which is left to the window."""
 
 
@@ -24,7 +24,7 @@ class StepPlot:
     """A window that is there while the open step has a plot; it is seen together with the text.
 
     Args:
-        build: adds the plot of a set-up, if it has one.
+        build: adds the plot of a set-up, if it has one, of a height [px].
         change: changes widgets in another thread; see `RebuildThread.change`.
         on_change: is told when the window comes or goes.
     """
@@ -34,7 +34,7 @@ class StepPlot:
         gui: viser.GuiApi,
         words: Words,
         course: Course,
-        build: Callable[[StepSetup, PageSnapshot], list[Part]],
+        build: Callable[[StepSetup, PageSnapshot, int], list[Part]],
         change: Callable[[Callable[[], None]], None],
         first: PageSnapshot,
         on_change: Callable[[], None],
@@ -70,7 +70,7 @@ class StepPlot:
             panel = self._gui.add_panel()
             with panel.add_tab(self._words("lesson.plot"), viser.Icon.CHART_LINE):
                 self._gui.add_html(render("panel/step_plot.html"))
-                self._parts = self._build(self._setup, first)
+                self._parts = self._build(self._setup, first, PLOT)
             panel.float(x=GAP, y=-GAP, width=WIDTH, height=HEIGHT)
             self._panel = panel
         if was_open != (self._panel is not None):

@@ -728,6 +728,7 @@ figure-motor = Motor { $number }
 figure-component = Komponente { $number }
 figure-law = Wechsel des Regelgesetzes
 figure-held = festgehalten
+figure-film = Einstellungen und Verläufe
 figure-distance =
     Abstand zur
     Bahn  [mm]

@@ -676,6 +676,7 @@ figure-motor = motor { $number }
 figure-component = component { $number }
 figure-law = change of law
 figure-held = held back
+figure-film = Settings and plots
 figure-distance =
     distance to
     the path  [mm]

@@ -54,7 +54,7 @@ class ComparePanel:
                 list(self._obstructions),
                 initial_value=words("obstruction.brake"),
             )
-            start = gui.add_button(words("compare.run"), icon=viser.Icon.SCALE)
+            start = gui.add_button(words("compare.run"), color="gray", icon=viser.Icon.SCALE)
             self._shown = gui.add_html("")
         on_press(start, self._start)
 

@@ -50,7 +50,7 @@ class GainsPanel:
         on_press(pulse, lambda: post(Pulse()))
         with gui.add_folder(words("gains.advanced"), expand_by_default=False):
             self._widgets.append(ParameterWidgets(gui, words, post, ADVANCED, first))
-            reset = gui.add_button(words("gains.defaults"), icon=viser.Icon.RESTORE)
+            reset = gui.add_button(words("gains.defaults"), color="gray", icon=viser.Icon.RESTORE)
             on_press(reset, lambda: post(ResetParameters()))
         with gui.add_folder(words("gains.realism"), expand_by_default=False):
             gui.add_markdown(words("gains.ideal"))
@@ -80,7 +80,7 @@ class GainsPanel:
 def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
     """Add the button that identifies the controllers' model from measurements."""
     label, hint = words("gains.identify"), words("gains.identify_hint")
-    button = gui.add_button(label, icon=viser.Icon.RULER_MEASURE, hint=hint)
+    button = gui.add_button(label, color="gray", icon=viser.Icon.RULER_MEASURE, hint=hint)
     on_press(button, lambda: post(Identify()))
 
 

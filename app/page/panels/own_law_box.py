@@ -32,7 +32,9 @@ class OwnLawBox:
             visible=shown,
             hint=words("laws.own_hint"),
         )
-        self._use = gui.add_button(words("laws.use"), visible=shown, icon=viser.Icon.CHECK)
+        self._use = gui.add_button(
+            words("laws.use"), color="gray", visible=shown, icon=viser.Icon.CHECK
+        )
         self._why = gui.add_html("", visible=shown)
         self._refusal = ""
         on_press(self._use, lambda: use(self._text.value))

@@ -40,9 +40,9 @@ class PastPanel:
                 hint=words("past.undo_hint"),
             )
         with gui.add_folder(words("export.title"), expand_by_default=False):
-            table = gui.add_button(words("export.table"), icon=viser.Icon.TABLE)
-            picture = gui.add_button(words("export.picture"), icon=viser.Icon.PHOTO)
-            film = gui.add_button(words("export.film"), icon=viser.Icon.MOVIE)
+            table = gui.add_button(words("export.table"), color="gray", icon=viser.Icon.TABLE)
+            picture = gui.add_button(words("export.picture"), color="gray", icon=viser.Icon.PHOTO)
+            film = gui.add_button(words("export.film"), color="gray", icon=viser.Icon.MOVIE)
         on_user_update(self._ago, lambda ago: post(c.LookAt(ago)))
         on_press(self._go_on, lambda: post(c.GoOn()))
         on_press(self._undo, lambda: post(c.UndoGoOn()))

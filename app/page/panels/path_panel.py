@@ -92,7 +92,10 @@ class PathPanel:
         if isinstance(frame, SlantedPlane):
             self._add_plane(gui, post, first)
         drawing = gui.add_button(
-            words("design.draw"), icon=viser.Icon.PENCIL, hint=words("design.draw_hint")
+            words("design.draw"),
+            color="gray",
+            icon=viser.Icon.PENCIL,
+            hint=words("design.draw_hint"),
         )
         on_press(drawing, draw)
         undoing = {words("design.undo"): c.Undo(), words("design.redo"): c.Redo()}

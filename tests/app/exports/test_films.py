@@ -14,6 +14,7 @@ from viser.infra import WebsockServer
 
 from onpath.app.exports import exporter as exports
 from onpath.app.exports.exporter import Exporter
+from onpath.app.exports.files import film_file
 from onpath.app.exports.recording import record_scene
 from onpath.app.lab.lab import Lab
 from onpath.app.viser_adapter import secure_server as hardening
@@ -241,3 +242,11 @@ def test_a_server_built_while_another_is_being_built_listens(
             threading.Thread(target=build, daemon=True).start()
             assert lock.asked.wait(WAIT)
         assert listening.wait(WAIT / 6)
+
+
+def test_a_recording_says_what_was_set_and_has_the_plots(lab: Lab) -> None:
+    session = lab.session
+    page = film_file("five_bar", session.parameters, session.history.copy(), "en").decode()
+    told, end, _ = page.rpartition("</body>")
+    assert end and told.rstrip().endswith("</details>")
+    assert "Settings and plots" in told and "data:image/png;base64,iVBOR" in told
