@@ -107,7 +107,7 @@ def test_right_and_own_options_are_marked_where_they_stand(course: Course) -> No
     right = next(i for i, option in enumerate(block.options) if option.right)
     order, own = (2, right, 3, 1), 2
     assert own != right
-    lines = question(block, order, own, True, ENGLISH).split('<div style="display:flex')[1:]
+    lines = question(block, order, own, True, ENGLISH).split('class="op-answer"')[1:]
     assert len(lines) == 4
     for line, index in zip(lines, order, strict=True):
         assert str(block.options[index].text) in line
