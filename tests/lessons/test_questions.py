@@ -224,7 +224,7 @@ def test_numbers_asked_for_in_the_course_are_those_of_the_formulas() -> None:
 @pytest.mark.parametrize("language", ["en", "de"])
 def test_no_answer_begins_with_what_the_page_says_before_it(language: str) -> None:
     """As in "Right. Yes. A curve", or "The answer: Yes"."""
-    course = read_course([BUILT_IN])[0]
+    course = built_in_course()[0]
     lessons = [course.lesson(name, language) for name in course.lessons]
     blocks = [block for lesson in lessons for step in lesson.steps for block in step.blocks]
     told = [
