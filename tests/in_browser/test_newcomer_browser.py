@@ -68,13 +68,6 @@ def test_one_button_is_the_primary_one_and_help_is_on_the_first_screen(tab: Tab)
     expect(tab.button("Hold both back")).to_be_in_viewport()
 
 
-def test_nothing_but_the_commitment_is_primary_while_a_prediction_is_awaited(tab: Tab) -> None:
-    take(tab, 4)
-    assert tab.page.evaluate(PRIMARY) == []
-    tab.page.locator("[data-answer]").first.click()
-    wait_for(lambda: tab.page.evaluate(PRIMARY) == ["Commit to this prediction: A"])
-
-
 def test_no_number_is_under_a_scroll_bar(tab: Tab) -> None:
     for folder in ("Advanced", "Realism"):
         tab.open(folder)
@@ -89,6 +82,13 @@ def test_a_plot_is_as_wide_as_its_panel_in_another_language_too(tab: Tab) -> Non
         wait_for(tab.is_built)
         tab.settle()
         wait_for(lambda: tab.page.evaluate(NARROW_PLOTS) == 0)
+
+
+def test_nothing_but_the_commitment_is_primary_while_a_prediction_is_awaited(tab: Tab) -> None:
+    take(tab, 4)
+    assert tab.page.evaluate(PRIMARY) == []
+    tab.page.locator("[data-answer]").first.click()
+    wait_for(lambda: tab.page.evaluate(PRIMARY) == ["Commit to this prediction: A"])
 
 
 def test_no_arrow_of_viser_covers_what_is_sketched(tab: Tab) -> None:
