@@ -15,7 +15,7 @@ from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 
 GAP = 12  # to the edges of the scene, [px]
-WIDTH, HEIGHT, PLOT = 520, 240, 160  # of the window, and height of its plot, [px]
+WIDTH, HEIGHT, PLOT = 440, 240, 160  # of the window, and height of its plot, [px]
 SHARE = 0.31
 """Of the scene's height, which is left to the window."""
 
