@@ -47,8 +47,7 @@ def film_file(
     words = Words(language)
     picture = draw_history(replay(made, segments), words, parameters, robot, path)
     plots = render("report/film_plots.html", words=words, picture=b64encode(picture).decode())
-    before, end, after = record_scene(made, segments, words).rpartition(b"</body>")
-    return before + plots.encode() + end + after
+    return record_scene(made, segments, words) + plots.encode()  # what follows is of the body, too
 
 
 def report_file(course: Course, progress: Progress, code: str, made: datetime) -> bytes:
