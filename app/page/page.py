@@ -26,9 +26,8 @@ from onpath.app.page.plots import DISTANCE, LivePlot
 from onpath.app.page.preferences import Preferences
 from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.page.saying import Saying
-from onpath.app.page.step_controls import StepControls
+from onpath.app.page.step_controls import StepControls, StepPlot
 from onpath.app.page.step_drawings import StepDrawings
-from onpath.app.page.step_plot import StepPlot
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene

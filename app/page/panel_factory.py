@@ -25,7 +25,7 @@ from onpath.app.page.panels.show_panel import ShowPanel
 from onpath.app.page.panels.start_panel import StartPanel
 from onpath.app.page.panels.wall_panel import WallPanel
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_user_update
-from onpath.app.page.plots import MORE, MorePlots, add_plot
+from onpath.app.page.plots import MORE, PHASE, MorePlots, add_plot
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
 from onpath.lessons.action_schema import StepSetup
@@ -91,12 +91,13 @@ class PanelFactory:
         return [part for name in REST for part in self._add(name, first)]
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Build the run panel and the controls of a lesson's step."""
+        """Build the run panel and the controls of a lesson's step, and plots without a window."""
         if len(_sliders(scene, first)) > FEW:
-            return self._add("hold", first) + self.listed_by_step(scene, first)
-        # the button to hold is seen below them
-        parts = self._add_sliders(scene, first) + self._add("hold", first)
-        return parts + self._add_others(scene, first)
+            parts = self._add("hold", first) + self.listed_by_step(scene, first)
+        else:  # the button to hold is seen below them
+            parts = self._add_sliders(scene, first) + self._add("hold", first)
+            parts += self._add_others(scene, first)
+        return parts if has_window(scene) else parts + self.plot_of_step(scene, first)
 
     def run_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         """Build the run panel and the plot of a lesson's step."""
@@ -189,6 +190,11 @@ class PanelFactory:
             hint=self._words("controls.copy_hint"),
         )
         on_user_update(copy, lambda on: self._post(c.SetCopy(on)))
+
+
+def has_window(scene: StepSetup) -> bool:
+    """Whether the plot of a lesson's step stands over the scene: a single one, over time."""
+    return len(scene.plots) == 1 and MORE[scene.plots[0]] is not PHASE
 
 
 def _sliders(scene: StepSetup, first: PageSnapshot) -> list[str]:

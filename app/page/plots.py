@@ -194,12 +194,17 @@ def _shown(fields: Fields, words: Words) -> dict[str, Plot | None]:
 
 
 def add_plot(
-    gui: viser.GuiApi, words: Words, fields: Fields, plot: Plot, level_set: bool = False
+    gui: viser.GuiApi,
+    words: Words,
+    fields: Fields,
+    plot: Plot,
+    height: int = 200,
+    level_set: bool = False,
 ) -> LivePlot | PhasePlot:
-    """Add a plot of those that can be chosen."""
+    """Add a plot of those that can be chosen; one over time has a height [px]."""
     if plot is PHASE:
         return PhasePlot(gui, words)
-    return LivePlot(gui, words, fields, plot, 200, level_set)
+    return LivePlot(gui, words, fields, plot, height, level_set)
 
 
 class MorePlots:
@@ -232,7 +237,7 @@ class MorePlots:
                 self._plot = None
             if chosen is not None:
                 with self._folder:
-                    parts = self._gui, self._words, self._fields, chosen, level_set
-                    self._plot = add_plot(*parts)
+                    parts = self._gui, self._words, self._fields, chosen
+                    self._plot = add_plot(*parts, level_set=level_set)
         if self._plot is not None:
             self._plot.follow(snapshot)
