@@ -194,12 +194,17 @@ class Page:
         if tab is None:
             self._build_ways(first, words, post)
             self._build_distance(first, words)
-            plot = controls.plot_of_step, change, first, self.reset_view
-            self._step_plot = StepPlot(gui, words, course, *plot)
-            self._parts.append(self._step_plot)
+            self._build_step_plot(controls, first, words)
         own = words, post, course, self._scene, change, first, self.exporter.report
         lesson = LessonPanel(self._client, *own, tab=tab, student=self._desk.code)
         self._parts.append(lesson)
+
+    def _build_step_plot(self, controls: PanelFactory, first: PageSnapshot, words: Words) -> None:
+        """Build the window with the plot that a lesson's step speaks of."""
+        gui, course, change = self._client.gui, self._desk.course, self._rebuilds.change
+        plot = controls.plot_of_step, change, first, self.reset_view
+        self._step_plot = StepPlot(gui, words, course, *plot)
+        self._parts.append(self._step_plot)
 
     def _controls(self, words: Words, post: Post) -> PanelFactory:
         return PanelFactory(
