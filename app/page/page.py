@@ -160,12 +160,7 @@ class Page:
         gui = self._client.gui
         controls = self._controls(words, post)
         if not first.key.in_lesson:
-            self._build_numbers(words)
-            self._build_ways(first, words, post)
-            self._parts += controls.run(first)  # the first things to do, and what they do
-            self._build_distance(first, words)
-            self._parts += controls.the_rest(first)
-            self._parts.append(FirstMinute(self._client, words))
+            self._build_free_lab(controls, first, words, post)
             return
         change = self._rebuilds.change
         tab = None
@@ -198,6 +193,17 @@ class Page:
         own = words, post, course, self._scene, change, first, self.exporter.report
         lesson = LessonPanel(self._client, *own, tab=tab, student=self._desk.code)
         self._parts.append(lesson)
+
+    def _build_free_lab(
+        self, controls: PanelFactory, first: PageSnapshot, words: Words, post: Post
+    ) -> None:
+        """Build all panels: first what there is to do, then the plot of what it does."""
+        self._build_numbers(words)
+        self._build_ways(first, words, post)
+        self._parts += controls.run(first)
+        self._build_distance(first, words)
+        self._parts += controls.the_rest(first)
+        self._parts.append(FirstMinute(self._client, words))
 
     def _build_step_plot(self, controls: PanelFactory, first: PageSnapshot, words: Words) -> None:
         """Build the window with the plot that a lesson's step speaks of."""
