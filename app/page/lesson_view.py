@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from markupsafe import Markup
-
+from onpath.app.common.templates import Markup
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
 from onpath.lessons.action_schema import StepSetup

@@ -54,8 +54,9 @@ def decode(text: str) -> Setup:
     text = _SPACE.sub("", text)
     beginning, code = _BEGINNING.search(text), _CODE.search(text)
     if beginning is None:
-        key = "error.share_is_lab" if is_code(text) else "error.share_missing"
-        raise CodedError(key, version=VERSION)
+        if is_code(text):
+            raise CodedError("error.share_is_lab")
+        raise CodedError("error.share_missing", version=VERSION)
     if int(beginning[1]) > VERSION:
         raise CodedError("error.share_newer")
     if code is None:

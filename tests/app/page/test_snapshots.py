@@ -92,7 +92,7 @@ class Drawing:
             patch.setattr(_gui_api, "_global_order_counter", 0)
             for module in (_gui_api, _gui_handles):
                 patch.setattr(module, "_make_uuid", lambda: f"widget {next(numbers)}")
-            seat = ClassSeat(lambda *_: None, lambda: None, lambda _: None)
+            seat = ClassSeat(lambda *_: "", lambda: None, lambda _: "")
             desk = PageContext("k" * 12, self.posted.append, self._course, True, print, seat)
             first, *others = snapshots
             assert isinstance(first, PageSnapshot)
