@@ -65,7 +65,9 @@ def test_the_record_has_the_gain_and_every_answer_in_the_author_s_letters() -> N
 
 
 def test_the_record_has_neither_number_nor_nickname_beside_a_test() -> None:
-    of_tests = [row for row in rows() if row["lesson"] in (BEFORE, AFTER, "")]
+    of_tests = [row for row in rows() if row["lesson"] in (BEFORE, AFTER) or row["kind"] == "class"]
+    alone = [row for row in rows() if row["lesson"] == "" and row["kind"] != "class"]
+    assert all(set(row.values()) == {"", row["number"], row["nickname"]} for row in alone)
     assert of_tests and {row["number"] for row in of_tests} == {""}
     names = {row["nickname"] for row in of_tests if row["kind"] == "test"}
     assert len(names) == 3 and not any("Nick" in name or "session" in name for name in names)

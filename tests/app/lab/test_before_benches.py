@@ -55,7 +55,7 @@ def test_a_share_code_sets_up_the_usual_laws(code: str) -> None:
     lab = new_lab()
     lab.session.change_law(LEFT, "set_point")
     do(lab, c.UseShared(code))
-    assert lab.message == "" and lab.session.laws == DEFAULT_LAWS
+    assert lab.message == lab.words("say.set_up") and lab.session.laws == DEFAULT_LAWS
     assert decode(code).laws == {} and "laws" not in to_data(capture(lab.session))
     if code == ELLIPSE:
         assert lab.session.parameters.K1 == 900.0

@@ -169,6 +169,7 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.Redo: st.builds(c.Redo),
     c.Share: st.builds(c.Share),
     c.ReplayBreakdown: st.builds(c.ReplayBreakdown),
+    c.AskPhase: st.builds(c.AskPhase, st.booleans()),
     c.UseEarlierSettings: st.builds(c.UseEarlierSettings),
     c.UseShared: st.builds(c.UseShared, st.sampled_from(["", "ONPATH1-aaaa", "x" * 10_000])),
 }
