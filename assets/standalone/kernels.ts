@@ -3,7 +3,7 @@
 type Exported = (...places: number[]) => void
 
 const DOUBLE = 8 // bytes
-const PAGES = 32 // of 64 KiB
+const PAGES = 64 // of 64 KiB
 
 /** Vectors are named by the number of their first double in `numbers`. */
 export class Kernels {
@@ -20,9 +20,9 @@ export class Kernels {
     static async from(text: string): Promise<Kernels> {
         const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0))
         const memory = new WebAssembly.Memory({ initial: PAGES })
-        const { sin, cos, log, tanh } = Math
+        const { sin, cos, log, tanh, acos, atan2 } = Math
         const { instance } = await WebAssembly.instantiate(bytes, {
-            Math: { memory, sin, cos, log, tanh },
+            Math: { memory, sin, cos, log, tanh, acos, atan2 },
         })
         return new Kernels(instance.exports as unknown as Record<string, Exported>, memory)
     }
@@ -42,12 +42,20 @@ export class Kernels {
         return place
     }
 
+    pair(place: number): [number, number] {
+        return [this.numbers[place]!, this.numbers[place + 1]!]
+    }
+
+    copy(from: number, to: number, count: number): void {
+        this.numbers.copyWithin(to, from, from + count)
+    }
+
     /** Call a function on vectors. */
     call(name: string, ...places: number[]): void {
         this.function(name)(...places.map(place => DOUBLE * place))
     }
 
-    /** Call a loop: see `wasm_of` in models/closed_loop/wasm_loop.py. */
+    /** Call a loop or a scan: see `wasm_of` in models/closed_loop/wasm_loop.py. */
     loop(name: string, vectors: [number, number, number, number], ticks: number): void {
         this.function(name)(...vectors.map(place => DOUBLE * place), ticks)
     }
