@@ -21,10 +21,9 @@ export function caption(bench: Bench, data: FigureData): string {
 
 /** One line with the captions of all robots that have one. */
 export function spoken(simulation: Simulation, captions: string[]): string {
-    const lines = captions.map((caption, i) =>
-        caption && said(simulation.data, "caption.spoken", { robot: simulation.title(i), caption }),
-    )
-    return lines.filter(Boolean).join(" ")
+    const { data } = simulation
+    const line = (caption: string, i: number) => said(data, "caption.spoken", { robot: simulation.title(i), caption })
+    return captions.map((caption, i) => caption && line(caption, i)).filter(Boolean).join(" ")
 }
 
 /** Why robots have stopped, why the path goes no further, or which point keys move. */

@@ -71,7 +71,8 @@ export class Figure {
         this.titles.forEach((element, i) => {
             const law = (element.textContent = simulation.title(i))
             element.title = simulation.benches[i]!.does().text
-            this.views[i]!.canvas.setAttribute("aria-label", said(data, "standalone.scene", { law }))
+            const hint = data.controls.includes("drag") ? `. ${said(data, "standalone.drag_hint")}` : ""
+            this.views[i]!.canvas.setAttribute("aria-label", said(data, "standalone.scene", { law }) + hint)
         })
         this.stale = true
     }
@@ -150,8 +151,7 @@ export class Figure {
         const line = `${spoken(this.simulation, captions)} ${note}`.trim()
         const kind = line.replace(/[0-9]+/g, "")
         const now = performance.now()
-        if (line === this.live.textContent) return
-        if (kind === this.kind && now < this.said + SILENCE) return
+        if (line === this.live.textContent || (kind === this.kind && now < this.said + SILENCE)) return
         this.kind = kind
         this.said = now
         this.live.textContent = line

@@ -1,5 +1,7 @@
 // The functions of the WebAssembly module, and the memory on which they work.
 
+import type { Point } from "./data"
+
 type Exported = (...places: number[]) => void
 
 const DOUBLE = 8 // bytes
@@ -7,15 +9,13 @@ const PAGES = 64 // of 64 KiB
 
 /** Vectors are named by the number of their first double in `numbers`. */
 export class Kernels {
-    readonly numbers: Float64Array
+    readonly numbers = new Float64Array(this.memory.buffer)
     private end = 0
 
     private constructor(
         private readonly exported: Record<string, Exported>,
-        memory: WebAssembly.Memory,
-    ) {
-        this.numbers = new Float64Array(memory.buffer)
-    }
+        private readonly memory: WebAssembly.Memory,
+    ) {}
 
     static async from(text: string): Promise<Kernels> {
         const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0))
@@ -42,13 +42,8 @@ export class Kernels {
         return place
     }
 
-    pair(place: number): [number, number] {
-        return [this.numbers[place]!, this.numbers[place + 1]!]
-    }
-
-    copy(from: number, to: number, count: number): void {
-        this.numbers.copyWithin(to, from, from + count)
-    }
+    readonly pair = (place: number): Point => [this.numbers[place]!, this.numbers[place + 1]!]
+    readonly copy = (from: number, to: number, count: number) => this.numbers.copyWithin(to, from, from + count)
 
     /** Call a function on vectors. */
     call(name: string, ...places: number[]): void {

@@ -20,13 +20,8 @@ export class Simulation {
     constructor(readonly data: FigureData, private readonly kernels: Kernels) {}
 
     /** Simulated time, [s]. */
-    get time(): number {
-        return this.ticks * this.data.dt
-    }
-
-    get followed(): Path {
-        return this.paths[this.path]!
-    }
+    get time(): number { return this.ticks * this.data.dt }
+    get followed(): Path { return this.paths[this.path]! }
 
     /** What a robot is called: its law, and its side if both have the same. */
     title(bench: number): string {
