@@ -9,6 +9,7 @@ from typing import Annotated
 import tyro
 
 from onpath.app.cli.experiment import assignments
+from onpath.app.cli.export_lesson import ExportLesson
 from onpath.app.cli.export_site import ExportSite
 
 
@@ -61,6 +62,7 @@ class ExportFigure:
 ExportAction = (
     Annotated[ExportFigure, tyro.conf.subcommand("figure")]
     | Annotated[ExportSite, tyro.conf.subcommand("site")]
+    | Annotated[ExportLesson, tyro.conf.subcommand("lesson")]
 )
 
 
