@@ -2,14 +2,11 @@
 
 import { parsed } from "./notes"
 import type { Progress } from "./progress"
-
 type Api = Record<string, (...values: string[]) => string>
-const MEASURES = ["cmi.score.scaled", "cmi.progress_measure"]
-const VERBS = { begin: "Initialize", get: "GetValue", set: "SetValue", keep: "Commit", end: "Terminate" }
-const OF_12 = { ...VERBS, begin: "LMSInitialize", get: "LMSGetValue", set: "LMSSetValue", keep: "LMSCommit", end: "LMSFinish" }
 const NAMES = {
-    "1.2": { verbs: OF_12, api: "API", core: "cmi.core.", status: "cmi.core.lesson_status", most: 4096, measures: [] },
-    "2004": { verbs: VERBS, api: "API_1484_11", core: "cmi.", status: "cmi.completion_status", most: 64000, measures: MEASURES },
+    "1.2": { api: "API", verb: "LMS", end: "Finish", core: "cmi.core.", status: "cmi.core.lesson_status", most: 4096, measures: [] },
+    "2004": { api: "API_1484_11", verb: "", end: "Terminate", core: "cmi.", status: "cmi.completion_status", most: 64000,
+        measures: ["cmi.score.scaled", "cmi.progress_measure"] },
 }
 const [DATA, DEEPEST] = ["cmi.suspend_data", 10] // DEEPEST: frames around the page
 /** What is left out where there is no room for it: a run can be seen again, a curve drawn again. */
@@ -17,12 +14,14 @@ const LEFT_OUT = [[], ["truths"], ["truths", "times", "values"], ["truths", "tim
 
 export class ScormProgress implements Progress {
     private kept: Record<string, unknown>
+    private readonly call = (verb: string, ...values: string[]): string => this.api[this.names.verb + verb]!(...values)
+
     private constructor(private readonly names: (typeof NAMES)[keyof typeof NAMES], private readonly api: Api) {
-        this.call("begin", "")
-        this.kept = { ...(parsed(this.call("get", DATA)) as object | null) }
-        this.call("set", `${this.names.core}exit`, "suspend") // a lesson may be left, and gone on with
-        if (this.call("get", this.names.status) !== "completed") this.call("set", this.names.status, "incomplete")
-        addEventListener("pagehide", () => this.call("end", ""), { once: true })
+        this.call("Initialize", "")
+        this.kept = { ...(parsed(this.call("GetValue", DATA)) as object | null) }
+        this.call("SetValue", `${this.names.core}exit`, "suspend") // a lesson may be left, and gone on with
+        if (this.call("GetValue", this.names.status) !== "completed") this.call("SetValue", this.names.status, "incomplete")
+        addEventListener("pagehide", () => this.call(names.end, ""), { once: true })
     }
 
     /** The platform's, or null if the page is in none. */
@@ -41,25 +40,22 @@ export class ScormProgress implements Progress {
         this.kept[key] = parsed(value) ?? value
         const texts = LEFT_OUT.map(names => JSON.stringify(this.kept, (name, own) => (names.includes(name) ? undefined : own)))
         const text = texts.find(each => each.length <= this.names.most)
-        if (text) this.call("set", DATA, text)
-        this.call("keep", "")
+        if (text) this.call("SetValue", DATA, text)
+        this.call("Commit", "")
     }
 
     score(part: number, whole: number): void {
         const share = whole ? part / whole : 0
         const points = Object.entries({ min: 0, max: 100, raw: Math.round(100 * share) })
-        for (const [name, value] of points) this.call("set", `${this.names.core}score.${name}`, String(value))
-        for (const name of this.names.measures) this.call("set", name, share.toFixed(4))
-        this.call("keep", "")
+        for (const [name, value] of points) this.call("SetValue", `${this.names.core}score.${name}`, String(value))
+        for (const name of this.names.measures) this.call("SetValue", name, share.toFixed(4))
+        this.call("Commit", "")
     }
 
     completed(): void {
-        this.call("set", this.names.status, "completed")
-        this.call("keep", "")
+        this.call("SetValue", this.names.status, "completed")
+        this.call("Commit", "")
     }
-
-    private readonly call = (what: keyof typeof VERBS, ...values: string[]): string =>
-        this.api[this.names.verbs[what]]!(...values)
 }
 
 /** The platform's object, in a page or in one around it; null in another site's page. */
