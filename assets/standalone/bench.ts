@@ -55,7 +55,7 @@ export class Bench {
     change(law: number): void {
         if (law !== this.law) this.call(`change${this.law}to${law}`, this.state, this.state)
         this.law = law
-        this.kernels.copy(this.state + this.figure.state.theta[0], this.field("theta_ref"), 1)
+        this.kernels.copy(this.state + this.figure.state.theta_ref[0], this.field("theta_ref"), 1)
     }
 
     readonly set = (place: number, value: number) => (this.kernels.numbers[this.settings + place] = value)

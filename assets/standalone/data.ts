@@ -34,7 +34,7 @@ export interface FigureData extends Texts<"language" | "title" | "module"> {
     words: Record<string, string>
     dt: number
     sizes: Numbers<"p" | "n" | "log" | "bars" | "joints">
-    state: Record<"q" | "theta", Place>
+    state: Record<"q" | "theta" | "theta_ref", Place>
     settings: Record<"hold_active" | "hold_anchor" | "hold_tangent" | "hand_active" | "hand_target", Place>
     log: Record<"q" | "v" | "y" | "theta" | "theta_ref" | "force", Place>
     benches: BenchData[]

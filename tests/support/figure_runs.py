@@ -29,6 +29,7 @@ Act = tuple[str, Any]
 
 
 LOOPS = LoopCache()
+LOOPS.close()  # nothing is compiled
 
 
 class PythonBench:

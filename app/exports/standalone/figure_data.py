@@ -56,7 +56,7 @@ def figure_data(figure: FigureChoice, words: Words, title: str = "") -> dict[str
         "words": figure_words(words),
         "dt": time_step(figure.parameters),
         "sizes": _sizes(figure, kernel),
-        "state": _places(kernel.state, ("q", "theta")),
+        "state": _places(kernel.state, ("q", "theta", "theta_ref")),
         "settings": _places(kernel.settings, _SET),
         "log": _places(kernel.log, ("q", "v", "y", "theta", "theta_ref", "force")),
         "benches": _benches(figure),
