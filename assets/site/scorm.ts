@@ -8,7 +8,7 @@ const NAMES = {
     "2004": { api: "API_1484_11", verb: "", end: "Terminate", core: "cmi.", status: "cmi.completion_status", most: 64000,
         measures: ["cmi.score.scaled", "cmi.progress_measure"] },
 }
-const [DATA, DEEPEST] = ["cmi.suspend_data", 10] // DEEPEST: frames around the page
+const DATA = "cmi.suspend_data"
 /** What is left out where there is no room for it: a run can be seen again, a curve drawn again. */
 const LEFT_OUT = [[], ["truths"], ["truths", "times", "values"], ["truths", "times", "values", "why", "written"]]
 
@@ -24,7 +24,6 @@ export class ScormProgress implements Progress {
         addEventListener("pagehide", () => this.call(names.end, ""), { once: true })
     }
 
-    /** The platform's, or null if the page is in none. */
     static found(version: keyof typeof NAMES): ScormProgress | null {
         const names = NAMES[version]
         const found = apiOf(window, names.api) ?? apiOf(window.opener as Window | null, names.api)
@@ -59,7 +58,7 @@ export class ScormProgress implements Progress {
 }
 
 /** The platform's object, in a page or in one around it; null in another site's page. */
-function apiOf(page: Window | null, name: string, deep = DEEPEST): Api | null {
+function apiOf(page: Window | null, name: string, deep = 10): Api | null {
     try {
         if (!page || !deep) return null
         const found = (page as unknown as Record<string, Api | undefined>)[name]
