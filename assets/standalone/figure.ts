@@ -162,7 +162,7 @@ export class Figure {
         const { simulation } = this
         const { canvas } = view
         const at = (place: { clientX: number; clientY: number }) =>
-            view.grabbed(place.clientX, place.clientY, simulation.followed)
+            view.grabbed(place.clientX, place.clientY, simulation.followed, simulation.selected)
         let grabbed: { what: number | "tip"; from: PointerEvent } | null = null
         const act = (by: Point | null) => {
             if (grabbed?.what === "tip") simulation.pull(by)

@@ -34,10 +34,9 @@ export class Poles {
         const kind = said(data, `behaviour.${behaviours[code]}`, values)
         const says = code < 3 ? said(data, "behaviour.settles", { ...values, kind }) : kind
         const poles = Array.from({ length: found[0]! }, (_, i) => [found[2 * i + 1]!, found[2 * i + 2]!] as const)
+            .reverse() // the slowest last, as in the lab
             .filter(([, imaginary]) => imaginary >= 0)
-            .map(([real, imaginary]) =>
-                significant(data, real, 3) + (imaginary ? ` ± ${significant(data, imaginary, 3)}i` : ""),
-            )
+            .map(([real, y]) => significant(data, real, 3) + (y ? ` ± ${significant(data, y, 3)}i` : ""))
         return `${says}; ${said(data, "gains.poles", { poles: poles.join(", ") })}`
     }
 }

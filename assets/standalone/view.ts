@@ -5,8 +5,8 @@ import type { FigureData, Point } from "./data"
 import type { Path } from "./path"
 
 const TRACE = 240 // frames
-const REACH = 44 // [px], from the tip, within which it can be grabbed
-const NEAR = 22 // [px], from a control point
+const [REACH, NEAR] = [44, 22] // [px], from the tip and from a control point, within which they are grabbed
+const TIE = 8 // [px], by which a point must be nearer than the tip, unless it is selected
 
 /** An empty canvas, in pixels of the page. */
 export function inkOf(canvas: HTMLCanvasElement): CanvasRenderingContext2D | null {
@@ -37,7 +37,7 @@ export class View {
     /** Metres of the picture that a way of so many pixels is. */
     readonly metres = (dx: number, dy: number): Point => [dx / this.scale, -dy / this.scale]
     /** What is grabbed at a place in the window: the nearest control point, "tip", or null. */
-    grabbed(x: number, y: number, path: Path): number | "tip" | null {
+    grabbed(x: number, y: number, path: Path, selected: number | null): number | "tip" | null {
         const { controls } = this.data
         const { left, top } = this.canvas.getBoundingClientRect()
         const distance = ([atX, atY]: Point) => Math.hypot(x - left - atX, y - top - atY)
@@ -45,7 +45,7 @@ export class View {
         const far = controls.includes("drag") ? path.spots().map(away) : []
         const nearest = Math.min(...far)
         const tip = controls.includes("pull") ? away(this.bench.tip()) : Infinity
-        if (nearest < NEAR && nearest <= tip) return far.indexOf(nearest)
+        if (nearest < NEAR && (far.indexOf(nearest) === selected || nearest + TIE < tip)) return far.indexOf(nearest)
         return tip < REACH ? "tip" : null
     }
 

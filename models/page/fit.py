@@ -13,6 +13,7 @@ from itertools import pairwise
 import casadi as ca
 import numpy as np
 
+from onpath.models.arrays import Array
 from onpath.models.closed_loop.wasm_loop import Scan
 from onpath.models.paths.curve_fit import SAMPLES, SHORTEST
 from onpath.models.paths.curves import ORDERS, TERMS, from_terms, terms_of
@@ -153,7 +154,7 @@ def table_function(closed: bool) -> ca.Function:
     theta = np.linspace(-np.pi, np.pi, SAMPLES, endpoint=not closed)
     x = ca.SX.sym("x")
     values = ca.Function("basis", [x], [basis(x, closed)])(theta[None]).full()[:count]
-    gram = np.linalg.inv(values @ values.T)
+    gram: Array = np.asarray(np.linalg.inv(values @ values.T), dtype=float)
     gram[np.abs(gram) < 1e-15] = 0.0
     terms = ca.reshape(state[3:], 2, TERMS)[:, :count] @ ca.sparsify(ca.DM(gram))
     series = from_terms(closed, np.eye(count)).series  # (ORDERS, TERMS, count)

@@ -61,13 +61,13 @@ def _polynomials(parameters: Parameters, settings: Layout, size: int) -> ca.Func
     """See `pole_functions`; a polynomial begins with how many of its roots are slow, and with 1 if
     it has an integral."""
     symbol, fields = settings.symbols("settings")
-    gains = [fields[f"K{i}"] for i in range(1, 6)]
-    with_integral = _padded(_characteristic(parameters, *gains[:3], kept=3), size)
-    without = _padded(_characteristic(parameters, *gains[:2], ca.SX(0), kept=2), size)
-    on = gains[2] != 0
+    k1, k2, k3, k4, k5 = (fields[f"K{i}"] for i in range(1, 6))
+    with_integral = _padded(_characteristic(parameters, k1, k2, k3, kept=3), size)
+    without = _padded(_characteristic(parameters, k1, k2, ca.SX(0), kept=2), size)
+    on = k3 != 0
     across = [ca.if_else(on, a, b) for a, b in zip(with_integral, without, strict=True)]
     kept = 2 if parameters.task == "position" else 1
-    along = _padded(_characteristic(parameters, gains[3], gains[4], ca.SX(0), kept=kept), size)
+    along = _padded(_characteristic(parameters, k4, k5, ca.SX(0), kept=kept), size)
     angle = 2 * np.pi * (np.arange(size) + 0.3) / size
     first = np.concatenate([-0.5 + np.cos(angle), np.sin(angle)])
     results = [ca.vertcat(2 + on, on, *across), ca.vertcat(kept, 0, *along), ca.DM(first)]

@@ -43,7 +43,7 @@ def test_the_manifest_names_every_file_and_the_page(tmp_path: Path, version: Ver
     (organizations,) = manifest.iter(f"{part}organizations")
     assert organizations.get("default") == organization.get("identifier")
     page = package.read(str(resource.get("href"))).decode()
-    assert f'"scorm": "{version}"' in page and "index.html" not in page
+    assert f'"scorm":"{version}"' in page and "index.html" not in page
     again = tmp_path / "again.zip"
     assert run_command([*command[:4], str(again), *command[5:], "--language", "de"]) == 0
     assert again.read_bytes() == file.read_bytes()
