@@ -3,19 +3,18 @@
 import { parsed } from "./notes"
 import type { Progress } from "./progress"
 type Api = Record<string, (...values: string[]) => string>
-const NAMES = {
-    "1.2": { api: "API", verb: "LMS", end: "Finish", core: "cmi.core.", status: "cmi.core.lesson_status", most: 4096, measures: [] },
-    "2004": { api: "API_1484_11", verb: "", end: "Terminate", core: "cmi.", status: "cmi.completion_status", most: 64000,
-        measures: ["cmi.score.scaled", "cmi.progress_measure"] },
-}
 const DATA = "cmi.suspend_data"
+const MEASURES = ["cmi.score.scaled", "cmi.progress_measure"]
+const NAMES = {
+    "1.2": { api: "API", verb: "LMS", end: "Finish", core: "cmi.core.", status: "cmi.core.lesson_status", most: 4096, measures: [] as string[] },
+    "2004": { api: "API_1484_11", verb: "", end: "Terminate", core: "cmi.", status: "cmi.completion_status", most: 64000, measures: MEASURES },
+}
 /** What is left out where there is no room for it: a run can be seen again, a curve drawn again. */
 const LEFT_OUT = [[], ["truths"], ["truths", "times", "values"], ["truths", "times", "values", "why", "written"]]
 
 export class ScormProgress implements Progress {
     private kept: Record<string, unknown>
     private readonly call = (verb: string, ...values: string[]): string => this.api[this.names.verb + verb]!(...values)
-
     private constructor(private readonly names: (typeof NAMES)[keyof typeof NAMES], private readonly api: Api) {
         this.call("Initialize", "")
         this.kept = { ...(parsed(this.call("GetValue", DATA)) as object | null) }
@@ -25,9 +24,8 @@ export class ScormProgress implements Progress {
     }
 
     static found(version: keyof typeof NAMES): ScormProgress | null {
-        const names = NAMES[version]
-        const found = apiOf(window, names.api) ?? apiOf(window.opener as Window | null, names.api)
-        return found && new ScormProgress(names, found)
+        const found = apiOf(window, NAMES[version].api) ?? apiOf(window.opener as Window | null, NAMES[version].api)
+        return found && new ScormProgress(NAMES[version], found)
     }
 
     get(key: string): string | null {
