@@ -11,6 +11,7 @@ import numpy as np
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.figure_module import design_of
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
+from onpath.app.lab.loop_states import single
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
 from onpath.models.arrays import Array
@@ -64,7 +65,7 @@ class PythonBench:
         """Go on under another law, as `ClosedLoopRun.change_law`."""
         given = self.robot, "right", self.law, self.parameters, self.curve
         run = ClosedLoopRun(LOOPS, *given)
-        run.state = self.state
+        run.place = single(self.state, run.row, 0.0, 0.0)
         run.change_law(law, self.parameters, self.curve, self.push)
         self.law, self.state = law, run.state
         self.kernel = self.figure.kernel(law, self.given)
