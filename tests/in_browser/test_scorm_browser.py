@@ -74,7 +74,9 @@ class Opened:
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.goto(address)
         self.page.evaluate("data => opened(data)", kept)
-        wait_for(lambda: len(self.page.frames) > 1 and self.ask("'site' in window"), WAIT)
+        self.page.wait_for_function(
+            "() => 'site' in document.querySelector('iframe').contentWindow", timeout=1e3 * WAIT
+        )
 
     @property
     def frame(self) -> Frame:

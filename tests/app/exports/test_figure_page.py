@@ -100,6 +100,9 @@ def test_texts_of_the_author_are_texts(tmp_path: Path) -> None:
     assert json.loads(data)["title"] == title
 
 
+LEVEL_SET = ["--set", "across=level_set"]
+
+
 def test_what_cannot_be_a_figure_is_refused_in_a_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -116,7 +119,7 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
         (["--language", "xx"], "en"),
         (["--control", "brake"], "control"),
         (["--robot", "flexible", "--control", "drag"], "cannot check the path"),
-        (["--set", "across=level_set", "--control", "drag"], "adapted to the path"),
+        (["--path", "circle", *LEVEL_SET, "--control", "drag"], "adapted to the path"),
         (["--law", "contouring", "--control", "poles"], "poles"),
         (["--choice", "path_folowing"], "path_following"),
     ]
