@@ -27,6 +27,7 @@ ORDER = [
     "app.common",
     "lessons",
     "models.studies",
+    "models.page",
     "models.closed_loop",
     "models.control",
     "models.systems",

@@ -9,6 +9,7 @@ from typing import Annotated
 import tyro
 
 from onpath.app.cli.experiment import assignments
+from onpath.app.cli.export_lesson import ExportLesson
 from onpath.app.cli.export_site import ExportSite
 
 
@@ -27,8 +28,10 @@ class ExportFigure:
     slider: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """A parameter that readers may change; repeat for more. By default the speed and gains."""
     control: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """What else they may do or see: hold, pull, run, step, reset, path, plot; repeat for more. By
-    default all."""
+    """What else they may do or see: hold, pull, drag (points of the path), run, step, reset, path,
+    plot, poles; repeat for more. By default all that are possible."""
+    choice: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """A further law, which readers may choose for each robot; repeat for more."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Set any parameter of the robot as name=value; repeat for more."""
     title: str = ""
@@ -38,7 +41,6 @@ class ExportFigure:
 
     def run(self) -> None:
         """Write the page, and print its size."""
-        from onpath.app.exports.standalone.figure_choice import CONTROLS
         from onpath.app.notebook.figure import PATHS, figure
         from onpath.models.control.benches import DEFAULT_LAWS
 
@@ -48,7 +50,8 @@ class ExportFigure:
             self.law or tuple(DEFAULT_LAWS.values()),
             self.path or PATHS,
             sliders=self.slider or None,
-            controls=self.control or CONTROLS,
+            controls=self.control or None,
+            choices=self.choice,
             title=self.title,
             language=self.language,
             **dict(assignments(self.set)),
@@ -59,6 +62,7 @@ class ExportFigure:
 ExportAction = (
     Annotated[ExportFigure, tyro.conf.subcommand("figure")]
     | Annotated[ExportSite, tyro.conf.subcommand("site")]
+    | Annotated[ExportLesson, tyro.conf.subcommand("lesson")]
 )
 
 

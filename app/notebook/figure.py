@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from onpath.app.common.atomic_file import check_writable, whole_file
-from onpath.app.exports.standalone.figure_choice import CONTROLS, chosen
+from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.assets.messages import languages
 from onpath.lessons.words import Words
@@ -26,7 +26,8 @@ def figure(
     paths: Sequence[str] | Mapping[str, Curve | str] = PATHS,
     *,
     sliders: Sequence[str] | None = None,
-    controls: Sequence[str] = CONTROLS,
+    controls: Sequence[str] | None = None,
+    choices: Sequence[str] = (),
     title: str = "",
     language: str = "en",
     **parameters: Any,
@@ -44,7 +45,9 @@ def figure(
             `onpath.simulate` takes them, or a name for each path.
         sliders: names of `onpath.parameters(robot)` that readers may change; None: the speed and
             the gains of the laws.
-        controls: what else they may do or see: some of hold, pull, run, step, reset, path, plot.
+        controls: what else they may do or see: some of hold, pull, drag (points of the path), run,
+            step, reset, path, plot, poles; None: all that are possible with this robot and laws.
+        choices: further laws, which readers may choose for each robot.
         title: above the figure.
         language: of the page.
         parameters: as in `onpath.simulate`; the speed is that of a new lab if not given.
@@ -69,9 +72,11 @@ def figure(
         laws = [laws]
     if isinstance(paths, str):
         paths = [paths]
+    if isinstance(choices, str):
+        choices = [choices]
     named = paths if isinstance(paths, Mapping) else {name: name for name in paths}
     curves = {name: _curve(each) for name, each in named.items()}
-    choice = chosen(robot, laws, curves, parameters, sliders, controls)
+    choice = chosen(robot, laws, curves, parameters, sliders, controls, choices)
     with whole_file(path) as scratch:
         scratch.write_text(figure_page(choice, Words(language), title), encoding="utf-8")
     return path

@@ -123,6 +123,7 @@ export interface StepData {
 export interface PageData {
     words: Record<string, string>
     lesson: string
+    scorm?: "1.2" | "2004" | null
     figures: SiteFigure[]
     steps: StepData[]
     lessons: Record<string, { steps: number; required: number; tasks: string[] }>

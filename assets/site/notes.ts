@@ -86,7 +86,7 @@ function key(lesson: string): string {
     return `notes.${lesson}`
 }
 
-function parsed(text: string): unknown {
+export function parsed(text: string): unknown {
     try {
         return JSON.parse(text)
     } catch {

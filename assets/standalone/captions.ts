@@ -2,10 +2,11 @@
 
 import type { Bench } from "./bench"
 import { said, written, type FigureData } from "./data"
+import type { Simulation } from "./simulation"
 
 function kind(bench: Bench, off: boolean): string {
     if (bench.stopped) return "stopped"
-    const { byClock } = bench.data
+    const { byClock } = bench.does()
     if (bench.held) return byClock ? (off ? "torn_off" : "held") : off ? "off" : "waits"
     if (bench.pulled) return "pulled"
     return off ? (byClock ? "chases" : "off") : ""
@@ -19,11 +20,27 @@ export function caption(bench: Bench, data: FigureData): string {
 }
 
 /** One line with the captions of all robots that have one. */
-export function spoken(benches: Bench[], captions: string[], data: FigureData): string {
-    const lines = benches.map((bench, i) =>
-        captions[i]
-            ? said(data, "caption.spoken", { robot: bench.data.title, caption: captions[i] })
-            : "",
-    )
+export function spoken(simulation: Simulation, captions: string[]): string {
+    const { data } = simulation
+    const line = (caption: string, i: number) => said(data, "caption.spoken", { robot: simulation.title(i), caption })
+    return captions.map((caption, i) => caption && line(caption, i)).filter(Boolean).join(" ")
+}
+
+/** Why robots have stopped, why the path goes no further, or which point keys move. */
+export function notes(simulation: Simulation): string {
+    const { benches, followed, selected, data } = simulation
+    const lines = benches.map((bench, i) => {
+        const reason = bench.does().stops[bench.stopped - 1]
+        const time = written(data, bench.ticks * data.dt, 1)
+        return reason ? said(data, "say.stopped", { robot: simulation.title(i), time, reason }) : ""
+    })
+    if (followed.fault) {
+        const length = written(data, followed.fault.length ?? 0, 0)
+        const reasons = followed.fault.reasons.map(key => said(data, key, { length })).join("; ")
+        lines.push(said(data, "say.no_further", { reasons }))
+    } else if (selected !== null) {
+        const all = String(followed.data.points.length)
+        lines.push(said(data, "standalone.selected", { number: String(selected + 1), all }))
+    }
     return lines.filter(Boolean).join(" ")
 }

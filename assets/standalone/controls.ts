@@ -1,7 +1,10 @@
 // Buttons, the choice of a path, and sliders.
 
-import { said, type SliderData } from "./data"
+import { said, written, type Point, type SliderData } from "./data"
+import type { Figure } from "./figure"
 import type { Simulation } from "./simulation"
+
+const WAYS: Record<string, Point> = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }
 
 export function made<T extends keyof HTMLElementTagNameMap>(
     tag: T,
@@ -14,36 +17,23 @@ export function made<T extends keyof HTMLElementTagNameMap>(
     return element
 }
 
-export interface Running {
-    running: boolean
-    /** Simulate one frame, and stay paused. */
-    step(): void
-    /** What was drawn belongs to an earlier run. */
-    forget(): void
-}
-
 export class Controls {
     readonly element: HTMLElement
-    private readonly held: HTMLButtonElement
-    private readonly run: HTMLButtonElement
+    private readonly held = this.button("main", "", () => this.toggleHold(), "run.hold_hint")
+    private readonly run = this.button("", "", () => this.toggleRun(), "run.run_hint")
 
-    constructor(
-        private readonly simulation: Simulation,
-        private readonly page: Running,
-        ended: AbortSignal,
-    ) {
+    constructor(private readonly simulation: Simulation, private readonly page: Figure, ended: AbortSignal) {
         const { data } = simulation
-        this.held = this.button("main", "", () => this.toggleHold(), said(data, "run.hold_hint"))
-        this.run = this.button("", "", () => this.toggleRun(), said(data, "run.run_hint"))
         const every: Record<string, HTMLElement> = {
             hold: this.held,
             run: this.run,
-            step: this.button("", said(data, "run.step"), () => this.step(), said(data, "key.right")),
-            reset: this.button("", said(data, "run.reset"), () => this.reset(), said(data, "key.reset")),
+            step: this.button("", said(data, "run.step"), () => this.step(), "key.right"),
+            reset: this.button("", said(data, "run.reset"), () => this.reset(), "key.reset"),
             ...(data.paths.length > 1 ? { path: this.paths() } : {}),
         }
         const shown = Object.keys(every).filter(name => data.controls.includes(name))
-        const buttons = made("div", "buttons", ...shown.map(name => every[name]!))
+        const laws = data.choices.length ? simulation.benches.map((_, i) => this.laws(i)) : []
+        const buttons = made("div", "buttons", ...shown.map(name => every[name]!), ...laws)
         const sliders = data.sliders.map((slider, i) => this.slider(slider, i))
         this.element = made("div", "controls", buttons, made("div", "sliders", ...sliders))
         this.show()
@@ -61,23 +51,25 @@ export class Controls {
 
     toggleHold(): void {
         this.simulation.hold(!this.simulation.held)
-        this.page.running = true
-        this.show()
+        this.toggleRun(true)
     }
 
-    toggleRun(): void {
-        this.page.running = !this.page.running
+    toggleRun(on = !this.page.running): void {
+        this.page.running = on
         this.show()
     }
 
     step(): void {
-        this.page.running = false
+        this.toggleRun(false)
         this.page.step()
-        this.show()
     }
 
     reset(): void {
         this.simulation.reset()
+        this.begun()
+    }
+
+    private begun(): void {
         this.page.forget()
         this.show()
     }
@@ -85,40 +77,51 @@ export class Controls {
     private button(name: string, text: string, act: () => void, hint: string): HTMLButtonElement {
         const button = made("button", name, text)
         button.type = "button"
-        button.title = hint
+        button.title = said(this.simulation.data, hint)
         button.addEventListener("click", act)
         return button
     }
 
     private paths(): HTMLElement {
         const { data } = this.simulation
-        const select = made("select", "", ...data.paths.map(path => made("option", "", path.label)))
-        select.addEventListener("change", () => {
-            this.simulation.choose(select.selectedIndex)
-            this.page.forget()
-            this.show()
+        return this.choice(said(data, "standalone.path"), data.paths.map(path => path.label), 0, path => {
+            this.simulation.choose(path)
+            this.begun()
         })
-        return made("label", "path", `${said(data, "standalone.path")} `, select)
+    }
+
+    private laws(bench: number): HTMLElement {
+        const { data, benches } = this.simulation
+        const side = benches.length > 1 ? `, ${this.simulation.side(bench)}` : ""
+        const titles = data.choices.map(law => data.laws[law]!.title)
+        const first = data.choices.indexOf(benches[bench]!.law)
+        return this.choice(said(data, "standalone.law") + side, titles, first, chosen => {
+            benches[bench]!.change(data.choices[chosen]!)
+            this.page.changed()
+        })
+    }
+
+    private choice(label: string, options: string[], first: number, act: (chosen: number) => void): HTMLElement {
+        const select = made("select", "", ...options.map(option => made("option", "", option)))
+        select.selectedIndex = first
+        select.addEventListener("change", () => act(select.selectedIndex))
+        return made("label", "choice", `${label} `, select)
     }
 
     private slider(slider: SliderData, number: number): HTMLElement {
         const { data } = this.simulation
         const input = made("input", "")
         const shown = made("span", "value")
-        const unit = slider.unit ? ` ${slider.unit}` : ""
         const show = () => {
-            shown.textContent = input.value.replace("-", "−").replace(".", data.words["point"] ?? ".") + unit
+            shown.textContent = `${written(data, input.valueAsNumber)} ${slider.unit}`.trim()
             input.setAttribute("aria-valuetext", shown.textContent)
         }
         shown.setAttribute("aria-hidden", "true")
-        input.type = "range"
-        input.min = String(slider.low)
-        input.max = String(slider.high)
-        input.step = String(slider.step)
-        input.value = String(slider.value)
-        input.title = slider.help
+        const { low, high, step, value, help } = slider
+        Object.assign(input, { type: "range", min: low, max: high, step, value, title: help })
         input.addEventListener("input", () => {
             this.simulation.set(number, input.valueAsNumber)
+            this.page.changed()
             show()
         })
         show()
@@ -130,15 +133,22 @@ export class Controls {
         const target = event.target as HTMLElement
         if (event.ctrlKey || event.metaKey || event.altKey || target.closest("select, input")) return
         if (event.key === " " && target.closest("button")) return
+        const { simulation } = this
+        const { selected, followed } = simulation
         const acts: Record<string, [string, () => void]> = {
             h: ["hold", () => this.toggleHold()],
             " ": ["run", () => this.toggleRun()],
             ArrowRight: ["step", () => this.step()],
             r: ["reset", () => this.reset()],
+            n: ["drag", () => simulation.select(((selected ?? -1) + 1) % followed.data.points.length)],
         }
+        const way = WAYS[event.key]
+        if (selected !== null && way) acts[event.key] = ["drag", () => followed.nudge(selected, ...way)]
+        if (selected !== null) acts["Escape"] = ["drag", () => simulation.select(null)]
         const [name, act] = acts[event.key] ?? acts[event.key.toLowerCase()] ?? []
-        if (!name || !act || event.repeat || !this.simulation.data.controls.includes(name)) return
+        if (!name || !act || !simulation.data.controls.includes(name) || (event.repeat && !way)) return
         event.preventDefault()
         act()
+        this.page.changed()
     }
 }

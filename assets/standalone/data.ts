@@ -3,58 +3,54 @@
 /** Place of the first number in a flat vector, and how many there are. */
 export type Place = [number, number]
 
-export interface BenchData {
-    title: string
-    text: string
-    colour: string
-    dark: string
-    pale: string
+/** To the right and up, [m]. */
+export type Point = [number, number]
+
+type Numbers<Name extends string> = Record<Name, number>
+type Texts<Name extends string> = Record<Name, string>
+
+export type BenchData = Texts<"colour" | "dark" | "pale"> & { law: number }
+
+export interface LawData extends Texts<"title" | "text"> {
     aim: "theta" | "theta_ref"
     byClock: boolean
+    linear: boolean
+    stops: string[]
 }
 
-export interface PathData {
-    label: string
-    kind: string
+export interface PathData extends Texts<"label" | "kind" | "fit"> {
+    closed: boolean
+    points: Point[]
     table: number[]
     grid: number[]
     outline: number[]
     states: number[][]
-    settings: number[][]
+    settings: number[]
 }
 
-export interface SliderData {
-    label: string
-    unit: string
-    help: string
-    low: number
-    high: number
-    step: number
-    value: number
-    place: number
-}
+export type SliderData = Texts<"label" | "unit" | "help"> & Numbers<"low" | "high" | "step" | "value" | "place">
 
-export interface FigureData {
-    language: string
-    title: string
+export interface FigureData extends Texts<"language" | "title" | "module"> {
     words: Record<string, string>
     dt: number
-    sizes: Record<"p" | "n" | "log" | "bars" | "joints", number>
-    state: Record<"q" | "theta", Place>
-    settings: Record<
-        "hold_active" | "hold_anchor" | "hold_tangent" | "hold_normal" | "hand_active" | "hand_target",
-        Place
-    >
+    sizes: Numbers<"p" | "n" | "log" | "bars" | "joints">
+    state: Record<"q" | "theta" | "theta_ref", Place>
+    settings: Record<"hold_active" | "hold_anchor" | "hold_tangent" | "hand_active" | "hand_target", Place>
     log: Record<"q" | "v" | "y" | "theta" | "theta_ref" | "force", Place>
     benches: BenchData[]
+    laws: LawData[]
+    /** Laws from which readers may choose. */
+    choices: number[]
     paths: PathData[]
     sliders: SliderData[]
     controls: string[]
     box: [number, number, number, number]
     off: number
     strip: number
-    colours: Record<"path" | "force" | "steel" | "ink", string>
-    module: string
+    colours: Texts<"path" | "force" | "steel" | "ink" | "point" | "selected" | "warning">
+    poles: Numbers<"interval" | "size" | "steps" | "slow"> & { behaviours: string[] }
+    edit: Numbers<"piece" | "fine" | "sums" | "row" | "samples" | "outline" | "grid"> &
+        Numbers<"halvings" | "blend" | "nudge"> & { checks: string[] }
 }
 
 /** A text, with its values filled in. */
@@ -65,6 +61,11 @@ export function said(data: FigureData, key: string, values: Record<string, strin
 }
 
 /** A number as the language writes it. */
-export function written(data: FigureData, value: number, digits: number): string {
-    return value.toFixed(digits).replace("-", "−").replace(".", data.words["point"] ?? ".")
+export function written(data: FigureData, value: number, digits?: number): string {
+    return (digits === undefined ? String(value) : value.toFixed(digits)).replace("-", "−").replace(".", data.words["point"] ?? ".")
+}
+
+/** The same with so many significant digits. */
+export function significant(data: FigureData, value: number, digits: number): string {
+    return written(data, Number(value.toPrecision(digits)))
 }

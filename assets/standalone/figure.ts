@@ -1,8 +1,8 @@
 // Builds a figure in a page, and lets time run.
 
-import { caption, spoken } from "./captions"
-import { Controls, made, type Running } from "./controls"
-import { said, type FigureData } from "./data"
+import { caption, notes, spoken } from "./captions"
+import { Controls, made } from "./controls"
+import { said, type Point } from "./data"
 import { Plot } from "./plot"
 import type { Simulation } from "./simulation"
 import { View } from "./view"
@@ -10,18 +10,32 @@ import { View } from "./view"
 const FRAME = 1 / 60 // [s], of a step
 const LONGEST = 0.1 // [s], that a picture may be late before simulated time falls behind
 const SILENCE = 3000 // [ms], at least, between two lines of the same kind
+const LATE = 0.15 // [s], lost lately, from which on it is said that time runs late
 const PULL = 0.03 // [m], by which a key pulls
+const PULLS: Record<string, Point> = { a: [-PULL, 0], d: [PULL, 0], w: [0, PULL], s: [0, -PULL] }
 
-export class Figure implements Running {
+/** What has not changed is not announced again. */
+function written(element: HTMLElement, text: string): void {
+    if (element.textContent !== text) element.textContent = text
+}
+
+export class Figure {
     running = !matchMedia("(prefers-reduced-motion: reduce)").matches
-    readonly controls: Controls
-    private readonly data: FigureData
-    private readonly views: View[]
-    private readonly captions: HTMLElement[]
-    private readonly plot: Plot
+    private readonly data = this.simulation.data
+    private readonly views = this.simulation.benches.map(bench => new View(bench, this.data))
+    private readonly titles = this.views.map(() => made("span", ""))
+    private readonly captions = this.views.map(() => made("span", "caption"))
+    private readonly plot = new Plot(this.simulation)
     private readonly live = made("p", "live")
+    private readonly note = made("p", "note")
+    private readonly poles = made("p", "poles")
+    readonly controls = new Controls(this.simulation, this, this.ended)
+    /** What is to be done before the next picture: a drag. */
+    private pending: (() => void) | null = null
     private last = performance.now()
     private due = 0
+    /** Simulated time that was lost lately, [s]. */
+    private lost = 0
     private stale = true
     private kind = ""
     private said = 0
@@ -32,30 +46,35 @@ export class Figure implements Running {
         into: HTMLElement,
         private readonly ended: AbortSignal = new AbortController().signal,
     ) {
-        const data = (this.data = simulation.data)
-        this.views = this.simulation.benches.map(bench => new View(bench, data))
-        this.captions = this.views.map(() => made("span", "caption"))
-        this.plot = new Plot(this.simulation, data)
         this.live.setAttribute("role", "status")
-        this.controls = new Controls(simulation, this, ended)
         into.replaceChildren(...this.parts())
-        if (data.controls.includes("pull")) {
-            for (const view of this.views) this.grabs(view)
-            this.keys()
-        }
+        for (const view of this.views) this.grabs(view)
+        if (this.data.controls.includes("pull")) this.keys()
         addEventListener("resize", () => (this.stale = true), { signal: ended })
         this.forget()
         requestAnimationFrame(() => this.frame())
     }
 
-    step(): void {
-        this.advance(Math.round(FRAME / this.data.dt))
-    }
-
+    readonly step = () => this.advance(Math.round(FRAME / this.data.dt))
+    /** What was drawn belongs to an earlier run. */
     forget(): void {
         this.plot.clear()
         for (const view of this.views) view.clear()
+        this.changed()
         this.follow()
+    }
+
+    /** Something else is to be drawn and said. */
+    changed(): void {
+        const { simulation, data } = this
+        this.poles.replaceChildren(...simulation.lines().map(line => made("span", "", line)))
+        this.titles.forEach((element, i) => {
+            const law = (element.textContent = simulation.title(i))
+            element.title = simulation.benches[i]!.does().text
+            const hint = data.controls.includes("drag") ? `. ${said(data, "standalone.drag_hint")}` : ""
+            this.views[i]!.canvas.setAttribute("aria-label", said(data, "standalone.scene", { law }) + hint)
+        })
+        this.stale = true
     }
 
     /** Advance by so many ticks, apart from the clock. */
@@ -67,41 +86,45 @@ export class Figure implements Running {
     private parts(): HTMLElement[] {
         const { data } = this
         const robots = this.views.map((view, i) => {
-            const { title, text } = data.benches[i]!
-            const heading = made("h2", `title bench${i}`, title, " ", this.captions[i]!)
-            heading.title = text
+            const heading = made("h2", `title bench${i}`, this.titles[i]!, " ", this.captions[i]!)
             view.canvas.setAttribute("role", "img")
-            view.canvas.setAttribute("aria-label", said(data, "standalone.scene", { law: title }))
             return made("section", "robot", heading, view.canvas)
         })
-        this.plot.canvas.setAttribute("role", "img")
-        this.plot.canvas.setAttribute("aria-label", this.plot.label())
+        const { canvas } = this.plot
+        const plotted = said(data, "standalone.plot")
+        canvas.setAttribute("role", "img")
+        canvas.setAttribute("aria-label", plotted)
         return [
             ...(data.title ? [made("h1", "", data.title)] : []),
             made("div", "robots", ...robots),
+            this.note,
             this.controls.element,
-            ...(data.controls.includes("plot") ? this.plotted() : []),
+            ...(data.controls.includes("poles") ? [this.poles] : []),
+            ...(data.controls.includes("plot") ? [made("p", "axis", plotted), made("div", "plot", canvas)] : []),
             this.live,
-        ]
-    }
-
-    private plotted(): HTMLElement[] {
-        return [
-            made("p", "axis", said(this.data, "standalone.plot")),
-            made("div", "plot", this.plot.canvas),
         ]
     }
 
     private frame(): void {
         if (this.ended.aborted) return
         const now = performance.now()
-        this.due += Math.min((now - this.last) / 1e3, LONGEST)
+        const passed = (now - this.last) / 1e3
+        this.due += Math.min(passed, LONGEST)
         this.last = now
+        if (this.running && passed < 1) // longer, the page was hidden
+            this.lost = 0.98 * this.lost + Math.max(0, passed - LONGEST)
+        this.drag()
         const ticks = Math.floor(this.due / this.data.dt)
         this.due -= ticks * this.data.dt
         if (this.running && ticks > 0) this.advance(ticks)
+        else if (this.simulation.followed.advance(passed)) this.stale = true
         if (this.stale) this.draw()
         requestAnimationFrame(() => this.frame())
+    }
+
+    private drag(): void {
+        this.pending?.()
+        this.pending = null
     }
 
     private follow(): void {
@@ -113,72 +136,70 @@ export class Figure implements Running {
     private draw(): void {
         const { simulation, data } = this
         this.stale = false
-        for (const view of this.views) view.draw(data.paths[simulation.path]!.outline)
+        for (const view of this.views) view.draw(simulation.followed, simulation.selected)
         this.plot.draw()
         const captions = simulation.benches.map(bench => caption(bench, data))
-        this.captions.forEach((element, i) => {
-            if (element.textContent !== captions[i]) element.textContent = captions[i]!
-        })
-        this.say(captions)
+        this.captions.forEach((element, i) => written(element, captions[i]!))
+        const late = this.lost > LATE ? said(data, "standalone.late") : ""
+        const note = [notes(simulation), late].filter(Boolean).join(" ")
+        written(this.note, note)
+        this.say(captions, note)
     }
 
     /** Say what robots do when it changes, and from time to time each millimetre of it. */
-    private say(captions: string[]): void {
-        const line = spoken(this.simulation.benches, captions, this.data)
+    private say(captions: string[], note: string): void {
+        const line = `${spoken(this.simulation, captions)} ${note}`.trim()
         const kind = line.replace(/[0-9]+/g, "")
         const now = performance.now()
-        if (line === this.live.textContent) return
-        if (kind === this.kind && now < this.said + SILENCE) return
+        if (line === this.live.textContent || (kind === this.kind && now < this.said + SILENCE)) return
         this.kind = kind
         this.said = now
         this.live.textContent = line
     }
 
-    /** Pull all tips while the mouse or a finger drags one of them, or a key is down. */
+    /** Pull all tips, or move a point of the path, while the mouse or a finger drags one of them. */
     private grabs(view: View): void {
+        const { simulation } = this
         const { canvas } = view
-        let from: PointerEvent | null = null
-        canvas.addEventListener(
-            "touchstart",
-            event => {
-                const touch = event.touches[0]
-                if (touch && view.holds(touch.clientX, touch.clientY)) event.preventDefault()
-            },
-            { passive: false },
-        )
+        const at = (place: { clientX: number; clientY: number }) =>
+            view.grabbed(place.clientX, place.clientY, simulation.followed, simulation.selected)
+        let grabbed: { what: number | "tip"; from: PointerEvent } | null = null
+        const act = (by: Point | null) => {
+            if (grabbed?.what === "tip") simulation.pull(by)
+            else if (grabbed && by) simulation.followed.drag(grabbed.what, by)
+            else simulation.followed.finish()
+            this.stale = true
+        }
+        const begin = (event: TouchEvent) => at(event.touches[0]!) !== null && event.preventDefault() // no scrolling
+        canvas.addEventListener("touchstart", begin, { passive: false })
         canvas.addEventListener("pointerdown", event => {
-            if (!view.holds(event.clientX, event.clientY)) return
-            from = event
+            const what = at(event)
+            if (what === null) return
+            grabbed = { what, from: event }
             canvas.setPointerCapture(event.pointerId)
-            this.simulation.pull([0, 0])
+            if (what === "tip") act([0, 0])
+            else simulation.select(what)
         })
         canvas.addEventListener("pointermove", event => {
-            canvas.classList.toggle("near", from !== null || view.holds(event.clientX, event.clientY))
-            if (!from || event.pointerId !== from.pointerId) return
-            this.simulation.pull(view.metres(event.clientX - from.clientX, event.clientY - from.clientY))
+            canvas.classList.toggle("near", grabbed !== null || at(event) !== null)
+            if (event.pointerId !== grabbed?.from.pointerId) return
+            const by = view.metres(event.clientX - grabbed.from.clientX, event.clientY - grabbed.from.clientY)
+            this.pending = () => act(by)
         })
         for (const end of ["pointerup", "pointercancel"] as const)
             canvas.addEventListener(end, () => {
-                if (from) this.simulation.pull(null)
-                from = null
+                this.drag()
+                if (grabbed) act(null)
+                grabbed = null
             })
     }
 
     private keys(): void {
-        const ways: Record<string, [number, number]> = {
-            a: [-PULL, 0], d: [PULL, 0], w: [0, PULL], s: [0, -PULL],
-        }
-        const way = (event: KeyboardEvent) =>
-            event.ctrlKey || event.metaKey || event.altKey ? undefined : ways[event.key.toLowerCase()]
         const { ended: signal } = this
-        addEventListener(
-            "keydown",
-            event => {
-                const by = way(event)
-                if (by && !event.repeat) this.simulation.pull(by)
-            },
-            { signal },
-        )
+        const way = ({ ctrlKey, metaKey, altKey, key }: KeyboardEvent) =>
+            ctrlKey || metaKey || altKey ? undefined : PULLS[key.toLowerCase()]
+        const pull = (event: KeyboardEvent) => way(event) && !event.repeat && this.simulation.pull(way(event)!)
+        addEventListener("keydown", pull, { signal })
         addEventListener("keyup", event => way(event) && this.simulation.pull(null), { signal })
         addEventListener("blur", () => this.simulation.pull(null), { signal })
     }

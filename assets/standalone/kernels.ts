@@ -1,28 +1,28 @@
 // The functions of the WebAssembly module, and the memory on which they work.
 
+import type { Point } from "./data"
+
 type Exported = (...places: number[]) => void
 
 const DOUBLE = 8 // bytes
-const PAGES = 32 // of 64 KiB
+const PAGES = 64 // of 64 KiB
 
 /** Vectors are named by the number of their first double in `numbers`. */
 export class Kernels {
-    readonly numbers: Float64Array
+    readonly numbers = new Float64Array(this.memory.buffer)
     private end = 0
 
     private constructor(
         private readonly exported: Record<string, Exported>,
-        memory: WebAssembly.Memory,
-    ) {
-        this.numbers = new Float64Array(memory.buffer)
-    }
+        private readonly memory: WebAssembly.Memory,
+    ) {}
 
     static async from(text: string): Promise<Kernels> {
         const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0))
         const memory = new WebAssembly.Memory({ initial: PAGES })
-        const { sin, cos, log, tanh } = Math
+        const { sin, cos, log, tanh, acos, atan2 } = Math
         const { instance } = await WebAssembly.instantiate(bytes, {
-            Math: { memory, sin, cos, log, tanh },
+            Math: { memory, sin, cos, log, tanh, acos, atan2 },
         })
         return new Kernels(instance.exports as unknown as Record<string, Exported>, memory)
     }
@@ -42,12 +42,15 @@ export class Kernels {
         return place
     }
 
+    readonly pair = (place: number): Point => [this.numbers[place]!, this.numbers[place + 1]!]
+    readonly copy = (from: number, to: number, count: number) => this.numbers.copyWithin(to, from, from + count)
+
     /** Call a function on vectors. */
     call(name: string, ...places: number[]): void {
         this.function(name)(...places.map(place => DOUBLE * place))
     }
 
-    /** Call a loop: see `wasm_of` in models/closed_loop/wasm_loop.py. */
+    /** Call a loop or a scan: see `wasm_of` in models/closed_loop/wasm_loop.py. */
     loop(name: string, vectors: [number, number, number, number], ticks: number): void {
         this.function(name)(...vectors.map(place => DOUBLE * place), ticks)
     }

@@ -1,117 +1,66 @@
 // The distance of all robots to the path over time.
 
-import { said, written, type FigureData } from "./data"
+import { written, type Point } from "./data"
 import type { Simulation } from "./simulation"
+import { inkOf, stroke } from "./view"
 
 const SECONDS = 8
 const MARGIN = { left: 44, right: 10, top: 10, bottom: 24 }
 const DASHES = [[], [7, 4]] // colour is not the only sign
-const GRID = "#dee2e8"
+const [GRID, HELD] = ["#dee2e8", "#eef1f5"]
 const STEPS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] // [mm]
 
-interface Sample {
-    time: number
-    held: boolean
-    millimetres: number[]
-}
+type Scale = (value: number) => number
 
 export class Plot {
     readonly canvas = document.createElement("canvas")
-    private samples: Sample[] = []
+    private samples: { time: number; held: boolean; millimetres: number[] }[] = []
 
-    constructor(
-        private readonly simulation: Simulation,
-        private readonly data: FigureData,
-    ) {}
+    constructor(private readonly simulation: Simulation) {}
 
-    clear(): void {
-        this.samples = []
-    }
-
+    readonly clear = () => (this.samples = [])
     follow(): void {
         const { time, held, benches } = this.simulation
-        const millimetres = benches.map(bench => 1e3 * bench.distance)
-        this.samples.push({ time, held, millimetres })
+        this.samples.push({ time, held, millimetres: benches.map(bench => 1e3 * bench.distance) })
         while (this.samples[0]!.time < time - SECONDS) this.samples.shift()
     }
 
     draw(): void {
-        const { canvas } = this
+        const { canvas, simulation } = this
         const { clientWidth: width, clientHeight: height } = canvas
-        const ratio = window.devicePixelRatio || 1
-        canvas.width = Math.round(width * ratio)
-        canvas.height = Math.round(height * ratio)
-        const ink = canvas.getContext("2d")
+        const ink = inkOf(canvas)
         if (!ink) return
-        ink.scale(ratio, ratio)
-        const highest = Math.max(4, ...this.samples.flatMap(sample => sample.millimetres))
-        const begin = Math.max(0, this.simulation.time - SECONDS)
-        const x = (time: number) =>
-            MARGIN.left + ((time - begin) / SECONDS) * (width - MARGIN.left - MARGIN.right)
-        const y = (value: number) =>
-            height - MARGIN.bottom - (value / (1.1 * highest)) * (height - MARGIN.top - MARGIN.bottom)
-        this.held(ink, x, y(0), y(1.1 * highest))
-        this.axes(ink, x, y, highest, begin)
-        this.lines(ink, x, y)
+        const top = 1.1 * Math.max(4, ...this.samples.flatMap(sample => sample.millimetres))
+        const begin = Math.max(0, simulation.time - SECONDS)
+        const x = (time: number) => MARGIN.left + ((time - begin) / SECONDS) * (width - MARGIN.left - MARGIN.right)
+        const y = (value: number) => height - MARGIN.bottom - (value / top) * (height - MARGIN.top - MARGIN.bottom)
+        ink.fillStyle = HELD
+        this.samples.forEach(({ time, held }, i) => {
+            const next = x(this.samples[i + 1]?.time ?? time)
+            if (held) ink.fillRect(x(time), y(top), next - x(time) + 0.5, y(0) - y(top))
+        })
+        this.axes(ink, x, y, top, begin)
+        simulation.benches.forEach((bench, i) => {
+            ink.setLineDash(DASHES[i % DASHES.length]!)
+            const way = this.samples.map(({ time, millimetres }): Point => [x(time), y(millimetres[i]!)])
+            stroke(ink, way, bench.data.colour, 2)
+        })
+        ink.setLineDash([])
     }
 
-    private held(ink: CanvasRenderingContext2D, x: (time: number) => number, low: number, high: number): void {
-        ink.fillStyle = "#eef1f5"
-        let begin: number | null = null
-        for (const { time, held } of this.samples) {
-            if (held && begin === null) begin = time
-            if (begin !== null && (!held || time === this.simulation.time)) {
-                ink.fillRect(x(begin), high, x(time) - x(begin), low - high)
-                begin = null
-            }
-        }
-    }
-
-    private axes(
-        ink: CanvasRenderingContext2D,
-        x: (time: number) => number,
-        y: (value: number) => number,
-        highest: number,
-        begin: number,
-    ): void {
-        const { data } = this
-        const step = STEPS.find(each => highest / each <= 4) ?? STEPS[STEPS.length - 1]!
+    private axes(ink: CanvasRenderingContext2D, x: Scale, y: Scale, top: number, begin: number): void {
+        const { data } = this.simulation
+        const step = STEPS.find(each => top / each <= 4.4) ?? STEPS[STEPS.length - 1]!
         ink.fillStyle = data.colours.ink
-        ink.strokeStyle = GRID
-        ink.lineWidth = 1
         ink.font = "12px system-ui, sans-serif"
         ink.textAlign = "right"
         ink.textBaseline = "middle"
-        for (let value = 0; value <= 1.1 * highest; value += step) {
-            ink.beginPath()
-            ink.moveTo(x(begin), y(value))
-            ink.lineTo(x(begin + SECONDS), y(value))
-            ink.stroke()
+        for (let value = 0; value <= top; value += step) {
+            stroke(ink, [[x(begin), y(value)], [x(begin + SECONDS), y(value)]], GRID, 1)
             ink.fillText(written(data, value, 0), MARGIN.left - 6, y(value))
         }
         ink.textAlign = "center"
         for (let time = Math.ceil(begin); time <= begin + SECONDS; time++)
             ink.fillText(written(data, time, 0), x(time), y(0) + 13)
-    }
-
-    private lines(
-        ink: CanvasRenderingContext2D,
-        x: (time: number) => number,
-        y: (value: number) => number,
-    ): void {
-        this.simulation.benches.forEach((bench, i) => {
-            ink.strokeStyle = bench.data.colour
-            ink.lineWidth = 2
-            ink.setLineDash(DASHES[i % DASHES.length]!)
-            ink.beginPath()
-            for (const sample of this.samples) ink.lineTo(x(sample.time), y(sample.millimetres[i]!))
-            ink.stroke()
-        })
-        ink.setLineDash([])
-    }
-
-    /** What somebody hears who does not see it. */
-    label(): string {
-        return said(this.data, "standalone.plot")
     }
 }

@@ -1,35 +1,44 @@
 // The simulated figure: benches on a path, time, and what its reader does. It knows no page.
 
-import { Bench, MOST_TICKS, type PathPlaces } from "./bench"
-import type { FigureData } from "./data"
+import { Bench, MOST_TICKS } from "./bench"
+import { said, type FigureData, type Point } from "./data"
 import type { Kernels } from "./kernels"
+import { Path } from "./path"
+import { Poles } from "./poles"
 
 export class Simulation {
     ticks = 0
     held = false
     path = 0
-    readonly benches: Bench[]
-    readonly values: number[]
-    private readonly paths: PathPlaces[]
+    /** The control point that keys move. */
+    selected: number | null = null
+    readonly paths = this.data.paths.map(path => new Path(path, this.data, this.kernels))
+    readonly benches = this.data.benches.map(each => new Bench(each, this.data, this.kernels, this.paths[0]!))
+    readonly values = this.data.sliders.map(slider => slider.value)
+    private readonly poles = new Poles(this.data, this.kernels)
 
-    constructor(readonly data: FigureData, kernels: Kernels) {
-        this.paths = data.paths.map(path => ({
-            data: path,
-            table: kernels.put(path.table),
-            grid: kernels.put(path.grid),
-        }))
-        this.values = data.sliders.map(slider => slider.value)
-        this.benches = data.benches.map(
-            (bench, i) => new Bench(bench, i, data, kernels, this.paths[0]!),
-        )
-    }
+    constructor(readonly data: FigureData, private readonly kernels: Kernels) {}
 
     /** Simulated time, [s]. */
-    get time(): number {
-        return this.ticks * this.data.dt
+    get time(): number { return this.ticks * this.data.dt }
+    get followed(): Path { return this.paths[this.path]! }
+
+    /** What a robot is called: its law, and its side if both have the same. */
+    title(bench: number): string {
+        const law = this.benches[bench]!.does().title
+        const alike = this.benches.filter(each => each.does().title === law).length > 1
+        return alike ? said(this.data, "bench.title", { law, side: this.side(bench) }) : law
+    }
+
+    readonly side = (bench: number): string => said(this.data, bench ? "bench.right" : "bench.left")
+    /** What is said of the poles, if a law has them. */
+    lines(): string[] {
+        const bench = this.data.controls.includes("poles") && this.benches.find(each => each.does().linear)
+        return bench ? this.poles.lines(bench.settings) : []
     }
 
     advance(ticks: number): void {
+        this.followed.advance(ticks * this.data.dt)
         for (let left = ticks; left > 0; left -= MOST_TICKS)
             for (const bench of this.benches) bench.advance(Math.min(left, MOST_TICKS))
         this.ticks += ticks
@@ -42,7 +51,7 @@ export class Simulation {
     }
 
     /** Pull all tips by so much in the picture; null: let go. */
-    pull(by: [number, number] | null): void {
+    pull(by: Point | null): void {
         for (const bench of this.benches) bench.pull(by)
     }
 
@@ -50,14 +59,21 @@ export class Simulation {
     reset(): void {
         this.ticks = 0
         this.held = false
-        for (const bench of this.benches) bench.begin(this.paths[this.path]!)
+        this.followed.settle()
+        for (const bench of this.benches) bench.begin(this.followed)
         this.values.forEach((value, i) => this.set(i, value))
     }
 
     /** Begin anew on another path. */
     choose(path: number): void {
+        this.select(null)
         this.path = path
         this.reset()
+    }
+
+    select(point: number | null): void {
+        this.selected = point
+        this.followed.fault = null
     }
 
     /** Give a slider's value to the loops. */

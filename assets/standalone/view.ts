@@ -1,11 +1,22 @@
 // The picture of one robot, in two dimensions.
 
 import type { Bench } from "./bench"
-import type { FigureData } from "./data"
+import type { FigureData, Point } from "./data"
+import type { Path } from "./path"
 
 const TRACE = 240 // frames
-const REACH = 44 // [px], from the tip, within which it can be grabbed
-type Point = [number, number]
+const [REACH, NEAR] = [44, 22] // [px], from the tip and from a control point, within which they are grabbed
+const TIE = 8 // [px], by which a point must be nearer than the tip, unless it is selected
+
+/** An empty canvas, in pixels of the page. */
+export function inkOf(canvas: HTMLCanvasElement): CanvasRenderingContext2D | null {
+    const ratio = window.devicePixelRatio || 1
+    canvas.width = Math.round(canvas.clientWidth * ratio)
+    canvas.height = Math.round(canvas.clientHeight * ratio)
+    const ink = canvas.getContext("2d")
+    ink?.scale(ratio, ratio)
+    return ink
+}
 
 export class View {
     readonly canvas = document.createElement("canvas")
@@ -14,15 +25,9 @@ export class View {
     private left = 0
     private top = 0
 
-    constructor(
-        private readonly bench: Bench,
-        private readonly data: FigureData,
-    ) {}
+    constructor(private readonly bench: Bench, private readonly data: FigureData) {}
 
-    clear(): void {
-        this.trace = []
-    }
-
+    readonly clear = () => (this.trace = [])
     /** Note where the tip is now. */
     follow(): void {
         this.trace.push(this.bench.tip())
@@ -30,97 +35,81 @@ export class View {
     }
 
     /** Metres of the picture that a way of so many pixels is. */
-    metres(dx: number, dy: number): Point {
-        return [dx / this.scale, -dy / this.scale]
+    readonly metres = (dx: number, dy: number): Point => [dx / this.scale, -dy / this.scale]
+    /** What is grabbed at a place in the window: the nearest control point, "tip", or null. */
+    grabbed(x: number, y: number, path: Path, selected: number | null): number | "tip" | null {
+        const { controls } = this.data
+        const { left, top } = this.canvas.getBoundingClientRect()
+        const distance = ([atX, atY]: Point) => Math.hypot(x - left - atX, y - top - atY)
+        const away = (place: Point) => distance(this.pixel(place))
+        const far = controls.includes("drag") ? path.spots().map(away) : []
+        const nearest = Math.min(...far)
+        const tip = controls.includes("pull") ? away(this.bench.tip()) : Infinity
+        if (nearest < NEAR && (far.indexOf(nearest) === selected || nearest + TIE < tip)) return far.indexOf(nearest)
+        return tip < REACH ? "tip" : null
     }
 
-    /** Whether a place in the window is near enough to the tip. */
-    holds(x: number, y: number): boolean {
-        const box = this.canvas.getBoundingClientRect()
-        const [tipX, tipY] = this.pixel(this.bench.tip())
-        return Math.hypot(x - box.left - tipX, y - box.top - tipY) < REACH
-    }
-
-    draw(outline: number[]): void {
-        const ink = this.prepared()
+    draw(path: Path, selected: number | null): void {
+        const ink = inkOf(this.canvas)
         if (!ink) return
-        const { colours } = this.data
-        this.line(ink, points(outline), colours.path, 2)
+        this.fill()
+        const { colours, controls } = this.data
+        this.line(ink, points(path.outline), colours.path, 2)
+        const spots = controls.includes("drag") ? path.spots() : []
+        if (selected !== null) this.disc(ink, spots[selected]!, 9, colours.selected)
+        for (const spot of spots) this.disc(ink, spot, 6, colours.point)
         this.line(ink, this.trace, this.bench.data.pale, 3)
+        for (const mark of path.fault?.marks ?? []) this.disc(ink, mark, 4, colours.warning)
         this.robot(ink)
         this.marker(ink)
         this.force(ink)
     }
 
-    private prepared(): CanvasRenderingContext2D | null {
-        const { canvas } = this
-        const { clientWidth: width, clientHeight: height } = canvas
-        const ratio = window.devicePixelRatio || 1
-        if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
-            canvas.width = Math.round(width * ratio)
-            canvas.height = Math.round(height * ratio)
-        }
+    /** Let the figure's box fill the canvas. */
+    private fill(): void {
+        const { clientWidth: width, clientHeight: height } = this.canvas
         const [left, right, bottom, top] = this.data.box
         this.scale = Math.min(width / (right - left), height / (top - bottom))
         this.left = (left + right) / 2 - width / 2 / this.scale
         this.top = (bottom + top) / 2 + height / 2 / this.scale
-        const ink = canvas.getContext("2d")
-        ink?.setTransform(ratio, 0, 0, ratio, 0, 0)
-        ink?.clearRect(0, 0, width, height)
-        return ink
     }
 
-    private pixel([x, y]: Point): Point {
-        return [(x - this.left) * this.scale, (this.top - y) * this.scale]
-    }
-
+    private readonly pixel = ([x, y]: Point): Point => [(x - this.left) * this.scale, (this.top - y) * this.scale]
     private robot(ink: CanvasRenderingContext2D): void {
         const { sizes, strip, colours } = this.data
+        const { dark, colour } = this.bench.data
         const picture = this.bench.picture()
         const links = sizes.bars - strip
         for (let i = 0; i < sizes.bars; i++) {
             const ends = points(picture.subarray(4 * i, 4 * i + 4))
-            const behind = i < links && i % 2 === 0
-            this.line(ink, ends, behind ? this.bench.data.dark : this.bench.data.colour, i < links ? 9 : 5)
+            this.line(ink, ends, i < links && i % 2 === 0 ? dark : colour, i < links ? 9 : 5)
         }
-        for (const joint of points(picture.subarray(4 * sizes.bars)))
-            this.disc(ink, joint, 5, colours.steel)
+        for (const joint of points(picture.subarray(4 * sizes.bars))) this.disc(ink, joint, 5, colours.steel)
         this.disc(ink, this.bench.tip(), 5, colours.ink)
     }
 
     /** A ring at a reference point that a law aims at, a dot with a white rim at a closest point. */
     private marker(ink: CanvasRenderingContext2D): void {
-        const { aim, dark } = this.bench.data
-        const place = this.bench.aim()
-        this.disc(ink, place, aim === "theta_ref" ? 9 : 7, aim === "theta_ref" ? dark : "#fff")
-        this.disc(ink, place, aim === "theta_ref" ? 6 : 5, aim === "theta_ref" ? "#fff" : dark)
+        const { dark } = this.bench.data
+        const { aim } = this.bench.does()
+        const [rim, radius, ...colours] = aim === "theta_ref" ? [9, 6, dark, "#fff"] as const : [7, 5, "#fff", dark] as const
+        this.disc(ink, this.bench.aim(), rim, colours[0])
+        this.disc(ink, this.bench.aim(), radius, colours[1])
     }
 
     private force(ink: CanvasRenderingContext2D): void {
-        const begin = this.pixel(this.bench.tip())
-        const end = this.pixel(this.bench.arrow())
+        const [begin, end] = [this.pixel(this.bench.tip()), this.pixel(this.bench.arrow())]
         const [dx, dy] = [end[0] - begin[0], end[1] - begin[1]]
         const length = Math.hypot(dx, dy)
         if (length < 6) return
         const [x, y] = [(8 * dx) / length, (8 * dy) / length]
-        ink.strokeStyle = this.data.colours.force
-        ink.lineWidth = 3
-        ink.beginPath()
-        ink.moveTo(...begin)
-        ink.lineTo(...end)
-        ink.moveTo(end[0] - x - y / 2, end[1] - y + x / 2)
-        ink.lineTo(...end)
-        ink.lineTo(end[0] - x + y / 2, end[1] - y - x / 2)
-        ink.stroke()
+        const barbs: Point[] = [[end[0] - x - y / 2, end[1] - y + x / 2], end, [end[0] - x + y / 2, end[1] - y - x / 2]]
+        for (const way of [[begin, end], barbs]) stroke(ink, way, this.data.colours.force, 3)
     }
 
     private line(ink: CanvasRenderingContext2D, way: Point[], colour: string, width: number): void {
-        ink.strokeStyle = colour
-        ink.lineWidth = width
         ink.lineCap = ink.lineJoin = "round"
-        ink.beginPath()
-        for (const point of way) ink.lineTo(...this.pixel(point))
-        ink.stroke()
+        stroke(ink, way.map(point => this.pixel(point)), colour, width)
     }
 
     private disc(ink: CanvasRenderingContext2D, place: Point, radius: number, colour: string): void {
@@ -129,6 +118,14 @@ export class View {
         ink.arc(...this.pixel(place), radius, 0, 2 * Math.PI)
         ink.fill()
     }
+}
+
+export function stroke(ink: CanvasRenderingContext2D, way: Point[], colour: string, width: number): void {
+    ink.strokeStyle = colour
+    ink.lineWidth = width
+    ink.beginPath()
+    for (const point of way) ink.lineTo(...point)
+    ink.stroke()
 }
 
 function points(flat: ArrayLike<number>): Point[] {

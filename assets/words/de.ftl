@@ -1312,6 +1312,11 @@ error-no_nickname = ein Spitzname hat mindestens ein Zeichen
 standalone-path = Bahn
 standalone-plot = Abstand von der Bahn [mm] über der Zeit [s]
 standalone-scene = Der Roboter unter dem Gesetz { $law }, von der Seite gezeichnet
+standalone-law = Gesetz
+standalone-late = Die simulierte Zeit hinkt nach: Dieses Gerät ist zu langsam, um in Echtzeit zu zeichnen.
+standalone-coincide = zwei Kontrollpunkte würden zusammenfallen
+standalone-selected = Kontrollpunkt { $number } von { $all } ist gewählt: Mit den Pfeiltasten wird er bewegt.
+standalone-drag_hint = Die Punkte der Bahn lassen sich ziehen; die Taste N wählt den nächsten, und die Pfeiltasten bewegen ihn.
 standalone-no_script = Diese Abbildung braucht JavaScript.
 
 ## Der Kurs als statische Seiten: assets/site, app/exports/site

@@ -1034,6 +1034,11 @@ error-no_nickname = a nickname has at least one character
 standalone-path = Path
 standalone-plot = Distance to the path [mm] over time [s]
 standalone-scene = The robot under the law { $law }, drawn from the side
+standalone-law = Law
+standalone-late = Simulated time runs late: this device is too slow to draw in real time.
+standalone-coincide = two control points would coincide
+standalone-selected = Control point { $number } of { $all } is selected: move it with the arrow keys.
+standalone-drag_hint = Drag the points of the path, or press N to select the next one and move it with the arrow keys.
 standalone-no_script = This figure needs JavaScript.
 
 ## The course as a static site: assets/site, app/exports/site

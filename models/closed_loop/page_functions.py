@@ -13,10 +13,12 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.faults import not_finite
 from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.errors import Message
 from onpath.models.paths.projection import LocalCurve, basis
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.robots import FASTEST_JOINT, Robot
+from onpath.models.systems.robots import FASTEST_JOINT, NOT_FINITE, Robot
 
 GRID = 128
 """Points of the path from which the search for the closest one begins."""
@@ -39,7 +41,8 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
         aim: (table, θ) -> σ(θ) in the picture
         distance: (table, grid, y, guess of θ) -> Euclidean distance to the path, [m]
         brake: (table, y, θ) -> the unit tangent at θ, (p, 1), see `brake_at`
-        fault: (q, v) -> 1 where the simulation has diverged, as `Robot.fault` says, else 0
+        fault: (q, v, θ_r) -> why a run has stopped: 0 for not at all, or the place in
+            `stop_reasons`, counted from 1
         hand: (y, from, to) -> y moved in the path's plane as the picture's point moves
     """
     system = robot.system
@@ -47,8 +50,8 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
     seen, offset = view_of(robot)
     bars, joints = robot.skeleton(q, ca.SX(1))
     table, theta = ca.SX.sym("table", *kind.table_shape), ca.SX.sym("theta")
-    lift = _lift(robot, kind)
-    place = ca.Function("place", [y], [_placed(robot, y, seen) + offset])
+    lift = lift_of(robot, kind)
+    place = ca.Function("place", [y], [placed(robot, y, seen) + offset])
     local = LocalCurve.from_values(theta, kind.closed, table @ basis(theta, kind.closed))
     tangent = lift(local.first, True)
     force = ca.SX.sym("force", system.p)
@@ -110,7 +113,7 @@ def _affine(robot: Robot) -> tuple[ca.DM, ca.DM]:
     return ca.DM((robot.place(np.eye(p)) - origin).T), ca.DM(origin)
 
 
-def _placed(robot: Robot, vector: ca.SX, seen: ca.DM) -> ca.SX:
+def placed(robot: Robot, vector: ca.SX, seen: ca.DM) -> ca.SX:
     """A vector of the output space in the picture."""
     return ca.densify((seen @ _affine(robot)[0]) @ vector)
 
@@ -121,7 +124,7 @@ def _unplaced(robot: Robot, point: ca.SX) -> ca.SX:
     return linear.T @ (point - origin)
 
 
-def _lift(robot: Robot, kind: Kind) -> Lift:
+def lift_of(robot: Robot, kind: Kind) -> Lift:
     """From coordinates of the curve to the output space; vectors with `rate`."""
     frame = robot.frame.space if kind.space and robot.frame.space else robot.frame
     plane, size = frame.at(ca.SX(ca.DM(list(frame.numbers)))), kind.table_shape[0] // 4
@@ -169,13 +172,28 @@ def _improved(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX, theta: ca.SX) -> c
 
 
 def _fault(robot: Robot) -> ca.Function:
-    """See `first_fault` and `Robot.broken`."""
+    """See `fault_in`: the first reason that holds."""
     n = robot.system.n
-    q, v = ca.SX.sym("q", n), ca.SX.sym("v", n)
-    good = ca.fabs(v[0]) <= FASTEST_JOINT
-    for x, most in [(q[i], MOST) for i in range(n)] + [(v[i], FASTEST_JOINT) for i in range(1, n)]:
-        good = ca.fmin(good, ca.fabs(x) <= most)
-    return ca.Function("fault", [q, v], [ca.fmax(ca.if_else(good, 0, 1), robot.broken(q, v))])
+    q, v, theta_ref = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("theta_ref")
+    fast, finite = ca.SX(0), ca.SX(1)
+    for i in range(n):
+        fast = ca.fmax(fast, ca.logic_and(ca.fabs(v[i]) > FASTEST_JOINT, ca.fabs(v[i]) <= MOST))
+        finite = ca.fmin(ca.fmin(finite, ca.fabs(q[i]) <= MOST), ca.fabs(v[i]) <= MOST)
+    checks = [fast, *ca.vertsplit(robot.broken(q, v)), ca.logic_not(finite), theta_ref != theta_ref]
+    code = ca.SX(0)
+    for number, bad in reversed([*enumerate(checks, 1)]):
+        code = ca.if_else(bad, number, code)
+    return ca.Function("fault", [q, v, theta_ref], [code])
+
+
+def stop_reasons(robot: Robot, parameters: Parameters, q: Array, law: str) -> list[Message]:
+    """Why a run may stop, in the order of `fault`.
+
+    Args:
+        q: a configuration of the run; see `Robot.reasons`.
+    """
+    fast = Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})
+    return [fast, *robot.reasons(q, parameters), NOT_FINITE, not_finite(law)]
 
 
 def _hand(robot: Robot, kind: Kind, seen: ca.DM, y: ca.SX) -> ca.Function:
@@ -184,7 +202,7 @@ def _hand(robot: Robot, kind: Kind, seen: ca.DM, y: ca.SX) -> ca.Function:
     plane, zeta = frame.at(ca.SX(ca.DM(list(frame.numbers)))), ca.SX.zeros(robot.system.p - 2, 1)
     axes = ca.horzcat(*(plane.join(ca.SX(ca.DM(e)), zeta, True) for e in ([1, 0], [0, 1])))
     begin, end = ca.SX.sym("begin", 2), ca.SX.sym("end", 2)
-    moved = axes @ (ca.inv(_placed(robot, axes, seen)) @ (end - begin))
+    moved = axes @ (ca.inv(placed(robot, axes, seen)) @ (end - begin))
     return ca.Function("hand", [y, begin, end], [_dense(y + moved)])
 
 

@@ -1,14 +1,16 @@
 """Translates kernels and other CasADi functions to WebAssembly, for pages without a server.
 
 The scalar instructions are translated one by one, like those of `translated_loop.py`. Each rounds
-exactly as in CasADi's virtual machine, except for sin, cos, log and tanh, which are the browser's
-and may differ in the last bit.
+exactly as in CasADi's virtual machine, except for sin, cos, log, tanh, acos and atan2, which are
+the browser's and may differ in the last bit.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
 
 import casadi as ca
 
@@ -30,6 +32,8 @@ OPERATIONS = {
     ca.OP_COS: "0 cos",
     ca.OP_LOG: "0 log",
     ca.OP_TANH: "0 tanh",
+    ca.OP_ACOS: "0 acos",
+    ca.OP_ATAN2: "0 1 atan2",
     ca.OP_FABS: "0 f64.abs",
     ca.OP_FLOOR: "0 f64.floor",
     ca.OP_FMIN: "0 1 0 1 f64.le 1 1 f64.ne i32.or select",
@@ -39,6 +43,7 @@ OPERATIONS = {
     ca.OP_EQ: "0 1 f64.eq f64.convert_i32_u",
     ca.OP_NE: "0 1 f64.ne f64.convert_i32_u",
     ca.OP_NOT: "0 =0 f64.eq f64.convert_i32_u",
+    ca.OP_AND: "0 =0 f64.ne 1 =0 f64.ne i32.and f64.convert_i32_u",
     ca.OP_IF_ELSE_ZERO: "1 =0 0 =0 f64.ne select",
 }
 """Stack code of each operation: 0 and 1 are its operands, =x a constant. fmin and fmax return the
@@ -46,21 +51,40 @@ other operand of a NaN, and the first of equal ones."""
 _CODES = {code: text.split() for code, text in OPERATIONS.items()}
 
 
-def wasm_of(functions: Mapping[str, ca.Function], loops: Mapping[str, Kernel]) -> bytes:
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """A function that is repeated along rows of numbers.
+
+    Attributes:
+        step: (state, constants, rows) -> (state, result row).
+        stride: how many numbers further the rows begin at the next step.
+    """
+
+    step: ca.Function
+    stride: int
+
+
+def wasm_of(
+    functions: Mapping[str, ca.Function],
+    loops: Mapping[str, Kernel],
+    scans: Mapping[str, Scan] = MappingProxyType({}),
+) -> bytes:
     """A module of functions on doubles in memory.
 
     A function takes the addresses of its inputs, then of its outputs, all dense matrices stored by
     columns. A loop takes (state, settings, curve table, log, ticks): it advances the state and
     writes a row of the log for each of the ticks. It needs the state's leading `Kernel.changed`
-    numbers only, and at least one tick.
+    numbers only, and at least one tick. A scan takes (state, constants, rows, results, steps), at
+    least one step; results may be the rows themselves.
 
     Raises:
         NotImplementedError: an operation has no translation; the message names it.
     """
     own = [_translated(name, function) for name, function in functions.items()]
-    for name, kernel in loops.items():
-        tick = _translated(f"{name}.tick", _tick(kernel))
-        own += [tick, _repeated(name, len(MATHEMATICS) + len(own), kernel.log.size)]
+    repeated = {name: Scan(_tick(kernel), 0) for name, kernel in loops.items()} | dict(scans)
+    for name, scan in repeated.items():
+        step = _translated(f"{name}.step", scan.step)
+        own += [step, _repeated(name, len(MATHEMATICS) + len(own), scan)]
     return wasm_module(own)
 
 
@@ -139,11 +163,15 @@ def _code_of(code: int) -> Iterable[str]:
     return _CODES[code]
 
 
-def _repeated(name: str, tick: int, row: int) -> WasmFunction:
-    """Calls the function `tick` again and again, as `wasm_of` says of loops."""
-    state, settings, curve, log, ticks = (("local.get", i) for i in range(5))
-    each = [state, settings, curve, state, log, ("call", tick)]
-    on = [log, ("i32.const", DOUBLE * row), "i32.add", ("local.set", 3)]
-    count = [ticks, ("i32.const", 1), "i32.sub", ("local.set", 4)]
-    again = [ticks, ("i32.const", 0), "i32.gt_s", ("br_if", 0)]
+def _repeated(name: str, step: int, scan: Scan) -> WasmFunction:
+    """Calls the function `step` again and again, as `wasm_of` says of loops and scans."""
+    state, constants, rows, results, left = (("local.get", i) for i in range(5))
+    each = [state, constants, rows, state, results, ("call", step)]
+    on = list[Part]()
+    for place, numbers in ((2, scan.stride), (3, scan.step.numel_out(1))):
+        if numbers:
+            by = [("i32.const", DOUBLE * numbers), "i32.add", ("local.set", place)]
+            on += [("local.get", place), *by]
+    count = [left, ("i32.const", 1), "i32.sub", ("local.set", 4)]
+    again = [left, ("i32.const", 0), "i32.gt_s", ("br_if", 0)]
     return WasmFunction(name, 5, 0, ["loop", *each, *on, *count, *again, "end"])

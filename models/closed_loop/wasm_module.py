@@ -15,8 +15,9 @@ Part = str | tuple[str, int | float]
 """An instruction, and its number: of a local variable, a function, a depth, or a constant. Those of
 f64.load and f64.store are offsets in bytes."""
 
-MATHEMATICS = ("sin", "cos", "log", "tanh")
-"""Functions that a module imports from "Math": the numbers 0 to 3 of ("call", number)."""
+MATHEMATICS = ("sin", "cos", "log", "tanh", "acos", "atan2")
+"""Functions that a module imports from "Math": the first numbers of ("call", number)."""
+_OF_TWO = ("atan2",)
 _PLAIN = {
     "end": 0x0B,
     "select": 0x1B,
@@ -27,6 +28,7 @@ _PLAIN = {
     "f64.le": 0x65,
     "i32.add": 0x6A,
     "i32.sub": 0x6B,
+    "i32.and": 0x71,
     "i32.or": 0x72,
     "f64.abs": 0x99,
     "f64.neg": 0x9A,
@@ -69,15 +71,19 @@ def wasm_module(functions: Sequence[WasmFunction]) -> bytes:
     """
     kinds = sorted({function.pointers for function in functions})
     unary = _FUNCTION + _list([_F64]) + _list([_F64])
-    types = [unary] + [_FUNCTION + _list([_I32] * count) + _list([]) for count in kinds]
+    binary = _FUNCTION + _list([_F64, _F64]) + _list([_F64])
+    taken = [_FUNCTION + _list([_I32] * count) + _list([]) for count in kinds]
     memory = _name("Math") + _name("memory") + b"\x02\x00" + _whole(1)
-    imports = [_name("Math") + _name(name) + b"\x00\x00" for name in MATHEMATICS]
-    own = [_whole(1 + kinds.index(function.pointers)) for function in functions]
+    imports = [
+        _name("Math") + _name(name) + b"\x00" + _whole(name in _OF_TWO) for name in MATHEMATICS
+    ]
+    own = [_whole(2 + kinds.index(function.pointers)) for function in functions]
     exports = [
         _name(function.name) + b"\x00" + _whole(len(MATHEMATICS) + i)
         for i, function in enumerate(functions)
     ]
-    sections = {1: types, 2: [*imports, memory], 3: own, 7: exports, 10: map(_code, functions)}
+    types, bodies = [unary, binary, *taken], map(_code, functions)
+    sections = {1: types, 2: [*imports, memory], 3: own, 7: exports, 10: bodies}
     parts = (bytes([number]) + _sized(_list(content)) for number, content in sections.items())
     return b"\0asm\x01\0\0\0" + b"".join(parts)
 

@@ -17,9 +17,10 @@ from onpath.models.systems.drawing import Angle, Drawing, Length
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.rigid_robots import PlanarRobot
-from onpath.models.systems.robots import BalancedLinkage, RobotEntry, first_fault
+from onpath.models.systems.robots import ArmGeometry, BalancedLinkage, RobotEntry, first_fault
 from onpath.models.systems.system import MechanicalSystem
 
+COLLAPSE = Message("stop.collapsed")
 COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed
 SHORT = 20  # ticks
 SLOW, FAR = (
@@ -114,6 +115,30 @@ class RigidFiveBar(PlanarRobot):
         """See `Robot.broken` and `collapse`."""
         return ca.fabs(ca.sin(q[0] - q[1])) < COLLAPSED
 
+    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+        """See `Robot.reasons`."""
+        return (COLLAPSE,)
+
+    @property
+    def geometry(self) -> ArmGeometry:
+        """See `Robot.geometry`."""
+        return ArmGeometry(self._margin, self._rest)
+
+    def _margin(self, z: ca.SX) -> ca.SX:
+        """As `margin`."""
+        l1, l4 = self._lengths
+        cosine = (l1**2 + l4**2 - (z[0] + l4) ** 2 - (z[1] + l1) ** 2) / (2 * l1 * l4)
+        return ca.sqrt(ca.fmax(1 - cosine**2, 0))
+
+    def _rest(self, y: ca.SX) -> ca.SX:
+        """As `five_bar.inverse_kinematics`."""
+        l1, l4 = self._lengths
+        x, z = y[0] + l4, y[1] + l1
+        reach = ca.sqrt(x**2 + z**2)
+        q1 = ca.atan2(z, x) + ca.acos((l1**2 + reach**2 - l4**2) / (2 * l1 * reach))
+        q2 = ca.atan2(l1 * ca.sin(q1) - z, l1 * ca.cos(q1) - x)
+        return ca.vertcat(q1, q2 - 2 * np.pi * ca.floor(q2 / (2 * np.pi)))
+
     def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
         """See `Robot.skeleton`; rigid links have no deflection to exaggerate."""
         l1, l4 = self._lengths
@@ -156,7 +181,7 @@ def collapse(q: Array) -> tuple[NDArray[np.bool_], Message]:
     """
     with np.errstate(invalid="ignore"):  # `first_fault` finds numbers that are not finite
         collapsed = five_bar.singularity_margin(q) < COLLAPSED
-    return collapsed, Message("stop.collapsed")
+    return collapsed, COLLAPSE
 
 
 ROBOT = RobotEntry(

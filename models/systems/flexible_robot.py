@@ -24,7 +24,7 @@ from onpath.models.systems.drawing import (
     Length,
     Waist,
 )
-from onpath.models.systems.five_bar_robot import ANGLES, COLLAPSED, LENGTHS, collapse
+from onpath.models.systems.five_bar_robot import ANGLES, COLLAPSE, COLLAPSED, LENGTHS, collapse
 from onpath.models.systems.flexible_five_bar import RIGID
 from onpath.models.systems.flexible_links import FlexibleLinks, load_links
 from onpath.models.systems.flexible_parameters import PLANE, FlexibleParameters
@@ -198,7 +198,16 @@ class FlexibleFiveBar:
         """See `Robot.broken`."""
         bent, rate = (ca.fabs(ca.dot(x[RIGID:], ca.DM(self.beam.tip))) for x in (q, v))
         bad = ca.fmax(bent > MOST_BENT * self.links.beam, rate > FASTEST_TIP)
-        return ca.fmax(bad, ca.fabs(ca.sin(q[0] - q[1])) < COLLAPSED)
+        return ca.vertcat(bad, ca.fabs(ca.sin(q[0] - q[1])) < COLLAPSED)
+
+    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+        """See `Robot.reasons`."""
+        return (UNSTABLE if self.is_unstable_inside(q, parameters) else BENT), COLLAPSE
+
+    @property
+    def geometry(self) -> None:
+        """See `Robot.geometry`: its margin is a ratio of singular values."""
+        return None
 
     def place(self, y: Array) -> Array:
         """See `Robot.place`."""

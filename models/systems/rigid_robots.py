@@ -8,11 +8,12 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.errors import Message
 from onpath.models.paths.frames import Frame, Plane
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.robots import BalancedLinkage
+from onpath.models.systems.robots import ArmGeometry, BalancedLinkage
 
 _PLANE, _GRIP, _DRAWING = Plane(), Grip(), Drawing()  # shared, because they are keys of caches
 
@@ -37,8 +38,17 @@ class RigidRobot:
         return False
 
     def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
-        """See `Robot.broken`: nowhere."""
-        return ca.SX(0)
+        """See `Robot.broken`: nothing is checked."""
+        return ca.SX(0, 1)
+
+    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+        """See `Robot.reasons`: none."""
+        return ()
+
+    @property
+    def geometry(self) -> ArmGeometry | None:
+        """See `Robot.geometry`: none."""
+        return None
 
     @property
     def grip(self) -> Grip:

@@ -43,6 +43,19 @@ class BalancedLinkage:
 
 
 @dataclass(frozen=True, slots=True)
+class ArmGeometry:
+    """Kinematics of a robot in symbols, for pages that compute without Python.
+
+    Attributes:
+        margin: as `Robot.margin`, of a point of the path's plane, (2, 1) -> (1, 1).
+        rest: as `Robot.rest`, of an end-point within reach, (p, 1) -> (n, 1).
+    """
+
+    margin: Callable[[ca.SX], ca.SX]
+    rest: Callable[[ca.SX], ca.SX]
+
+
+@dataclass(frozen=True, slots=True)
 class FlexibleLink:
     """What the page needs to know about a robot whose last link bends.
 
@@ -158,7 +171,16 @@ class Robot(Protocol):
         ...
 
     def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
-        """1 where a check of `fault` fails, besides those of every robot, else 0."""
+        """1 for each check of `fault` that fails, besides those of every robot, else 0, (k, 1)."""
+        ...
+
+    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+        """What `fault` says if each of these checks fails at q, shape (n,): k reasons."""
+        ...
+
+    @property
+    def geometry(self) -> ArmGeometry | None:
+        """Parts of its kinematics in symbols; None if there are none."""
         ...
 
     def place(self, y: Array) -> Array:

@@ -39,9 +39,9 @@ from onpath.models.systems.drawing import Angle, Depths, Drawing, Length, Waist
 from onpath.models.systems.parameter_specs import model_error, number, unknown_payload
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.rigid_robots import RigidRobot
-from onpath.models.systems.robots import RobotEntry, first_fault
+from onpath.models.systems.robots import ArmGeometry, RobotEntry, first_fault
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, lagrange_bias, mechanical_system
-from onpath.models.systems.two_links import elbow_sine, elbow_up
+from onpath.models.systems.two_links import elbow_sine, elbow_sine_of, elbow_up, elbow_up_of
 
 NAMES = ("a1", "a2", "a3", "k", "g2", "g3", "b1", "b2", "b3", "l2", "l3")
 MIDDLE = (0.25, 0.0, 0.08)  # the end-point y = 0 in the robot's frame, (x0, 0, z0), [m]
@@ -232,6 +232,32 @@ class SpatialArm(RigidRobot):
         """See `Robot.broken`."""
         radius = self.links.l2 * ca.cos(q[1]) + self.links.l3 * ca.cos(q[1] + q[2])
         return ca.fmax(ca.sin(q[2]) > -STRETCHED, radius < ABOVE_BASE)
+
+    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+        """See `Robot.reasons`."""
+        return (SINGULAR,)
+
+    @property
+    def geometry(self) -> ArmGeometry:
+        """See `Robot.geometry`."""
+        return ArmGeometry(self._margin, self._rest)
+
+    def _margin(self, z: ca.SX) -> ca.SX:
+        """As `margin`, in the plane of the path."""
+
+        def size(z: ca.SX) -> ca.SX:
+            x, y2, height = ca.vertsplit(self.frame.join(z, ca.SX.zeros(1)) + ca.DM(list(MIDDLE)))
+            squared = x**2 + y2**2
+            sine = elbow_sine_of(squared + height**2, self.links.l2, self.links.l3)
+            return ca.sqrt(squared) * sine
+
+        return size(z) / size(ca.SX.zeros(2))
+
+    def _rest(self, y: ca.SX) -> ca.SX:
+        """As `rest`."""
+        x, y2, height = ca.vertsplit(y + ca.DM(list(MIDDLE)))
+        both = elbow_up_of(ca.sqrt(x**2 + y2**2), height, self.links.l2, self.links.l3)
+        return ca.vertcat(ca.atan2(y2, x), both)
 
     def place(self, y: Array) -> Array:
         """See `Robot.place`."""

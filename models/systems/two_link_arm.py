@@ -36,9 +36,9 @@ from onpath.models.systems.drawing import Angle, Drawing, Length
 from onpath.models.systems.parameter_specs import model_error, unknown_payload
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.rigid_robots import PlanarRobot
-from onpath.models.systems.robots import RobotEntry, first_fault
+from onpath.models.systems.robots import ArmGeometry, RobotEntry, first_fault
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
-from onpath.models.systems.two_links import elbow_sine, elbow_up
+from onpath.models.systems.two_links import elbow_sine, elbow_sine_of, elbow_up, elbow_up_of
 
 NAMES = ("a1", "a2", "a3", "g1", "g2", "b1", "b2", "l1", "l2")
 STRETCHED = 0.02  # -sin q2 below which the arm counts as stretched or folded
@@ -200,6 +200,19 @@ class TwoLinkArm(PlanarRobot):
     def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
         """See `Robot.broken`."""
         return ca.sin(q[1]) > -STRETCHED
+
+    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+        """See `Robot.reasons`."""
+        return (SINGULAR,)
+
+    @property
+    def geometry(self) -> ArmGeometry:
+        """See `Robot.geometry`."""
+        l1, l2 = self.links.l1, self.links.l2
+        return ArmGeometry(
+            margin=lambda z: elbow_sine_of((z[0] + l2) ** 2 + (z[1] + l1) ** 2, l1, l2),
+            rest=lambda y: elbow_up_of(y[0] + l2, y[1] + l1, l1, l2),
+        )
 
     def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
         """See `Robot.skeleton`: bars of links 1 and 2; joints at base and elbow."""

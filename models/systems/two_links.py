@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
@@ -44,3 +45,16 @@ def elbow_up(x: Array, z: Array, first: float, second: float, pivot: str) -> tup
     q2 = -np.arccos(cosine)
     q1 = np.arctan2(z, x) - np.arctan2(second * np.sin(q2), first + second * np.cos(q2))
     return q1, q2
+
+
+def elbow_sine_of(squared: ca.SX, first: float, second: float) -> ca.SX:
+    """`elbow_sine` in symbols."""
+    cosine = (squared - first**2 - second**2) / (2 * first * second)
+    return ca.sqrt(ca.fmax(1 - cosine**2, 0))
+
+
+def elbow_up_of(x: ca.SX, z: ca.SX, first: float, second: float) -> ca.SX:
+    """`elbow_up` in symbols, for end-points within reach, (2, 1)."""
+    q2 = -ca.acos((x**2 + z**2 - first**2 - second**2) / (2 * first * second))
+    away = ca.atan2(second * ca.sin(q2), first + second * ca.cos(q2))
+    return ca.vertcat(ca.atan2(z, x) - away, q2)

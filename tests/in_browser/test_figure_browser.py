@@ -18,6 +18,8 @@ import onpath
 from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.lessons.words import ENGLISH, Words
+from onpath.models.control.law_poles import channels_of
+from onpath.models.errors import Message
 from onpath.models.paths.path_design import presets
 from tests.support.axe import RUN, SCRIPT
 from tests.support.browser import THREE_FRAMES
@@ -33,6 +35,8 @@ WAIT = 60.0  # [s]
 LAWS = ("trajectory_tracking", "path_following")
 PATHS = ("circle", "clover", "segment")
 CLOSE = 1e-12
+EDITED = 1e-10
+"""After an edit: the curve itself is fitted with other roundings, to 1e-13."""
 REFUSED = """async () => {
     const tried = []
     await new Promise(done => setTimeout(() => {  // what is evaluated by a tool may use eval
@@ -55,14 +59,25 @@ ACT = """([what, value]) => {
     const {simulation} = onpath
     if (what === "advance") onpath.advance(value)
     else if (what === "set") simulation.set(...value)
+    else if (what === "move") simulation.followed.move(...value)
+    else if (what === "drop") simulation.followed.finish()
+    else if (what === "change") simulation.benches[value[0]].change(value[1])
     else simulation[what](value)
 }"""
 LOGGED = "onpath.simulation.benches.map(bench => [...bench.logged()])"
 DISTANCES = "onpath.simulation.benches.map(bench => bench.distance)"
 
 
+TABLE = """(() => {
+    const {table, data} = onpath.simulation.followed
+    return [...onpath.simulation.kernels.numbers.subarray(table, table + data.table.length)]
+})()"""
+OTHERS = ("waiting_clock", "set_point")
+
+
 def choice(robot: str = "five_bar") -> FigureChoice:
-    return chosen(robot, LAWS, {name: presets()[name].curve for name in PATHS})
+    paths = {name: presets()[name].curve for name in PATHS}
+    return chosen(robot, LAWS, paths, choices=OTHERS)
 
 
 class Opened:
@@ -103,6 +118,15 @@ def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterat
     opened.page.close()
 
 
+@pytest.fixture(scope="module")
+def still(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Opened]:
+    """A figure that does nothing between what it is told to do, once it is loaded again."""
+    opened = Opened(browser, written(tmp_path_factory.mktemp("still")))
+    opened.page.add_init_script("window.requestAnimationFrame = () => 0")
+    yield opened
+    opened.page.close()
+
+
 def test_it_moves_by_itself_and_asks_nobody_for_anything(browser: Browser, tmp_path: Path) -> None:
     file = written(tmp_path)
     opened = Opened(browser, file)
@@ -137,8 +161,14 @@ PULLED: list[Act] = [
 ]
 
 
+DRAGGED: list[Act] = [
+    *(("move", [1, [0.05, 0.05]]), ("advance", 100), ("move", [1, [0.09, 0.02]]), ("drop", None)),
+    *(("advance", 200), ("move", [0, [0.2, 0.2]]), ("advance", 500), ("drop", None)),
+]
+
+
 def acts() -> st.SearchStrategy[list[Act]]:
-    coordinate = st.floats(-0.03, 0.03)
+    coordinate, place = st.floats(-0.03, 0.03), st.floats(-0.2, 0.2)
     each = (
         st.tuples(st.just("advance"), st.integers(1, 600)),
         st.tuples(st.just("hold"), st.booleans()),
@@ -147,6 +177,9 @@ def acts() -> st.SearchStrategy[list[Act]]:
         st.tuples(st.just("choose"), st.integers(0, len(PATHS) - 1)),
         st.tuples(st.just("reset"), st.none()),
         st.tuples(st.just("pull"), st.one_of(st.none(), st.tuples(coordinate, coordinate))),
+        st.tuples(st.just("change"), st.tuples(st.integers(0, 1), st.integers(0, 3))),
+        st.tuples(st.just("move"), st.tuples(st.integers(0, 1), st.tuples(place, place))),
+        st.tuples(st.just("drop"), st.none()),
     )
     return st.lists(st.one_of(each), min_size=3, max_size=12).map(lambda found: [*BEGIN, *found])
 
@@ -157,14 +190,22 @@ def acts() -> st.SearchStrategy[list[Act]]:
 )
 @given(acts())
 @example(PULLED)
-def test_the_same_inputs_give_the_trajectory_of_python(opened: Opened, script: list[Act]) -> None:
+@example([*BEGIN, ("advance", 300), *DRAGGED, ("choose", 2), *DRAGGED, ("reset", None)])
+@example([*BEGIN, ("change", [0, 2]), ("advance", 700), ("change", [0, 3]), ("advance", 9)])
+def test_the_same_inputs_give_the_trajectory_of_python(still: Opened, script: list[Act]) -> None:
+    opened = still
+    opened.page.reload()  # its paths are as they were
+    wait_for(lambda: opened.number("'onpath' in window"), WAIT)
     python = PythonFigure(choice())
     for act in (*script, ("advance", 1000)):
         opened.do(act)
         python.act(act)
         if act[0] == "advance":
             found = np.array(opened.number(LOGGED))
-            np.testing.assert_allclose(found, np.array(python.rows()), rtol=0, atol=CLOSE)
+            edited = any(act[0] == "move" for act in script)
+            close = EDITED if edited else CLOSE
+            np.testing.assert_allclose(found, np.array(python.rows()), rtol=0, atol=close)
+            assert max(abs(np.array(opened.number(TABLE)) - python.editor.table)) < 1e-11
             expected = [bench.distance() for bench in python.benches]
             np.testing.assert_allclose(opened.number(DISTANCES), expected, atol=1e-5)
 
@@ -300,3 +341,112 @@ def test_axe_finds_nothing_serious(browser: Browser, tmp_path: Path) -> None:
     page.add_script_tag(path=SCRIPT)
     assert page.evaluate(RUN) == []
     context.close()
+
+
+def spot(opened: Opened, index: int) -> tuple[float, float]:
+    """Where a control point of the first robot's picture is in the window."""
+    opened.page.evaluate("scrollTo(0, 0)")
+    opened.page.evaluate(THREE_FRAMES)
+    box = opened.page.locator("canvas").first.bounding_box()
+    assert box
+    x, y = opened.number(f"onpath.views[0].pixel(onpath.simulation.followed.spots()[{index}])")
+    return box["x"] + x, box["y"] + y
+
+
+def shown(opened: Opened) -> list[list[float]]:
+    return opened.number("onpath.simulation.followed.spots()")
+
+
+def test_a_point_of_the_path_is_dragged_as_far_as_it_goes_and_there_it_is_red(
+    browser: Browser, tmp_path: Path
+) -> None:
+    opened = Opened(browser, written(tmp_path))
+    opened.press("Pause")
+    opened.press("Reset")
+    before, (x, y) = shown(opened), spot(opened, 2)
+    mouse, note = opened.page.mouse, opened.page.locator(".note")
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x + 3, y + 12, steps=3)
+    opened.page.evaluate(THREE_FRAMES)
+    moved = shown(opened)
+    assert moved[2][1] < before[2][1] - 0.004 and moved[:2] + moved[3:] == before[:2] + before[3:]
+    assert opened.number("onpath.simulation.followed.fault") is None
+    mouse.move(x, y - 400, steps=3)
+    opened.page.evaluate(THREE_FRAMES)
+    assert "goes no further" in note.inner_text()
+    assert len(opened.number("onpath.simulation.followed.fault.marks")) > 0
+    assert moved[2][1] < shown(opened)[2][1]
+    mouse.up()
+    wait_for(lambda: opened.number(TABLE) != opened.number("onpath.data.paths[0].table"), WAIT)
+    assert "goes no further" in opened.page.get_by_role("status").inner_text()
+    opened.page.keyboard.press("n")
+    assert opened.number("onpath.simulation.selected") == 3
+    held = shown(opened)[3]
+    opened.page.keyboard.press("ArrowUp")
+    opened.page.keyboard.press("ArrowRight")
+    by = np.array(shown(opened)[3]) - held
+    np.testing.assert_allclose(by, [0.001, 0.001], atol=1e-9)
+    assert opened.number("onpath.simulation.ticks") == 0  # right steps with no point selected
+    opened.page.keyboard.press("Escape")
+    opened.page.keyboard.press("ArrowRight")
+    assert opened.number("onpath.simulation.ticks") > 0 and opened.complaints == []
+    opened.page.close()
+
+
+def test_a_law_is_chosen_for_each_robot_and_its_poles_are_the_lab_s(
+    browser: Browser, tmp_path: Path
+) -> None:
+    opened = Opened(browser, written(tmp_path))
+    page, figure = opened.page, choice()
+    channels = channels_of("path_following", figure.parameters)
+    assert not isinstance(channels, Message)
+    for channel in channels:
+        said = ENGLISH.sentence(channel.behaviour()).replace("-", "−")
+        poles = channel.pole_words().replace("-", "−")
+        assert f"{said}; poles {poles} 1/s" in page.locator(".poles").inner_text()
+    slow = page.get_by_role("slider", name="K5")
+    slow.focus()
+    slow.press("Home")
+    wait_for(lambda: "not stable" in page.locator(".poles").inner_text(), WAIT)
+    page.get_by_role("combobox", name="Law, left").select_option(label="Trajectory tracking")
+    page.get_by_role("combobox", name="Law, right").select_option(label="Trajectory tracking")
+    names = page.locator("h2").all_inner_texts()
+    assert [name.strip() for name in names] == [
+        "Trajectory tracking, left",
+        "Trajectory tracking, right",
+    ]
+    page.close()
+
+
+def test_why_a_robot_has_stopped_is_said_as_in_the_lab(browser: Browser, tmp_path: Path) -> None:
+    opened = Opened(browser, written(tmp_path))
+    opened.press("Pause")
+    opened.press("Reset")
+    opened.page.evaluate(  # a joint is thrown
+        """const {state, kernels} = onpath.simulation.benches[0], {q} = onpath.data.state
+        kernels.numbers[state + q[0] + q[1]] = 1e4"""
+    )
+    opened.do(("advance", 50))
+    opened.page.evaluate(THREE_FRAMES)
+    said = opened.page.locator(".note").inner_text()
+    assert said.startswith("Trajectory tracking stopped at 0.0 s: a joint turns faster than 100")
+    assert opened.number("onpath.simulation.benches[1].stopped") == 0
+    opened.press("Reset")
+    opened.page.evaluate(THREE_FRAMES)
+    assert opened.page.locator(".note").inner_text() == ""
+    opened.page.close()
+
+
+def test_it_says_that_time_runs_late(browser: Browser, tmp_path: Path) -> None:
+    opened = Opened(browser, written(tmp_path))
+    note = opened.page.locator(".note")
+    opened.page.evaluate(  # every frame takes 0.3 s
+        """const {advance} = onpath.simulation
+        onpath.simulation.advance = ticks => {
+            for (const end = performance.now() + 300; performance.now() < end; );
+            advance.call(onpath.simulation, ticks)
+        }"""
+    )
+    wait_for(lambda: "runs late" in note.inner_text(), WAIT)
+    opened.page.close()

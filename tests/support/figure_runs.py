@@ -2,22 +2,35 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from onpath.app.exports.standalone.figure_choice import FigureChoice
+from onpath.app.exports.standalone.figure_module import design_of
+from onpath.app.lab.closed_loop_run import ClosedLoopRun
+from onpath.app.lab.loop_states import single
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.path_editor import PathEditor
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.page_functions import view_of
 from onpath.models.closed_loop.simulation import FREE, brake_at, raised, settings_vector
+from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
+from onpath.models.systems.parameters import time_step
 
 Act = tuple[str, Any]
 """("advance", ticks), ("hold", on), ("set", (slider, value)), ("choose", path), ("reset", None),
-("pull", metres to the right and up in the picture, or None)."""
+("pull", metres to the right and up in the picture, or None), ("move", (point, its new place)),
+("drop", None), ("change", (bench, law))."""
+
+
+LOOPS = LoopCache()
+LOOPS.close()  # nothing is compiled
 
 
 class PythonBench:
@@ -28,12 +41,15 @@ class PythonBench:
         self.robot, self.parameters = figure.machine, figure.parameters
         self.begin(curve)
 
-    def begin(self, curve: Curve) -> None:
-        """Begin anew on a path."""
+    def begin(self, curve: Curve, edited: bool = False) -> None:
+        """Begin anew on a path; on an edited one at θ = 0, to the last bit."""
         self.given, self.curve = curve, raised(curve, self.figure.parameters)
         self.kernel = self.figure.kernel(self.law, curve)
         self.loop = InterpretedLoop(self.kernel)
         self.state, self.push = self.figure.start(self.law, curve), FREE
+        if edited:
+            for name in ("theta", "theta_ref"):
+                self.state[self.kernel.state.slices[name]] = 0.0
         self.row = np.zeros(self.kernel.log.size)
         self.y = self.robot.endpoint(self.kernel.state.unpack(self.state)["q"])
         self.grabbed = self.y
@@ -44,6 +60,16 @@ class PythonBench:
         self.state, rows = self.loop.run(self.state, settings, self.curve.table(), ticks)
         self.row = rows[-1]
         self.y = self.kernel.log.unpack(self.row)["y"]
+
+    def change(self, law: str) -> None:
+        """Go on under another law, as `ClosedLoopRun.change_law`."""
+        given = self.robot, "right", self.law, self.parameters, self.curve
+        run = ClosedLoopRun(LOOPS, *given)
+        run.place = single(self.state, run.row, 0.0, 0.0)
+        run.change_law(law, self.parameters, self.curve, self.push)
+        self.law, self.state = law, run.state
+        self.kernel = self.figure.kernel(law, self.given)
+        self.loop = InterpretedLoop(self.kernel)
 
     def hold(self, on: bool) -> None:
         """Hold it where it is, along its path."""
@@ -69,32 +95,50 @@ class PythonFigure:
 
     def __init__(self, figure: FigureChoice) -> None:
         self.figure, self.held = figure, False
-        self.curve = next(iter(figure.paths.values()))
+        self.editors = [
+            PathEditor(figure.machine, design_of(*path)) for path in figure.paths.items()
+        ]
+        self.editor, self.curve = self.editors[0], next(iter(figure.paths.values()))
         self.benches = [PythonBench(figure, law, self.curve) for law in figure.laws]
 
     def act(self, act: Act) -> None:
         """Do what a reader does."""
         what, value = act
         if what == "advance":
-            for bench in self.benches:
-                bench.advance(value)
+            self.editor.advance(value * time_step(self.figure.parameters))
+        if what in ("advance", "hold", "set", "pull", "change"):
+            for number, bench in enumerate(self.benches):
+                self._act_on(bench, number, what, value)
+        elif what == "move":
+            with suppress(CodedError):  # there is no such curve
+                self.editor.drag(value[0], np.array(value[1]))
+        elif what == "drop":
+            self.editor.finish()
+        else:
+            self.editor = self.editors[value] if what == "choose" else self.editor
+            self._begin()
+        self.held = value if what == "hold" else self.held
+
+    def _act_on(self, bench: PythonBench, number: int, what: str, value: Any) -> None:
+        if what == "advance":
+            bench.curve = self.editor.curve
+            bench.advance(value)
         elif what == "hold" and value != self.held:
-            self.held = value
-            for bench in self.benches:
-                bench.hold(value)
+            bench.hold(value)
         elif what == "set":
             name = self.figure.sliders[value[0]]
-            for bench in self.benches:
-                bench.parameters = replace(bench.parameters, **{name: value[1]})
+            bench.parameters = replace(bench.parameters, **{name: value[1]})
         elif what == "pull":
-            for bench in self.benches:
-                bench.pull(value)
-        elif what in ("choose", "reset"):
-            if what == "choose":
-                self.curve = list(self.figure.paths.values())[value]
-            self.held = False
-            for bench in self.benches:
-                bench.begin(self.curve)
+            bench.pull(value)
+        elif what == "change" and number == value[0]:
+            bench.change(self.figure.every_law[value[1]])
+
+    def _begin(self) -> None:
+        self.editor.finish()
+        self.editor.settle()
+        self.held = False
+        for bench in self.benches:
+            bench.begin(self.editor.curve, self.editor.design.name == "edited")
 
     def rows(self) -> list[Array]:
         """The last row of each log."""

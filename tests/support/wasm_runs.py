@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 _RUN = """async ([module, vectors, row, ticks]) => {
     const bytes = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0))
     const memory = new WebAssembly.Memory({initial: 100})
-    const {sin, cos, log, tanh} = Math
-    const imports = {Math: {memory, sin, cos, log, tanh}}
+    const {sin, cos, log, tanh, acos, atan2} = Math
+    const imports = {Math: {memory, sin, cos, log, tanh, acos, atan2}}
     const {instance} = await WebAssembly.instantiate(bytes(module), imports)
     const numbers = new Float64Array(memory.buffer)
     let end = 0

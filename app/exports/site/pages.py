@@ -86,6 +86,7 @@ def lesson_page(
     following: dict[str, str] | None,
     words: Words,
     around: dict[str, Any],
+    scorm: str | None = None,
 ) -> str:
     """The page of a lesson.
 
@@ -93,6 +94,7 @@ def lesson_page(
         steps: with their figures' modules replaced by the names of their files.
         pictures: by number of the step.
         following: address and title of the next lesson, if there is one.
+        scorm: version of the package to which the page belongs.
     """
     figures = list[dict[str, Any]]()
     for step in steps:
@@ -101,6 +103,7 @@ def lesson_page(
     data = {
         "words": _said(words) | check_words(words),
         "lesson": lesson.name,
+        "scorm": scorm,
         "figures": figures,
         "steps": [
             {**step.data, "figure": figures.index(step.figure) if step.figure else -1}

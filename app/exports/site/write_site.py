@@ -46,15 +46,33 @@ def write_site(folder: Path, course: Course, home: Path, languages: Iterable[str
         ValueError: the folder holds something else, or a lesson cannot be shown.
     """
     with _whole_folder(folder) as scratch:
-        shared = scratch / SHARED
-        (shared / "kernels").mkdir(parents=True)
-        (shared / "pictures").mkdir()
-        for name in ("on.js", "site.js"):
-            shutil.copy(asset_path(f"site/{name}"), shared)
-        (shared / "site.css").write_text(site_style(), "utf-8")
-        truths = _truths(course)
+        _write_shared(scratch)
+        truths = _truths(course, course.lessons)
         writer = _Writer(scratch, course, home, list(languages), truths)
         writer.write()
+
+
+def write_lesson(
+    folder: Path, course: Course, home: Path, name: str, language: str, scorm: str
+) -> str:
+    """Write one lesson into an empty folder, and return the address of its page in it.
+
+    Args:
+        scorm: version of the package to which it belongs.
+    """
+    _write_shared(folder)
+    writer = _Writer(folder, course, home, [language], _truths(course, [name]), scorm)
+    return writer.lesson(name, Words(language))
+
+
+def _write_shared(folder: Path) -> None:
+    """Script and style of all pages, and folders for the rest that they share."""
+    shared = folder / SHARED
+    (shared / "kernels").mkdir(parents=True)
+    (shared / "pictures").mkdir()
+    for name in ("on.js", "site.js"):
+        shutil.copy(asset_path(f"site/{name}"), shared)
+    (shared / "site.css").write_text(site_style(), "utf-8")
 
 
 class _Writer:
@@ -67,23 +85,26 @@ class _Writer:
         home: Path,
         languages: list[str],
         truths: Mapping[tuple[str, int], Truth],
+        scorm: str | None = None,
     ) -> None:
+        """With the version of a package, pages know of no others."""
         self._folder, self._course, self._home = folder, course, home
-        self._languages, self._truths = languages, truths
+        self._languages, self._truths, self._scorm = languages, truths, scorm
 
     def write(self) -> None:
         for language in self._languages:
             words = Words(language)
             self._start(words)
             for name in self._course.lessons:
-                self._lesson(name, words)
+                self.lesson(name, words)
 
     def _address(self, name: str, language: str) -> str:
         return f"{name}.html" if language == self._languages[0] else f"{name}.{language}.html"
 
     def _around(self, name: str, words: Words) -> dict[str, Any]:
         languages = {language: self._address(name, language) for language in self._languages}
-        return {"start": self._address("index", words.language), "languages": languages}
+        start = None if self._scorm else self._address("index", words.language)
+        return {"start": start, "languages": languages}
 
     def _start(self, words: Words) -> None:
         curves = {name: presets()[name].curve for name in PATHS}
@@ -100,7 +121,8 @@ class _Writer:
         page = start_page(words, figure, entries, self._around("index", words))
         self._write("index", words, page)
 
-    def _lesson(self, name: str, words: Words) -> None:
+    def lesson(self, name: str, words: Words) -> str:
+        """Write a lesson's page, and return its address."""
         lesson = self._course.lesson(name, words.language)
         references, problems = read_references(lesson, self._home / name / REFERENCE)
         if problems:
@@ -116,13 +138,15 @@ class _Writer:
             self._following(name, words),
             words,
             self._around(name, words),
+            self._scorm,
         )
         self._write(name, words, page)
+        return self._address(name, words.language)
 
     def _following(self, name: str, words: Words) -> dict[str, str] | None:
         names = list(self._course.lessons)
         after = names[names.index(name) + 1 :]
-        if not after:
+        if not after or self._scorm:
             return None
         title = self._course.lesson(after[0], words.language).front.title
         return {"address": self._address(after[0], words.language), "title": title}
@@ -155,12 +179,12 @@ class _Writer:
         (self._folder / self._address(name, words.language)).write_text(page, "utf-8")
 
 
-def _truths(course: Course) -> dict[tuple[str, int], Truth]:
-    """What happens in all steps with a script, by lesson and index."""
+def _truths(course: Course, names: Iterable[str]) -> dict[tuple[str, int], Truth]:
+    """What happens in all steps of lessons with a script, by lesson and index."""
     store = LoopCache()
     store.close()  # nothing is compiled for one run
     found = dict[tuple[str, int], Truth]()
-    for name in course.lessons:
+    for name in names:
         lesson = course.lesson(name, DEFAULT)
         for index in range(len(lesson.steps)):
             truth = run_truth(lesson, index, store)

@@ -28,12 +28,14 @@ from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
 from onpath.models.studies.experiments import check_path
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
+from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.parameters import Parameters, changed, specs
+from onpath.models.systems.parameters import Parameters, changed, rise_of, specs
 from onpath.models.systems.robots import Robot
 
-CONTROLS = ("hold", "pull", "run", "step", "reset", "path", "plot")
-"""What a reader may do or see: hold robots back, pull them, pause, choose a path, the plot."""
+CONTROLS = ("hold", "pull", "drag", "run", "step", "reset", "path", "plot", "poles")
+"""What a reader may do or see: hold robots back, pull them, drag points of the path, pause, choose
+a path, the plot, the poles of the laws."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,7 @@ class FigureChoice:
         parameters: of the robot, the laws and the task.
         sliders: names of parameters that readers may change; each is a number of the settings.
         controls: some of `CONTROLS`.
+        choices: further laws, which readers may choose for each bench.
     """
 
     robot: str
@@ -55,6 +58,12 @@ class FigureChoice:
     parameters: Parameters
     sliders: tuple[str, ...]
     controls: tuple[str, ...] = CONTROLS
+    choices: tuple[str, ...] = ()
+
+    @property
+    def every_law(self) -> tuple[str, ...]:
+        """The laws of the benches, then those to choose besides, each once."""
+        return tuple(dict.fromkeys((*self.laws, *self.choices)))
 
     @property
     def entry(self) -> RobotEntry:
@@ -94,14 +103,16 @@ def chosen(
     paths: Mapping[str, Curve] | None = None,
     values: Mapping[str, Any] | None = None,
     sliders: Sequence[str] | None = None,
-    controls: Sequence[str] = CONTROLS,
+    controls: Sequence[str] | None = None,
+    choices: Sequence[str] = (),
 ) -> FigureChoice:
     """Check a choice; the robot starts as gently as in a new lab.
 
     Args:
-        robot, laws, paths, controls: see `FigureChoice`.
+        robot, laws, paths, choices: see `FigureChoice`.
         values: parameters by name, where they differ from a new lab's.
         sliders: None: the speed or the target, and the gains of the laws.
+        controls: see `FigureChoice`; None: all that are possible.
 
     Raises:
         ValueError: an unknown name, a value out of range, a path that the robot cannot follow, or
@@ -117,11 +128,34 @@ def chosen(
         parameters = changed(parameters, name, value)
     if parameters.speed_profile != "constant":
         raise ValueError("speed_profile: a figure has a constant speed")
-    names = tuple(map(law_name, laws))
-    shown = _usual_sliders(names, parameters) if sliders is None else tuple(sliders)
-    figure = FigureChoice(robot, names, dict(paths or {}), parameters, shown, tuple(controls))
+    names, others = (tuple(map(law_name, each)) for each in (laws, choices))
+    shown = _usual_sliders((*names, *others), parameters) if sliders is None else tuple(sliders)
+    figure = FigureChoice(robot, names, dict(paths or {}), parameters, shown, (), others)
     _check(figure)
-    return figure
+    if controls is None:
+        controls = [name for name in CONTROLS if refusal(figure, name) is None]
+    for control in controls:
+        if control not in CONTROLS:
+            raise unknown_name(control, list(CONTROLS), "control")
+        if why := refusal(figure, control):
+            raise ValueError(f"control {control}: {why}")
+    return dataclasses.replace(figure, controls=tuple(controls))
+
+
+def refusal(figure: FigureChoice, control: str) -> str | None:
+    """Why a figure cannot have a control; None if it can."""
+    parameters = figure.parameters
+    if control == "poles" and not any(law_named(law).linear for law in figure.every_law):
+        return "none of the laws has poles that a figure computes"
+    if control != "drag":
+        return None
+    if figure.machine.geometry is None:
+        return "a figure cannot check the path of this robot"
+    if rise_of(parameters) or any(path.dimension == 3 for path in figure.paths.values()):
+        return "a space curve cannot be changed in a figure"
+    if parameters.across == LEVEL_SET or parameters.at_limit == "slow_down":
+        return "the law has been adapted to the path as it is"
+    return None
 
 
 def _usual_sliders(laws: Sequence[str], parameters: Parameters) -> tuple[str, ...]:
@@ -133,12 +167,9 @@ def _usual_sliders(laws: Sequence[str], parameters: Parameters) -> tuple[str, ..
 
 def _check(figure: FigureChoice) -> None:
     robot = figure.machine
-    for control in figure.controls:
-        if control not in CONTROLS:
-            raise unknown_name(control, list(CONTROLS), "control")
     if not figure.paths:
         raise ValueError("paths: expected at least one")
-    for law in figure.laws:
+    for law in figure.every_law:
         if not law_named(law).suits(robot.system):
             raise CodedError("error.law_does_not_suit", law=law_named(law).label)
     for curve in figure.paths.values():
@@ -158,7 +189,7 @@ def check_slider(figure: FigureChoice, name: str) -> None:
     if name not in known:
         raise unknown_name(name, list(known))
     spec = known[name]
-    for law in figure.laws:
+    for law in figure.every_law:
         for curve in figure.paths.values():
             for value in (spec.low, spec.high) if not spec.options else ():
                 parameters = dataclasses.replace(figure.parameters, **{name: value})

@@ -10,32 +10,35 @@ import numpy as np
 
 from onpath.app.common import palette
 from onpath.app.exports.standalone.figure_choice import FigureChoice
+from onpath.app.exports.standalone.figure_module import (
+    design_of,
+    figure_module,
+    fit_name,
+    kind_name,
+)
+from onpath.app.exports.standalone.figure_words import figure_words
+from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.scene.captions import OFF
-from onpath.lessons.benches import bench_titles, law_text
+from onpath.lessons.benches import law_text, law_titles
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
-from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.page_functions import (
     GRID,
     grid_of,
-    measurements,
     page_functions,
+    stop_reasons,
 )
 from onpath.models.closed_loop.simulation import raised
-from onpath.models.closed_loop.wasm_loop import wasm_of
 from onpath.models.control.benches import BENCHES, RIGHT
 from onpath.models.control.laws.registry import law_named
-from onpath.models.paths.curves import Curve
+from onpath.models.errors import Message
+from onpath.models.page.edit import CHECKS, OUTLINE, ROW
+from onpath.models.page.fit import FINE, PIECE
+from onpath.models.page.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
+from onpath.models.paths.curve_faults import SAMPLES
+from onpath.models.paths.curves import TERMS, Curve
 from onpath.models.systems.parameters import specs, time_step
-
-OUTLINE = 241  # points of a path as it is drawn
-WORDS = (
-    *("run.hold_both", "run.hold", "run.let_both_go", "run.let_go", "run.hold_hint"),
-    *("run.run", "run.pause", "run.run_hint", "run.step", "run.reset", "key.reset", "key.right"),
-    *("standalone.path", "standalone.plot"),
-)
-_CAPTIONS = ("torn_off", "held", "waits", "pulled", "chases", "off", "stopped")
 
 
 def figure_data(figure: FigureChoice, words: Words, title: str = "") -> dict[str, Any]:
@@ -50,37 +53,60 @@ def figure_data(figure: FigureChoice, words: Words, title: str = "") -> dict[str
     return {
         "language": words.language,
         "title": title,
-        "words": _words(words),
+        "words": figure_words(words),
         "dt": time_step(figure.parameters),
         "sizes": _sizes(figure, kernel),
-        "state": _places(kernel.state, ("q", "theta")),
+        "state": _places(kernel.state, ("q", "theta", "theta_ref")),
         "settings": _places(kernel.settings, _SET),
         "log": _places(kernel.log, ("q", "v", "y", "theta", "theta_ref", "force")),
-        "benches": _benches(figure, words),
+        "benches": _benches(figure),
+        "laws": _laws(figure, words),
+        "choices": [figure.every_law.index(law) for law in _choices(figure)],
         "paths": [_path(figure, name, curve, words) for name, curve in curves.items()],
         "sliders": [slider_data(figure, name, words) for name in figure.sliders],
         "controls": figure.controls,
         "box": _box(figure),
         "off": OFF,
         "strip": robot.drawing.strip,
-        "colours": {n.lower(): getattr(palette, n).hex for n in ("PATH", "FORCE", "STEEL", "INK")},
-        "module": b64encode(_module(figure)).decode(),
+        "colours": {name: colour.hex for name, colour in _COLOURS.items()},
+        "poles": {
+            "interval": 1 / figure.parameters.control_rate,
+            "steps": STEPS,
+            "size": roots_scan(figure.parameters).step.numel_in(0),
+            "slow": SLOW,
+            "behaviours": BEHAVIOURS,
+        },
+        "edit": _EDIT,
+        "module": b64encode(figure_module(figure)).decode(),
     }
 
 
+NUDGE = 0.001  # [m], as app/page/panels/keys.py has it
+_EDIT = {
+    "piece": PIECE,
+    "fine": FINE,
+    "sums": 3 + 2 * TERMS,
+    "row": ROW,
+    "checks": CHECKS,
+    "samples": SAMPLES,
+    "outline": OUTLINE,
+    "grid": GRID,
+    "halvings": HALVINGS,
+    "blend": BLEND,
+    "nudge": NUDGE,
+}
+"""Sizes of vectors of models/page; and as in the lab: how often
+a refused way is halved, seconds of a blend, and the step of a key, [m]."""
+_COLOURS = {
+    **{name.lower(): getattr(palette, name) for name in ("PATH", "FORCE", "STEEL", "INK")},
+    "point": palette.CONTROL_POINT,
+    "selected": palette.SELECTED,
+    "warning": palette.WARNING,
+}
 _SET = (
     *("hold_active", "hold_anchor", "hold_tangent", "hold_normal"),
     *("hand_active", "hand_target"),
 )
-
-
-def _words(words: Words) -> dict[str, str]:
-    said = {key: words(key) for key in WORDS}
-    said |= {f"caption.{kind}": words(f"caption.{kind}", mm="{mm}") for kind in _CAPTIONS}
-    said["caption.spoken"] = words("caption.spoken", robot="{robot}", caption="{caption}")
-    said["standalone.scene"] = words("standalone.scene", law="{law}")
-    said["point"] = words("report.point")
-    return said
 
 
 def _places(layout: Any, names: tuple[str, ...]) -> dict[str, list[int]]:
@@ -100,37 +126,62 @@ def _sizes(figure: FigureChoice, kernel: Kernel) -> dict[str, int]:
     }
 
 
-def _benches(figure: FigureChoice, words: Words) -> list[dict[str, Any]]:
+def _benches(figure: FigureChoice) -> list[dict[str, Any]]:
     names = BENCHES if len(figure.laws) > 1 else (RIGHT,)
-    laws: dict[str, str] = dict(zip(names, figure.laws, strict=True))
-    titles = bench_titles(laws, words)
     return [
         {
-            "title": titles[name],
-            "text": law_text(law, words),
+            "law": figure.every_law.index(law),
             "colour": palette.OF_BENCH[name].hex,
             "dark": palette.OF_BENCH[name].toward(palette.INK, 0.45).hex,
             "pale": palette.OF_BENCH[name].toward(palette.WHITE, 0.6).hex,
+        }
+        for name, law in zip(names, figure.laws, strict=True)
+    ]
+
+
+def _choices(figure: FigureChoice) -> tuple[str, ...]:
+    """Laws from which a reader may choose."""
+    return figure.every_law if figure.choices else ()
+
+
+def _laws(figure: FigureChoice, words: Words) -> list[dict[str, Any]]:
+    titles, curve = law_titles(figure.every_law, words), next(iter(figure.paths.values()))
+    return [
+        {
+            "title": titles[law],
+            "text": law_text(law, words),
             "aim": law_named(law).aim,
             "byClock": law_named(law).by_clock,
+            "linear": law_named(law).linear,
+            "stops": [words.sentence(why) for why in _stops(figure, law, curve)],
         }
-        for name, law in laws.items()
+        for law in figure.every_law
     ]
+
+
+def _stops(figure: FigureChoice, law: str, curve: Curve) -> list[Message]:
+    kernel, start = figure.kernel(law, curve), figure.start(law, curve)
+    q = kernel.state.unpack(start)["q"]
+    return stop_reasons(figure.machine, figure.parameters, q, law)
 
 
 def _path(figure: FigureChoice, name: str, curve: Curve, words: Words) -> dict[str, Any]:
     robot, path = figure.machine, raised(curve, figure.parameters)
+    design = design_of(name, curve)
     theta = np.linspace(-np.pi, np.pi, OUTLINE)
     place = page_functions(robot, figure.kind(figure.laws[0], curve))["place"]
     outline = place(robot.frame.lift(path.at(theta)).T).full()
     return {
         "label": words.get(f"path.{name}", name),
-        "kind": _kind_name(figure, curve),
+        "kind": kind_name(figure, curve),
+        "closed": curve.closed,
         "table": path.table().tolist(),
         "grid": grid_of(robot, path.at(path.sample(GRID))).ravel().tolist(),
         "outline": _rounded(outline.T),
-        "states": [figure.start(law, curve).tolist() for law in figure.laws],
-        "settings": [figure.settings(law, curve).tolist() for law in figure.laws],
+        "states": [figure.start(law, curve).tolist() for law in figure.every_law],
+        "settings": figure.settings(figure.laws[0], curve).tolist(),
+        "points": design.points.tolist() if "drag" in figure.controls else [],
+        "fit": fit_name(design),
     }
 
 
@@ -165,32 +216,6 @@ def _box(figure: FigureChoice) -> list[float]:
     points = np.concatenate(corners, axis=1)
     low, high = points.min(axis=1) - 0.04, points.max(axis=1) + 0.04
     return [float(low[0]), float(high[0]), float(low[1]), float(high[1])]
-
-
-def _kinds(figure: FigureChoice) -> dict[tuple[Kind, ...], Curve]:
-    """The kinds of the benches' loops, with a path that needs them."""
-    return {
-        tuple(figure.kind(law, curve) for law in figure.laws): curve
-        for curve in figure.paths.values()
-    }
-
-
-def _kind_name(figure: FigureChoice, curve: Curve) -> str:
-    own = tuple(figure.kind(law, curve) for law in figure.laws)
-    return str(list(_kinds(figure)).index(own))
-
-
-def _module(figure: FigureChoice) -> bytes:
-    """Loops and functions, named as the page calls them: "loop0.0", "distance.0"."""
-    functions, loops = dict[str, ca.Function](), dict[str, Kernel]()
-    for curve in _kinds(figure).values():
-        name = _kind_name(figure, curve)
-        for number, law in enumerate(figure.laws):
-            loops[f"loop{number}.{name}"] = figure.kernel(law, curve)
-        own = page_functions(figure.machine, figure.kind(figure.laws[0], curve))
-        own |= measurements(figure.machine, figure.parameters)
-        functions |= {f"{each}.{name}": function for each, function in own.items()}
-    return wasm_of(functions, loops)
 
 
 def _rounded(points: Array) -> list[float]:

@@ -18,7 +18,7 @@ from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.assets import asset_path
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.page_functions import GRID, grid_of, page_functions
+from onpath.models.closed_loop.page_functions import GRID, grid_of, page_functions, stop_reasons
 from onpath.models.closed_loop.simulation import brake_at, kind_of, raised
 from onpath.models.paths.distance import path_distance
 from onpath.models.paths.path_design import presets
@@ -72,13 +72,17 @@ def test_a_page_stops_a_robot_where_the_lab_does(robot: str) -> None:
     near[1][:50] /= 100
     q = np.concatenate([near[0], size * rng.uniform(-4, 4, (200, n)), [home, home + np.nan, home]])
     v = np.concatenate([near[1], np.zeros((202, n)), np.full((1, n), np.nan)])
-    found = [bool(numbers(fault, *each)[0]) for each in zip(q, v, strict=True)]
-    expected = [
-        machine.fault(*each, entry.lab) is not None
-        for each in zip(q[:, None], v[:, None], strict=True)
-    ]
-    assert found == expected
-    assert 20 < sum(found) < len(found) - 20
+    found = [int(numbers(fault, *each, 0.0)[0]) for each in zip(q, v, strict=True)]
+    for one, rate, code in zip(q, v, found, strict=True):
+        here = one if np.isfinite(one).all() else home
+        reasons = stop_reasons(machine, entry.lab, here, "path_following")
+        expected = machine.fault(one[None], rate[None], entry.lab)
+        assert (expected and expected[1]) == (reasons[code - 1] if code else None)
+    assert 20 < sum(map(bool, found)) < len(found) - 20
+    assert len(set(found)) >= 4
+    typed = stop_reasons(machine, entry.lab, home, "across = 1; along = 1")
+    code = int(numbers(fault, home, 0 * home, np.nan)[0])
+    assert typed[code - 1].code == "stop.typed_law"
 
 
 def test_a_page_is_small_the_same_every_time_and_names_no_other_place(tmp_path: Path) -> None:
@@ -96,6 +100,9 @@ def test_texts_of_the_author_are_texts(tmp_path: Path) -> None:
     assert json.loads(data)["title"] == title
 
 
+LEVEL_SET = ["--set", "across=level_set"]
+
+
 def test_what_cannot_be_a_figure_is_refused_in_a_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -111,6 +118,10 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
         (["--set", "speed_profile=sine"], "constant speed"),
         (["--language", "xx"], "en"),
         (["--control", "brake"], "control"),
+        (["--robot", "flexible", "--control", "drag"], "cannot check the path"),
+        (["--path", "circle", *LEVEL_SET, "--control", "drag"], "adapted to the path"),
+        (["--law", "contouring", "--control", "poles"], "poles"),
+        (["--choice", "path_folowing"], "path_following"),
     ]
     for arguments, hint in wrong:
         assert run_command(["export", "figure", target, *arguments]) == 2, arguments

@@ -94,7 +94,7 @@ def test_nothing_of_a_page_is_inline_or_from_elsewhere(site: Path) -> None:
 
 def test_figures_share_their_kernels(site: Path) -> None:
     kernels = list((site / "site" / "kernels").iterdir())
-    assert len(kernels) == 1  # the free lab and eleven steps in two languages
+    assert len(kernels) == 2  # the free lab's, and that of eleven steps in two languages
     size = sum(file.stat().st_size for file in site.rglob("*") if file.is_file())
     assert size / 24 < 600_000
 

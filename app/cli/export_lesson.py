@@ -1,0 +1,46 @@
+"""`onpath export lesson`: a lesson as a package for a learning platform."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import tyro
+
+
+@dataclass(frozen=True)
+class ExportLesson:
+    """Write a lesson as a SCORM package, for Moodle, ILIAS and other learning platforms."""
+
+    name: Annotated[str, tyro.conf.Positional]
+    """Name of the lesson, such as 01-path-or-timetable."""
+    scorm: Path
+    """The .zip file to write."""
+    version: Literal["1.2", "2004"] = "1.2"
+    """Of SCORM. Version 1.2 keeps 4,096 characters: there, curves are left out if need be."""
+    language: str = "en"
+    """Language of the lesson."""
+    folder: Path | None = None
+    """Folder of lessons; by default the built-in ones."""
+
+    def run(self) -> None:
+        """Write the package, and print its size."""
+        from onpath.app.common.atomic_file import check_writable
+        from onpath.app.exports.site.scorm_package import write_package
+        from onpath.assets.messages import languages
+        from onpath.lessons.course import BUILT_IN, read_course
+        from onpath.models.systems.parameter_specs import unknown_name
+
+        if self.language not in languages():
+            raise unknown_name(self.language, languages(), "language")
+        home = self.folder or BUILT_IN
+        course, problems = read_course([home])
+        if problems:
+            raise ValueError(str(problems[0]))
+        if self.name not in course.lessons:
+            raise unknown_name(self.name, list(course.lessons), "lesson")
+        check_writable(self.scorm)
+        write_package(self.scorm, course, home, self.name, self.language, self.version)
+        size = self.scorm.stat().st_size
+        print(f"{self.scorm}: SCORM {self.version}, {size / 1e3:.0f} kB")

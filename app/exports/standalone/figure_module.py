@@ -1,0 +1,106 @@
+"""The WebAssembly module of a figure: its loops, and whatever else its page computes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import permutations
+
+import casadi as ca
+
+from onpath.app.exports.standalone.figure_choice import FigureChoice
+from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.page_functions import measurements, page_functions
+from onpath.models.closed_loop.wasm_loop import Scan, wasm_of
+from onpath.models.page.edit import edit_functions, edit_scans
+from onpath.models.page.fit import (
+    arc_scan,
+    resample_scan,
+    spline_function,
+    table_function,
+)
+from onpath.models.page.poles import pole_functions, roots_scan
+from onpath.models.page.states import begin_function, change_function
+from onpath.models.paths.curve_fit import control_points
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.path_design import PathDesign, presets
+
+Parts = tuple[dict[str, ca.Function], dict[str, Scan]]
+
+
+def design_of(name: str, curve: Curve) -> PathDesign:
+    """A path of a figure with the control points that a lab would give it."""
+    known = presets()
+    if name in known and known[name].curve is curve:
+        return known[name]
+    return PathDesign(name, curve, control_points(curve, 10 if curve.closed else 6))
+
+
+def kind_name(figure: FigureChoice, curve: Curve) -> str:
+    """By which the page calls what belongs to paths of this kind, such as "distance.0"."""
+    own = tuple(figure.kind(law, curve) for law in figure.every_law)
+    return str(list(_kinds(figure)).index(own))
+
+
+def fit_name(design: PathDesign) -> str:
+    """By which it calls what fits a curve to as many points."""
+    return f"{'closed' if design.curve.closed else 'open'}{len(design.points)}"
+
+
+def figure_module(figure: FigureChoice) -> bytes:
+    """Loops, functions and scans, named as the page calls them: "loop0.0" is of the first law."""
+    functions, scans, loops = dict[str, ca.Function](), dict[str, Scan](), dict[str, Kernel]()
+    for curve in _kinds(figure).values():
+        name, kind = kind_name(figure, curve), figure.kind(figure.laws[0], curve)
+        kernels = [figure.kernel(law, curve) for law in figure.every_law]
+        seen = page_functions(figure.machine, kind) | _changes(figure, kernels)
+        seen |= measurements(figure.machine, figure.parameters)
+        edited, steps = _editing(figure, kind, kernels)
+        loops |= {f"loop{number}.{name}": kernel for number, kernel in enumerate(kernels)}
+        functions |= {f"{each}.{name}": function for each, function in (seen | edited).items()}
+        scans |= {f"{each}.{name}": scan for each, scan in steps.items()}
+    shared, steps = _shared(figure)
+    return wasm_of(functions | shared, loops, scans | steps)
+
+
+def _changes(figure: FigureChoice, kernels: Sequence[Kernel]) -> dict[str, ca.Function]:
+    """From each law to each other one, if readers may choose."""
+    return {
+        f"change{i}to{j}": change_function(before, after, figure.every_law[j])
+        for (i, before), (j, after) in permutations(enumerate(kernels), 2)
+        if figure.choices
+    }
+
+
+def _editing(figure: FigureChoice, kind: Kind, kernels: Sequence[Kernel]) -> Parts:
+    """For paths of a kind, if readers may drag their points."""
+    robot, arm = figure.machine, figure.machine.geometry
+    if "drag" not in figure.controls or arm is None:
+        return {}, {}
+    functions = edit_functions(robot, kind) | {"table": table_function(kind.closed)}
+    for i, kernel in enumerate(kernels):
+        functions[f"begin{i}"] = begin_function(robot, kind, kernel, arm)
+    return functions, edit_scans(robot, kind, arm) | {"resample": resample_scan(kind.closed)}
+
+
+def _shared(figure: FigureChoice) -> Parts:
+    """Whatever is the same for all kinds of paths."""
+    functions, scans, paths = dict[str, ca.Function](), dict[str, Scan](), figure.paths
+    if "drag" in figure.controls:
+        scans["arc"] = arc_scan()
+        for design in (design_of(name, curve) for name, curve in paths.items()):
+            count = len(design.points)
+            functions[f"spline.{fit_name(design)}"] = spline_function(design.curve.closed, count)
+    if "poles" in figure.controls:
+        settings = figure.kernel(figure.laws[0], next(iter(paths.values()))).settings
+        functions |= pole_functions(figure.parameters, settings)
+        scans["roots"] = roots_scan(figure.parameters)
+    return functions, scans
+
+
+def _kinds(figure: FigureChoice) -> dict[tuple[Kind, ...], Curve]:
+    """The kinds of the laws' loops, with a path that needs them."""
+    return {
+        tuple(figure.kind(law, curve) for law in figure.every_law): curve
+        for curve in figure.paths.values()
+    }

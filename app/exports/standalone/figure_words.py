@@ -1,0 +1,51 @@
+"""The words that a figure's page says; {names} in them are filled in there."""
+
+from __future__ import annotations
+
+from onpath.lessons.words import Words
+from onpath.models.control.benches import BENCHES
+from onpath.models.paths.curve_faults import TUBE
+from onpath.models.paths.curve_fit import SHORTEST
+
+PLAIN = (
+    *("run.hold_both", "run.hold", "run.let_both_go", "run.let_go", "run.hold_hint"),
+    *("run.run", "run.pause", "run.run_hint", "run.step", "run.reset", "key.reset", "key.right"),
+    *("standalone.path", "standalone.plot", "standalone.law", "standalone.late"),
+    *("standalone.coincide", "standalone.drag_hint"),
+    *("gains.across", "gains.along"),
+    *(f"bench.{bench}" for bench in BENCHES),
+)
+_BEHAVIOURS = (
+    *("behaviour.no_overshoot", "behaviour.no_oscillation", "behaviour.damping"),
+    *("behaviour.unstable", "behaviour.swings", "behaviour.not_stable"),
+)
+_FAULTS = (
+    *("fault.outside", "fault.singular", "fault.bends", "fault.cusp", "fault.narrow"),
+    "fault.crosses",
+)
+_FILLED = {
+    **{f"caption.{kind}": ("mm",) for kind in ("torn_off", "held", "waits", "pulled", "chases")},
+    **{f"caption.{kind}": ("mm",) for kind in ("off", "stopped")},
+    "caption.spoken": ("robot", "caption"),
+    "standalone.scene": ("law",),
+    "standalone.selected": ("number", "all"),
+    "bench.title": ("law", "side"),
+    "say.no_further": ("reasons",),
+    "say.stopped": ("robot", "time", "reason"),
+    "gains.poles": ("poles",),
+    "behaviour.settles": ("seconds", "kind"),
+    **{key: ("damping", "seconds") for key in _BEHAVIOURS},
+}
+
+
+def figure_words(words: Words) -> dict[str, str]:
+    """Key -> text, for all that a figure may say."""
+    said = {key: words(key) for key in PLAIN}
+    said |= {
+        key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
+    }
+    widths = {"radius": f"{TUBE * 1e3:.0f}", "least": f"{2 * TUBE * 1e3:.0f}"}
+    said |= {key: words(key, **widths) for key in _FAULTS}
+    shortest = f"{1e3 * SHORTEST:.0f}"
+    said["error.path_too_short"] = words("error.path_too_short", length="{length}", least=shortest)
+    return said | {"point": words("report.point")}

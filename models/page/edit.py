@@ -1,0 +1,133 @@
+"""What a page without a server computes while a control point of a path is dragged.
+
+The checks are those of models/paths/curve_faults.py. Functions and scans for `wasm_loop.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import casadi as ca
+import numpy as np
+
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.page_functions import GRID, lift_of, placed, view_of
+from onpath.models.closed_loop.wasm_loop import Scan
+from onpath.models.page.fit import mix_function, scan_of
+from onpath.models.paths.curve_faults import LEAST_MARGIN, SAMPLES, STRANDS_APART, TUBE
+from onpath.models.paths.path_design import REACH
+from onpath.models.paths.projection import LocalCurve, basis
+from onpath.models.systems.robots import ArmGeometry, Robot
+
+CHECKS = ("outside", "singular", "bends", "cusp", "narrow")
+"""The last numbers of a row of `check`; "crosses" is found apart."""
+ROW = 3 + len(CHECKS)
+OUTLINE = 241
+"""Points of a path as it is drawn."""
+LEAST_SPEED = 1e-4  # [m/rad]; slower, a curve has a cusp
+PARALLEL = 1e-18  # [m²]
+
+
+def edit_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
+    """The functions for planar paths of a kind.
+
+    spot: a point z of the path's plane -> where it is in the picture, (2, 1)
+    planar: (z, from, to) -> z moved as the picture's point moves
+    toward: (z, target, share) -> that share of the way, within ±REACH
+    mix: see `mix_function`
+    """
+    z, target, share = ca.SX.sym("z", 2), ca.SX.sym("target", 2), ca.SX.sym("share")
+    begin, end = ca.SX.sym("begin", 2), ca.SX.sym("end", 2)
+    lift, (seen, offset) = lift_of(robot, kind), view_of(robot)
+    axes = ca.horzcat(*(lift(ca.SX(ca.DM(each)), True) for each in ([1, 0], [0, 1])))
+    moved = z + ca.inv(placed(robot, axes, seen)) @ (end - begin)
+    limited = ca.fmax(ca.fmin(z + share * (target - z), REACH), -REACH)
+    return {
+        "spot": ca.Function("spot", [z], [placed(robot, lift(z, False), seen) + offset]),
+        "planar": ca.Function("planar", [z, begin, end], [moved]),
+        "toward": ca.Function("toward", [z, target, share], [limited]),
+        "mix": mix_function(int(np.prod(kind.table_shape))),
+    }
+
+
+def edit_scans(robot: Robot, kind: Kind, arm: ArmGeometry) -> dict[str, Scan]:
+    """The scans for planar paths of a kind; the constants are the table.
+
+    grid: `GRID` steps from state 0 -> the argument `grid` of `distance`
+    outline: `OUTLINE` steps from state 0 -> points of the path in the picture
+    check: `SAMPLES` + 1 steps from (0, 0, 0, 0) -> rows (z, arc length, 1 or 0 for `CHECKS`)
+    strands: compares a point with later ones, see `_strands`; constants are its row and the
+        next, rows those of the later points
+    """
+    lift, (seen, offset) = lift_of(robot, kind), view_of(robot)
+    return {
+        "grid": _points(kind, GRID, lambda z: lift(z, False)),
+        "outline": _points(
+            kind, OUTLINE, lambda z: placed(robot, lift(z, False), seen) + offset, to_the_end=True
+        ),
+        "check": _check(kind, arm),
+        "strands": _strands(kind),
+    }
+
+
+def _points(kind: Kind, count: int, of: Callable[[ca.SX], ca.SX], to_the_end: bool = False) -> Scan:
+    """Something of evenly spaced points of a path; state: the number of the next one."""
+    number, table = ca.SX.sym("number"), ca.SX.sym("table", *kind.table_shape)
+    inner = count if kind.closed and not to_the_end else count - 1
+    theta = number * (2 * np.pi / inner) - np.pi
+    point = (table @ basis(theta, kind.closed))[: kind.table_shape[0] // 4]
+    return scan_of(0, [number, table, ca.SX.sym("rows", 0)], [number + 1, of(point)])
+
+
+def _check(kind: Kind, arm: ArmGeometry) -> Scan:
+    """See `edit_scans` and `curve_faults`; the last row of a closed curve is its first point."""
+    state, table = ca.SX.sym("state", 4), ca.SX.sym("table", *kind.table_shape)
+    number, length, before = state[0], state[1], state[2:]
+    inner = SAMPLES if kind.closed else SAMPLES - 1
+    theta = ca.fmin(number * (2 * np.pi / inner) - np.pi, np.pi)
+    local = LocalCurve.from_values(theta, kind.closed, table @ basis(theta, kind.closed))
+    z, first, second = local.sigma, local.first, local.second
+    step, speed = z - before, ca.sqrt(ca.dot(first, first))
+    length = ca.if_else(number == 0, 0, length + ca.sqrt(ca.dot(step, step)))
+    margin = arm.margin(z)
+    inside, near = margin > 0, margin < LEAST_MARGIN
+    bends = ca.fabs(_cross(first, second)) > speed**3 / TUBE
+    found = [ca.logic_not(inside), ca.logic_and(inside, near), bends, speed < LEAST_SPEED]
+    row = ca.vertcat(z, length, *found, 0)
+    after = ca.vertcat(number + 1, length, z)
+    return scan_of(0, [state, table, ca.SX.sym("rows", 0)], [after, row])
+
+
+def _strands(kind: Kind) -> Scan:
+    """Whether the strand at a point comes near another one, or crosses it.
+
+    State: 1 if it is near one, 1 if it crosses one, where (2), how many points the next row is
+    after this one (1 at first), the number of this one, and the length of the path.
+    """
+    state = ca.SX.sym("state", 7)
+    own, rows = ca.SX.sym("own", 2 * ROW), ca.SX.sym("rows", 2 * ROW)
+    (a, d), (b, e) = _segment(own), _segment(rows)
+    between, cross = b - a, _cross(d, e)
+    arc = ca.fabs(rows[2] - own[2])
+    if kind.closed:
+        arc = ca.fmin(arc, state[6] - arc)
+    near = ca.logic_and(ca.dot(between, between) < (2 * TUBE) ** 2, arc >= STRANDS_APART)
+    s, t = _cross(between, e) / cross, _cross(between, d) / cross
+    hit = ca.fabs(cross) >= PARALLEL
+    for condition in (s >= 0, s < 1, t >= 0, t < 1, state[4] >= 2):
+        hit = ca.fmin(hit, condition)
+    if kind.closed:
+        hit = ca.fmin(hit, ca.fmax(state[5] > 0, state[4] < SAMPLES - 1))
+    place = ca.if_else(hit, a + s * d, state[2:4])
+    after = [ca.fmax(state[0], near), ca.fmax(state[1], hit), place, state[4] + 1, state[5:]]
+    row = ca.vertcat(rows[: ROW - 1], ca.fmax(rows[ROW - 1], near))
+    return scan_of(ROW, [state, own, rows], [ca.vertcat(*after), row])
+
+
+def _segment(rows: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """From the point of a row to that of the next one: begin and direction."""
+    return rows[:2], rows[ROW : ROW + 2] - rows[:2]
+
+
+def _cross(a: ca.SX, b: ca.SX) -> ca.SX:
+    return a[0] * b[1] - a[1] * b[0]

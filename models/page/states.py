@@ -1,0 +1,38 @@
+"""States of a page without a server: at the start of an edited path, and under another law."""
+
+from __future__ import annotations
+
+import casadi as ca
+
+from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.page_functions import lift_of
+from onpath.models.control.laws.registry import law_named
+from onpath.models.paths.projection import basis
+from onpath.models.systems.robots import ArmGeometry, Robot
+
+
+def begin_function(robot: Robot, kind: Kind, kernel: Kernel, arm: ArmGeometry) -> ca.Function:
+    """(table, first state on another path) -> the first state at θ = 0 of this path, at rest."""
+    table, (symbol, state) = ca.SX.sym("table", *kind.table_shape), kernel.state.symbols("state")
+    start = table[:2, :] @ basis(ca.SX(0), kind.closed)
+    q = arm.rest(lift_of(robot, kind)(start, False))
+    theta = {"theta": ca.SX(0), "theta_ref": ca.SX(0)}
+    state = dict(state) | {"q": q, "encoder": q[: robot.system.m]} | theta
+    return ca.Function("begin", [table, symbol], [ca.densify(kernel.state.join(state))])
+
+
+def change_function(before: Kernel, after: Kernel, law: str) -> ca.Function:
+    """State of a loop under another law -> how it goes on under this law.
+
+    As in the lab: the reference point starts at the closest point, and the integral and the memory
+    of the law at 0.
+    """
+    symbol, state = before.state.symbols("state")
+    own = {name for name, _ in law_named(law).memory}
+    values = {
+        name: state[name] if name in state and name not in own else ca.SX.zeros(size)
+        for name, size in after.state.fields
+    }
+    values |= {"theta_ref": state["theta"], "integral": 0 * state["integral"]}
+    return ca.Function("change", [symbol], [ca.densify(after.state.join(values))])
