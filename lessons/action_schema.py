@@ -26,7 +26,7 @@ class Laws(Data, frozen=True):
         return {bench: law for bench, law in msgspec.structs.asdict(self).items() if law}
 
 
-class StartState(Data, frozen=True):
+class RunStart(Data, frozen=True):
     """Where and how both robots start, by the path; all of it is 0 in a new lab.
 
     Attributes:
@@ -94,7 +94,7 @@ class StepSetup(Data, frozen=True):
     set: dict[str, Value] = {}
     controls: tuple[str, ...] = ()
     plot: str | tuple[str, ...] = ""
-    start: StartState = StartState()
+    start: RunStart = RunStart()
     show: tuple[str, ...] = ()
     marks: tuple[SceneMark, ...] = ()
     running: bool = True
@@ -149,7 +149,7 @@ class Action(Data, frozen=True):
     reset: bool | None = None
     run: bool | None = None
     identify: bool | None = None
-    start: StartState | None = None
+    start: RunStart | None = None
     rate: float | None = None
     only: RobotName | Literal[""] = ""
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import msgspec
 import numpy as np
 
-from onpath.lessons.action_schema import Action, Laws, RobotName, Script, StartState
+from onpath.lessons.action_schema import Action, Laws, RobotName, RunStart, Script
 from onpath.lessons.record import ROBOTS
 from onpath.models.arrays import Array
 
@@ -79,7 +79,7 @@ def action_text(action: Action) -> str:
     if what in ("set", "laws"):
         values = (action.set or {}) if what == "set" else (action.laws or Laws()).named
         given = ", ".join(f"{name} = {value}" for name, value in values.items())
-    if isinstance(given, StartState):
+    if isinstance(given, RunStart):
         values = msgspec.to_builtins(given).items()
         given = ", ".join(f"{name} = {value:g}" for name, value in values if value) or "on the path"
     if isinstance(given, bool):

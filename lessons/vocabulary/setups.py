@@ -8,9 +8,9 @@ from dataclasses import replace
 from onpath.lessons.action_schema import (
     Action,
     Laws,
+    RunStart,
     SceneMark,
     Script,
-    StartState,
     StepSetup,
     Value,
 )
@@ -140,7 +140,7 @@ def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
 
 
 def _start_faults(
-    start: StartState, where: tuple[RobotEntry, Parameters, Curve] | None = None
+    start: RunStart, where: tuple[RobotEntry, Parameters, Curve] | None = None
 ) -> Iterator[str]:
     """Why a start is not possible.
 

@@ -18,7 +18,7 @@ from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.setups.setup import RATES
-from onpath.lessons.action_schema import Action, Laws, RobotName, Script, StartState
+from onpath.lessons.action_schema import Action, Laws, RobotName, RunStart, Script
 from onpath.lessons.benches import BENCH_OF
 from onpath.models.closed_loop.start import Start
 from onpath.models.control.benches import BENCHES, checked_laws
@@ -89,7 +89,7 @@ class ScriptRate(Command):
 class ScriptStart(Command):
     """Put both robots to a start, and begin anew there."""
 
-    start: StartState
+    start: RunStart
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
@@ -160,6 +160,6 @@ _COMMANDS: dict[str, Callable[[Action], list[Command]]] = {
     "reset": lambda _: [Reset()],
     "run": lambda action: [SetRunning(action.run)],
     "identify": lambda _: [Identify()],
-    "start": lambda action: [ScriptStart(action.start or StartState())],
+    "start": lambda action: [ScriptStart(action.start or RunStart())],
     "rate": lambda action: [ScriptRate(action.rate or 1.0)],
 }

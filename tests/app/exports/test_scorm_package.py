@@ -23,6 +23,7 @@ KIND = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("version", ["1.2", "2004"])
 def test_the_manifest_names_every_file_and_the_page(tmp_path: Path, version: Version) -> None:
     file, part = tmp_path / "lesson.zip", PARTS[version]
