@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import socket
+import subprocess
 import sys
 import time
 from collections.abc import Iterator
@@ -18,7 +19,7 @@ from hypothesis import strategies as st
 from onpath.app.server.watchdog import EXIT_CODE, LOOKS, Watchdog
 from onpath.app.storage.records import Records
 from tests.support import waiting
-from tests.support.lab_process import LabProcess, free_ports
+from tests.support.lab_process import ROOT, LabProcess, free_ports
 from tests.support.student import Student
 
 WAIT = 60.0  # [s]; only ends a test that would hang
@@ -101,11 +102,22 @@ class Served(LabProcess):
     """The lab of `HANGING`, which keeps its labs in a file."""
 
     def __init__(self, folder: Path) -> None:
+        self._log = folder / "log"
         self._records = Records(database := f"sqlite:///{folder / 'labs.db'}")
         options = ["--hang-seconds", str(HANG), "--database", database]
         path = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
         super().__init__(free_ports(1)[0], options, path, ["-c", HANGING])
         self.wait_until_well()
+
+    def _started(self) -> subprocess.Popen[bytes]:
+        with self._log.open("ab") as log:
+            where = {"cwd": ROOT, "env": self._environment}
+            return subprocess.Popen(self._command, stderr=log, **where)
+
+    @property
+    def said(self) -> str:
+        """What its processes have logged."""
+        return self._log.read_text("utf-8")
 
     def has_kept(self, code: str, word: str) -> bool:
         return word in str(self._records.load(code))
@@ -128,7 +140,7 @@ def served(tmp_path: Path) -> Iterator[Served]:
 @pytest.mark.thorough
 @linux_only
 def test_a_simulation_that_hangs_is_replaced_and_its_labs_go_on(
-    served: Served, capfd: pytest.CaptureFixture[str]
+    served: Served,
 ) -> None:
     with served.student() as student:
         student.open()
@@ -141,7 +153,7 @@ def test_a_simulation_that_hangs_is_replaced_and_its_labs_go_on(
         code = student.code
         student.reopen()
         assert student.code == code and student.find("K2")["value"] == 44.0
-    said = capfd.readouterr().err
+    said = served.said
     assert said.count("the simulation thread hangs: no sign of life for 2 s") == 1
     assert "threading.py" in said  # where it hangs
 
@@ -153,21 +165,19 @@ def test_a_simulation_that_hangs_is_replaced_and_its_labs_go_on(
     [(411.0, EXIT_CODE), (402.0, -signal.SIGPROF), (412.0, -signal.SIGPROF)],
     ids=["the event loop", "the interpreter", "both"],
 )
-def test_whatever_hangs_ends_the_process(
-    served: Served, value: float, code: int, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_whatever_hangs_ends_the_process(served: Served, value: float, code: int) -> None:
     with served.student() as student:
         student.open()
         student.set("K1", value)
         assert served.exit_code() == code
         served.start_again()
-    assert "most recent call first" in capfd.readouterr().err  # where each thread was
+    assert "most recent call first" in served.said  # where each thread was
 
 
 @pytest.mark.thorough
 @linux_only
 def test_a_suspended_process_does_not_hang(
-    served: Served, capfd: pytest.CaptureFixture[str]
+    served: Served,
 ) -> None:
     process = served.process
     with served.student() as student:
@@ -179,4 +189,4 @@ def test_a_suspended_process_does_not_hang(
         moving = student.moving
         student.read(lambda: student.moving > moving + 60)
         assert served.health() == (200, "well\n")
-    assert process.poll() is None and "hangs" not in capfd.readouterr().err
+    assert process.poll() is None and "hangs" not in served.said
