@@ -111,8 +111,7 @@ class Served(LabProcess):
 
     def _started(self) -> subprocess.Popen[bytes]:
         with self._log.open("ab") as log:
-            where = {"cwd": ROOT, "env": self._environment}
-            return subprocess.Popen(self._command, stderr=log, **where)
+            return subprocess.Popen(self._command, cwd=ROOT, env=self._environment, stderr=log)
 
     @property
     def said(self) -> str:
