@@ -6,7 +6,6 @@ This is the only module that knows both labs and pages: pages receive snapshots 
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from operator import is_
 
 from onpath.app.lab.lab import Lab
@@ -18,19 +17,6 @@ from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.simulation.display_rate import STRIDES, is_turn
 
 AT_EASE = STRIDES[0]  # the stride of a thread that is not overloaded
-TRIES = 5  # to read a lab that is being changed
-
-
-def first_snapshot(lab: Lab, nickname: str = "") -> PageSnapshot:
-    """What a page is built from. Called in the thread that builds it.
-
-    If the simulation thread changes the robot at this moment, what is read may not fit together;
-    then it is read again.
-    """
-    for _ in range(TRIES - 1):
-        with suppress(Exception):
-            return take_page_snapshot(lab, 1.0, nickname=nickname)
-    return take_page_snapshot(lab, 1.0, nickname=nickname)
 
 
 class LabFeed:

@@ -20,6 +20,7 @@ from onpath.app.common.error_log import log_error
 from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
 from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.build_queue import BuildQueue
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
@@ -30,7 +31,7 @@ from onpath.app.server.admission_queue import AdmissionQueue
 from onpath.app.server.arrivals import Arrival, Arrivals
 from onpath.app.server.class_directory import ClassDirectory
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
-from onpath.app.server.lab_feed import LabFeed, first_snapshot
+from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.lazy_imports import warm_up
 from onpath.app.server.memory_release import INTERVAL, MemoryRelease, limit_heap
@@ -208,7 +209,8 @@ class LabServer:
         dark = number in self._dark
         desk = PageContext(code, post, self._course, keeps, enter, seat, dark)
         nickname = partial(service.nickname, code) if service else str
-        first = first_snapshot(lab, nickname())
+        take = partial(take_page_snapshot, lab, 1.0, nickname=nickname())
+        first = self.simulation.call(take)
         if teaching is None:
             return LabFeed(Page(client, first, desk), number, nickname)
         followed = service.followed(number) if service else None

@@ -12,7 +12,8 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import Protocol
+from concurrent.futures import Future
+from typing import Any, Protocol, TypeVar
 
 from onpath.app.common.error_log import log_error
 from onpath.app.lab.advance_together import Frame, advance_together
@@ -35,6 +36,9 @@ COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the 
 ALL_COMMANDS, FEWEST = 8e-3, 2e-3  # [s] of a frame for the commands of all labs: most, and least
 MOST = 0.75  # share of a frame up to which slow updates are made
 NEVER = -1_000_000  # number of a frame long ago
+ANSWER = 30.0  # [s] that another thread waits to be called at the beginning of a frame
+
+T = TypeVar("T")
 
 
 class Display(Protocol):
@@ -166,6 +170,7 @@ class SimulationThread:
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self.run, name="simulation", daemon=True)
         self.frames: deque[tuple[float, float]] = deque(maxlen=3600)
+        self._calls: deque[tuple[Callable[[], Any], Future[Any]]] = deque()
         self._slow_updates, self._drawing = SlowUpdates(clock), 0.0
         self._advancing = 0.0  # [s] of a frame, without commands, low-pass filtered as `_drawing`
 
@@ -191,6 +196,21 @@ class SimulationThread:
         """Remove a lab. Thread-safe."""
         with self._lock:
             self._labs = [other for other in self._labs if other is not lab]
+
+    def call(self, function: Callable[[], T]) -> T:
+        """Call a function between two frames, when no lab changes, and return its result.
+
+        Any other thread that reads a lab uses this; it waits for the frame.
+
+        Raises:
+            TimeoutError: the thread does not run.
+            Exception: of the function.
+        """
+        if threading.current_thread() is self._thread:
+            return function()
+        answer: Future[T] = Future()
+        self._calls.append((function, answer))
+        return answer.result(ANSWER)
 
     @property
     def labs(self) -> list[ScheduledLab]:
@@ -224,6 +244,8 @@ class SimulationThread:
             Time spent on all but slow updates, and of that on drawing, [s].
         """
         labs, begun = self._labs, self._clock()
+        if self._calls:
+            _answer(*self._calls.popleft())
         spare = FRAME - late - self._advancing - self._drawing
         apply_commands(labs, min(max(spare, FEWEST), ALL_COMMANDS))
         applied, length = self._clock(), frame_length(count)
@@ -264,6 +286,13 @@ def apply_commands(labs: list[ScheduledLab], most: float) -> None:
         left -= lab.drain(share, left > 0)
 
     _do(drain, sorted(labs, key=lambda lab: lab.used))
+
+
+def _answer(function: Callable[[], T], answer: Future[T]) -> None:
+    try:
+        answer.set_result(function())
+    except Exception as error:  # the caller's
+        answer.set_exception(error)
 
 
 def _do(step: Callable[[ScheduledLab], None], labs: list[ScheduledLab]) -> None:

@@ -10,8 +10,7 @@ import pytest
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import LawPlaces, PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.server import lab_feed
-from onpath.app.server.lab_feed import AT_EASE, LabFeed, first_snapshot
+from onpath.app.server.lab_feed import AT_EASE, LabFeed
 from onpath.app.simulation.display_rate import STRIDES, is_turn
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import changed
@@ -113,18 +112,3 @@ def test_a_page_can_be_built_while_a_robot_is_made(name: str) -> None:
     chosen = take_page_snapshot(lab, 1.0)
     session.set_parameters(changed(session.parameters, "payload", 0.05))
     assert seen[first].key == chosen.key and seen[first].parameters == chosen.parameters
-
-
-def test_a_lab_that_is_just_being_changed_is_read_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    lab, faults = new_lab(FRAME), [KeyError("alpha"), IndexError()]
-
-    def torn(*arguments: Any, **options: Any) -> PageSnapshot:
-        if faults:
-            raise faults.pop()
-        return take_page_snapshot(*arguments, **options)
-
-    monkeypatch.setattr(lab_feed, "take_page_snapshot", torn)
-    assert first_snapshot(lab, "Ada").nickname == "Ada"
-    faults += [KeyError("alpha")] * 100
-    with pytest.raises(KeyError):
-        first_snapshot(lab)

@@ -378,3 +378,29 @@ def test_other_threads_soon_hand_the_interpreter_over() -> None:
     finally:
         thread.stop()
         sys.setswitchinterval(before)
+
+
+def test_another_thread_reads_a_lab_between_two_frames_only() -> None:
+    """Else a page could get the parameters of one robot with the name of another."""
+    thread, inside = SimulationThread(), threading.Event()
+
+    class Busy(Lab):
+        def frame(self, seconds: float) -> Frame:
+            inside.set()
+            yield from super().frame(seconds)
+            inside.clear()
+
+    scheduled = ScheduledLab(Busy(new_lab().session._store))
+    scheduled.view = View(lambda _: None)
+    thread.add(scheduled)
+    thread.start()
+    try:
+        for _ in range(20):
+            assert inside.wait(10)
+            assert thread.call(inside.is_set) is False
+            assert thread.call(lambda: thread.call(threading.current_thread)).name == "simulation"
+        with pytest.raises(KeyError, match="of the caller"):
+            thread.call(lambda: {}["of the caller"])
+        assert thread.call(lambda: "goes on") == "goes on"
+    finally:
+        thread.stop()
