@@ -17,7 +17,7 @@ from onpath.app.lab.setups.stored import from_data
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress
 
-SETTLED = 5.0  # [s] after a push, by when the labs that have applied it are stored
+SETTLED = 5.0  # [s] after a push was given to a lab, by when the lab is stored with it
 Count = Annotated[int, msgspec.Meta(ge=0)]
 Stored = dict[str, Any]
 
@@ -46,16 +46,15 @@ class StoredClass(msgspec.Struct, frozen=True):
 def to_stored(state: ClassState, now: float) -> Stored:
     """What is stored of a class.
 
-    A push of the last `SETTLED` seconds counts as not applied yet: if this process ends now, the
-    labs may be stored without it.
+    A push given to a lab within the last `SETTLED` seconds counts as not given yet: if this
+    process ends now, the lab may be stored without it.
 
     Args:
         now: time by the class's clock, [s].
     """
     orders = state.orders
-    taken = orders.pushes if now - orders.sent > SETTLED else max(orders.pushes - 1, 0)
     members = [
-        StoredMember(session, each.number, each.name, min(each.taken, taken))
+        StoredMember(session, each.number, each.name, _settled(each, now))
         for session, each in state.members.items()
     ]
     push = None if orders.push is None else push_data(orders.push)
@@ -64,6 +63,11 @@ def to_stored(state: ClassState, now: float) -> Stored:
         state.joined, orders.frozen, orders.pushes, push, passes, members, orders.pace
     )
     return msgspec.to_builtins(kept)
+
+
+def _settled(member: Member, now: float) -> int:
+    """Number of the last push that the stored lab has for certain."""
+    return member.taken if now - member.given > SETTLED else max(member.taken - 1, 0)
 
 
 def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: float) -> ClassState:
@@ -86,7 +90,7 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
             session, member = read
             members[session] = replace(member, progress=progress(session), active=now)
     joined = max([kept.joined, *(member.number for member in members.values())])
-    orders = Orders(kept.frozen, kept.pushes, read_push(kept.push), now, kept.pace)
+    orders = Orders(kept.frozen, kept.pushes, read_push(kept.push), kept.pace)
     return ClassState(joined, orders, frozenset(kept.passes), members)
 
 

@@ -77,7 +77,7 @@ class ClassSync:
             self._asked[code], changes["active"] = lab.asked, self._class.clock()
         orders = self._class.orders
         if orders.pushes > member.taken:
-            changes["taken"] = orders.pushes
+            changes["taken"], changes["given"] = orders.pushes, self._class.clock()
         _give(orders, lab, is_new=orders.pushes > member.taken)
         if changes:
             self._class.note(code, **changes)

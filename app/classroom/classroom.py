@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from math import inf
 
 from onpath.app.classroom.admission import (
     Admission,
@@ -42,7 +43,8 @@ class Member:
         progress: progress through the lessons at the last update.
         connected: whether a browser is connected to the lab.
         active: time of the last command in the lab, by the class's clock, [s].
-        taken: number of the last push applied by the lab; 0 for none.
+        taken: number of the last push given to the lab; 0 for none.
+        given: when that was, by the class's clock, [s].
         gains: the lab's K1 to K5 at the last update; empty before the first one.
     """
 
@@ -52,6 +54,7 @@ class Member:
     connected: bool = True
     active: float = 0.0
     taken: int = 0
+    given: float = -inf
     gains: tuple[float, ...] = ()
 
 
@@ -63,14 +66,12 @@ class Orders:
         frozen: whether all labs are stopped.
         pushes: number of pushes so far.
         push: the last one, which later joiners receive as well; None if there is none.
-        sent: time of the last push by the class's clock, [s].
         pace: the steps within which students may go; None if they may go anywhere.
     """
 
     frozen: bool = False
     pushes: int = 0
     push: Push | None = None
-    sent: float = 0.0
     pace: Pace | None = None
 
 
@@ -212,7 +213,7 @@ class Classroom:
             count, pace = self.orders.pushes + (push is not None), self.orders.pace
             if isinstance(push, TakeStep) and pace and not pace.holds(push.lesson, push.step):
                 pace = None
-            new = replace(self.orders, pushes=count, push=push, sent=self.clock(), pace=pace)
+            new = replace(self.orders, pushes=count, push=push, pace=pace)
             self.state = replace(self.state, orders=new)
 
     def keep_within(self, pace: Pace | None) -> None:

@@ -181,11 +181,29 @@ def test_a_push_that_labs_may_not_have_stored_yet_is_sent_again(two: list[Proces
     one.room.note(ADA, taken=1)
     one.settle()
     one.room.push(TakeStep("01-a", 1))
-    one.room.note(ADA, taken=2)
+    one.room.note(ADA, taken=2, given=one.now)
     one.keeper.look()
     other.keeper.open()
     member = other.room.member(ADA)
     assert member is not None and member.taken == 1 < other.room.orders.pushes == 2
+
+
+def test_a_push_is_not_sent_again_because_the_class_moves_twice(two: list[Process]) -> None:
+    """However quickly: who has gone on since then would be thrown back."""
+    one, other = two
+    one.keeper.open()
+    one.room.join(ADA, one.room.code, "Ada")
+    one.room.push(TakeStep("01-a", 0))
+    one.room.note(ADA, taken=1, given=one.now)
+    one.settle()
+    for process in (other, one, other):
+        process.now += FRESH
+        process.keeper.open()
+        process.room.freeze(not process.room.orders.frozen)
+        process.keeper.look()
+        member = process.room.member(ADA)
+        assert member is not None and member.taken == 1
+    one.keeper.look()
 
 
 def test_a_database_that_is_away_ends_no_class(
