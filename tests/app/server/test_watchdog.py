@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from onpath.app.server.watchdog import EXIT_CODE, LOOKS, Watchdog
@@ -64,11 +64,15 @@ class Look:
         self.ended += 1
 
 
-@given(st.lists(st.sets(st.sampled_from("ab")), max_size=4 * LOOKS))
-def test_anything_without_a_sign_of_life_for_long_enough_hangs(lives: list[set[str]]) -> None:
+@given(st.lists(st.tuples(st.sets(st.sampled_from("ab")), st.integers(1, 2 * LOOKS)), max_size=6))
+@example([(set(), LOOKS - 1), ({"a", "b"}, 1), ({"a"}, LOOKS - 1)])
+@example([({"b"}, LOOKS), ({"a", "b"}, 1), ({"a"}, 2 * LOOKS)])
+def test_anything_without_a_sign_of_life_for_long_enough_hangs(
+    lives: list[tuple[set[str], int]],
+) -> None:
     look, silent = Look(), {"a": 0, "b": 0}
     look.dog.look()
-    for alive in [*lives, {"a"}]:
+    for alive in [alive for alive, looks in lives for _ in range(looks)]:
         for name in silent:
             silent[name] = 0 if name in alive else silent[name] + 1
             look.signs[name] += name in alive
