@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from onpath.app.bench.hostile_messages import DRAG, HONEST, HOSTILE, INDEXES
 from onpath.app.common import error_log
@@ -104,6 +106,31 @@ def test_every_field_of_every_message_with_every_value(tab: Tab) -> None:
             tab.student.send(kind, **{k: v for k, v in honest.items() if k != field})
         tab.student.send(kind, **honest, surplus=1)
         tab.settle()
+
+
+@st.composite
+def hostile_messages(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
+    """A message of any kind with hostile values in some of its fields, and others missing."""
+    kind = draw(st.sampled_from(sorted(HONEST)))
+    names = st.sampled_from([*HONEST[kind], "surplus"])
+    hostile = draw(st.dictionaries(names, st.sampled_from(HOSTILE), min_size=1))
+    missing = draw(st.sets(names, max_size=2)) - hostile.keys()
+    return kind, {k: v for k, v in (HONEST[kind] | hostile).items() if k not in missing}
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(messages=st.lists(hostile_messages(), min_size=1, max_size=20), at=st.data())
+def test_several_hostile_fields_at_once(
+    tab: Tab, messages: list[tuple[str, dict[str, Any]]], at: st.DataObject
+) -> None:
+    """One lab meets all examples; those at its own widgets and nodes pass the first checks."""
+    for kind, fields in messages:
+        real = {"uuid": tab.uuids(), "name": tab.nodes(), "owner": [str(tab.client.client_id)]}
+        for name in real.keys() & fields.keys():
+            if (which := at.draw(st.none() | st.integers(0, 1000))) is not None:
+                fields[name] = real[name][which % len(real[name])]
+        tab.student.send(kind, **fields)
+    tab.settle()
 
 
 def test_every_message_at_every_widget(tab: Tab) -> None:
