@@ -21,7 +21,7 @@ from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page.build_queue import BuildQueue
+from onpath.app.page.build_queue import BuildQueue, one_at_a_time
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.teacher_view import TeacherView
@@ -243,11 +243,13 @@ class LabServer:
     def _reopen(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:
         """Rebuild a client's page for a session that it already has."""
         self._onlookers.leave(client.client_id)
+        self.simulation.call(lambda: None)  # the frame that still showed the page has ended
         view = self._views.pop(client.client_id, None)
         if view is not None:
             view.page.close()
-        client.scene.reset()
-        client.gui.reset()
+        with one_at_a_time:  # a part of the page may just be built
+            client.scene.reset()
+            client.gui.reset()
         self._show(client, entry, None)
 
     def _disconnected(self, client: viser.ClientHandle) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from onpath.app.common import error_log
 from onpath.app.common.access_codes import new_code
 from onpath.app.common.throttle import TRIES
 from onpath.app.lab.lab import Lab
@@ -243,3 +244,30 @@ def test_a_tab_that_presses_for_ever_is_one_of_many(tmp_path: Path) -> None:
         gate.open.set()
         server.stop()
     assert loads.count(loads[0]) == 1
+
+
+def test_a_page_is_replaced_when_no_frame_shows_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A frame that changed widgets of a page already removed would raise, and log it."""
+    server, gate = LabServer("127.0.0.1", 0, LoopCache()), Gate()
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+        student.open()
+        student.read(lambda: student.has_widget("K2"))
+        (entry,) = server.sessions._entries.values()
+        (client,) = server.server.get_clients().values()
+        page = next(iter(server._views.values())).page
+        show = page.show
+
+        def shown_slowly(snapshot: Any) -> None:
+            gate.pass_by()
+            show(snapshot)
+
+        monkeypatch.setattr(page, "show", shown_slowly)
+        assert gate.reached.wait(WAIT)
+        before = error_log._seen.copy()
+        reopened = in_thread(lambda: server._reopen(client, entry))
+        wait_for(lambda: server.simulation._calls or not reopened.is_alive(), WAIT)
+        gate.open.set()
+        reopened.join(WAIT)
+        assert not reopened.is_alive() and next(iter(server._views.values())).page is not page
+        assert error_log._seen == before
+    server.stop()
