@@ -13,12 +13,12 @@ from typing import Any, get_args
 from markdown_it.token import Token
 
 from onpath.lessons.action_schema import Script, StepSetup
+from onpath.lessons.adaptive.branches import faults_of_when
 from onpath.lessons.completeness import lacks, order_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
 from onpath.lessons.formulas import FormulaError, reader
 from onpath.lessons.kept.option_keys import keys_of
 from onpath.lessons.measures.stated import Stated, take_stated
-from onpath.lessons.personal.branches import faults_of_when
 from onpath.lessons.problems import LessonError, Problem
 from onpath.lessons.prose import data_faults, read_prose
 from onpath.lessons.rendered import rendered

@@ -12,9 +12,9 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from markupsafe import Markup
 
+from onpath.lessons.adaptive.own_numbers import own_faults
 from onpath.lessons.formulas import FormulaError, embedded, folded, render
 from onpath.lessons.links import read_link
-from onpath.lessons.personal.own_numbers import own_faults
 from onpath.lessons.schema import LabLink, Text
 from onpath.lessons.vocabulary.setups import action_faults
 

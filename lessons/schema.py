@@ -136,8 +136,8 @@ class Text(msgspec.Struct, frozen=True):
     """Part of a step's text, as safe HTML, and its lab links, which follow it as buttons.
 
     Attributes:
-        html: may contain numbers of the student's, see `lessons.personal.own_numbers`.
-        when: the answer for which it is shown, see `lessons.personal.branches`; empty for any.
+        html: may contain numbers of the student's, see `lessons.adaptive.own_numbers`.
+        when: the answer for which it is shown, see `lessons.adaptive.branches`; empty for any.
     """
 
     html: Markup

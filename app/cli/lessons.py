@@ -44,7 +44,7 @@ class CheckLessons:
 
     def run(self) -> int:
         """Print what is wrong; return exit code 1 if anything is."""
-        from onpath.app.lab.course_check import play_course
+        from onpath.app.lab.dry_runs.course_check import play_course
         from onpath.app.lab.loops.loop_cache import LoopCache
         from onpath.lessons.course import BUILT_IN, read_folder
 

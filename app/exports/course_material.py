@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from onpath.app.exports.report_plot import draw_prediction
-from onpath.app.lab.step_truth import computed_truth
+from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.lessons.action_words import script_words
 from onpath.lessons.benches import robot_names
 from onpath.lessons.course import REFERENCE, Course, read_references

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from onpath.app.lab.course_check import lab_at, play
+from onpath.app.lab.dry_runs.course_check import lab_at, play
+from onpath.app.lab.dry_runs.run_samples import Samples
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.lab.run_samples import Samples
 from onpath.lessons.action_schema import Script
 from onpath.lessons.checks import Verdict
 from onpath.lessons.schema import Lesson, Step

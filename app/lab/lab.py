@@ -14,7 +14,7 @@ from typing import ClassVar
 
 from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.breakdown import Breakdown
-from onpath.app.lab.identification import Identification
+from onpath.app.lab.identification.in_background import Identification
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.script_player import ScriptPlayer

@@ -10,22 +10,20 @@ from typing import Any, Protocol
 from msgspec.structs import replace
 
 from onpath.app.lab.answers import kept_answer
-from onpath.app.lab.lesson_record import Beginning, Trace, record_of
+from onpath.app.lab.lesson_record import Beginning, Trace
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.step_setup import setup_of
-from onpath.lessons.checks import Verdict, judge, statistic
+from onpath.app.lab.task_judge import TaskJudge
+from onpath.lessons.checks import Verdict
 from onpath.lessons.concept_test.on_route import first_step
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
-from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.progress import Answer, Progress, Truth
-from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson, Prediction, Sketch
-from onpath.lessons.task_schema import Task, Window
 from onpath.lessons.words import Words
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameter_specs import unknown_name
@@ -53,28 +51,29 @@ class LessonRun(LessonState):
     """One student's progress through the lessons, on a lab.
 
     Attributes:
-        verdicts: on the checks of the open step's tasks, by task.
         before: set-up of the lab before a lesson was opened.
         plots: names of the open step's plots.
     """
 
     def __init__(self, course: Course, progress: Progress | None = None) -> None:
         super().__init__(course, progress)
-        self.verdicts: dict[str, list[Verdict]] = {}
-        self._begin = Beginning(0, 0.0)
+        self._judge = TaskJudge(Beginning(0, 0.0))
         self._frames = 0
         self._player: ScriptPlayer[Any] | None = None  # of the step's demonstration
         self._trace: Trace | None = None  # of the quantity during the demonstration
-        self._passed: dict[str, int] = {}  # the run in which each task was passed
         self.before: Setup | None = None
         self.plots: tuple[str, ...] = ()
-        self._earlier = EarlierRun()
         self._rate: float | None = None  # before a demonstration that changes it
 
     @property
     def playing(self) -> bool:
         """Whether the lab is playing the step's demonstration."""
         return self._player is not None
+
+    @property
+    def verdicts(self) -> dict[str, list[Verdict]]:
+        """On the checks of the open step's tasks, by task."""
+        return self._judge.verdicts
 
     @property
     def rate_before(self) -> float:
@@ -225,8 +224,8 @@ class LessonRun(LessonState):
         rate = session.rate if self._rate is None else self._rate
         _set_up(lab, lesson, self.index)
         session.rate = rate  # may be slow motion; the result is the same
-        self._begin = Beginning.now(session)
-        self._trace = Trace(quantity_of(found[1]), self._begin) if found else None
+        self._judge.begin = Beginning.now(session)
+        self._trace = Trace(quantity_of(found[1]), self._judge.begin) if found else None
         self._player = lab.script = player
         script = lesson.steps[self.index].script
         self._rate = rate if script and any(action.rate for action in script.do) else None
@@ -251,7 +250,8 @@ class LessonRun(LessonState):
         if self._player is not None and self._trace is not None:
             self._trace.follow(session)
         if self.step is not None and self.step.tasks():
-            self._judge(session, self.step.tasks())
+            for task, value in self._judge.follow(session, self.step.tasks(), self.words):
+                self._pass(task.id, value)
 
     def truth(self, session: Session) -> Truth | None:
         """The actual curve of the predicted quantity, from now or from the last demonstration."""
@@ -261,26 +261,10 @@ class LessonRun(LessonState):
         self._trace.follow(session)
         return self._trace.truth()
 
-    def _judge(self, session: Session, tasks: list[Task]) -> None:
-        record = record_of(session, self._begin, self._earlier.values)
-        self._earlier.follow(record, tasks)
-        for task in tasks:
-            verdicts = judge(task, record, self.words)
-            passed = all(verdict.passed for verdict in verdicts)
-            if passed or self._passed.get(task.id) != record.run:
-                self.verdicts[task.id] = verdicts
-            if passed:
-                self._passed[task.id] = record.run
-                self._pass(task, record)
-
-    def _pass(self, task: Task, record: Record) -> None:
-        best = self.notes.tasks.get(task.id)
-        value = 0.0
-        if task.best:
-            chosen = record.chosen("follower", Window())
-            value = statistic(record, "follower", task.best, "max", chosen) or 0.0
+    def _pass(self, task: str, value: float) -> None:
+        best = self.notes.tasks.get(task)
         if best is None or value < best:
-            self.note(tasks={**self.notes.tasks, task.id: round(value, 3)})
+            self.note(tasks={**self.notes.tasks, task: round(value, 3)})
 
     def _go(self, index: int, lab: LessonLab) -> None:
         lesson = self.lesson
@@ -305,8 +289,7 @@ class LessonRun(LessonState):
         session = lab.session
         lab.script, session.undo_timeline, session.running = None, None, running
         self._player = self._trace = self._rate = None
-        self.verdicts, self._passed, self._earlier = {}, {}, EarlierRun()
-        self._begin = Beginning.now(session)
+        self._judge = TaskJudge(Beginning.now(session))
         self._lock(session)
 
     def _lock(self, session: Session) -> None:

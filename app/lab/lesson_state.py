@@ -10,11 +10,11 @@ from typing import Any
 from msgspec.structs import replace
 
 from onpath.app.lab.answers import kept_number, kept_text
+from onpath.lessons.adaptive.branches import is_shown
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import mark_of, marks_of
 from onpath.lessons.kept.option_keys import second_key
 from onpath.lessons.pace import Pace
-from onpath.lessons.personal.branches import is_shown
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.routes import Route
 from onpath.lessons.schema import (

@@ -6,10 +6,10 @@ from onpath.app.common.templates import Markup
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
 from onpath.lessons.action_schema import StepSetup
+from onpath.lessons.adaptive.branches import is_shown
+from onpath.lessons.adaptive.own_numbers import filled
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import option_order
-from onpath.lessons.personal.branches import is_shown
-from onpath.lessons.personal.own_numbers import filled
 from onpath.lessons.schema import Choice, Quiz, Text
 from onpath.lessons.words import Words
 

@@ -9,7 +9,7 @@ import pytest
 from markupsafe import Markup
 
 from onpath.app.cli.main import run_command
-from onpath.app.lab.course_check import lab_at, play, play_course, solved
+from onpath.app.lab.dry_runs.course_check import lab_at, play, play_course, solved
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.page.lesson_html import task as task_html

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 
 from onpath.app.exports.report_plot import draw_prediction
-from onpath.app.lab.course_check import lab_at, play
+from onpath.app.lab.dry_runs.course_check import lab_at, play
 from onpath.app.lab.lesson_record import Beginning, Trace
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.lessons.benches import robot_names

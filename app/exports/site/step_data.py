@@ -9,8 +9,8 @@ from msgspec.structs import replace
 
 from onpath.app.exports.site.step_figures import StepFigure, figure_of, lacking_words, step_figure
 from onpath.app.exports.site.task_data import task_data
+from onpath.lessons.adaptive.own_numbers import filled
 from onpath.lessons.benches import robot_names
-from onpath.lessons.personal.own_numbers import filled
 from onpath.lessons.progress import Notes
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import (

@@ -12,7 +12,7 @@ from onpath.app.classroom.results import (
     truth_of,
 )
 from onpath.app.classroom.sketches_html import Picks
-from onpath.app.lab.step_truth import computed_truth
+from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.app.page.panels.widgets import note
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.concept_test.concept_test import TESTS

@@ -12,7 +12,7 @@ import pytest
 from onpath.app.cli.main import run_command
 from onpath.app.exports import course_material
 from onpath.app.exports.guide import guide, worksheet
-from onpath.app.lab.step_truth import computed_truth
+from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.assets.messages import languages
 from onpath.lessons.action_schema import Action, Laws, Script
 from onpath.lessons.action_words import script_words

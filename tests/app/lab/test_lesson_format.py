@@ -11,16 +11,16 @@ from hypothesis import strategies as st
 from markupsafe import Markup
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.course_check import lab_at, play
+from onpath.app.lab.dry_runs.course_check import lab_at, play
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.setup import RATES as LAB_RATES
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.lesson_view import LessonView
 from onpath.lessons.action_schema import Action, Script
+from onpath.lessons.adaptive.own_numbers import filled
 from onpath.lessons.checks import verdict
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.measures.earlier_run import EarlierRun
-from onpath.lessons.personal.own_numbers import filled
 from onpath.lessons.progress import Answer, Notes
 from onpath.lessons.record import Record
 from onpath.lessons.schema import Text

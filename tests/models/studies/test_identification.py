@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.identify import MOST_TICKS, last_record
+from onpath.app.lab.identification.identify import MOST_TICKS, last_record
 from onpath.app.lab.lab import Lab
 from onpath.models.arrays import Array
 from onpath.models.paths.curves import Curve, circle

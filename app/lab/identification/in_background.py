@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
 
-from onpath.app.lab.identify import Learned, learn
+from onpath.app.lab.identification.identify import Learned, learn
 from onpath.app.lab.segments import HistoryCopy
 from onpath.models.systems.robots import Robot
 

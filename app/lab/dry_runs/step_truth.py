@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from onpath.app.lab.course_check import lab_at, play
+from onpath.app.lab.dry_runs.course_check import lab_at, play
 from onpath.app.lab.lesson_record import Beginning, Trace
 from onpath.app.lab.lesson_run import quantity_of
 from onpath.app.lab.loops.loop_cache import LoopCache

@@ -7,12 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from onpath.app.lab.commands.scripts import player_of
+from onpath.app.lab.dry_runs.run_samples import Samples
+from onpath.app.lab.dry_runs.stated_check import stated_faults
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.lab.run_samples import Samples
 from onpath.app.lab.setups.step_setup import setup_of
-from onpath.app.lab.stated_check import stated_faults
 from onpath.lessons.action_schema import Script
 from onpath.lessons.checks import Verdict, judge
 from onpath.lessons.course import REFERENCE, Course, read_references

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import pytest
 
 from onpath.app.lab import commands as c
-from onpath.app.lab import identification
-from onpath.app.lab.identify import Learned, learn
+from onpath.app.lab.identification import in_background
+from onpath.app.lab.identification.identify import Learned, learn
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.segments import HistoryCopy
@@ -42,7 +42,7 @@ class SlowThread:
 @pytest.fixture
 def slow(monkeypatch: pytest.MonkeyPatch) -> Iterator[SlowThread]:
     slow = SlowThread()
-    monkeypatch.setattr(identification, "learn", slow.learn)
+    monkeypatch.setattr(in_background, "learn", slow.learn)
     yield slow
     slow.may_end.set()
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.app.lab.lesson_run import quantity_of
-from onpath.app.lab.step_truth import computed_truth
 from onpath.lessons.benches import ROLES
 from onpath.lessons.course import BUILT_IN, read_lesson
 from tests.support.stated_numbers import shown

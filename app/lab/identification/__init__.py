@@ -1,0 +1,1 @@
+"""Identification of the model that a lab's controllers use, from how a robot has moved."""
