@@ -13,11 +13,11 @@ from onpath.app.common.palette import OF_BENCH, SLATE
 from onpath.app.common.templates import render
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import ROLES
+from onpath.lessons.measures.thinning import peaks
 from onpath.lessons.progress import MOST_POINTS as MOST_OF_TRUTH
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch
-from onpath.lessons.thinning import peaks
 from onpath.lessons.words import Words
 
 WIDTH, HEIGHT, LEFT, BELOW = 640, 380, 50, 36  # size of a plot, [px]

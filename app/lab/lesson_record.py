@@ -11,10 +11,10 @@ from onpath.app.lab.session import Session
 from onpath.app.lab.timeline import LabEvent
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import ROLES
+from onpath.lessons.measures.thinning import peaks
 from onpath.lessons.progress import MOST_POINTS, Truth
 from onpath.lessons.record import ROBOTS, Happening, Record
 from onpath.lessons.task_schema import Better
-from onpath.lessons.thinning import peaks
 from onpath.models.arrays import Array
 from onpath.models.control.benches import LEFT
 from onpath.models.layout import Layout

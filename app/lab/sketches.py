@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from onpath.lessons.measures.thinning import peaks
 from onpath.lessons.progress import Answer
 from onpath.lessons.schema import Sketch
-from onpath.lessons.thinning import peaks
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 

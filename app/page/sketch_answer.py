@@ -27,7 +27,9 @@ class SketchAnswer:
     def __init__(
         self, client: viser.ClientHandle, scene: Scene, block: Sketch, run: LessonView, drawn: Drawn
     ) -> None:
-        from onpath.app.scene.sketch_board import SketchBoard  # see app/server/lazy_imports.py
+        from onpath.app.scene.strokes.sketch_board import (
+            SketchBoard,  # see app/server/lazy_imports.py
+        )
 
         self._scene, words = scene, run.words
         robot = robot_names(run.laws_shown, words)[block.robot]

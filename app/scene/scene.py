@@ -16,7 +16,6 @@ from onpath.app.lab.snapshots.snapshot import Motion, PathView, Snapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.captions import Captions
 from onpath.app.scene.contact_nodes import ContactNodes
-from onpath.app.scene.freehand import Freehand
 from onpath.app.scene.hand_nodes import HandNodes
 from onpath.app.scene.mouse import Mouse, SceneCallbacks
 from onpath.app.scene.path_nodes import PathNodes
@@ -34,6 +33,7 @@ from onpath.app.scene.stage import (
     view_of,
 )
 from onpath.app.scene.start_nodes import StartNodes
+from onpath.app.scene.strokes.freehand import Freehand
 from onpath.app.scene.wall_nodes import WallNodes
 from onpath.app.viser_adapter.camera import place_camera
 from onpath.lessons.words import ENGLISH, Words

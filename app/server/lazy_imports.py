@@ -15,7 +15,7 @@ from onpath.app.lab.session import Session
 from onpath.assets.messages import catalogue, languages
 
 LATER = (
-    "onpath.app.scene.sketch_board",
+    "onpath.app.scene.strokes.sketch_board",
     "scipy.interpolate",
     "scipy.linalg",
     "scipy.signal",

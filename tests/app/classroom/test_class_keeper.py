@@ -54,6 +54,18 @@ def two(tmp_path: Path) -> Iterator[list[Process]]:
         process.records.close()
 
 
+def moved(two: list[Process]) -> list[Process]:
+    """The processes after a class with Ada has gone over to the second one, where Bob joins it."""
+    one, other = two
+    one.keeper.open()
+    one.room.join(ADA, one.room.code, "Ada")
+    one.keeper.look()
+    other.keeper.open()
+    other.room.join(BOB, other.room.code, "Bob")
+    other.keeper.look()
+    return two
+
+
 def names(process: Process) -> list[str]:
     return [member.name for member in process.room.members().values()]
 
@@ -109,13 +121,7 @@ def test_a_class_goes_on_in_another_process(two: list[Process], push: TakeStep |
 def test_who_has_lost_the_class_gives_it_up_and_takes_it_back_as_it_is_then(
     two: list[Process],
 ) -> None:
-    one, other = two
-    one.keeper.open()
-    one.room.join(ADA, one.room.code, "Ada")
-    one.keeper.look()
-    other.keeper.open()
-    other.room.join(BOB, other.room.code, "Bob")
-    other.keeper.look()
+    one, other = moved(two)
     one.room.freeze(True)  # its teacher does not know yet
     for _ in range(2):
         one.keeper.look()
@@ -138,13 +144,7 @@ def test_who_comes_while_the_class_is_here_finds_it_as_it_is(two: list[Process])
 def test_a_class_that_moved_away_while_its_process_was_suspended_is_read_again(
     two: list[Process],
 ) -> None:
-    one, other = two
-    one.keeper.open()
-    one.room.join(ADA, one.room.code, "Ada")
-    one.keeper.look()
-    other.keeper.open()
-    other.room.join(BOB, other.room.code, "Bob")
-    other.keeper.look()
+    one, other = moved(two)
     one.now += FRESH  # it wakes up, and somebody comes before it has looked
     one.keeper.open()
     assert names(one) == ["Ada", "Bob"]

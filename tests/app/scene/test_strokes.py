@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from onpath.app.common import palette
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.scene.sketch_line import MOST, SketchLine
 from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.scene.strokes.sketch_line import MOST, SketchLine
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.slow_updates import FREQUENT
 from onpath.lessons.schema import Sketch

@@ -10,8 +10,8 @@ import numpy as np
 from onpath.app.common import palette
 from onpath.app.scene import meshes
 from onpath.app.scene.pointer_projection import pointer_on_plane
-from onpath.app.scene.sketch_line import SketchLine
 from onpath.app.scene.stage import Stage, add_copies
+from onpath.app.scene.strokes.sketch_line import SketchLine
 
 if TYPE_CHECKING:
     import viser

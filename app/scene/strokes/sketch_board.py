@@ -13,8 +13,8 @@ from scipy.spatial.transform import Rotation
 
 from onpath.app.common import palette
 from onpath.app.scene.pointer_projection import intersect_ray_plane
-from onpath.app.scene.sketch_line import SketchLine
 from onpath.app.scene.stage import Stage
+from onpath.app.scene.strokes.sketch_line import SketchLine
 from onpath.app.scene.tones import Tones
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch

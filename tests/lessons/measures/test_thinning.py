@@ -13,9 +13,9 @@ from onpath.app.classroom.class_html import prediction_view
 from onpath.app.classroom.results import Distribution
 from onpath.app.classroom.sketches_html import MOST_POINTS
 from onpath.app.page.lesson_chart import together
+from onpath.lessons.measures.thinning import intervals, peaks
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.schema import Sketch
-from onpath.lessons.thinning import intervals, peaks
 from onpath.lessons.words import Words
 
 numbers = st.floats(-1e6, 1e6)
