@@ -15,6 +15,7 @@ from functools import singledispatch
 from html import unescape
 
 from onpath.lessons.schema import (
+    KINDS,
     Block,
     Choice,
     Lesson,
@@ -35,8 +36,8 @@ MINUTES = {
     "choice": 0.5,
     "quiz": 0.5,
     "task": 3.0,
-    "numberquestion": 1.0,
-    "openquestion": 1.0,
+    "number": 1.0,
+    "open": 1.0,
 }
 """Assumed time for each kind of what a student does, beyond reading."""
 FOLDED = re.compile(r"<details>.*?</details>", re.DOTALL)
@@ -71,7 +72,7 @@ def step_minutes(step: Step) -> Minutes:
     return Minutes(
         reading=sum(word_count(text) for block in step.blocks for text in _read(block)) / WORDS,
         runs=0.0 if step.script is None else step.script.seconds / 60,
-        predictions=sum(MINUTES[type(block).__name__.lower()] for block in asked),
+        predictions=sum(MINUTES[KINDS[type(block)]] for block in asked),
         tasks=MINUTES["task"] * len(step.tasks()) + tried,
     )
 

@@ -146,6 +146,16 @@ class Text(msgspec.Struct, frozen=True):
 
 
 Block = Text | Choice | Sketch | Task | Quiz | NumberQuestion | OpenQuestion
+KINDS: dict[type[Block], str] = {
+    Text: "text",
+    Choice: "choice",
+    Sketch: "sketch",
+    Task: "task",
+    Quiz: "quiz",
+    NumberQuestion: "number",
+    OpenQuestion: "open",
+}
+"""Names of the kinds of blocks."""
 
 
 class StepMark(Data, frozen=True):

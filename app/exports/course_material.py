@@ -12,17 +12,7 @@ from onpath.lessons.benches import robot_names
 from onpath.lessons.course import REFERENCE, Course, read_references
 from onpath.lessons.minutes import Minutes, optional_minutes, required_minutes, step_minutes
 from onpath.lessons.progress import Truth
-from onpath.lessons.schema import (
-    Block,
-    Choice,
-    Lesson,
-    NumberQuestion,
-    OpenQuestion,
-    Quiz,
-    Sketch,
-    Step,
-    Text,
-)
+from onpath.lessons.schema import KINDS, Block, Lesson, Sketch, Step, Text
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
@@ -33,7 +23,7 @@ class AskedBlock:
     """A prediction, a question of any kind or a task, with what it takes to answer it.
 
     Attributes:
-        kind: "sketch", "choice", "quiz", "number", "open" or "task".
+        kind: see `onpath.lessons.schema.KINDS`; not "text".
         key: lesson, step and place in the step; unique in the course.
         step: its number, from 1.
         axes: of a sketch, nothing drawn, as an image for a page.
@@ -118,15 +108,10 @@ def _asked(
             axes = _drawn(lesson, index, block, None, words)
             figure = _drawn(lesson, index, block, truth, words)
             asked.append(AskedBlock("sketch", key, index + 1, block, axes, figure))
-        elif isinstance(block, Choice | Quiz):
-            asked.append(AskedBlock(type(block).__name__.lower(), key, index + 1, block))
-        elif isinstance(block, Task):
-            asked.append(AskedBlock("task", key, index + 1, block, solution=solutions[block.id]))
-        elif isinstance(block, NumberQuestion | OpenQuestion):
-            kind = "number" if isinstance(block, NumberQuestion) else "open"
-            asked.append(AskedBlock(kind, key, index + 1, block))
-        else:
-            assert isinstance(block, Text)
+        elif not isinstance(block, Text):
+            solution = solutions[block.id] if isinstance(block, Task) else ()
+            kind = KINDS[type(block)]
+            asked.append(AskedBlock(kind, key, index + 1, block, solution=solution))
     return asked
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import END, MARKER, Motion
+from onpath.app.scene.moving_lines import have_moved
 from onpath.app.scene.stage import Stage
 from onpath.app.viser_adapter.frame_channel import update_node
 
@@ -18,8 +19,6 @@ ARROWS = {"e": palette.VERMILLION, "d": palette.AZURE}
 """Name of each error, and its colour: that of the robot whose law makes it zero."""
 SHORTEST = 2e-3
 """Errors below this are drawn as nothing [m]."""
-MOVED = 1e-4
-"""Movements below this are not drawn [m]."""
 CLOCK = 0
 """Index of the robot whose marker is the timetable's point."""
 
@@ -45,7 +44,7 @@ class ErrorNodes:
     def follow(self, motion: Motion) -> None:
         """Move the arrows with the robots; sends nothing while they stand still."""
         points = self._points(motion)
-        if not np.isfinite(points).all() or np.abs(points - self._drawn).max() < MOVED:
+        if not have_moved(points, self._drawn):
             return
         self._drawn = points
         for i, arrow in enumerate(self._arrows):

@@ -8,8 +8,8 @@ import numpy as np
 
 from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import END, Motion
+from onpath.app.scene.moving_lines import MovingLines
 from onpath.app.scene.stage import Stage
-from onpath.app.viser_adapter.frame_channel import update_node
 from onpath.models.control.effective_mass import effective_masses
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -22,8 +22,6 @@ OF_A_KILOGRAM = 0.06
 LARGEST = 0.15
 """Largest radius that is drawn, near a singular configuration [m]."""
 SIDES = 48
-MOVED = 1e-4
-"""Movements below this are not drawn [m]."""
 THICKNESS = 0.0022
 COLOUR = palette.GREEN
 
@@ -42,21 +40,16 @@ class MassNodes:
         self._robot, self._origins, self._toward = robot, stage.origins, -0.004 * stage.away
         turn = np.linspace(0, 2 * np.pi, SIDES + 1)
         self._ways = np.column_stack([np.cos(turn), np.sin(turn)])
-        self._lines = self._drawn(motion, parameters)
-        self._node = scene.add_line_segments(
-            "/show/mass", self._lines, COLOUR.rgb, thickness=THICKNESS
-        )
+        lines = self._drawn(motion, parameters)
+        self._lines = MovingLines(scene, "/show/mass", lines, COLOUR, THICKNESS)
 
     def follow(self, motion: Motion, parameters: Parameters) -> None:
         """Move the ellipses with the robots; sends nothing while they stand still."""
-        lines = self._drawn(motion, parameters)
-        if np.isfinite(lines).all() and np.abs(lines - self._lines).max() > MOVED:
-            self._lines = lines
-            update_node(self._node, points=lines)
+        self._lines.follow(self._drawn(motion, parameters))
 
     def remove(self) -> None:
         """Remove the node."""
-        self._node.remove()
+        self._lines.remove()
 
     def _drawn(self, motion: Motion, parameters: Parameters) -> np.ndarray:
         """Segments of all ellipses, shape (n, 2, 3), in the world."""

@@ -8,8 +8,9 @@ import numpy as np
 
 from onpath.app.lab.snapshots.snapshot import END, Motion
 from onpath.app.scene.label_geometry import axes_of, label_function
+from onpath.app.scene.moving_lines import MOVED, MovingLines
 from onpath.app.scene.stage import Stage, add_text
-from onpath.app.viser_adapter.frame_channel import move_node, update_node
+from onpath.app.viser_adapter.frame_channel import move_node
 from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.systems.robots import Robot
 
@@ -22,8 +23,6 @@ LINE = 0.0018
 """Thickness of the arcs [m]."""
 PAST = 0.016
 """How far past its end the name of an axis stands [m]."""
-MOVED = 1e-4
-"""Movements below this are not drawn [m]."""
 SUBSCRIPTS = "₀₁₂₃₄₅₆₇₈₉"
 
 
@@ -53,18 +52,15 @@ class RobotLabels:
         self._names, self._function = labels.names, Buffered(labels.function)
         self._nodes: list[viser.SceneNodeHandle] = []
         self._texts: list[viser.LabelHandle] = []
-        self._arcs: viser.LineSegmentsHandle | None = None
+        self._arcs: MovingLines | None = None
         places, lines = self._drawn(motion)
-        self._places, self._lines = places, lines
+        self._places = places
         names = [f"{bench}/{name}" for bench in stage.bases for name in labels.names]
         for name, at in zip(names, places, strict=True):
             text = name.rpartition("/")[2]
             self._texts.append(add_text(scene, f"/show/labels/{name}", text, at, letters))
         if len(lines):
-            self._arcs = scene.add_line_segments(
-                "/show/arcs", lines, stage.tones.arc.rgb, thickness=LINE
-            )
-            self._nodes.append(self._arcs)
+            self._arcs = MovingLines(scene, "/show/arcs", lines, stage.tones.arc, LINE)
         self._add_axes(scene)
 
     def update(self, motion: Motion) -> None:
@@ -76,13 +72,13 @@ class RobotLabels:
         for i in np.flatnonzero(moved).tolist():
             self._places[i] = places[i]
             move_node(self._texts[i], places[i])
-        if self._arcs is not None and np.abs(lines - self._lines).max() > MOVED:
-            self._lines = lines
-            update_node(self._arcs, points=lines)
+        if self._arcs is not None:
+            self._arcs.follow(lines)
 
     def remove(self) -> None:
         """Remove all nodes."""
-        for node in (*self._texts, *self._nodes):
+        arcs = [] if self._arcs is None else [self._arcs]
+        for node in (*self._texts, *self._nodes, *arcs):
             node.remove()
 
     def _drawn(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:

@@ -14,11 +14,11 @@ from onpath.lessons.benches import robot_names
 from onpath.lessons.progress import Notes
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import (
+    KINDS,
     Block,
     Choice,
     Lesson,
     NumberQuestion,
-    OpenQuestion,
     Quiz,
     Sketch,
     Step,
@@ -33,7 +33,7 @@ class SiteBlock:
     """A part of a step.
 
     Attributes:
-        kind: "text", "choice", "sketch", "quiz", "number", "open" or "task".
+        kind: see `onpath.lessons.schema.KINDS`.
         here: of a task, whether it can be done on the page.
     """
 
@@ -62,17 +62,6 @@ class SiteStep:
     figure: dict[str, Any]
     lacking: str
     lab_only: bool
-
-
-KINDS: dict[type, str] = {
-    Text: "text",
-    Choice: "choice",
-    Sketch: "sketch",
-    Quiz: "quiz",
-    NumberQuestion: "number",
-    OpenQuestion: "open",
-    Task: "task",
-}
 
 
 def site_step(
