@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import singledispatch
 
 import msgspec
 import numpy as np
 
-from onpath.lessons.action_schema import RobotName
+from onpath.lessons.action_schema import RobotName, Value
 from onpath.lessons.benches import robot_names
 from onpath.lessons.labels import event_label, setting_label, value_label
 from onpath.lessons.measures.responses import (
@@ -71,18 +72,12 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
         return Verdict(False, words("check.stopped", robot=robots[check.robot]))
     chosen = record.chosen(check.robot, check)
     enough, seconds = _seconds(check, record, chosen, words)
-    unit = unit_of(check.stat, check.quantity)
-    names = {
-        "robot": robots[check.robot],
-        "stat": stat_words(check.stat, check.quantity, words),
-        "during": words(f"during.{check.during}"),
-        "wanted": range_words(check.below, check.above, unit, words),
-    }
+    names = bound_words(check, robots, words)
     value = statistic(record, check.robot, check.quantity, check.stat, chosen)
     if value is None:
         return Verdict(False, words("check.nothing", **names, seconds=seconds))
     shown = _rounded(value, check.below, check.above)
-    said = words("check.bound", **names, value=shown, unit=unit) + seconds
+    said = words("check.bound", **names, value=shown) + seconds
     return Verdict(enough and _within(value, check.below, check.above), said)
 
 
@@ -98,24 +93,14 @@ def _(check: Compare, record: Record, words: Words) -> Verdict:
         for robot in (check.larger, smaller)
     ]
     enough, seconds = _seconds(check, record, chosen, words)
-    names = {
-        "stat": stat_words(check.stat, check.quantity, words),
-        "during": words(f"during.{check.during}"),
-    }
+    names = compare_words(check, robots, words)
     large, small = both
     if large is None or small is None:
-        wanted = f"{check.ratio:g}×"
-        robot = robots[check.larger]
-        said = words("check.nothing", robot=robot, seconds=seconds, wanted=wanted, **names)
-        return Verdict(False, said)
+        names |= {"robot": robots[check.larger], "wanted": f"{check.ratio:g}×"}
+        return Verdict(False, words("check.nothing", **names, seconds=seconds))
     ratio = large / max(small, TINY)
-    said = words(
-        "check.compare",
-        larger=robots[check.larger],
-        ratio=_rounded(ratio, None, check.ratio) if ratio < 1000 else ">1000",
-        wanted=f"{check.ratio:g}",
-        **names,
-    )
+    shown = _rounded(ratio, None, check.ratio) if ratio < 1000 else ">1000"
+    said = words("check.compare", **names, ratio=shown)
     return Verdict(enough and ratio >= check.ratio, said + seconds)
 
 
@@ -182,15 +167,11 @@ def _(check: Setting, record: Record, words: Words) -> Verdict:
     own |= {"length": record.length()}
     own |= {**DEFAULT_LAWS, **{bench: short_name(law) for bench, law in record.laws.items()}}
     value = own.get(check.name, getattr(record.parameters, check.name, None))
-    if check.equals is not None:
-        spec = specs(record.parameters).get(check.name)
-        equals = check.equals if spec is None else spec.present(check.equals)
-        said = value_label(check.name, equals, words)
-        passed, wanted = _same(value, equals), words("check.equals", value=said)
+    equals, wanted = setting_wanted(check, record.parameters, words)
+    if equals is not None:
+        passed = _same(value, equals)
     else:
         passed = isinstance(value, int | float) and _within(value, check.below, check.above)
-        unit = "mm" if check.name == "length" else ""
-        wanted = range_words(check.below, check.above, unit, words)
     name = setting_label(check.name, record.parameters, words)
     shown = value_label(check.name, value, words)
     return Verdict(passed, words("check.setting", name=name, value=shown, wanted=wanted))
@@ -273,6 +254,44 @@ def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> tuple
     if enough:
         shown = need if "." in need else f"{need}.0"
     return enough, words("check.seconds", have=shown, need=need)
+
+
+def bound_words(check: Bound, robots: Mapping[RobotName, str], words: Words) -> dict[str, str]:
+    """What is said of a bound, apart from the measured value.
+
+    Args:
+        robots: displayed names.
+    """
+    unit = unit_of(check.stat, check.quantity)
+    return {
+        "robot": robots[check.robot],
+        "stat": stat_words(check.stat, check.quantity, words),
+        "during": words(f"during.{check.during}"),
+        "wanted": range_words(check.below, check.above, unit, words),
+        "unit": unit,
+    }
+
+
+def compare_words(check: Compare, robots: Mapping[RobotName, str], words: Words) -> dict[str, str]:
+    """What is said of a comparison, apart from the measured ratio; see `bound_words`."""
+    return {
+        "larger": robots[check.larger],
+        "stat": stat_words(check.stat, check.quantity, words),
+        "during": words(f"during.{check.during}"),
+        "wanted": f"{check.ratio:g}",
+    }
+
+
+def setting_wanted(
+    check: Setting, parameters: Parameters, words: Words
+) -> tuple[Value | None, str]:
+    """The value that a setting should have, None if only its bounds matter; and that in words."""
+    if check.equals is None:
+        unit = "mm" if check.name == "length" else ""
+        return None, range_words(check.below, check.above, unit, words)
+    spec = specs(parameters).get(check.name)
+    equals = check.equals if spec is None else spec.present(check.equals)
+    return equals, words("check.equals", value=value_label(check.name, equals, words))
 
 
 def stat_words(stat: Stat, quantity: str, words: Words) -> str:

@@ -9,9 +9,14 @@ from typing import Any
 import msgspec
 
 from onpath.lessons.benches import robot_names
-from onpath.lessons.checks import event_named, event_words, range_words, stat_words
+from onpath.lessons.checks import (
+    bound_words,
+    compare_words,
+    event_named,
+    event_words,
+    setting_wanted,
+)
 from onpath.lessons.labels import setting_label, value_label
-from onpath.lessons.measures.responses import unit_of
 from onpath.lessons.record import ROBOTS as ROLES
 from onpath.lessons.task_schema import Bound, Check, Compare, Event, Order, Setting, Task
 from onpath.lessons.words import Words
@@ -71,27 +76,15 @@ def _more(check: Check, parameters: Parameters, robots: dict[Any, str], words: W
 
 @_more.register
 def _(check: Bound, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
-    unit = unit_of(check.stat, check.quantity)
-    said = {
-        "robot": robots[check.robot],
-        "stat": stat_words(check.stat, check.quantity, words),
-        "during": words(f"during.{check.during}"),
-        "wanted": range_words(check.below, check.above, unit, words),
-        "unit": unit,
-        "need": f"{check.least:g}",
-    }
-    return {"said": said}
+    return {"said": {**bound_words(check, robots, words), "need": f"{check.least:g}"}}
 
 
 @_more.register
 def _(check: Compare, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
     (smaller,) = set(ROLES) - {check.larger}
     said = {
-        "larger": robots[check.larger],
+        **compare_words(check, robots, words),
         "smaller": robots[smaller],
-        "stat": stat_words(check.stat, check.quantity, words),
-        "during": words(f"during.{check.during}"),
-        "wanted": f"{check.ratio:g}",
         "need": f"{check.least:g}",
     }
     return {"smaller": smaller, "said": said}
@@ -116,12 +109,7 @@ def _(check: Order, parameters: Parameters, robots: dict[Any, str], words: Words
 @_more.register
 def _(check: Setting, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
     spec = specs(parameters).get(check.name)
-    equals = check.equals if spec is None or check.equals is None else spec.present(check.equals)
-    if equals is None:
-        unit = "mm" if check.name == "length" else ""
-        wanted = range_words(check.below, check.above, unit, words)
-    else:
-        wanted = words("check.equals", value=value_label(check.name, equals, words))
+    equals, wanted = setting_wanted(check, parameters, words)
     present = getattr(parameters, check.name, None)
     options = _named(check.name) if spec is None else spec.options
     return {
