@@ -74,7 +74,7 @@ lesson-minutes = { $minutes } min
 lesson-minutes_optional = and { $minutes } min optional
 lesson-optional = optional
 lesson-branch = for your answer
-lesson-past_optional = Past the optional steps, to step { $step }
+lesson-past_optional = Skip the optional steps, to step { $step }
 lesson-tasks =
     { $all ->
         [one] { $done } of 1 task
@@ -118,7 +118,7 @@ lesson-discuss = Discuss the question with your neighbour, then answer it again.
 lesson-discuss_letter = Discuss the question with your neighbour, then answer it again. Your first answer was { $letter }.
 lesson-second = After the discussion:
 lesson-drawn_again = you drew the curve again
-lesson-unknown = You answered this when the lesson was another one. Its answers have changed since, so it cannot be known which one you chose.
+lesson-unknown = You answered this in an earlier version of the lesson. Its answers have changed since, so there is no telling which one you chose.
 lesson-skipped = You skipped the prediction.
 lesson-predict_before = First go back and make the prediction, or skip it.
 lesson-next_unseen = Next, without seeing it
@@ -225,10 +225,10 @@ test-open_name = Open the test: { $title }
 test-hand_in = Hand in
 test-handed_in = handed in
 test-answered = { $part } of { $all } answered. You can change your answers until you hand in.
-test-locked = In a test the lab stands still.
+test-locked = The lab is paused during a test.
 test-over = The test has been handed in.
 test-thanks = Handed in. Thank you.
-test-later = What is right, and why, is told when you have handed in the test after the course.
+test-later = You will see what is right, and why, when you have handed in the test after the course.
 test-score = { $part } of { $all } right
 test-before = Before the course
 test-after = After the course
@@ -237,7 +237,7 @@ test-chosen_after = After:
 test-none = no answer
 test-students = { $count ->
         [0] Nobody has handed in both tests yet.
-        [one] 1 student has handed in both tests. In a class this small it may be known who is meant.
+        [one] 1 student has handed in both tests. In a class this small, others may guess who it is.
        *[other] { $count } students have handed in both tests.
     }
 test-means = Right answers: { $before } % before, { $after } % after.
@@ -380,7 +380,7 @@ display-speaks = Say what happens, for screen readers
 display-sounds = Distance as sound: left robot in the left ear, right robot in the right
 breakdown-slowly = Show it slowly
 breakdown-end = Stop showing it
-breakdown-reset = Reset as it is
+breakdown-reset = Reset with the same settings
 breakdown-earlier = Reset with { $changes }
 summary-clock = Time { $time } seconds. Path: { $path }.
 summary-robot = { $robot }: { $now } millimetres from the path, { $most } at most, { $speed } millimetres a second along it.
@@ -408,7 +408,7 @@ invite-hold = Two equal robots follow one path. What if something stands in thei
 invite-hold_button = Hold them back
 invite-let_go = One is torn off the path by its clock; the other waits for as long as it takes.
 invite-let_go_button = Let them go
-invite-pull = Take a robot by its tip and pull: with the mouse, a finger, or the keys A, D, W, S.
+invite-pull = Grab a robot by its tip and pull: with the mouse, a finger, or the keys A, D, W, S.
 invite-bend = Bend the path: drag one of its grey points.
 invite-skip = Skip the introduction
 
@@ -553,7 +553,7 @@ flexible-of_beam =
        *[other] { $modes } modes
     }, each with ζ = { $zeta }
 flexible-unused = composite control puts the tip itself on the path and needs no α
-flexible-unstable = unstable inside
+flexible-unstable = zero dynamics unstable
 flexible-deflections = Deflection: { $each }; { $scale }
 flexible-deflection = { $robot } **{ $value } mm**
 flexible-drawn = drawn { $factor }×
@@ -713,9 +713,9 @@ key-back = Look back one more second
 key-forward = Look forward one second
 key-go_on = Go on from the moment shown; discard what came after
 key-undo_go_on = Restore what was discarded by going on from the past
-key-slowly = after a robot has stopped: its last moments, slowly
-key-earlier = after a robot has stopped: reset, with the settings that did well
-key-summary = say what is on the screen
+key-slowly = After a robot has stopped: show its last moments slowly
+key-earlier = After a robot has stopped: reset with the last settings that worked
+key-summary = Say what is on the screen
 key-view = Reset the view
 
 keyname-space = space
@@ -876,7 +876,7 @@ behaviour-damping = damping { $damping }
 behaviour-unstable = unstable: an error grows by a factor of e every { $seconds } s
 behaviour-not_stable = not stable: an error never dies out
 behaviour-swings = not stable: an error swings for ever
-behaviour-free = a bead on a wire: what speeds up or slows down here balances over a lap
+behaviour-free = like a bead on a wire: the speed gained in one place is lost in another, over a lap
 behaviour-no_poles = poles are not computed for this law
 behaviour-not_constant = no poles: the law depends on the place or on the time, or commands torques
 behaviour-not_smooth = no poles: on the path, the law has a kink or a jump, or does not stay
@@ -897,7 +897,7 @@ fault-narrow = two strands of the path are closer to each other than { $least } 
 stop-range = the numbers have left the range of a computer
 stop-typed_law = the typed law gives a number that is not finite, or is larger than { $most }
 stop-fast = a joint turns faster than { $limit } rad/s: the motion has diverged
-stop-collapsed = the linkage has collapsed (all links in one line): the controller cannot see its way out of a singular configuration
+stop-collapsed = the linkage has collapsed (all links in one line): the controller cannot bring it out of a singular configuration
 stop-singular = the robot is close to a singular configuration (two links in one line): there its motors cannot move the end-point in every direction
 stop-bent = the link bends too far although its zero dynamics are stable: the pull is too strong, the control too slow or the controller's model too wrong
 stop-unstable = the output is on the path, the inside is not: unstable zero dynamics

@@ -341,6 +341,9 @@ def test_a_control_point_moves_by_keys_and_by_numbers(tab: Tab) -> None:
     tab.press("Undo")
     tab.press("Undo")
     wait_for(lambda: editor.design.name == "circle")
+    for selected in (None, 0):  # without a point there are no coordinates
+        tab.ask(c.SelectPoint(selected))
+        wait_for(lambda selected=selected: box.is_visible() == (selected is not None))
 
 
 def test_the_help_window_opens_and_closes(tab: Tab) -> None:

@@ -107,7 +107,7 @@ def test_a_divergence_is_caught_reported_and_reset(tab: Tab) -> None:
     wait_for(lambda: lab.session.parameters.law == "redefined")  # type: ignore[attr-defined]
     wait_for(lambda: str(UNSTABLE) in tab.said())
     assert deflection(tab) > 0.01  # the last instant before: seen at a glance
-    bar = tab.page.get_by_text("unstable inside")
+    bar = tab.page.get_by_text("zero dynamics unstable")
     bar.wait_for()
     tab.enter("α", "0.5")
     wait_for(lambda: bar.count() == 0)
@@ -140,7 +140,7 @@ def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
     expect(message).to_contain_text(str(UNSTABLE))
     message.get_by_role("button", name="Stop showing it").click()
     wait_for(lambda: not tab.lab.breakdown.replaying)
-    expect(message.get_by_role("button", name="Reset as it is")).to_be_visible()
+    expect(message.get_by_role("button", name="Reset with the same settings")).to_be_visible()
     message.get_by_role("button", name="Show it slowly").click()
     wait_for(lambda: tab.lab.breakdown.replaying)
     tab.page.keyboard.press("Escape")

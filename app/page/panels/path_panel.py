@@ -136,7 +136,12 @@ class PathPanel:
         )
         self._first, self._second = (
             gui.add_number(
-                words("design.coordinate", name=name), 0.0, min=-200.0, max=200.0, step=0.5
+                words("design.coordinate", name=name),
+                0.0,
+                min=-200.0,
+                max=200.0,
+                step=0.5,
+                visible=False,
             )
             for name in names
         )
@@ -145,7 +150,7 @@ class PathPanel:
         on_user_update(self._second, lambda mm: post(c.PlacePoint(second=mm / 1e3)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show the selected point's coordinates."""
+        """Show the selected point's coordinates, if one is selected."""
         for name, box in self._plane.items():  # one that was refused goes back
             self._set(box, float(snapshot.parameters[name]))
         edit = snapshot.edit
@@ -159,8 +164,8 @@ class PathPanel:
         selected = edit.selected
         self._set(self._which, 0 if selected is None else selected + 1)
         for coordinate in (self._first, self._second):
-            if coordinate.disabled is not (selected is None):
-                coordinate.disabled = selected is None
+            if coordinate.visible is not (selected is not None):
+                coordinate.visible = selected is not None
         if selected is not None and selected < len(edit.points):
             z = edit.points[selected] * 1e3
             self._set(self._first, round(float(z[0]), 1))
