@@ -34,7 +34,7 @@ class SketchAnswer:
         self._scene, words = scene, run.words
         robot = robot_names(run.laws_shown, words)[block.robot]
         title = f"{robot}: {words(f'quantity.{block.quantity}')}"
-        scene.show_titles(False)
+        scene.show_robots(False)
         self._board = SketchBoard(client.scene, scene.stage, block, title, drawn)
         self._folder = client.gui.add_folder(words("lesson.numbers"), expand_by_default=False)
         with self._folder:
@@ -48,7 +48,7 @@ class SketchAnswer:
         """Remove the board and the sliders."""
         self._board.remove()
         self._folder.remove()
-        self._scene.show_titles(True)
+        self._scene.show_robots(True)
 
     def _add_numbers(self, gui: viser.GuiApi, block: Sketch, run: LessonView, drawn: Drawn) -> None:
         times = np.linspace(0.0, block.seconds, NUMBERS)

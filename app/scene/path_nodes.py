@@ -45,6 +45,7 @@ class PathNodes:
         self._connect = connect
         self._curve: viser.LineSegmentsHandle | None = None
         self._points: viser.BatchedMeshHandle | None = None
+        self._hidden = False
         self._marks: viser.BatchedMeshHandle | None = None
 
     def draw(self, path: PathView) -> None:
@@ -86,7 +87,14 @@ class PathNodes:
             self._points = add_copies(
                 self._scene, "/path/points", ball, positions, colours, shadow=False
             )
+            self._points.visible = not self._hidden
             self._connect(self._points)
+
+    def hide_points(self, hidden: bool) -> None:
+        """Hide the control points, or show them again."""
+        self._hidden = hidden
+        if self._points is not None:
+            self._points.visible = not hidden
 
     def _draw_marks(self, refused: np.ndarray) -> None:
         if self._marks is not None:

@@ -241,6 +241,11 @@ class RobotNodes:
         if self._acting != acts:
             self._acting = self._arrows.visible = acts
 
+    def hide(self, hidden: bool) -> None:
+        """Hide all that moves but the forces, or show it again."""
+        for node in (*(bars.node for bars in self._bars), self._parts, self.grips, self._traces):
+            node.visible = not hidden
+
     def update_traces(self, robots: list[RobotView]) -> None:
         """Redraws the traces if they have changed."""
         lines = [trace_segments(robot.trace, TRACE_SEGMENTS) for robot in robots]

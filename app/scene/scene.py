@@ -170,9 +170,15 @@ class Scene:
         """Shows the start of the next run, to be dragged, or hides it."""
         self._start.show(visible)
 
-    def show_titles(self, visible: bool) -> None:
-        """Shows or hides the titles, which are drawn on top of everything else."""
+    def show_robots(self, visible: bool) -> None:
+        """Shows or hides the titles, the robots' moving parts and the points of the path.
+
+        A board in front of the robots does not hide all of them: titles are drawn on top of
+        everything else, and single pixels of round parts show through at their edges.
+        """
         self._titles.hide(not visible)
+        self._machine.hide(not visible)
+        self._path_nodes.hide_points(not visible)
 
     def frame_camera(self, insets: Insets | None = None) -> None:
         """Points the client's camera so that both robots fill the canvas left free by panels."""

@@ -508,7 +508,7 @@ run-pause = Pause
 run-run_hint = Die simulierte Zeit steht still. Taste: Leertaste
 run-step = Schritt
 run-reset = Zurücksetzen
-run-view = Ansicht
+run-view = Ansicht zurück
 run-rate = Zeit läuft mit
 run-rate_hint = Simulierte Sekunden je Sekunde
 
@@ -583,7 +583,7 @@ gains-swing = Schwingen [rad/s]
 gains-poles = Pole { $poles } 1/s
 gains-poles_at = Pole { $poles } 1/s bei θ = { $place }°; sie ändern sich längs der Bahn
 gains-identify = M und b identifizieren
-gains-identify_hint = Schätzt M und b aus den letzten 3 s des rechten Roboters und lässt beide Regler daran glauben.
+gains-identify_hint = Schätzt M und b aus den letzten 3 s des rechten Roboters und setzt sie in das Modell beider Regler ein.
 
 ## Der biegsame Balken
 
@@ -676,11 +676,11 @@ past-title = Zurückblicken
 past-ago = Sekunden zuvor
 past-ago_hint = Hält an und zeigt das Labor, wie es war
 past-go_on = Von hier aus weiter
-past-go_on_hint = Vergisst, was danach kam; das lässt sich rückgängig machen. Laufen lassen kehrt stattdessen in die Gegenwart zurück. Taste: G
-past-undo = Vergessenes zurückholen
+past-go_on_hint = Verwirft, was danach kam; das lässt sich rückgängig machen. Laufen lassen kehrt stattdessen in die Gegenwart zurück. Taste: G
+past-undo = Verworfenes zurückholen
 past-undo_hint = Nimmt „Von hier aus weiter“ zurück und legt beiseite, was seither geschah. Taste: U
 
-export-title = Mitnehmen
+export-title = Exportieren
 export-table = CSV, letzte 60 s
 export-picture = Bild der Verläufe
 export-film = Aufnahme (HTML), letzte 10 s
@@ -688,7 +688,7 @@ export-making = { $name } entsteht …
 export-busy = Eine Datei nach der anderen: die zuletzt verlangte entsteht noch.
 export-ready = { $name } ist fertig.
 export-failed = { $name } ist misslungen.
-export-nothing = Es gibt noch nichts mitzunehmen: Lass es erst laufen.
+export-nothing = Es gibt noch nichts zu exportieren: Lass es erst laufen.
 
 ## Der Vergleich der Regelungen
 
@@ -765,8 +765,8 @@ key-wall_turn = Die Wand gegen den Uhrzeigersinn drehen
 key-wall_turn_back = Die Wand im Uhrzeigersinn drehen
 key-back = Eine Sekunde weiter zurückblicken
 key-forward = Eine Sekunde nach vorn blicken
-key-go_on = Von dem Augenblick aus weiter, den du siehst; was danach kam, wird vergessen
-key-undo_go_on = Zurückholen, was beim Weitergehen aus der Vergangenheit vergessen wurde
+key-go_on = Von dem Augenblick aus weiter, den du siehst; was danach kam, wird verworfen
+key-undo_go_on = Zurückholen, was beim Weitergehen aus der Vergangenheit verworfen wurde
 key-slowly = Wenn ein Roboter stehen geblieben ist: seine letzten Augenblicke langsam zeigen
 key-earlier = Wenn ein Roboter stehen geblieben ist: mit den letzten Einstellungen zurücksetzen, mit denen es ging
 key-summary = Sagen, was zu sehen ist
@@ -795,7 +795,7 @@ help-text =
     - **Ring oder Punkt**: worauf der Regler zielt. Ein Ring ist ein Bezugspunkt des Reglers, der etwa
       nach der Uhr läuft, ein Punkt mit weißem Rand der nächste Punkt der Bahn.
     - **Pfeil**: die Kraft von Hand oder Bremse auf die Spitze.
-    - **Drehe die Ansicht** mit der rechten Taste oder zwei Fingern; *Ansicht* stellt sie wieder her.
+    - **Drehe die Ansicht** mit der rechten Taste oder zwei Fingern; *Ansicht zurück* stellt sie wieder her.
     - **Ein neues Labor beginnt langsam**: Das gewünschte Tempo steigt von 0 auf 2 rad/s, deshalb sind
       beide Roboter von Anfang an auf der Bahn. *Tempo* und *Tempo-Rampe* unter *Weitere* ändern das.
 
@@ -807,7 +807,7 @@ help-text =
 
 ## Was das Labor von selbst sagt
 
-say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen hilft.
+say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen beginnt von vorn.
 say-slowly = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam; Biegung { $larger }-fach gezeichnet.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
@@ -818,15 +818,15 @@ say-nothing_to_undo = es gibt nichts rückgängig zu machen
 say-nothing_to_redo = es gibt nichts zu wiederholen
 say-select_first = wähle erst einen Kontrollpunkt: klicke einen an, oder drücke N für den nächsten
 say-laws_replaced = Nicht für diesen Roboter: { $laws }. An dieser Stelle steht ein übliches Gesetz.
-say-looking_back = Das ist die Vergangenheit. Laufen lassen kehrt in die Gegenwart zurück; Von hier aus weiter vergisst, was danach kam, und lässt sich rückgängig machen.
+say-looking_back = Das ist die Vergangenheit. Laufen lassen kehrt in die Gegenwart zurück; Von hier aus weiter verwirft, was danach kam, und lässt sich rückgängig machen.
 say-let_go = Die Spitzen sind losgelassen.
 say-present = Zurück in der Gegenwart.
 say-set_up = Das Labor ist nach dem Code eingerichtet. Rückgängig im Bahneditor holt die frühere Bahn zurück.
-say-went_on = Weiter ab { $time } s. Die { $seconds } s danach sind vergessen; Taste U holt sie zurück.
+say-went_on = Weiter ab { $time } s. Die { $seconds } s danach sind verworfen; Taste U holt sie zurück.
 say-brought_back = Zurück bei { $time } s, wie vor dem Weitergehen. Was stattdessen geschah, liegt beiseite; Taste U wechselt dorthin zurück.
 
 identified-found = Aus den letzten { $seconds } s des rechten Roboters: { $values }.
-identified-value = { $value }, geglaubt war { $before }
+identified-value = { $value }, vorher { $before }
 identified-and = { " " }und{ " " }
 identified-limited = { " " }{ $names }: so weit, wie sich das Modell verstellen lässt.
 identified-also = { " " }Außerdem am Werk, aber nicht im Modell der Regler: { $values }.

@@ -809,7 +809,7 @@ worksheet-learnt = What I thought before, and think now:
 
 ## What the lab says by itself
 
-say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset brings it back.
+say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset starts the run again.
 say-slowly = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly; bending is drawn { $larger } times as large.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
 say-no_further = The path goes no further: { $reasons }.

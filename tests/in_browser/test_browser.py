@@ -269,7 +269,7 @@ def test_a_refused_path_is_explained_and_the_old_one_kept(tab: Tab) -> None:
 def test_a_robot_that_leaves_its_workspace_stops_and_says_why(tab: Tab) -> None:
     tab.ask(c.SetParameter("K1", 0.0), c.SetParameter("K2", 0.0))
     tab.ask(*[c.MoveHand(-0.1, -0.1)] * 4)
-    tab.page.get_by_role("status").filter(has_text="Reset brings it back").wait_for()
+    tab.page.get_by_role("status").filter(has_text="Reset starts the run again").wait_for()
     assert any(run.diverged for run in tab.session.runs.values())
     tab.ask(c.ResetParameters())
     tab.press("Reset")
