@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from viser import uplot
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
@@ -55,3 +57,19 @@ def test_the_speed_is_plotted_in_millimetres_a_second(monkeypatch: pytest.Monkey
     plot.follow(take_page_snapshot(lab, 1.0))
     omega, radius = lab.session.parameters.speed, 50.0  # [rad/s], of the circle [mm]
     assert shown[-1][2][-1] == pytest.approx(omega * radius, rel=0.02)
+
+
+def test_of_two_lines_that_coincide_both_are_seen_and_no_number_is_cut() -> None:
+    made = list[dict[str, Any]]()
+
+    def add_uplot(_: object, series: Sequence[uplot.Series], **options: Any) -> None:
+        made.append({"series": series, **options})
+
+    fields = take_page_snapshot(Lab(store()), 1.0).key.fields
+    for plot in (plots.DISTANCE, plots.MORE["across"]):
+        gui: Any = SimpleNamespace(add_uplot=add_uplot)
+        plots.LivePlot(gui, ENGLISH, fields, plot, 100)
+        under, above = made[-1]["series"][1:]
+        assert under["width"] >= above["width"] + 2 and under["stroke"] != above["stroke"]
+        above_the_axis, right_of_it, *_ = made[-1]["padding"]
+        assert min(above_the_axis, right_of_it) >= 9  # half of a number, [px]
