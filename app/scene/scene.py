@@ -101,7 +101,7 @@ class Scene:
     def build(self, snapshot: Snapshot) -> None:
         """Creates all nodes once, with the snapshot's numbers of bars, joints and points."""
         motion = snapshot.motion
-        build_stage(self._client.scene, self._stage)
+        self._bases = build_stage(self._client.scene, self._stage)
         self._titles = Titles(self._client.scene, self._stage, self._words)
         poses = poses_of(self._stage, motion)
         self._machine = RobotNodes(
@@ -171,13 +171,15 @@ class Scene:
         self._start.show(visible)
 
     def show_robots(self, visible: bool) -> None:
-        """Shows or hides the titles, the robots' moving parts and the points of the path.
+        """Shows or hides the titles, the robots and the points of the path.
 
         A board in front of the robots does not hide all of them: titles are drawn on top of
         everything else, and single pixels of round parts show through at their edges.
         """
         self._titles.hide(not visible)
         self._machine.hide(not visible)
+        for base in self._bases:
+            base.visible = visible
         self._path_nodes.hide_points(not visible)
 
     def frame_camera(self, insets: Insets | None = None) -> None:

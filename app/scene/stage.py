@@ -154,8 +154,8 @@ def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
     server.initial_camera.look_at = pose.look_at
 
 
-def build_stage(scene: viser.SceneApi, stage: Stage) -> None:
-    """Adds floor, lights and machine bases to a client's scene."""
+def build_stage(scene: viser.SceneApi, stage: Stage) -> list[viser.BatchedMeshHandle]:
+    """Adds floor, lights and machine bases to a client's scene; returns the bases."""
     _add_lights(scene)
     scene.add_grid(
         "/stage/floor",
@@ -173,8 +173,10 @@ def build_stage(scene: viser.SceneApi, stage: Stage) -> None:
         shadow_opacity=0.5,
         position=stage.origins.mean(0) + [0.0, 0.0, stage.floor],
     )
-    for part, mesh, colour in stage.parts():
+    return [
         add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
+        for part, mesh, colour in stage.parts()
+    ]
 
 
 def _add_lights(scene: viser.SceneApi) -> None:

@@ -245,11 +245,11 @@ def test_the_singular_zone_can_be_shown_and_hidden(lab):
 
 def test_nothing_of_the_robots_can_show_through_a_board(lab):
     """Edges of round parts did, in single pixels."""
-    moving = "/links", "/parts", "/grips", "/traces", "/path/points"
+    fixed = [f"/stage/{part}" for part, *_ in RIGID.parts()]
     for visible in (False, True):
         lab.scene.show_robots(visible)
         lab.scene.update(snapshot(path=path(version=1 + visible, n_points=5 + visible)).motion)
-        for name in moving:
+        for name in ("/links", "/parts", "/grips", "/traces", "/path/points", *fixed):
             assert lab.api.get_handle_by_name(name).visible == visible
 
 
