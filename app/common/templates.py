@@ -1,7 +1,7 @@
 """HTML from the templates in assets/templates: every value is escaped unless it is `Markup`.
 
 Colours are those of the palette, but for where a page in the dark has others: see
-assets/page/style.css.
+assets/page/dark_colours.css.
 
 `Markup` is only made in `phrase`, `inlined` and `json_block` and, from a lesson's markdown, in
 `lessons.formulas`.

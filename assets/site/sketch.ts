@@ -4,11 +4,9 @@ import { made } from "../standalone/controls"
 import { said, type PageData, type SketchData } from "./data"
 import type { Answer, Curves } from "./notes"
 import { local } from "./numbers"
+import { inkOf } from "../standalone/view"
 
 const MARGIN = { left: 46, right: 12, top: 26, bottom: 26 }
-const COLOURS = ["#d55e00", "#0072b2"]
-const YOURS = "#7a3e9d"
-const INK = "#1f2937"
 const POINTS = 9 // of a curve that is typed
 const MOST = 160 // points that are kept
 
@@ -21,14 +19,14 @@ export class Chart {
     }
 
     draw(answer: Answer | undefined, truth: Curves | undefined): void {
-        const ink = this.prepared()
+        const ink = inkOf(this.canvas)
         if (!ink) return
         this.frame(ink)
         const { robots } = this.axes
         const shown: [string, string, number[], number[] | undefined, number[] | undefined][] = [
-            [said(this.page, "lesson.yours"), YOURS, [], answer?.times, answer?.values],
-            [robots[0]!, COLOURS[0]!, [], truth?.times, truth?.tracker],
-            [robots[1]!, COLOURS[1]!, [7, 4], truth?.times, truth?.follower],
+            [said(this.page, "lesson.yours"), this.colour("yours"), [], answer?.times, answer?.values],
+            [robots[0]!, this.colour("tracker"), [], truth?.times, truth?.tracker],
+            [robots[1]!, this.colour("follower"), [7, 4], truth?.times, truth?.follower],
         ]
         let legend = MARGIN.left
         shown.forEach(([name, colour, dashes, times, values], i) => {
@@ -54,22 +52,17 @@ export class Chart {
         return MARGIN.top + ((top - value) / (top - bottom)) * height
     }
 
-    private prepared(): CanvasRenderingContext2D | null {
-        const { canvas } = this
-        const ratio = window.devicePixelRatio || 1
-        canvas.width = Math.round(canvas.clientWidth * ratio)
-        canvas.height = Math.round(canvas.clientHeight * ratio)
-        const ink = canvas.getContext("2d")
-        ink?.scale(ratio, ratio)
-        return ink
+    /** A colour of the page's style, which may be a dark one. */
+    private colour(name: string): string {
+        return getComputedStyle(this.canvas).getPropertyValue(`--chart-${name}`)
     }
 
     private frame(ink: CanvasRenderingContext2D): void {
         const { seconds, top, bottom } = this.axes
         const point = this.page.words["point"]!
         ink.font = "12px system-ui, sans-serif"
-        ink.strokeStyle = "#dee2e8"
-        ink.fillStyle = INK
+        ink.strokeStyle = this.colour("grid")
+        ink.fillStyle = this.colour("ink")
         ink.textBaseline = "middle"
         ink.textAlign = "right"
         for (let i = 0; i <= 4; i++) {

@@ -17,6 +17,7 @@ export class StartPage {
         this.show()
         this.button("save", () => this.save())
         this.button("forget", () => {
+            if (!confirm(said(page, "site.forget_sure"))) return
             forget(progress, page)
             this.told("site.forgotten")
         })

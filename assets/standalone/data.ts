@@ -9,7 +9,7 @@ export type Point = [number, number]
 type Numbers<Name extends string> = Record<Name, number>
 type Texts<Name extends string> = Record<Name, string>
 
-export type BenchData = Texts<"colour" | "dark" | "pale"> & { law: number }
+export type BenchData = Texts<"colour" | "dark"> & { law: number }
 
 export interface LawData extends Texts<"title" | "text"> {
     aim: "theta" | "theta_ref"
@@ -47,7 +47,8 @@ export interface FigureData extends Texts<"language" | "title" | "module"> {
     box: [number, number, number, number]
     off: number
     strip: number
-    colours: Texts<"path" | "force" | "steel" | "ink" | "point" | "selected" | "warning">
+    tones: Record<"light" | "dark", FigureData["colours"]> // colours are one of these
+    colours: Texts<"path" | "force" | "steel" | "ink" | "point" | "selected" | "warning" | "grid" | "held">
     poles: Numbers<"interval" | "size" | "steps" | "slow"> & { behaviours: string[] }
     edit: Numbers<"piece" | "fine" | "sums" | "row" | "samples" | "outline" | "grid"> &
         Numbers<"halvings" | "blend" | "nudge"> & { checks: string[] }

@@ -11,6 +11,7 @@ const FRAME = 1 / 60 // [s], of a step
 const LONGEST = 0.1 // [s], that a picture may be late before simulated time falls behind
 const SILENCE = 3000 // [ms], at least, between two lines of the same kind
 const LATE = 0.15 // [s], lost lately, from which on it is said that time runs late
+const DARK = matchMedia("(prefers-color-scheme: dark)")
 const PULL = 0.03 // [m], by which a key pulls
 const PULLS: Record<string, Point> = { a: [-PULL, 0], d: [PULL, 0], w: [0, PULL], s: [0, -PULL] }
 
@@ -51,10 +52,12 @@ export class Figure {
         for (const view of this.views) this.grabs(view)
         if (this.data.controls.includes("pull")) this.keys()
         addEventListener("resize", () => (this.stale = true), { signal: ended })
+        DARK.addEventListener("change", () => dispatchEvent(new Event("resize")), { signal: ended })
         this.forget()
         requestAnimationFrame(() => this.frame())
     }
 
+    private readonly drag = () => [this.pending?.(), (this.pending = null)]
     readonly step = () => this.advance(Math.round(FRAME / this.data.dt))
     /** What was drawn belongs to an earlier run. */
     forget(): void {
@@ -122,11 +125,6 @@ export class Figure {
         requestAnimationFrame(() => this.frame())
     }
 
-    private drag(): void {
-        this.pending?.()
-        this.pending = null
-    }
-
     private follow(): void {
         this.stale = true
         for (const view of this.views) view.follow()
@@ -136,6 +134,7 @@ export class Figure {
     private draw(): void {
         const { simulation, data } = this
         this.stale = false
+        data.colours = data.tones[DARK.matches ? "dark" : "light"]
         for (const view of this.views) view.draw(simulation.followed, simulation.selected)
         this.plot.draw()
         const captions = simulation.benches.map(bench => caption(bench, data))

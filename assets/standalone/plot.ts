@@ -7,7 +7,6 @@ import { inkOf, stroke } from "./view"
 const SECONDS = 8
 const MARGIN = { left: 44, right: 10, top: 10, bottom: 24 }
 const DASHES = [[], [7, 4]] // colour is not the only sign
-const [GRID, HELD] = ["#dee2e8", "#eef1f5"]
 const STEPS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] // [mm]
 
 type Scale = (value: number) => number
@@ -34,7 +33,7 @@ export class Plot {
         const begin = Math.max(0, simulation.time - SECONDS)
         const x = (time: number) => MARGIN.left + ((time - begin) / SECONDS) * (width - MARGIN.left - MARGIN.right)
         const y = (value: number) => height - MARGIN.bottom - (value / top) * (height - MARGIN.top - MARGIN.bottom)
-        ink.fillStyle = HELD
+        ink.fillStyle = simulation.data.colours.held
         this.samples.forEach(({ time, held }, i) => {
             const next = x(this.samples[i + 1]?.time ?? time)
             if (held) ink.fillRect(x(time), y(top), next - x(time) + 0.5, y(0) - y(top))
@@ -56,7 +55,7 @@ export class Plot {
         ink.textAlign = "right"
         ink.textBaseline = "middle"
         for (let value = 0; value <= top; value += step) {
-            stroke(ink, [[x(begin), y(value)], [x(begin + SECONDS), y(value)]], GRID, 1)
+            stroke(ink, [[x(begin), y(value)], [x(begin + SECONDS), y(value)]], data.colours.grid, 1)
             ink.fillText(written(data, value, 0), MARGIN.left - 6, y(value))
         }
         ink.textAlign = "center"

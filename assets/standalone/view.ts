@@ -4,7 +4,7 @@ import type { Bench } from "./bench"
 import type { FigureData, Point } from "./data"
 import type { Path } from "./path"
 
-const TRACE = 240 // frames
+const [TRACE, FAINT] = [240, "66"] // frames; and how opaque the trace is, of "ff"
 const [REACH, NEAR] = [44, 22] // [px], from the tip and from a control point, within which they are grabbed
 const TIE = 8 // [px], by which a point must be nearer than the tip, unless it is selected
 
@@ -58,7 +58,7 @@ export class View {
         const spots = controls.includes("drag") ? path.spots() : []
         if (selected !== null) this.disc(ink, spots[selected]!, 9, colours.selected)
         for (const spot of spots) this.disc(ink, spot, 6, colours.point)
-        this.line(ink, this.trace, this.bench.data.pale, 3)
+        this.line(ink, this.trace, this.bench.data.colour + FAINT, 3)
         for (const mark of path.fault?.marks ?? []) this.disc(ink, mark, 4, colours.warning)
         this.robot(ink)
         this.marker(ink)

@@ -1339,6 +1339,7 @@ site-kept = Ihr Fortschritt wird nur in diesem Browser aufbewahrt. Sichern Sie i
 site-save = Als Datei sichern
 site-read = Datei lesen
 site-forget = Löschen
+site-forget_sure = Allen Fortschritt löschen, der in diesem Browser gespeichert ist?
 site-forgotten = Gelöscht.
 site-read_done = Gelesen.
 site-no_progress = Diese Datei ist kein Fortschritt in diesem Kurs.

@@ -1061,6 +1061,7 @@ site-kept = Your progress is kept in this browser only. Save it as a file to go 
 site-save = Save as a file
 site-read = Read a file
 site-forget = Delete
+site-forget_sure = Delete all progress that is kept in this browser?
 site-forgotten = Deleted.
 site-read_done = Read.
 site-no_progress = This file is no progress of this course.

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from onpath.app.common.templates import environment, inlined, json_block, render
+from onpath.app.common.templates import environment, json_block, render
 from onpath.app.exports.site.step_data import SiteStep
 from onpath.app.exports.site.task_data import check_words
+from onpath.app.exports.standalone.figure_page import figure_style
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.schema import Lesson
 from onpath.lessons.words import Words
@@ -23,8 +24,9 @@ SAID = (
     *("lesson.not_quite", "lesson.committed", "lesson.skipped", "lesson.draw_first"),
     *("lesson.drawn", "lesson.numbers", "lesson.passed", "lesson.predict_before", "lesson.finish"),
     *("lesson.next", "lesson.no_number", "lesson.skip", "answer.check", "answer.keep"),
-    *("report.right", "report.chosen", "site.forgotten", "site.read_done", "site.no_progress"),
-    *("site.not_kept", "site.link_only_lab", "report.not_happened", "lesson.read"),
+    *("report.right", "report.chosen", "site.forgotten", "site.forget_sure", "site.read_done"),
+    *("site.no_progress", "site.not_kept", "site.link_only_lab", "report.not_happened"),
+    "lesson.read",
 )
 
 
@@ -117,7 +119,7 @@ def lesson_page(
 
 def site_style() -> str:
     """The style sheet of all pages."""
-    return render("site/site.css", figure_style=inlined("standalone/figure.css"))
+    return render("site/site.css", figure_style=figure_style())
 
 
 def _page(

@@ -19,6 +19,7 @@ from onpath.app.exports.standalone.figure_module import (
 from onpath.app.exports.standalone.figure_words import figure_words
 from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.scene.captions import OFF
+from onpath.app.scene.tones import DARK, LIGHT, Tones
 from onpath.lessons.benches import law_text, law_titles
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
@@ -68,7 +69,7 @@ def figure_data(figure: FigureChoice, words: Words, title: str = "") -> dict[str
         "box": _box(figure),
         "off": OFF,
         "strip": robot.drawing.strip,
-        "colours": {name: colour.hex for name, colour in _COLOURS.items()},
+        "tones": {"light": _colours(LIGHT), "dark": _colours(DARK)},
         "poles": {
             "interval": 1 / figure.parameters.control_rate,
             "steps": STEPS,
@@ -97,16 +98,26 @@ _EDIT = {
 }
 """Sizes of vectors of models/page; and as in the lab: how often
 a refused way is halved, seconds of a blend, and the step of a key, [m]."""
-_COLOURS = {
-    **{name.lower(): getattr(palette, name) for name in ("PATH", "FORCE", "STEEL", "INK")},
-    "point": palette.CONTROL_POINT,
-    "selected": palette.SELECTED,
-    "warning": palette.WARNING,
-}
 _SET = (
     *("hold_active", "hold_anchor", "hold_tangent", "hold_normal"),
     *("hand_active", "hand_target"),
 )
+
+
+def _colours(tones: Tones) -> dict[str, str]:
+    """Colours of the picture and of the plot, on a light page or on a dark one."""
+    shown = {
+        "path": tones.path,
+        "force": tones.force,
+        "steel": palette.STEEL,
+        "ink": tones.line,
+        "point": tones.point,
+        "selected": palette.SELECTED,
+        "warning": palette.WARNING,
+        "grid": tones.cells,
+        "held": tones.wall.toward(tones.cells, 0.6),
+    }
+    return {name: colour.hex for name, colour in shown.items()}
 
 
 def _places(layout: Any, names: tuple[str, ...]) -> dict[str, list[int]]:
@@ -133,7 +144,6 @@ def _benches(figure: FigureChoice) -> list[dict[str, Any]]:
             "law": figure.every_law.index(law),
             "colour": palette.OF_BENCH[name].hex,
             "dark": palette.OF_BENCH[name].toward(palette.INK, 0.45).hex,
-            "pale": palette.OF_BENCH[name].toward(palette.WHITE, 0.6).hex,
         }
         for name, law in zip(names, figure.laws, strict=True)
     ]

@@ -17,6 +17,18 @@ PARTS = {
     "1.2": "{http://www.imsproject.org/xsd/imscp_rootv1p1p2}",
     "2004": "{http://www.imsglobal.org/xsd/imscp_v1p1}",
 }
+VENDOR = Path(__file__).parents[2] / "vendor" / "scorm-schemas"
+SCHEMAS = {
+    "1.2": {
+        PARTS["1.2"]: "imscp_rootv1p1p2",
+        "{http://www.adlnet.org/xsd/adlcp_rootv1p2}": "adlcp_rootv1p2",
+    },
+    "2004": {
+        PARTS["2004"]: "imscp_v1p1",
+        "{http://www.adlnet.org/xsd/adlcp_v1p3}": "adlcp_v1p3",
+        "{http://www.imsglobal.org/xsd/imsss}": "imsss_v1p0",
+    },
+}
 KIND = {
     "1.2": "{http://www.adlnet.org/xsd/adlcp_rootv1p2}scormtype",
     "2004": "{http://www.adlnet.org/xsd/adlcp_v1p3}scormType",
@@ -48,6 +60,23 @@ def test_the_manifest_names_every_file_and_the_page(tmp_path: Path, version: Ver
     again = tmp_path / "again.zip"
     assert run_command([*command[:4], str(again), *command[5:], "--language", "de"]) == 0
     assert again.read_bytes() == file.read_bytes()
+
+
+@pytest.mark.parametrize("version", ["1.2", "2004"])
+def test_the_manifest_is_valid_by_the_schemas_of_scorm(version: Version) -> None:
+    """And a wrong one is not, so that the schemas are seen to be used."""
+    xmlschema = pytest.importorskip("xmlschema")
+    imports = "".join(
+        f'<xs:import namespace="{name[1:-1]}" schemaLocation="{file}.xsd"/>'
+        for name, file in SCHEMAS[version].items()
+    )
+    driver = f'<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema">{imports}</xs:schema>'
+    schema = xmlschema.XMLSchema10(driver, base_url=str(VENDOR / version), allow="local")
+    given = {"identifier": "onpath-a-en", "title": "a", "page": "a.html", "files": ["a.html"]}
+    manifest = render(f"scorm/{TEMPLATES[version]}", **given)
+    assert [each.reason for each in schema.iter_errors(manifest)] == []
+    for right, wrong in (("<resources>", "<sources/><resources>"), (' href="a.html"/>', "/>")):
+        assert not schema.is_valid(manifest.replace(right, wrong)), wrong
 
 
 @pytest.mark.parametrize("template", TEMPLATES.values())

@@ -1,0 +1,164 @@
+"""The static site shows what happens in the lab, and judges as the lab does."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from onpath.app.exports.site.task_data import check_data, check_words
+from onpath.app.lab.step_truth import computed_truth
+from onpath.assets import asset_path
+from onpath.lessons.benches import robot_names
+from onpath.lessons.checks import verdict
+from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
+from onpath.lessons.record import Record
+from onpath.lessons.words import ENGLISH
+from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.laws.own import short_name
+from tests.support.random_records import some_check, some_record
+from tests.support.site_export import LESSON, exported_site
+from tests.support.site_reader import WAIT, SiteReader
+from tests.support.waiting import wait_for
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+MILLIMETRE = 1.0
+RECORDS = 2000
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return exported_site(tmp_path_factory.mktemp("site"), ("en",))
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("step", [2, 8])
+def test_what_happens_is_what_happens_in_the_lab(browser: Browser, site: Path, step: int) -> None:
+    lesson = read_course([BUILT_IN])[0].lesson(LESSON, "en")
+    truth = computed_truth(lesson, step - 1)
+    assert truth
+    reader = SiteReader(browser, f"{(site / LESSON).as_uri()}.html#{step}")
+    reader.ready()
+    reader.page.locator("#next").click()  # skips the prediction
+    wait_for(lambda: reader.page.evaluate("site.index") == step, WAIT)
+    reader.ready()
+    reader.press("Let it happen")
+    reader.played(10)
+    found = reader.page.evaluate(f"site.stage.simulation.curve('{truth.quantity}')")
+    for robot in ("tracker", "follower"):
+        here = np.interp(truth.times, found["times"], found[robot])
+        difference = np.abs(here - np.array(getattr(truth, robot)))
+        assert difference.max() < MILLIMETRE and np.median(difference) < 0.01, robot
+    reader.context.close()
+
+
+@pytest.mark.thorough
+def test_tasks_accept_the_solution_and_not_the_failure(browser: Browser, site: Path) -> None:
+    lesson = read_course([BUILT_IN])[0].lesson(LESSON, "en")
+    references, _ = read_references(lesson, BUILT_IN / LESSON / REFERENCE)
+    reader = SiteReader(browser, (site / f"{LESSON}.html").as_uri(), reduced_motion="reduce")
+    for i, step in enumerate(lesson.steps):
+        for task in step.tasks():
+            for script, expected in (
+                (references[task.id].solution, True),
+                (references[task.id].failure, False),
+            ):
+                reader.page.evaluate("i => site.open(i)", i)
+                reader.ready()
+                reader.page.evaluate("site.stage.simulation.setUp()")
+                passed, now = False, 0.0
+                for action in sorted(script.do, key=lambda each: each.at):
+                    reader.advance(action.at - now)
+                    now = action.at
+                    reader.page.evaluate(DO, act_of(action))
+                for _ in range(30):
+                    reader.advance(0.1)
+                    passed |= reader.page.evaluate(JUDGED)
+                assert passed == expected, (task.id, expected)
+    reader.context.close()
+
+
+DO = """([what, value]) => {
+    const {simulation} = site.stage
+    if (what !== "set") return simulation[what](value)
+    const {names} = simulation.data
+    for (const [name, number] of Object.entries(value)) simulation.set(names.indexOf(name), number)
+}"""
+JUDGED = """() => {
+    const {page, index, stage} = site
+    const {checks} = page.steps[index].blocks.find(block => block.kind === "task")
+    return judge(checks, stage.simulation.record(), page.words).every(each => each.passed)
+}"""
+
+
+def act_of(action: Any) -> list[Any]:
+    if action.what == "hold":
+        return ["hold", action.hold]
+    if action.what == "set":
+        return ["set", action.set]
+    if action.what == "release":
+        return ["pull", None]
+    assert action.what == "pull"
+    return ["pull", [each / 1e3 for each in action.pull]]
+
+
+@pytest.fixture(scope="module")
+def judging(browser: Browser) -> Iterator[Page]:
+    """A page with no step, so that its script only judges."""
+    data = {"words": check_words(ENGLISH), "lesson": "", "figures": [], "lessons": {}}
+    parts = '<input id="read"><i id="save"></i><i id="forget"></i><p id="told"></p>'
+    page = browser.new_page()
+    page.set_content(
+        f'{parts}<script type="application/json" id="data">{json.dumps(data)}</script>'
+    )
+    page.add_script_tag(path=asset_path("site/site.js"))
+    yield page
+    page.close()
+
+
+JUDGE_ALL = """text => {
+    const {cases, words} = JSON.parse(text)
+    return cases.map(({check, record}) => judge([check], record, words)[0])
+}"""
+
+
+def test_checks_say_and_decide_what_the_lab_s_do(judging: Page) -> None:
+    """On thousands of random records, among them ties and bounds that are met exactly."""
+    rng = np.random.default_rng(20)
+    words, cases, expected = check_words(ENGLISH), list[Any](), list[Any]()
+    for _ in range(RECORDS):
+        record, check = some_record(rng), some_check(rng)
+        names = robot_names(record.laws, ENGLISH)
+        data = check_data(check, record.parameters, names, ENGLISH)
+        cases.append({"check": data, "record": as_data(record)})
+        found = verdict(check, record, ENGLISH)
+        expected.append({"passed": found.passed, "words": found.words})
+    passed = sum(each["passed"] for each in expected)
+    assert RECORDS / 10 < passed < RECORDS * 9 / 10
+    for i in range(0, RECORDS, 500):
+        text = json.dumps({"cases": cases[i : i + 500], "words": words})
+        assert judging.evaluate(JUDGE_ALL, text) == expected[i : i + 500]
+
+
+def as_data(record: Record) -> dict[str, Any]:
+    """A record as the page keeps one."""
+    laws = {bench: short_name(law) for bench, law in {**DEFAULT_LAWS, **record.laws}.items()}
+    gains = {
+        name: getattr(record.parameters, name) for name in ("K1", "K2", "task", "encoder_counts")
+    }
+    own = {"path": record.path, "robot": record.robot, "length": record.length()}
+    return {
+        "times": record.times.tolist(),
+        "end": record.end,
+        "values": {r: {q: c.tolist() for q, c in own.items()} for r, own in record.values.items()},
+        "happenings": [asdict(event) for event in record.happenings],
+        "run": record.run,
+        "settings": gains | laws | own,
+    }

@@ -1,0 +1,144 @@
+"""Lesson 1 of the static site, done whole by mouse or by keys alone, as its texts say."""
+
+from __future__ import annotations
+
+from tests.support.site_reader import WAIT, SiteReader
+from tests.support.waiting import wait_for
+
+END = "A timetable says where the end-point must be"
+
+
+def lesson_one_by_mouse(reader: SiteReader) -> None:
+    """Every step."""
+    page = reader.page
+    reader.ready()
+    reader.press("Hold both back")
+    wait_for(lambda: "torn off" in page.locator(".step.open .stage").inner_text(), WAIT)
+    reader.press("Next")
+    assert reader.step() == "Draw what the tracker does"
+    x, y = reader.place(page.locator(".step.open canvas.board"))
+    page.mouse.move(x + 60, y + 200)
+    page.mouse.down()
+    page.mouse.move(x + 210, y + 80, steps=12)
+    page.mouse.move(x + 360, y + 200, steps=12)
+    page.mouse.up()
+    reader.press("Commit to this prediction")
+    reader.press("Next")
+    reader.ready()
+    assert not page.get_by_text("Four arches, not one bump").is_visible()
+    reader.press("Let it happen")
+    reader.played(8.5)
+    assert page.get_by_text("Four arches, not one bump").is_visible()
+    assert page.locator(".step.open .compared canvas").is_visible()
+    reader.press("Next")
+    reader.press("Next")
+    page.get_by_role("radio", name="As far as before").check()
+    reader.press("Commit to this prediction")
+    reader.press("Next")
+    reader.ready()
+    reader.press("Let it happen")
+    reader.played(8.5)
+    assert page.locator(".step.open .compared").get_by_text("Yes: 49.5 mm.").is_visible()
+    reader.press("Next")
+    reader.ready()
+    reader.slide("K1", 600)
+    reader.slide("K2", 50)
+    reader.advance(1)
+    reader.press("Hold both back")
+    reader.advance(2.6)
+    wait_for(reader.passed, WAIT)
+    reader.press("Next")
+    page.get_by_role("radio", name="Hardly at all").check()
+    reader.press("Commit to this prediction")
+    reader.press("Next")
+    reader.ready()
+    reader.press("Let it happen")
+    reader.played(9.5)
+    assert page.locator(".step.open .wrong").first.inner_text() == "Not quite."
+    reader.press("Next")
+    reader.ready()
+    _pull_and_let_go(reader)
+    page.get_by_role("radio", name="There is no time in").check()
+    page.get_by_role("radio", name="Putting chocolates").check()
+    assert page.locator(".step.open .right").filter(has_text="Right.").count() == 2
+    reader.press("Next")
+    reader.press("Finish")
+    assert "11" in page.locator("#counts").inner_text() and page.get_by_text(END).is_visible()
+
+
+def lesson_one_by_keys(reader: SiteReader) -> None:
+    """Every step; pages are turned with PageDown."""
+    page = reader.page
+    keys = page.keyboard
+    reader.ready()
+    keys.press("h")
+    wait_for(lambda: "torn off" in page.locator(".step.open .stage").inner_text(), WAIT)
+    keys.press("PageDown")
+    reader.focus(page.locator(".step.open summary").first)
+    keys.press("Enter")
+    for value in ("0", "40", "0"):
+        keys.press("Tab")
+        keys.type(value)
+    reader.focus(reader.button("Commit to this prediction"))
+    keys.press("Enter")
+    keys.press("PageDown")
+    reader.ready()
+    _let_it_happen(reader, 8.5)
+    assert page.get_by_text("Four arches, not one bump").is_visible()
+    keys.press("PageDown")
+    keys.press("PageDown")
+    _choose(reader, "As far as before")
+    _let_it_happen(reader, 8.5)
+    keys.press("PageDown")
+    reader.ready()
+    for name, value in (("K1", 600), ("K2", 50)):
+        slider = page.locator(".step.open").get_by_role("slider", name=name)
+        reader.focus(slider)
+        while float(slider.input_value()) != value:
+            below = float(slider.input_value()) < value
+            keys.press("ArrowRight" if below else "ArrowLeft")
+    reader.advance(1)
+    reader.focus(reader.button("Hold both back"))
+    keys.press("Enter")
+    reader.advance(2.6)
+    wait_for(reader.passed, WAIT)
+    keys.press("PageDown")
+    _choose(reader, "Hardly at all")
+    _let_it_happen(reader, 9.5)
+    keys.press("PageDown")
+    reader.ready()
+    _pull_and_let_go(reader)
+    keys.press("PageDown")
+    keys.press("PageDown")
+    assert page.get_by_text(END).is_visible()
+
+
+def _pull_and_let_go(reader: SiteReader) -> None:
+    """The last task, which is for keys anyway."""
+    for _ in range(6):
+        reader.page.keyboard.press("d")
+    reader.advance(1)
+    reader.page.keyboard.press("x")
+    reader.advance(2)
+    wait_for(reader.passed, WAIT)
+
+
+def _choose(reader: SiteReader, option: str) -> None:
+    """Commit to an option, and turn the page; radio buttons are one stop of Tab."""
+    keys = reader.page.keyboard
+    wanted = reader.page.get_by_role("radio", name=option)
+    first = reader.page.locator(".step.open input[type=radio]").first
+    reader.focus(first)
+    keys.press(" ")
+    while not wanted.is_checked():
+        keys.press("ArrowDown")
+    reader.focus(reader.button("Commit to this prediction"))
+    keys.press("Enter")
+    keys.press("PageDown")
+    reader.ready()
+
+
+def _let_it_happen(reader: SiteReader, seconds: float) -> None:
+    reader.focus(reader.button("Let it happen"))
+    reader.page.keyboard.press("Enter")
+    reader.played(seconds)
