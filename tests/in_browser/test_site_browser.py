@@ -31,8 +31,10 @@ INKED = "name => document.querySelector(name).getContext('2d').fillStyle"
 """The colour of the letters on a canvas, which are drawn last of what is filled."""
 CUT = """width => [...document.querySelectorAll("main *")].filter(each => {
     const {right, width: own} = each.getBoundingClientRect()
-    return own && (right > width + 1 || (each.scrollHeight > each.clientHeight + 2 &&
-        getComputedStyle(each).overflowY === "hidden" && !each.matches(".live, math *")))
+    const {overflowX, overflowY} = getComputedStyle(each)
+    const hides = overflowX !== "visible" && each.scrollWidth > each.clientWidth + 2 ||
+        overflowY !== "visible" && each.scrollHeight > each.clientHeight + 2
+    return own && (right > width + 1 || hides && !each.matches(".live, math *"))
 }).map(each => each.outerHTML.slice(0, 80))"""
 
 
@@ -70,9 +72,9 @@ def at_peace(reader: SiteReader, address: str) -> None:
 @pytest.mark.parametrize("where", ["files", "python", "nginx"])
 def test_its_pages_open_and_move(browser: Browser, addresses: dict[str, str], where: str) -> None:
     reader = read_on(browser, addresses, where, "index.html")
-    wait_for(lambda: reader.page.evaluate("site.figure?.simulation.time ?? 0") > 0.3, WAIT)
+    wait_for(lambda: reader.page.evaluate("window.site?.figure?.simulation.time ?? 0") > 0.3, WAIT)
     reader.page.get_by_role("link", name="Path or timetable?").click()
-    wait_for(lambda: reader.page.evaluate("site.stage?.simulation.time ?? 0") > 0.3, WAIT)
+    wait_for(lambda: reader.page.evaluate("window.site?.stage?.simulation.time ?? 0") > 0.3, WAIT)
     at_peace(reader, addresses[where])
 
 

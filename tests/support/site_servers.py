@@ -45,8 +45,8 @@ def nginx(folder: Path, own: Path, policy: str) -> Iterator[str]:
         own: an empty folder for its files.
     """
     (port,) = free_ports(1)
-    for each in (own, *own.parents, folder, *folder.parents):
-        if "pytest-" in each.name:  # which is its owner's alone; the worker is nobody
+    for each in (own, folder, *folder.parents):  # nginx's worker is another user
+        if each.owner() == own.owner() and not each.stat().st_mode & 0o001:
             each.chmod(0o755)
     paths = "".join(f"{kind}_temp_path {own / kind};" for kind in KINDS)
     text = CONFIGURATION.format(own=own, paths=paths, port=port, folder=folder, policy=policy)
