@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from onpath.app.exports.site.task_data import check_data, check_words
-from onpath.app.lab.step_truth import computed_truth
+from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.assets import asset_path
 from onpath.lessons.benches import robot_names
 from onpath.lessons.checks import verdict
