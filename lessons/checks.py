@@ -137,7 +137,12 @@ def measured(check: Better, record: Record) -> float | None:
 
 @verdict.register
 def _(check: Event, record: Record, words: Words) -> Verdict:
-    have = sum(_matches(event.name, event.detail, check) for event in record.happenings)
+    have = 0
+    undone = [event_named(text) for text in check.since]
+    for event in record.happenings:
+        if any(_matches(event.name, event.detail, each) for each in undone):
+            have = 0
+        have += _matches(event.name, event.detail, check)
     said = words(
         "check.event",
         event=event_words(check, record.parameters, words),
@@ -313,5 +318,10 @@ def event_words(check: Event, parameters: Parameters, words: Words) -> str:
     """What has to happen, in words."""
     key = f"event.{check.event}"
     if check.name:
-        return words(key, detail=event_label(check.event, check.name, parameters, words))
-    return words.get(f"{key}_any", "") or words(key)
+        said = words(key, detail=event_label(check.event, check.name, parameters, words))
+    else:
+        said = words.get(f"{key}_any", "") or words(key)
+    if not check.since:
+        return said
+    before = [event_words(event_named(text), parameters, words) for text in check.since]
+    return words("check.since", event=said, events=", ".join(before))

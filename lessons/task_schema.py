@@ -76,11 +76,13 @@ class Event(Data, frozen=True, tag="event", tag_field="kind"):
         name: of a parameter for "set", a path for "path", a robot for "robot", a law for "law";
             empty for any.
         times: least number of times.
+        since: events, as in `Order`; only what has happened after the latest of them counts.
     """
 
     event: EventName
     name: str = ""
     times: int = 1
+    since: tuple[str, ...] = ()
 
 
 class Order(Data, frozen=True, tag="order", tag_field="kind"):

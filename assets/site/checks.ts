@@ -39,17 +39,16 @@ function verdict(check: Check, record: RunRecord, words: Words): Verdict {
     if (check.kind === "bound") return bound(check, record, words)
     if (check.kind === "compare") return compare(check, record, words)
     if (check.kind === "setting") return setting(check, record, words)
-    const { happenings } = record
-    const matches = (name: string, detail: string, wanted: { event: string; name: string }) =>
-        name === wanted.event && (wanted.name === "" || wanted.name === detail)
+    const happens = (each: { name: string; detail: string }, wanted: { event: string; name: string }) =>
+        each.name === wanted.event && (wanted.name === "" || wanted.name === each.detail)
     if (check.kind === "event") {
-        const have = happenings.filter(each => matches(each.name, each.detail, check)).length
+        const undone = record.happenings.map(each => check.since.some(wanted => happens(each, wanted))).lastIndexOf(true)
+        const have = record.happenings.filter((each, i) => i >= undone && happens(each, check)).length
         const counts = { have: String(Math.min(have, check.times)), need: String(check.times) }
         return { passed: have >= check.times, words: filled(words["check.event"]!, { ...check.said, ...counts }) }
     }
     let found = 0
-    for (const each of happenings)
-        if (found < check.events.length && matches(each.name, each.detail, check.events[found]!)) found++
+    for (const each of record.happenings) if (found < check.events.length && happens(each, check.events[found]!)) found++
     const marked = check.events.map((event, i) => (i < found ? "✓ " : "") + event.said)
     return {
         passed: found === check.events.length,

@@ -63,6 +63,7 @@ export interface EventCheck {
     event: string
     name: string
     times: number
+    since: { event: string; name: string }[]
     said: Said
 }
 

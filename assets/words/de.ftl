@@ -42,6 +42,7 @@ check-better = { $robot }: { $stat }{ $during }: { $value }; im Durchgang davor:
 check-seconds = { " " }({ $have } von { $need } s)
 check-nothing = { $robot }: { $stat }{ $during }: noch nichts{ $seconds }; verlangt: { $wanted }
 check-event = { $event }: { $have } von { $need }
+check-since = { $event }, und danach nichts hiervon: { $events }
 check-order = in dieser Reihenfolge: { $events }
 check-setting = { $name } ist { $value }; verlangt: { $wanted }
 check-equals = { $value }

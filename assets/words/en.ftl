@@ -44,6 +44,7 @@ check-better = { $robot }: { $stat }{ $during } { $value }; in the run before: {
 check-seconds = { " " }({ $have } of { $need } s)
 check-nothing = { $robot }: { $stat }{ $during }: nothing yet{ $seconds }; wanted: { $wanted }
 check-event = { $event }: { $have } of { $need }
+check-since = { $event }, and none of this after it: { $events }
 check-order = in this order: { $events }
 check-setting = { $name } is { $value }; wanted: { $wanted }
 check-equals = { $value }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate
 
 import numpy as np
@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from onpath.lessons.checks import verdict
 from onpath.lessons.record import Happening, Record
-from onpath.lessons.task_schema import Bound, Compare, During
+from onpath.lessons.task_schema import Bound, Compare, During, Event
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR
 
@@ -141,3 +141,16 @@ def test_a_comparison_looks_at_the_same_window(run: Frames, last: float, ratio: 
     check = Compare(last=last, least=last, quantity="distance", ratio=ratio)
     passed = verdict(check, run.record(), WORDS).passed
     assert passed == (whole >= round(last / DT) and ratio <= 2.0)
+
+
+events = st.lists(st.sampled_from(["identify", "set", "reset"]), max_size=8)
+
+
+@given(events)
+def test_an_event_counts_only_after_the_latest_of_those_that_undo_it(names: list[str]) -> None:
+    happenings = tuple(Happening(0, 0.1 * i, name, "K1") for i, name in enumerate(names))
+    record = replace(frames(17).record(), happenings=happenings)
+    since = [name for name in reversed(names) if name != "reset"][:1]
+    check = Event(event="identify", since=("set:K1", "set:K2"))
+    assert verdict(check, record, WORDS).passed == (since == ["identify"])
+    assert verdict(Event(event="identify"), record, WORDS).passed == ("identify" in names)

@@ -92,7 +92,8 @@ def _(check: Compare, parameters: Parameters, robots: dict[Any, str], words: Wor
 
 @_more.register
 def _(check: Event, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
-    return {"said": {"event": event_words(check, parameters, words)}}
+    since = [msgspec.to_builtins(event_named(text)) for text in check.since]
+    return {"since": since, "said": {"event": event_words(check, parameters, words)}}
 
 
 @_more.register

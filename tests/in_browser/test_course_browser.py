@@ -1,0 +1,187 @@
+"""Lesson 1 from its first page to its end, by mouse: what is shown is what the lesson says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from datetime import UTC, datetime
+
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser, expect
+
+from onpath.app.exports.report import report
+from onpath.app.server.lab_server import LabServer
+from onpath.lessons.progress import Notes
+from onpath.lessons.schema import (
+    Choice,
+    Lesson,
+    NumberQuestion,
+    OpenQuestion,
+    Quiz,
+    Sketch,
+    Step,
+    Text,
+)
+from onpath.lessons.words import ENGLISH
+from tests.support.browser import Tab, wait_for
+from tests.support.built_in import built_in_course
+from tests.support.pupil import Pupil
+from tests.support.solutions import passed
+
+pytestmark = pytest.mark.thorough
+
+COURSE, _ = built_in_course()
+NUMBERS = COURSE.numbers()
+LESSONS = ["01-path-or-timetable"]
+Asked = Choice | Sketch | Quiz | NumberQuestion | OpenQuestion
+MISSING = """([htmls, other]) => {
+    const bare = text => text.replace(/\\s+/g, "")
+    const shown = other ? new DOMParser().parseFromString(other, "text/html") : document
+    const page = bare(shown.body.textContent)
+    return htmls.filter(html => {
+        const wanted = document.createElement("div")
+        wanted.innerHTML = html
+        return !page.includes(bare(wanted.textContent))
+    })
+}"""
+"""Which of some texts are not on the page, or in another one that is given."""
+STEP_OF = "each.dataset.step"
+
+
+@pytest.fixture(scope="module")
+def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
+    """A student's tab in which time runs four times as fast."""
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    tab = Tab(server, context, draws=False)
+    Pupil(tab).hurry()
+    yield tab
+    context.close()
+
+
+def missing(tab: Tab, *htmls: str, record: str = "") -> list[str]:
+    """Which of some texts the page does not show, or the record, if it is given."""
+    wanted = [str(html) for html in htmls if html]
+    found: list[str] = tab.page.evaluate(MISSING, [wanted, record])
+    return found
+
+
+def texts(step: Step) -> list[str]:
+    """The texts of a step that everybody is shown, and that hold no number of the student's."""
+    return [
+        str(b.html) for b in step.blocks if isinstance(b, Text) and not b.when if "{{" not in b.html
+    ]
+
+
+def assert_open(pupil: Pupil, step: Step) -> None:
+    """Assert that this step is open, with its robot and plots, and says nothing too early."""
+    tab, run, scene = pupil.tab, pupil.tab.lab.lessons, pupil.lesson.scene_at(pupil.index)
+    assert run.waits == bool(step.predictions()) and not (run.waits and tab.session.running)
+    assert tab.session.entry.name == (scene.robot or pupil.lesson.front.robot)
+    if step.kind == "run":
+        absent = missing(tab, *texts(step))
+        assert run.has_played() or len(absent) == len(texts(step))
+    else:
+        assert_shown(pupil, step)
+
+
+def assert_shown(pupil: Pupil, step: Step) -> None:
+    """Assert that the page shows the step that is open: its texts, questions, tasks and plots."""
+    tab = pupil.tab
+    here = f"{pupil.lesson.name}.{pupil.index}"
+    shown = tab.page.locator("[data-step]").evaluate_all(f"all => all.map(each => {STEP_OF})")
+    assert shown == [here]
+    questions = [b.question for b in step.blocks if isinstance(b, Asked)]
+    assert missing(tab, *texts(step), *questions, *(task.text for task in step.tasks())) == []
+    plots = [plot for plot in pupil.lesson.scene_at(pupil.index).plots if plot != "phase"]
+    titles = tab.page.locator(".u-title").all_text_contents()
+    assert {ENGLISH(f"axis.{plot}") for plot in plots} <= set(titles)
+
+
+def assert_done(pupil: Pupil, step: Step) -> None:
+    """Assert that the page shows what became of the step: answers, verdicts, what was predicted."""
+    tab, run = pupil.tab, pupil.tab.lab.lessons
+    index = pupil.index
+    for place, block in enumerate(step.blocks):
+        if isinstance(block, Quiz):
+            chosen = block.options[run.notes.quiz[f"{index}.{place}"]]
+            right = next(option for option in block.options if option.right)
+            assert missing(tab, chosen.answer, right.answer) == []
+        elif isinstance(block, NumberQuestion):
+            assert missing(tab, block.answer) == []
+    for task in step.tasks():
+        assert passed(tab, task) and missing(tab, task.passed) == []
+    if step.kind == "run":
+        assert_shown(pupil, step)
+    before = (
+        pupil.lesson.steps[index - 1].predictions() if step.script is not None and index else []
+    )
+    for prediction in before:
+        assert missing(tab, "You were: fairly sure") == []
+        if isinstance(prediction, Choice):
+            option = run.notes.answers[str(index - 1)].option
+            assert option is not None
+            right = next(each for each in prediction.options if each.right)
+            assert missing(tab, prediction.options[option].answer, right.answer) == []
+        else:
+            expect(tab.page.locator(".u-label", has_text="you").first).to_be_visible()
+
+
+def what_was_done(lesson: Lesson, notes: Notes) -> list[str]:
+    """What the end of a lesson tells of it: all that was asked, answered and passed."""
+    told = [str(task.text) for task in lesson.tasks()]
+    for index, step in enumerate(lesson.steps):
+        for place, block in enumerate(step.blocks):
+            chosen = None
+            if isinstance(block, Asked):
+                told.append(block.question)
+            if isinstance(block, Choice):
+                chosen = notes.answers[str(index)].option
+            elif isinstance(block, Quiz):
+                chosen = notes.quiz[f"{index}.{place}"]
+            elif isinstance(block, NumberQuestion | OpenQuestion):
+                told.append(block.answer)
+            if isinstance(block, Choice | Quiz) and chosen is not None:
+                told += [block.options[chosen].text, block.options[chosen].answer]
+    return told
+
+
+class Checking(Pupil):
+    """A pupil for whom every step is compared with the lesson, before and after it is done."""
+
+    def do(self) -> None:
+        """See `Pupil.do`."""
+        step = self.step
+        assert_open(self, step)
+        super().do()
+        if not step.predictions():
+            assert_done(self, step)
+
+    def number(self, block: NumberQuestion, given: float) -> None:
+        """See `Pupil.number`; a text for those who are wrong is shown to them only."""
+        super().number(block, given)
+        texts = [str(b.html) for b in self.step.blocks if isinstance(b, Text) and b.when]
+        shown = not block.accepts(given)
+        assert missing(self.tab, *texts) == ([] if shown else texts)
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_a_lesson_is_done_from_its_first_page_to_its_end_by_mouse(tab: Tab, name: str) -> None:
+    front = COURSE.lesson(name, "en").front
+    pupil = Checking(tab, right=LESSONS.index(name) % 2 == 0)
+    pupil.open(f"Open lesson {NUMBERS[name]}: {front.title}", name)
+    seen = [step.title for step in pupil.steps()]
+    run, lesson = tab.lab.lessons, pupil.lesson
+    assert seen == [step.title for step in lesson.steps if not step.when or step.title in seen]
+    wait_for(lambda: run.ended)
+    tab.page.get_by_role("heading", name="What you predicted, and what happened").wait_for()
+    tab.wait_until_built()
+    tasks = len(lesson.required_tasks())
+    assert missing(tab, f"{tasks} of {tasks} task") == []
+    told = [*front.takeaway, *what_was_done(lesson, run.notes)]
+    assert missing(tab, *told) == []
+    record = report(run, "", datetime(2026, 1, 2, tzinfo=UTC)).decode()
+    assert missing(tab, *told, record=record) == []
+    assert set(run.notes.tasks) == {task.id for task in lesson.tasks()}
+    assert tab.errors == []

@@ -1,0 +1,212 @@
+"""A student who does a lesson with a real mouse, step by step, from its first page to its end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Locator
+
+from onpath.lessons.schema import (
+    Choice,
+    Lesson,
+    NumberQuestion,
+    OpenQuestion,
+    Prediction,
+    Quiz,
+    Sketch,
+    Step,
+)
+from onpath.lessons.task_schema import Task
+from tests.support.browser import Tab, wait_for
+from tests.support.hands import Hands
+from tests.support.solutions import SOLUTIONS, passed, verdicts
+
+PLACE_OF = """(options, html) => {
+    const bare = text => text.replace(/\\s+/g, "")
+    const wanted = document.createElement("div")
+    wanted.innerHTML = html
+    return options.findIndex(each => bare(each.textContent).slice(1) === bare(wanted.textContent))
+}"""
+"""The place among the options on the page of the one with a text; -1 if there is none."""
+BOARD = ((0.22, 0.57), (0.4, 0.55), (0.5, 0.45), (0.6, 0.43), (0.78, 0.56))
+"""A curve on the board for sketches, in shares of the scene's width and height."""
+
+
+class Pupil:
+    """Does lessons in a tab.
+
+    Args:
+        right: whether the right options are chosen, or each time the next one of the file.
+    """
+
+    def __init__(self, tab: Tab, right: bool = True) -> None:
+        self.tab, self._right, self._hands = tab, right, Hands(tab, touch=False)
+        self._asked = 0
+
+    @property
+    def lesson(self) -> Lesson:
+        """The open lesson."""
+        lesson = self.tab.lab.lessons.lesson
+        assert lesson is not None
+        return lesson
+
+    @property
+    def step(self) -> Step:
+        """The open step."""
+        return self.lesson.steps[self.tab.lab.lessons.index]
+
+    @property
+    def index(self) -> int:
+        """Index of the open step."""
+        return self.tab.lab.lessons.index
+
+    def hurry(self) -> None:
+        """Let time run as fast as a student can."""
+        self.tab.choose("Time runs at", "4×")
+        wait_for(lambda: self.tab.session.rate == 4.0)
+
+    def open(self, label: str, name: str) -> None:
+        """Open a lesson from the list of lessons."""
+        self.tab.press("Lessons")
+        self.tab.button(label).click()
+        run = self.tab.lab.lessons
+        wait_for(lambda: run.lesson is not None and run.lesson.name == name)
+
+    def steps(self) -> Iterator[Step]:
+        """Each step when it has just been opened; when the caller goes on, it is done.
+
+        The lesson is at its end afterwards.
+        """
+        run = self.tab.lab.lessons
+        while not run.ended:
+            self.arrive()
+            yield self.step
+            before = run.index
+            self.do()
+            if run.index == before:
+                self.press("Finish" if run.at_end else "Next")
+            wait_for(lambda before=before: run.ended or run.index != before)
+
+    def arrive(self) -> None:
+        """Return when the page shows the open step."""
+        self.tab.page.get_by_role("heading", name=self.step.title, exact=True).wait_for()
+        self.tab.wait_until_built()
+        if self.step.tasks():
+            self.pause()
+
+    def do(self) -> None:
+        """Do what the open step asks for."""
+        if self.step.script is not None:
+            self._see()
+        for place, block in enumerate(self.step.blocks):
+            if isinstance(block, Prediction):
+                self._predict(block)
+            elif isinstance(block, Task):
+                self._pass(block)
+            elif isinstance(block, Quiz):
+                self._answer(place, block)
+            elif isinstance(block, NumberQuestion):
+                self._compute(block)
+            elif isinstance(block, OpenQuestion):
+                self._write(block)
+
+    def pause(self) -> None:
+        """Pause the lab, so that nothing but the gestures of a task happens."""
+        if self.tab.session.running:
+            self.tab.button("Pause").filter(visible=True).first.click()
+            wait_for(lambda: not self.tab.session.running)
+
+    def press(self, name: str) -> None:
+        """Press a button of the page."""
+        self.tab.press(name)
+
+    def _predict(self, block: Choice | Sketch) -> None:
+        page, run = self.tab.page, self.tab.lab.lessons
+        if isinstance(block, Choice):
+            self.choose(block)
+        else:
+            page.get_by_text("Draw with the mouse").wait_for()
+            self.tab.settle()
+            box = Hands.box(page.locator("canvas").first)
+            curve = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in BOARD]
+            with self.tab.dragging(*curve):
+                pass
+            page.get_by_text("Draw again, or commit").wait_for()
+        self.tab.choose("How sure are you? (optional)", "fairly sure")
+        if block.reasons:
+            page.get_by_label("Why? (optional)").first.click()
+            page.get_by_role("option").nth(1).click()
+        elif block.why:
+            page.get_by_label("Why? (optional)").fill("Because.")
+        page.get_by_role("button", name="Commit to this prediction").click()
+        answer = wait_for(run.answer)
+        assert answer.sure == "fairly", answer
+        assert (answer.reason == 0) == bool(block.reasons) and bool(answer.why) == block.why, answer
+        self._let_happen()
+
+    def _let_happen(self) -> None:
+        """Go on from a prediction to its run, which begins at once."""
+        run = self.tab.lab.lessons
+        here = run.index
+        self.press("Let it happen")
+        wait_for(lambda: run.index == here + 1)
+
+    def _see(self) -> None:
+        """Watch the experiment of the step to its end."""
+        run = self.tab.lab.lessons
+        if not run.playing and not run.has_played():
+            self.press("Let it happen")
+            wait_for(lambda: run.playing or run.has_played())
+        wait_for(run.has_played)
+        self.tab.wait_until_built()
+
+    def choose(self, block: Choice | Quiz) -> int:
+        """Press an option of a question; returns its index in the lesson's file."""
+        right = next(i for i, option in enumerate(block.options) if option.right)
+        index = right if self._right else self._asked % len(block.options)
+        self._asked += 1
+        options = self.tab.page.locator("button.op-answer")
+        text = block.options[index].text
+        place = wait_for(lambda: options.evaluate_all(PLACE_OF, text) + 1) - 1
+        options.nth(place).click()
+        return index
+
+    def _answer(self, place: int, block: Quiz) -> None:
+        notes, key = self.tab.lab.lessons, f"{self.tab.lab.lessons.index}.{place}"
+        index = self.choose(block)
+        wait_for(lambda: notes.notes.quiz.get(key) == index)
+        self.tab.wait_until_built()
+
+    def _compute(self, block: NumberQuestion) -> None:
+        if not self._right:
+            self.number(block, 3 * block.number)
+        self.number(block, block.number)
+
+    def number(self, block: NumberQuestion, given: float) -> None:
+        """Answer a question with a number."""
+        unit = f" [{block.unit}]" if block.unit else ""
+        self.field(f"Your number{unit}").fill(f"{given:g}")
+        self.press("Check")
+        run = self.tab.lab.lessons
+        wait_for(lambda: given in run.notes.numbers.values())
+        self.tab.wait_until_built()
+
+    def _write(self, block: OpenQuestion) -> None:
+        self.field("Your answer, in your own words").fill("In my own words.")
+        self.press("Keep my answer")
+        self.tab.page.get_by_text("A model answer").wait_for()
+        self.tab.wait_until_built()
+
+    def field(self, label: str) -> Locator:
+        """Return a field of the page."""
+        return self.tab.page.get_by_label(label)
+
+    def _pass(self, task: Task) -> None:
+        """Do what the task's last hint says."""
+        for gesture in SOLUTIONS[self.lesson.name][task.id]:
+            gesture(self._hands)
+        try:
+            wait_for(lambda: passed(self.tab, task), seconds=10.0)
+        except AssertionError:
+            pytest.fail(f"{task.id}: {verdicts(self.tab, task)} {self.tab.lab.message}")
