@@ -70,7 +70,8 @@ def some_check(rng: np.random.Generator) -> Check:
     quantity, stat = str(rng.choice(list(QUANTITIES))), STATS[int(rng.integers(len(STATS)))]
     during: Any = str(rng.choice(DURING))
     last = float(rng.choice([0.0, 0.1, 0.5, 2.0]))
-    window: dict[str, Any] = {"during": during, "last": last, "least": float(rng.choice([0.05, 0.25, 1.0]))}
+    least = float(rng.choice([0.05, 0.25, 1.0]))
+    window: dict[str, Any] = {"during": during, "last": last, "least": least}
     bounds = some_bounds(rng)
     if kind == "bound":
         return Bound(**window, quantity=quantity, robot=robot, stat=stat, **bounds)
