@@ -80,7 +80,7 @@ def test_running_installs_the_lab_and_testing_adds_the_tools(tmp_path: Path) -> 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="needs make")
 def test_fuzz_asks_for_random_examples_of_the_property_tests() -> None:
-    command = ["make", "-o", "venv/.tools", "VENV=venv", "PYTEST=echo asked:", "fuzz"]
+    command = ["make", "-o", "venv/.tools", "VENV=venv", "PYTEST=echo asked:", "ARGS=", "fuzz"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     (asked,) = re.findall(r"^asked: (.*)$", done.stdout, re.MULTILINE)
     assert asked.split() == ["-m", "hypothesis", "--hypothesis-profile", "fuzz"]

@@ -67,6 +67,8 @@ PANEL = Colour(247, 249, 251)
 
 VERMILLION = Colour(213, 94, 0)
 AZURE = Colour(0, 114, 178)
+VIOLET = Colour(122, 62, 157)
+"""Colour of what a reader has drawn, on pages without a server."""
 PATH = Colour(71, 80, 95)
 FORCE = Colour(154, 30, 122)
 WARNING = Colour(196, 18, 48)

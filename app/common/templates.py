@@ -3,8 +3,8 @@
 Colours are those of the palette, but for where a page in the dark has others: see
 assets/page/dark_colours.css.
 
-`Markup` is only made in `phrase`, `inlined` and `json_block` and, from a lesson's markdown, in
-`lessons.formulas`.
+`Markup` is only made in `phrase`, `inlined`, `styled` and `json_block` and, from a lesson's
+markdown, in `lessons.formulas`.
 """
 
 from __future__ import annotations
@@ -70,6 +70,11 @@ def phrase(words: Words, key: str, /, **values: object) -> Markup:
 def inlined(asset: str) -> Markup:
     """A script or style of ours, to stand in a page as it is."""
     return Markup(asset_path(asset).read_text("utf-8"))
+
+
+def styled(template: str, /, **values: object) -> Markup:
+    """A template of a style, rendered to stand in a page as it is."""
+    return Markup(render(template, **values))
 
 
 def json_block(data: object) -> Markup:

@@ -202,9 +202,10 @@ def test_at_rest_against_the_brake_the_spring_across_stands_against_that(degrees
     assert 400 * xi[0] == pytest.approx(across, rel=0.025)
 
 
-def test_the_end_point_is_heavier_sideways() -> None:
+def test_the_effective_mass_is_larger_sideways() -> None:
     texts = said(
-        LESSON, "At #°, for instance, it is heavier sideways (# kg) than up and down (# kg)"
+        LESSON,
+        "At #°, for instance, its *effective mass* (the green ellipse) is # kg sideways and #",
     )
     robot = Driven()
     q = robot.robot.rest(0.05 * frame(value(texts[0]))[1])

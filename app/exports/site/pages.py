@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from onpath.app.common.templates import environment, json_block, render
+from onpath.app.common.templates import environment, inlined, json_block, render
 from onpath.app.exports.site.step_data import SiteStep
 from onpath.app.exports.site.task_data import check_words
-from onpath.app.exports.standalone.figure_page import figure_style
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.schema import Lesson
 from onpath.lessons.words import Words
@@ -119,7 +118,7 @@ def lesson_page(
 
 def site_style() -> str:
     """The style sheet of all pages."""
-    return render("site/site.css", figure_style=figure_style())
+    return render("site/site.css", dark=inlined("page/dark_colours.css"))
 
 
 def _page(

@@ -5,9 +5,7 @@ from __future__ import annotations
 from base64 import b64encode
 from hashlib import sha256
 
-from markupsafe import Markup
-
-from onpath.app.common.templates import inlined, json_block, render
+from onpath.app.common.templates import inlined, json_block, render, styled
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.figure_data import figure_data
 from onpath.lessons.benches import law_label
@@ -27,7 +25,8 @@ def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
     Args:
         title: above the figure; may be empty.
     """
-    script, style = inlined("standalone/figure.js"), figure_style()
+    dark = inlined("page/dark_colours.css")
+    script, style = inlined("standalone/figure.js"), styled("standalone/figure.css", dark=dark)
     names = " / ".join(law_label(law, words) for law in figure.laws)
     return render(
         "standalone/figure.html",
@@ -39,11 +38,6 @@ def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
         data=json_block(figure_data(figure, words, title)),
         script=script,
     )
-
-
-def figure_style() -> Markup:
-    """The style of figures; on a dark page, its colours are the lab's."""
-    return Markup(render("standalone/figure.css", dark=inlined("page/dark_colours.css")))
 
 
 def _hash(text: str) -> str:
