@@ -20,8 +20,8 @@ class StepDrawings:
 
     def __init__(self, overlays: Overlays, course: Course, words: Words) -> None:
         self._overlays, self._course, self._words = overlays, course, words
-        self._version, self._place = -1, ("", -1)
-        self._shown: tuple[str, ...] = ()
+        self._version = -1
+        self._place: Place | None = None  # a page built anew switches off what a step left on
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Draw what the open step asks for, if another step was open before."""
@@ -32,7 +32,7 @@ class StepDrawings:
         place = (view.progress.lesson, view.index) if view.lesson is not None else ("", -1)
         if place == self._place:
             return
-        self._place, wanted = place, view.setup.show
-        for name in {*self._shown, *wanted}:
-            setattr(self._overlays.switches, name, name in wanted)
-        self._shown, self._overlays.marks = wanted, view.setup.marks
+        self._place, switches, wanted = place, self._overlays.switches, view.setup.show
+        for name in {*switches.of_step, *wanted}:
+            setattr(switches, name, name in wanted)
+        switches.of_step, self._overlays.marks = wanted, view.setup.marks

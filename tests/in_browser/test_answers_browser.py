@@ -15,6 +15,8 @@ from onpath.app.server.lab_server import LabServer
 from onpath.lessons.progress import Answer
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 TIMETABLE = "01-path-or-timetable"
 WAITS, POLES = "01b-let-the-clock-wait", "04b-poles-and-gains"
 LEAST = 44.0  # [px], height of what a finger presses

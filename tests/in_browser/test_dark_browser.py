@@ -24,6 +24,8 @@ from tests.support.axe import violations
 from tests.support.browser import THREE_FRAMES, Tab, wait_for
 from tests.support.cases import some
 
+pytestmark = pytest.mark.thorough
+
 LESSON = "01-path-or-timetable"
 FOLDERS = (
     *("Advanced", "Realism", "Path editor", "Show", "Wall", "Start"),
@@ -75,7 +77,6 @@ def brightness(tab: Tab, low: tuple[float, float], high: tuple[float, float]) ->
     return np.asarray(picture) / 255.0
 
 
-@pytest.mark.thorough
 def test_the_scene_has_a_dark_wall_and_a_dark_ground(drawn: dict[str, Tab]) -> None:
     wall, ground = ((0.02, 0.02), (0.98, 0.1)), ((0.02, 0.95), (0.98, 0.99))
     for place in (wall, ground):
@@ -83,7 +84,6 @@ def test_the_scene_has_a_dark_wall_and_a_dark_ground(drawn: dict[str, Tab]) -> N
         assert np.median(brightness(drawn["dark"], *place)) < 0.2
 
 
-@pytest.mark.thorough
 def test_titles_in_the_scene_are_light_on_dark(drawn: dict[str, Tab]) -> None:
     title = (0.05, 0.12), (0.95, 0.27)
     for scheme, tab in drawn.items():
@@ -92,7 +92,6 @@ def test_titles_in_the_scene_are_light_on_dark(drawn: dict[str, Tab]) -> None:
         assert seen.max() > 0.75 and seen.min() < 0.3
 
 
-@pytest.mark.thorough
 def test_a_board_to_sketch_on_is_dark(drawn: dict[str, Tab]) -> None:
     for scheme, tab in drawn.items():
         tab.ask(TakeStep(LESSON, 1))
@@ -147,7 +146,6 @@ def test_a_dark_dialog_can_be_read(tab: Tab, name: str) -> None:
     dialog.wait_for(state="hidden")
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("size", SIZES)
 def test_every_step_of_a_dark_lesson_can_be_read(
     browser: Browser, server: LabServer, size: str
@@ -168,7 +166,6 @@ def test_every_step_of_a_dark_lesson_can_be_read(
     tab.page.context.close()
 
 
-@pytest.mark.thorough
 def test_a_dark_teachers_page_can_be_read(browser: Browser) -> None:
     room = Classroom()
     server = LabServer("127.0.0.1", 0, LoopCache(), classrooms=[room])
@@ -183,7 +180,6 @@ def test_a_dark_teachers_page_can_be_read(browser: Browser) -> None:
     server.stop()
 
 
-@pytest.mark.thorough
 def test_plots_can_be_read_with_the_users_own_colours(browser: Browser, server: LabServer) -> None:
     tab = visit(browser, server, scheme="light", forced_colors="active")
     behind = "plot => getComputedStyle(plot).backgroundColor"

@@ -21,6 +21,8 @@ from tests.support.axe import violations
 from tests.support.browser import WAIT, Tab, wait_for
 from tests.support.cases import some
 
+pytestmark = pytest.mark.thorough
+
 WINDOW: ViewportSize = {"width": 1280, "height": 800}
 LESSON = "01-path-or-timetable"
 expect.set_options(timeout=WAIT * 1e3)
@@ -95,7 +97,6 @@ def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None
     tab.page.context.close()
 
 
-@pytest.mark.thorough
 def test_the_introduction_can_be_skipped_for_good(browser: Browser, server: LabServer) -> None:
     tab = visit(browser, server, newcomer=True)
     tab.button("Skip the introduction").click()
@@ -200,7 +201,6 @@ AUDIO = """window.AudioContext = class {
 }"""
 
 
-@pytest.mark.thorough
 def test_the_distances_are_heard_once_that_is_switched_on(
     browser: Browser, server: LabServer
 ) -> None:
@@ -266,7 +266,6 @@ def test_a_share_code_is_copied(tab: Tab) -> None:
     assert copied == code.inner_text() == tab.lab.shared
 
 
-@pytest.mark.thorough
 def test_with_reduced_motion_the_robots_are_at_rest_at_first(
     browser: Browser, server: LabServer
 ) -> None:
@@ -277,7 +276,6 @@ def test_with_reduced_motion_the_robots_are_at_rest_at_first(
     tab.page.context.close()
 
 
-@pytest.mark.thorough
 def test_axe_finds_nothing_serious_in_a_lesson(browser: Browser, server: LabServer) -> None:
     tab = visit(browser, server)
     tab.ask(c.OpenLesson(LESSON))
@@ -397,7 +395,6 @@ WATCH_PANEL = """() => {
 }"""
 
 
-@pytest.mark.thorough
 def test_the_first_hold_moves_nothing_in_the_panel(browser: Browser) -> None:
     """Its loop is compiled meanwhile."""
     server = LabServer("127.0.0.1", 0, LoopCache())

@@ -27,6 +27,8 @@ from tests.support.cases import some
 from tests.support.figure_runs import Act, PythonFigure
 from tests.support.waiting import wait_for
 
+pytestmark = pytest.mark.thorough
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 

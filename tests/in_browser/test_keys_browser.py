@@ -19,6 +19,8 @@ from onpath.app.server.lab_server import LabServer
 from onpath.models.systems.parameters import specs
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 NAMES = {"space": "Space", "escape": "Escape", "insert": "Insert", "delete": "Delete"}
 NAMES |= {f"arrow{way.lower()}": f"Arrow{way}" for way in ("Left", "Right", "Up", "Down")}
 NAMES |= {"home": "Home"}
@@ -145,7 +147,6 @@ def test_the_view_is_reset_by_a_key_and_by_a_button(tab: Tab) -> None:
     assert tab.lab.asked == asked  # nobody else who looks at this lab notices
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("place", PLACES)
 def test_the_view_is_reset_on_a_phone(browser: Browser, server: LabServer, place: str) -> None:
     with opened(browser, server, place, **TOUCH) as tab:

@@ -19,6 +19,8 @@ from onpath.models.control.laws.own import PATH_FOLLOWING, VIEW
 from onpath.models.control.laws.registry import LAWS
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 WINDOW = {"width": 1280, "height": 800}
 
 

@@ -15,6 +15,8 @@ from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 SCENES = """window.__THREE_DEVTOOLS__ = new EventTarget()
 __THREE_DEVTOOLS__.addEventListener("observe", ({detail}) => {
     if (detail.isScene) (window.scenes ??= []).push(detail)

@@ -26,6 +26,8 @@ from tests.support.site_export import LESSON, exported_site
 from tests.support.site_reader import WAIT, SiteReader
 from tests.support.waiting import wait_for
 
+pytestmark = pytest.mark.thorough
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
@@ -38,7 +40,6 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return exported_site(tmp_path_factory.mktemp("site"), ("en",))
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("step", [2, 8])
 def test_what_happens_is_what_happens_in_the_lab(browser: Browser, site: Path, step: int) -> None:
     lesson = read_course([BUILT_IN])[0].lesson(LESSON, "en")
@@ -59,7 +60,6 @@ def test_what_happens_is_what_happens_in_the_lab(browser: Browser, site: Path, s
     reader.context.close()
 
 
-@pytest.mark.thorough
 def test_tasks_accept_the_solution_and_not_the_failure(browser: Browser, site: Path) -> None:
     lesson = read_course([BUILT_IN])[0].lesson(LESSON, "en")
     references, _ = read_references(lesson, BUILT_IN / LESSON / REFERENCE)

@@ -16,6 +16,8 @@ from onpath.app.server.lab_server import LabServer
 from tests.support.browser import WAIT, Tab, wait_for
 from tests.support.built_in import built_in_course
 
+pytestmark = pytest.mark.thorough
+
 expect.set_options(timeout=WAIT * 1e3)
 COURSE, _ = built_in_course()
 LESSON, STEP = "01-path-or-timetable", 6
@@ -66,7 +68,6 @@ def test_a_slider_is_dragged_by_a_finger_while_the_text_stays(tab: Tab) -> None:
         assert heading(tab).evaluate(UNCOVERED) and slider.evaluate(UNCOVERED)
 
 
-@pytest.mark.thorough
 def test_what_is_below_the_text_is_not_hidden_by_the_controls(tab: Tab) -> None:
     take(tab, LESSON, STEP)
     for name in ("Next", "Back", "Set up again"):
@@ -76,7 +77,6 @@ def test_what_is_below_the_text_is_not_hidden_by_the_controls(tab: Tab) -> None:
         assert tab.slider("K1").evaluate(UNCOVERED)
 
 
-@pytest.mark.thorough
 def test_a_step_without_controls_leaves_its_text_all_the_room(tab: Tab) -> None:
     take(tab, LESSON, STEP)
     pinned = tab.page.locator("[data-pinned]")
@@ -89,7 +89,6 @@ def test_a_step_without_controls_leaves_its_text_all_the_room(tab: Tab) -> None:
     expect(pinned).to_have_count(0)
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("lesson", COURSE.lessons)
 def test_a_control_of_every_step_is_seen_together_with_its_text(tab: Tab, lesson: str) -> None:
     front = COURSE.lesson(lesson, "en")

@@ -21,6 +21,8 @@ from tests.support.cases import some
 from tests.support.hands import ROBOT, DragBall, Enter, Gesture, Hands, Pull, Slide, Wait
 from tests.support.solutions import SOLUTIONS, passed, verdicts
 
+pytestmark = pytest.mark.thorough
+
 COURSE, _ = built_in_course()
 TASKS = {
     (lesson.name, task.id): (index, task)

@@ -19,6 +19,8 @@ from onpath.app.server.lab_server import LabServer
 from tests.support.browser import WAIT, Tab, wait_for
 from tests.support.cases import some
 
+pytestmark = pytest.mark.thorough
+
 LESSON = "01-path-or-timetable"
 FOLDERS = (
     *("Advanced", "Realism", "Path editor", "Show", "Wall", "Start"),
@@ -98,7 +100,6 @@ def test_the_lab_is_whole(tab: Tab) -> None:
 DIALOGS = "Help and keys", "Language, display", "Robot…", "Lessons"
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("name", DIALOGS)
 def test_a_dialog_is_whole(tab: Tab, name: str) -> None:
     tab.press(name)
@@ -120,7 +121,6 @@ def test_a_step_of_a_lesson_is_whole(tab: Tab, index: int) -> None:
     is_whole(tab)
 
 
-@pytest.mark.thorough
 def test_the_lab_is_held_from_beside_the_text(tab: Tab) -> None:
     tab.ask(TakeStep(LESSON, 6))
     tab.page.get_by_role("heading", name="Hold it yourself").wait_for()

@@ -182,6 +182,7 @@ def test_no_text_at_all(tmp_path: Path, content: bytes, said: str) -> None:
     assert any(said in words for _, words in problems(file))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
 @pytest.mark.parametrize("ending", ["\n", "\r\n"])
 def test_any_editor_will_do(tmp_path: Path, encoding: str, ending: str) -> None:

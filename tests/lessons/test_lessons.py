@@ -64,6 +64,7 @@ def test_no_rule_of_thumb_finds_the_right_options() -> None:
     assert max(found.values()) <= 0.45 * len(asked), found
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("lesson", "step", "task"), TASKS, ids=label)
 def test_solution_passes_and_failure_does_not(lesson: Lesson, step: Step, task: Task) -> None:
     reference = read_references(lesson, BUILT_IN / lesson.name / REFERENCE)[0][task.id]
@@ -115,6 +116,7 @@ def test_references_are_where_the_lessons_are() -> None:
         assert Path(BUILT_IN / lesson.name / REFERENCE).is_file()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("reference", "line", "words"),
     [

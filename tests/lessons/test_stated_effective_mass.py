@@ -8,6 +8,8 @@ import pytest
 from onpath.models.control.effective_mass import effective_masses
 from onpath.models.systems.catalogue import FIVE_BAR
 
+pytestmark = pytest.mark.thorough
+
 BASE = np.array([-0.2, -0.2])  # the pivot, in the path's plane, [m]
 RADIUS = 0.05  # [m]
 ROBOT = FIVE_BAR.make(FIVE_BAR.lab)

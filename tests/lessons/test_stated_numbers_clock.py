@@ -19,6 +19,8 @@ from tests.support.stated_numbers import (
     value,
 )
 
+pytestmark = pytest.mark.thorough
+
 LESSON, RADIUS, TURN = "01b", 0.05, 2 * np.pi
 PD: dict[str, Any] = {"K3": 0.0}
 PLACES = [3 + eighth / 8 for eighth in range(8)]

@@ -24,6 +24,8 @@ from tests.support.stated_numbers import (
     value,
 )
 
+pytestmark = pytest.mark.thorough
+
 RADIUS, TURN = 0.05, 2 * np.pi
 PD: dict[str, Any] = {"K3": 0.0}  # of lesson 6, but for the task on the integral
 

@@ -16,6 +16,8 @@ from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
 from tests.support.one_robot import FOLLOWER, TRACKER, Driven, at, largest
 from tests.support.stated_numbers import agrees, assert_stated, said, stated_in_readme, value
 
+pytestmark = pytest.mark.thorough
+
 LESSON, LINKS = "07", load_links()
 SPEED = 2.0  # [rad/s], as the lesson's scenes have it
 

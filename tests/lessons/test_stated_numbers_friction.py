@@ -19,6 +19,8 @@ from tests.support.stated_numbers import (
     value,
 )
 
+pytestmark = pytest.mark.thorough
+
 LESSON, QUICK, GENTLE = "06b", "Ten seconds with an integral", "A quarter of it"
 STICKY: dict[str, Any] = {"stiction": 0.1, "coulomb": 0.05}
 AT_TOP = {**STICKY, "task": "position", "target": 1.57, "K3": 4000.0, "K4": 400.0, "K5": 40.0}

@@ -23,6 +23,8 @@ from tests.support.one_robot import (
 )
 from tests.support.stated_numbers import assert_stated, said, stated_in_readme, value
 
+pytestmark = pytest.mark.thorough
+
 LESSON = "05"
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 
 from onpath.models.arrays import Array
 from onpath.models.systems.beam import beam_modes
@@ -12,6 +13,8 @@ from onpath.models.systems.flexible_five_bar import HOME
 from onpath.models.systems.flexible_links import load_links
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
 from tests.support.stated_numbers import agrees, assert_stated, said, stated_in_readme
+
+pytestmark = pytest.mark.thorough
 
 LESSON, LINKS = "07", load_links()
 

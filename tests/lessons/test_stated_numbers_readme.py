@@ -17,6 +17,8 @@ from onpath.models.systems.catalogue import FIVE_BAR
 from onpath.models.systems.flexible_robot import FlexibleFiveBar
 from tests.support.stated_numbers import assert_stated, stated_in_readme, value
 
+pytestmark = pytest.mark.thorough
+
 FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
 
 

@@ -26,6 +26,8 @@ from tests.support.stated_numbers import (
     value,
 )
 
+pytestmark = pytest.mark.thorough
+
 RADIUS, TURN = 0.05, 2 * np.pi
 PD: dict[str, Any] = {"K3": 0.0}  # what lessons 1 and 4 are about
 STAGES = (0, 4, 8, 12)  # [s], when the gains go up in lesson 4

@@ -91,6 +91,7 @@ def test_table_for_a_reader_names_both_and_says_why_one_stopped(
     assert all(values["diverged"] and values["diverged_at_s"] > 0 for values in found.values())
 
 
+@pytest.mark.thorough
 def test_all_files_are_the_same_to_the_byte(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

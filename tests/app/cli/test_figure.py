@@ -14,6 +14,8 @@ from onpath.models.studies.paper_figures import FIGURES
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.cases import some
 
+pytestmark = pytest.mark.thorough
+
 QUICK_FIGURES, QUICK_ROBOTS = (2, 7), ("two_link_arm", "flexible")
 """Those of `make test`: plane and flexible. The others are drawn by the same code."""
 

@@ -19,6 +19,8 @@ from tests.support.checkout import ROOT
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
+pytestmark = pytest.mark.thorough
+
 TOKEN = "a-token"
 CONFIGURATION = """
 from onpath.app.cli.jupyter import server

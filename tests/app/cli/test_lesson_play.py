@@ -17,6 +17,8 @@ from tests.support.format_texts import FORMAT_LESSON, FORMAT_REFERENCE
 from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 from tests.support.stated_numbers import shown
 
+pytestmark = pytest.mark.thorough
+
 Capture = pytest.CaptureFixture[str]
 
 

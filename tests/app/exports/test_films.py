@@ -22,6 +22,8 @@ from tests.support import waiting
 from tests.support.export_jobs import die
 from tests.support.lab import new_lab
 
+pytestmark = pytest.mark.thorough
+
 WAIT = 240.0  # [s]; only ends a test that would hang
 CROWD = 12
 FILM = "onpath.html"

@@ -27,6 +27,8 @@ from tests.support.built_in import built_in_course
 from tests.support.cases import some
 from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 
+pytestmark = pytest.mark.thorough
+
 ARTICLE = re.compile(r'<article[^>]* data-asked="([^"]+)">(.*?)</article>', re.DOTALL)
 in_every_language = pytest.mark.parametrize("language", languages())
 

@@ -18,6 +18,8 @@ from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_referen
 from onpath.lessons.schema import Text
 from tests.support.site_export import LESSON, exported_site
 
+pytestmark = pytest.mark.thorough
+
 LINES = 1800
 EVENTS = re.compile(r"^on[a-z]+$")
 

@@ -220,6 +220,7 @@ def test_it_has_a_picture(entry: RobotEntry) -> None:
     assert picture_of(entry).startswith("data:image/")
 
 
+@pytest.mark.thorough
 def test_what_it_did_can_be_taken_home(entry: RobotEntry) -> None:
     lab = lab_with(entry, 0.3)
     session = lab.session

@@ -45,6 +45,7 @@ def test_a_simulation_is_onpaths_own(folder: Path) -> None:
     assert size == "50" and Path(file).parent == ROOT / "onpath"
 
 
+@pytest.mark.thorough
 def test_so_is_the_command_line(folder: Path) -> None:
     assert "zero-dynamics" in python(folder, "-m", "onpath", "--help")
     listed = python(folder, "-m", "onpath", "lessons", "list").splitlines()[1:]  # titles

@@ -23,6 +23,8 @@ from onpath.lessons.words import ENGLISH
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
+pytestmark = pytest.mark.thorough
+
 CROWD = 6
 MOMENT = "Many people are"
 

@@ -25,6 +25,8 @@ from tests.support import waiting
 from tests.support.drags import play
 from tests.support.student import Student
 
+pytestmark = pytest.mark.thorough
+
 FRAMES, MESSAGES, DISPLAY = 60, 400, 10  # per simulated second; so often a stroke is drawn at most
 SECONDS = 6
 wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that would hang

@@ -49,6 +49,7 @@ def lab() -> Iterator[LabServer]:
     lab.stop()
 
 
+@pytest.mark.thorough
 def test_silent_tabs_hold_no_thread_no_lab_and_no_place(lab: LabServer) -> None:
     address = f"ws://127.0.0.1:{lab.server.get_port()}"
     with ExitStack() as stay:

@@ -161,6 +161,7 @@ def hit_every_node(tab: Tab) -> None:
         tab.settle()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("path", ["circle", "clover", "segment"])
 def test_every_node_with_every_index(tab: Tab, path: str) -> None:
     tab.lab.post(c.ChoosePath(path))
@@ -168,6 +169,7 @@ def test_every_node_with_every_index(tab: Tab, path: str) -> None:
     hit_every_node(tab)
 
 
+@pytest.mark.thorough
 def test_a_sheet_to_draw_on_with_every_index(tab: Tab) -> None:
     tab.student.set(ENGLISH("design.draw"), True)
     wait_for(lambda: any("freehand" in name for name in tab.nodes()), WAIT)

@@ -191,6 +191,7 @@ def test_a_server_that_could_not_open_its_file_says_so_on_every_page(tmp_path: P
         server.stop()
 
 
+@pytest.mark.thorough
 def test_a_browser_shows_it(tmp_path: Path, impatient: None) -> None:
     file = tmp_path / "labs.db"
     server = LabServer("127.0.0.1", 0, LoopCache(), records=Records(file_url(file)))

@@ -316,6 +316,7 @@ def test_dry_friction_slows_the_follower_and_takes_energy(rig: Rig) -> None:
 # Open curves --------------------------------------------------------------------------------------
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "curve",
     [

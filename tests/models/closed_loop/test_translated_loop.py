@@ -72,6 +72,7 @@ def test_an_operation_without_a_translation_is_named() -> None:
         translate(logging_kernel(ca.SX.unary(ca.OP_ERF, x), x=x))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("controller", NAMES)
 @pytest.mark.parametrize("encoder", [False, True])
 @pytest.mark.parametrize("free", [False, True])

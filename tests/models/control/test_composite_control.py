@@ -218,6 +218,7 @@ def rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
+@pytest.mark.thorough
 def test_the_tip_itself_stays_on_the_path() -> None:
     states, theta = run("composite", tuple(START), TASK)
     redefined, _ = run("redefined", tuple(START), TASK)

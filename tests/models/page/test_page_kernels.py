@@ -35,6 +35,8 @@ from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameters import changed
 from tests.support.cases import some
 
+pytestmark = pytest.mark.thorough
+
 RIGID = [name for name, entry in ROBOTS.items() if entry.make(entry.lab).geometry]
 
 

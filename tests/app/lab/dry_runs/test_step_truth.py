@@ -10,6 +10,8 @@ from onpath.lessons.benches import ROLES
 from onpath.lessons.course import BUILT_IN, read_lesson
 from tests.support.stated_numbers import shown
 
+pytestmark = pytest.mark.thorough
+
 LESSONS = sorted(file.parent.name for file in BUILT_IN.glob("*/en.md"))
 
 

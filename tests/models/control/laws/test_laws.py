@@ -288,6 +288,7 @@ def test_a_bead_that_is_pulled_along_moves_and_one_that_is_left_alone_does_not()
     assert bench.distance(log).max() < 0.005
 
 
+@pytest.mark.thorough
 def test_across_comes_before_along_under_a_torque_limit() -> None:
     """12 rad/s under 0.5 N m, after the first second, on the circle from θ = 0."""
     worst = dict[tuple[str, str], float]()

@@ -1,0 +1,56 @@
+"""A class at its own address, and the way to it from another page, in a real browser."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser
+
+from onpath.app.classroom.class_opening import open_classes
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.server.lab_server import LabServer
+from tests.support.browser import Tab
+
+pytestmark = pytest.mark.thorough
+
+ROOMS = open_classes(["k7mf2xqa9tzr", "bn4ws8cd3vyp"])
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopCache(), classrooms=ROOMS)
+    yield server
+    server.stop()
+
+
+def test_who_opens_the_address_types_a_nickname_only(browser: Browser, server: LabServer) -> None:
+    first, second = ROOMS
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    tab = Tab(server, context, draws=False, path=f"/c/{first.code.upper()}")
+    assert tab.page.url.partition("?")[0] == f"{server.address}/c/{first.code}/"
+    assert tab.field("Class code").input_value() == first.code.upper()
+    tab.field("Nickname").fill("Ada")
+    tab.blur()
+    tab.press("Join the class")
+    tab.page.get_by_text("You are in the class as").wait_for()
+    assert [member.name for member in first.members().values()] == ["Ada"]
+    lab = tab.lab
+    tab.reload()
+    assert tab.lab is lab  # a reload comes back to it
+    tab.page.get_by_text("You are in the class as").wait_for(state="attached")  # in a closed folder
+    other = Tab(server, context, draws=False)  # the same browser, in no class
+    assert other.lab is not lab and other.field("Class code").input_value() == ""
+    other.field("Class code").fill(second.code)
+    other.field("Nickname").fill("Ada")
+    other.blur()
+    other.press("Join the class")
+    other.page.get_by_role("link", name="This class has a page of its own").click()
+    other.page.wait_for_url(re.compile(f"/c/{second.code}/$"))
+    other.page.get_by_role("button", name="Join the class").wait_for()
+    assert not second.members() and tab.errors == other.errors == []
+    context.close()

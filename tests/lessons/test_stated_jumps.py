@@ -1,0 +1,58 @@
+"""The task "lower the jumps" of lesson 6b: what its last hint does helps, whenever it is done."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
+from onpath.lessons.course import BUILT_IN, read_course
+from onpath.lessons.task_schema import Bound
+from tests.support.lab import FRAME, RIGHT, do, store
+
+pytestmark = pytest.mark.thorough
+
+LESSON, TASK = "06b-friction-and-the-integral", "lower-the-jumps"
+WAIT, WINDOW = 8.0, 6.0  # [s], as hint and task say
+
+
+def opened() -> tuple[Lab, float]:
+    """The step with the task, and the bound that the task asks for, [m]."""
+    lab = Lab(store(), course=read_course([BUILT_IN])[0])
+    do(lab, c.OpenLesson(LESSON))
+    assert lab.lessons.lesson is not None
+    for place, step in enumerate(lab.lessons.lesson.steps):
+        for task in step.tasks():
+            if task.id == TASK:
+                do(lab, c.GoToStep(place))
+                (bound,) = [check for check in task.check if isinstance(check, Bound)]
+                assert (bound.last, bound.below) == (WINDOW, 0.5)
+                return lab, 0.5e-3
+    raise AssertionError(TASK)
+
+
+def distances(lab: Lab, seconds: float) -> np.ndarray:
+    """Distance of the follower from the circle in each frame, [m]."""
+    run = lab.session.runs[RIGHT]
+    found = list[float]()
+    for _ in range(round(seconds / FRAME)):
+        lab.drain()
+        lab.advance(FRAME)
+        found.append(abs(float(np.hypot(*run.row[run.log.slices["y"]])) - 0.05))
+    return np.array(found)
+
+
+@pytest.mark.parametrize("begun", [0.0, 1.0, 2.0, 5.0, 9.0, 17.0, 20.0, 25.0])
+def test_eight_seconds_after_the_hint_it_is_near_and_stays_so(begun: float) -> None:
+    lab, bound = opened()
+    distances(lab, begun)
+    do(lab, c.SetParameter("K1", 1600.0), c.SetParameter("K2", 80.0))
+    distances(lab, WAIT - WINDOW)
+    assert distances(lab, 52.0).max() < bound
+
+
+def test_as_it_is_it_is_never_near_for_six_seconds() -> None:
+    lab, bound = opened()
+    beyond = np.flatnonzero(distances(lab, 60.0) > bound)
+    assert np.diff([0, *beyond, 60 / FRAME]).max() < WINDOW / FRAME
