@@ -41,7 +41,6 @@ class Switches:
         rank: the rank test as a map.
         errors: both errors, to the timetable's point and to the path, as arrows.
         mass: the ellipse of the effective mass at the end-points.
-        of_step: names of those that a lesson's step has switched on.
     """
 
     labels: bool = False
@@ -50,7 +49,6 @@ class Switches:
     rank: bool = False
     errors: bool = False
     mass: bool = False
-    of_step: tuple[str, ...] = ()
 
 
 class Background(Generic[Result]):

@@ -60,7 +60,7 @@ class Page:
         self._channel = FrameChannel(client)
         self.exporter, self._rebuilds = Exporter(client), RebuildThread(client)
         self._framed, self._settling = 0.0, SETTLING
-        self._switches = Switches()
+        self._switches, self._switched = Switches(), set[str]()
         self._building, self.is_outdated = True, False
         self._wanted = Preferences(client)
         client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
@@ -150,7 +150,7 @@ class Page:
         self._client.gui.add_html(render("panel/page.html", words=words))
         self._saying = Saying(self._client.gui, words, self._wanted, self._scene.captions)
         self._parts.append(self._saying)
-        self._parts.append(StepDrawings(self._overlays, self._desk.course, words))
+        self._parts.append(StepDrawings(self._overlays, self._desk.course, words, self._switched))
         self._build_panels(first, words, post)
         own = {"view": self.reset_view, "summary": self._saying.ask_summary}
         add_keys(self._client.gui, words, post, own)

@@ -16,12 +16,15 @@ class StepDrawings:
 
     Args:
         overlays: what is switched.
+        switched: names of what the last step has switched on; kept while a page is rebuilt.
     """
 
-    def __init__(self, overlays: Overlays, course: Course, words: Words) -> None:
+    def __init__(
+        self, overlays: Overlays, course: Course, words: Words, switched: set[str]
+    ) -> None:
         self._overlays, self._course, self._words = overlays, course, words
-        self._version = -1
-        self._place: Place | None = None  # a page built anew switches off what a step left on
+        self._version, self._switched = -1, switched
+        self._place: Place | None = None
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Draw what the open step asks for, if another step was open before."""
@@ -33,6 +36,8 @@ class StepDrawings:
         if place == self._place:
             return
         self._place, switches, wanted = place, self._overlays.switches, view.setup.show
-        for name in {*switches.of_step, *wanted}:
+        for name in self._switched.union(wanted):
             setattr(switches, name, name in wanted)
-        switches.of_step, self._overlays.marks = wanted, view.setup.marks
+        self._switched.clear()
+        self._switched.update(wanted)
+        self._overlays.marks = view.setup.marks
