@@ -72,7 +72,7 @@ def some_check(rng: np.random.Generator) -> Check:
     last = float(rng.choice([0.0, 0.1, 0.5, 2.0]))
     least = float(rng.choice([0.05, 0.25, 1.0]))
     window: dict[str, Any] = {"during": during, "last": last, "least": least}
-    bounds = some_bounds(rng)
+    bounds: dict[str, Any] = {**some_bounds(rng)}
     if kind == "bound":
         return Bound(**window, quantity=quantity, robot=robot, stat=stat, **bounds)
     if kind == "compare":
