@@ -1,7 +1,7 @@
 # make run   creates the environment, installs, starts the lab and prints its address
 # make test  the tests, headless Chromium included; adds what they need to the environment
-# make thorough  the other tests: every task of every lesson in Chromium, whole servers and crowds,
-#            processes that hang, a minute of attacks (.ci/run runs these, too)
+# make thorough  the other tests: most pages in Chromium, the numbers that lessons state, whole servers
+#            and crowds, processes that hang, a minute of attacks (.ci/run runs these, too)
 # make fuzz  the property tests with random inputs; make test has the same ones every time
 # make check lint, format, types      make bench  the speed table
 # make soak  40 labs under attack for half an hour: lateness, memory and log stay within bounds

@@ -100,7 +100,9 @@ def _name_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
     others = "path", "robot", "length", *BENCHES
     if isinstance(check, Setting) and check.name not in others and parameters is not None:
         yield from one_of(check.name, parameters, "parameter")
-    events = check.events if isinstance(check, Order) else getattr(check, "since", ())
+    events = ()
+    if isinstance(check, Order | Event):
+        events = check.events if isinstance(check, Order) else check.since
     for event in events:
         yield from one_of(event.partition(":")[0], EVENTS, "event")
     named = [(event.partition(":")[0], event.partition(":")[2]) for event in events]

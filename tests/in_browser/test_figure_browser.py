@@ -23,7 +23,6 @@ from onpath.models.errors import Message
 from onpath.models.paths.path_design import presets
 from tests.support.axe import RUN, SCRIPT
 from tests.support.browser import THREE_FRAMES
-from tests.support.cases import some
 from tests.support.figure_runs import Act, PythonFigure
 from tests.support.waiting import wait_for
 
@@ -222,9 +221,7 @@ def test_it_is_the_run_of_simulate(opened: Opened) -> None:
         np.testing.assert_allclose(row[: len(end)], end, rtol=0, atol=CLOSE)
 
 
-@pytest.mark.parametrize(
-    "robot", some(["flexible", "spatial_arm", "two_link_arm"], ["spatial_arm"])
-)
+@pytest.mark.parametrize("robot", ["flexible", "spatial_arm", "two_link_arm"])
 def test_every_robot_follows(browser: Browser, tmp_path: Path, robot: str) -> None:
     opened = Opened(browser, written(tmp_path, robot=robot))
     opened.press("Pause")

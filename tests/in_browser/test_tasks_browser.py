@@ -17,7 +17,6 @@ from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import Tab, wait_for
 from tests.support.built_in import built_in_course
-from tests.support.cases import some
 from tests.support.hands import ROBOT, DragBall, Enter, Gesture, Hands, Pull, Slide, Wait
 from tests.support.solutions import SOLUTIONS, passed, verdicts
 
@@ -30,8 +29,6 @@ TASKS = {
     for index, step in enumerate(lesson.steps)
     for task in step.tasks()
 }
-QUICK = ("01-path-or-timetable", "03-the-five-bar", "05-invariance")
-"""Lessons whose tasks show every kind of gesture; those of the others are marked `thorough`."""
 BY_TOUCH: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "01-path-or-timetable": {"push-across": (Pull(30, 0, seconds=1), Wait(2))},
     "03-the-five-bar": {"dear": SOLUTIONS["03-the-five-bar"]["dear"]},
@@ -105,10 +102,7 @@ def test_typed_numbers_are_in_the_hints(lesson: str, task: str) -> None:
     assert typed <= known
 
 
-@pytest.mark.parametrize(
-    ("lesson", "task"),
-    some(cases(SOLUTIONS), [case for case in cases(SOLUTIONS) if case[0] in QUICK]),
-)
+@pytest.mark.parametrize(("lesson", "task"), cases(SOLUTIONS))
 def test_a_task_is_passed_by_doing_what_its_last_hint_says(
     mouse: Hands, lesson: str, task: str
 ) -> None:

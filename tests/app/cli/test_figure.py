@@ -12,15 +12,11 @@ from onpath.app.cli.main import run_command
 from onpath.app.exports.paper_figures import paper_figure
 from onpath.models.studies.paper_figures import FIGURES
 from onpath.models.systems.catalogue import ROBOTS
-from tests.support.cases import some
 
 pytestmark = pytest.mark.thorough
 
-QUICK_FIGURES, QUICK_ROBOTS = (2, 7), ("two_link_arm", "flexible")
-"""Those of `make test`: plane and flexible. The others are drawn by the same code."""
 
-
-@pytest.mark.parametrize("number", some(FIGURES, QUICK_FIGURES))
+@pytest.mark.parametrize("number", FIGURES)
 def test_the_same_figure_has_the_same_bytes(
     number: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -85,7 +81,7 @@ def test_errors_are_one_line(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("robot", some(ROBOTS, QUICK_ROBOTS))
+@pytest.mark.parametrize("robot", ROBOTS)
 def test_the_rank_test_is_drawn_for_every_robot(
     robot: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -33,7 +33,6 @@ from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameters import changed
-from tests.support.cases import some
 
 pytestmark = pytest.mark.thorough
 
@@ -119,7 +118,7 @@ def found_faults(name: str, curve: Curve) -> dict[str, Array]:
     return found
 
 
-@pytest.mark.parametrize("name", some(RIGID, ["five_bar"]))
+@pytest.mark.parametrize("name", RIGID)
 def test_a_curve_is_refused_for_the_lab_s_reasons_and_in_the_same_places(name: str) -> None:
     entry, rng, seen = ROBOTS[name], np.random.default_rng(3), set[str]()
     robot = entry.make(entry.lab)
@@ -143,7 +142,7 @@ def _compared(name: str, design: PathDesign, reach: Any) -> set[str]:
     return set(found)
 
 
-@pytest.mark.parametrize("name", some(RIGID, ["five_bar"]))
+@pytest.mark.parametrize("name", RIGID)
 def test_the_symbols_of_an_arm_are_its_functions(name: str) -> None:
     entry, rng = ROBOTS[name], np.random.default_rng(0)
     robot = entry.make(entry.lab)
