@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from functools import lru_cache, partial
 
@@ -21,6 +22,8 @@ from onpath.models.systems.parameters import specs
 
 MOST = 2
 """Settings that are named on a button."""
+RENEWED = 1.0
+"""How often numbers that are spoken are renewed; assets/page/saying.js reads fewer aloud [s]."""
 
 
 class Saying:
@@ -45,6 +48,7 @@ class Saying:
         self._handle = gui.add_html("")
         self._shown: tuple[object, ...] = ()
         self._asked, self._summaries, self._summary = False, 0, ""
+        self._spoken, self._spoken_at = "", 0.0
         self._frame = lru_cache(maxsize=16)(partial(_frame, words))
 
     def ask_summary(self) -> None:
@@ -63,20 +67,32 @@ class Saying:
         plays = isinstance(snapshot, PageSnapshot) and snapshot.lesson.playing
         frame = self._frame(level, running, snapshot.held, stopped, plays)
         remedy = _earlier_settings(snapshot, self._words) if stopped or level == "replay" else ""
-        speaks, tones = self._wanted["speaks"], _tones(snapshot) if self._wanted["sounds"] else ""
-        shown = frame, snapshot.message, captions, snapshot.laws, speaks, tones, remedy
+        voice = self._said_aloud(snapshot, captions) if self._wanted["speaks"] else ""
+        tones = _tones(snapshot) if self._wanted["sounds"] else ""
+        shown = frame, snapshot.message, voice, tones, remedy
         if (*shown, self._summaries) == self._shown:
             return
         self._shown = *shown, self._summaries
         content = frame.format(
             message=escape(snapshot.message),
-            spoken=escape(_spoken(snapshot, captions, self._words)) if speaks else "",
+            spoken=escape(voice),
             summary=escape(self._summary),
             earlier=escape(remedy),
             number=self._summaries,
             tones=tones,
         )
         update_gui(self._handle, "content", content)
+
+    def _said_aloud(self, snapshot: Snapshot, captions: dict[str, str]) -> str:
+        """What is to be spoken. If only its numbers change, it is renewed once in `RENEWED`."""
+        said, elapsed = _spoken(snapshot, captions, self._words), snapshot.time - self._spoken_at
+        if abs(elapsed) >= RENEWED or _without_numbers(said) != _without_numbers(self._spoken):
+            self._spoken, self._spoken_at = said, snapshot.time
+        return self._spoken
+
+
+def _without_numbers(said: str) -> str:
+    return re.sub(r"\d+", "", said)
 
 
 def _frame(words: Words, level: str, running: bool, held: bool, stopped: bool, plays: bool) -> str:

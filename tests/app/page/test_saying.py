@@ -1,0 +1,67 @@
+"""What the page's scripts read aloud is renewed when it is another sentence, and once a second."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.page import saying
+from onpath.app.page.preferences import DEFAULTS
+from onpath.app.scene.captions import Captions
+from onpath.lessons.words import ENGLISH
+from tests.support.lab import do, new_lab, run
+
+SPOKEN = re.compile(r'data-spoken="([^"]*)"')
+
+
+class Said:
+    """The sentences that were sent to a page, and when, [s]."""
+
+    def __init__(self, lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.sent = list[tuple[float, str]]()
+        self._lab, self._captions = lab, Captions(ENGLISH)
+        gui: Any = SimpleNamespace(add_html=lambda _: None)
+        self._saying = saying.Saying(gui, ENGLISH, DEFAULTS, self._captions)
+        monkeypatch.setattr(saying, "update_gui", self._keep)
+
+    def _keep(self, _: object, name: str, content: str) -> None:
+        found = SPOKEN.search(content)
+        assert name == "content" and found is not None
+        self.sent.append((self._lab.session.time, found[1]))
+
+    def follow(self, seconds: float = 0.0) -> None:
+        """Show the lab ten times a second."""
+        for _ in range(max(1, round(10 * seconds))):
+            run(self._lab, 0.1 if seconds else 0.0)
+            snapshot = take_page_snapshot(self._lab, 1.0)
+            self._captions.follow(snapshot)
+            self._saying.follow(snapshot)
+
+
+def test_numbers_are_renewed_once_a_second_and_another_sentence_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    lab = new_lab(1.0)
+    said = Said(lab, monkeypatch)
+    do(lab, c.Hold(True))
+    said.follow(0.3)
+    assert said.sent[-1][1].startswith("Held back.")
+    for _ in range(2):
+        do(lab, c.Hold(False))
+        said.follow(0.1)
+        assert said.sent[-1][1].startswith("Running.")
+        do(lab, c.Hold(True))
+        said.follow(4.0)
+    sentences = [(time, re.sub(r"\d+", "", text)) for time, text in said.sent]
+    alike = [later - time for (time, text), (later, other) in pairwise(sentences) if text == other]
+    assert len(alike) >= 2 and min(alike) > saying.RENEWED - 1e-9
+    do(lab, c.SetRunning(False))
+    said.follow()
+    assert said.sent[-1][1].startswith("Paused.")
