@@ -47,13 +47,17 @@ class LabFeed:
         """See `app.simulation.simulation_thread.Display`."""
         return self.page.is_ready and self.page.is_outdated
 
+    def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
+        """See `app.simulation.simulation_thread.Display`."""
+        if stride == AT_EASE and self._source(lab, 1.0)[0].session.grips.grabbed:
+            return True  # every frame of delay is felt while dragging
+        return is_turn(frame + self._offset, stride)
+
     def show(self, lab: Lab, frame: int, stride: float) -> None:
         """See `app.simulation.simulation_thread.Display`."""
-        lab, _, student = self._source(lab, 1.0)
-        if lab.session.grips.grabbed and stride == AT_EASE:
-            stride = 1.0  # every frame of delay is felt while dragging
-        if not is_turn(frame + self._offset, stride) or not self.page.is_ready:
+        if not self.is_turn(lab, frame, stride) or not self.page.is_ready:
             return
+        lab, _, student = self._source(lab, 1.0)
         if self._has_news(lab):
             self._last = motion = take_motion(lab, self._last, student)
             self.page.show(motion)

@@ -18,7 +18,7 @@ from typing import Any, Protocol, TypeVar
 from onpath.app.common.error_log import log_error
 from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.lab import Lab
-from onpath.app.simulation.display_rate import STRIDES, DisplayRate
+from onpath.app.simulation.display_rate import DisplayRate
 from onpath.app.simulation.slow_updates import SHARE, SlowUpdates
 from onpath.models.systems.parameters import TICK
 
@@ -47,6 +47,10 @@ class Display(Protocol):
     @property
     def is_outdated(self) -> bool:
         """Whether it needs a `refresh` now."""
+        ...
+
+    def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
+        """Whether what moves is shown in this frame."""
         ...
 
     def show(self, lab: Lab, frame: int, stride: float) -> None:
@@ -129,6 +133,11 @@ class ScheduledLab:
         """See `Updated`."""
         view = self.view  # another thread may remove it
         return view is not None and view.is_outdated
+
+    def is_turn(self, frame: int, stride: float) -> bool:
+        """See `Updated`."""
+        view = self.view
+        return view is not None and view.is_turn(self.lab, frame, stride)
 
     def refresh(self, frame: int) -> None:
         """See `Updated`. An error is logged, and does not affect other labs."""
@@ -254,7 +263,7 @@ class SimulationThread:
         self._advancing += FADING * (ended - applied - self._advancing)
         left = min(SHARE * FRAME, MOST * FRAME - (ended - begun) - self._drawing)
         seen = [lab for lab in labs if lab.is_seen]
-        self._slow_updates.run(seen, count, left, stride <= STRIDES[0])
+        self._slow_updates.run(seen, count, left, stride)
         drawing = self._clock()
         _do(lambda lab: lab.show(count, stride), seen)
         _do(ScheduledLab.send, seen)

@@ -11,6 +11,8 @@ from collections.abc import Callable, Sequence
 from math import ceil
 from typing import Protocol
 
+from onpath.app.simulation.display_rate import STRIDES
+
 FREQUENT, RARE = 6, 15  # frames between updates of a page, at ease and under load: 10 Hz, 4 Hz
 SLOWEST = 60  # frames in which every page gets an update, whatever it costs
 SHARE = 0.25  # of a frame, at most, for all slow updates
@@ -30,6 +32,10 @@ class Updated(Protocol):
         """Whether it needs one now."""
         ...
 
+    def is_turn(self, frame: int, stride: float) -> bool:
+        """Whether it is drawn in this frame anyway: then the update needs no picture of its own."""
+        ...
+
     def refresh(self, frame: int) -> None:
         """Make the update; `frame` is the number of the frame."""
         ...
@@ -45,15 +51,19 @@ class SlowUpdates:
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
         self._clock = clock
 
-    def run(self, pages: Sequence[Updated], frame: int, seconds: float, at_ease: bool) -> None:
+    def run(self, pages: Sequence[Updated], frame: int, seconds: float, stride: float) -> None:
         """Make the updates of a frame.
 
         Args:
             seconds: that they may take; exceeded by one update, or by those that are overdue.
-            at_ease: whether the thread has time to spare.
+            stride: frames of simulation per frame of display.
         """
-        interval = FREQUENT if at_ease else RARE
-        due = [p for p in pages if p.is_outdated or frame - p.refreshed >= interval]
+        latest = frame - (FREQUENT if stride <= STRIDES[0] else RARE)
+        due = [
+            page
+            for page in pages
+            if page.is_outdated or (page.refreshed <= latest and page.is_turn(frame, stride))
+        ]
         due.sort(key=lambda page: page.refreshed)
         until, least = self._clock() + seconds, ceil(len(pages) / SLOWEST)
         for i, page in enumerate(due):

@@ -50,6 +50,9 @@ class _View:
     def refresh(self, lab: object, achieved: float) -> None:
         pass
 
+    def is_turn(self, lab: object, frame: int, stride: float) -> bool:
+        return True
+
     def show(self, lab: object, frame: int, stride: float) -> None:
         pass
 

@@ -47,6 +47,9 @@ class Browser:
     def refresh(self, lab: object, achieved: float) -> None:
         pass
 
+    def is_turn(self, lab: object, frame: int, stride: float) -> bool:
+        return True
+
     def show(self, lab: object, frame: int, stride: float) -> None:
         self.updates += 1
 

@@ -62,6 +62,9 @@ class View:
 
     is_outdated = False
 
+    def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
+        return True
+
     def show(self, lab: Lab, frame: int, stride: float) -> None:
         self.shown.append((lab.session.time, 0.0, frame))
         self.work(frame)
@@ -82,8 +85,11 @@ class Screen:
 
     is_outdated = False
 
+    def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
+        return is_turn(frame + self.offset, stride)
+
     def show(self, lab: Lab, frame: int, stride: float) -> None:
-        if is_turn(frame + self.offset, stride):
+        if self.is_turn(lab, frame, stride):
             self.drawn.append(frame)
             self.clock.work(self.cost)
 
