@@ -49,7 +49,7 @@ check-equals = { $value }
 check-path = Bahn
 check-length = Länge der Bahn in mm
 check-robot = Roboter
-check-stopped = { $robot } steht still: zurücksetzen und noch einmal versuchen
+check-stopped = { $robot } ist stehen geblieben: Drücke Zurücksetzen und versuche es noch einmal
 
 event-hold = festhalten
 event-let_go = loslassen
@@ -68,7 +68,7 @@ event-law = das Regelgesetz { $detail } wählen
 event-law_any = ein anderes Regelgesetz wählen
 
 lesson-lessons = Lektionen
-lesson-choose = Lektionen: vorhersagen, probieren, sehen, erklären
+lesson-choose = Lektionen: vorhersagen, probieren, sehen, verstehen
 lesson-minutes = { $minutes } min
 lesson-minutes_optional = und { $minutes } min freiwillig
 lesson-optional = freiwillig
@@ -101,7 +101,7 @@ lesson-play = Geschehen lassen
 lesson-read = Ohne das weiterlesen
 lesson-lab = Das Labor
 lesson-replay = Noch einmal geschehen lassen
-lesson-playing = Es geschieht: sieh hin.
+lesson-playing = Es läuft: Sieh zu.
 lesson-step = Schritt { $step } von { $steps }
 lesson-commit = Auf diese Vorhersage festlegen
 lesson-draw_first = Zeichne mit der Maus auf die Tafel in der Mitte, von links nach rechts, oder mit Zahlen.
@@ -119,15 +119,15 @@ lesson-second = Nach der Diskussion:
 lesson-drawn_again = Du hast die Kurve noch einmal gezeichnet
 lesson-unknown = Du hast das beantwortet, als die Lektion noch anders war. Die Antworten haben sich seitdem geändert; welche du gewählt hast, lässt sich nicht mehr sagen.
 lesson-skipped = Du hast die Vorhersage übersprungen.
-lesson-predict_before = Gehe erst zurück und mache die Vorhersage, oder überspringe sie.
+lesson-predict_before = Gehe erst zurück und triff die Vorhersage, oder überspringe sie.
 lesson-next_unseen = Weiter, ohne es zu sehen
 lesson-passed = Geschafft
 lesson-passed_best = Geschafft; dein bester Wert: { $best } { $unit }
 lesson-hint = Hinweis (noch { $left })
 lesson-this_step = Dieser Schritt
-lesson-controls = Regler
+lesson-controls = Einstellungen
 lesson-plot = Verlauf
-lesson-all_controls = Alle Regler
+lesson-all_controls = Alle Einstellungen
 lesson-language = Sprache
 lesson-presenting = Vortrag: große Schrift
 lesson-english = nur auf Englisch
@@ -187,18 +187,18 @@ end-record = Mein Bericht
 ## Behalten und teilen
 
 keep-title = Behalten und teilen
-keep-yours = Der Code deines Labors. Notiere ihn: damit machst du anderswo weiter.
+keep-yours = Der Code deines Labors. Notiere ihn: Damit machst du anderswo weiter.
 keep-other = Anderer Code
 keep-other_hint = Der Code eines Labors, das du anderswo begonnen hast
 keep-go = In jenem Labor weitermachen
-keep-moment = Einen Moment…
+keep-moment = Einen Moment …
 keep-share = Diesen Aufbau teilen
-keep-shared = Schicke diesen Code: er enthält Roboter, Bahn, Verstärkungen und Realismus.
+keep-shared = Schicke diesen Code: Er enthält Roboter, Bahn, Verstärkungen und Realismus.
 keep-paste = Geteilter Code
 keep-paste_hint = Füge einen Code ein, den dir jemand geschickt hat
-keep-use = Das Labor so aufbauen
+keep-use = Das Labor danach aufbauen
 keep-report = Meine Lektionen als Bericht (HTML)
-keep-failed = Dein Labor kann gerade nicht gespeichert werden. Du kannst weitermachen: lass diese Seite offen, bis sie sagt, dass es wieder gespeichert ist.
+keep-failed = Dein Labor kann gerade nicht gespeichert werden. Du kannst weitermachen: Lass diese Seite offen, bis sie sagt, dass es wieder gespeichert ist.
 keep-again = Dein Labor ist wieder gespeichert.
 keep-anew = Die Datei, in der Labore gespeichert werden, wurde gelöscht oder ersetzt. Dein Labor wird in einer neuen gespeichert.
 keep-with_code = Den Code meines Labors in den Bericht schreiben
@@ -212,10 +212,10 @@ full-text =
         [one] Der einzige Platz ist besetzt.
        *[other] Alle { $places } Plätze sind besetzt.
     } Lass diese Seite offen: Sie geht von selbst weiter, sobald einer frei ist.
-full-network = Alle { $places } Plätze für ein Netz sind besetzt; die übrigen sind für andere Netze frei gehalten. Lass diese Seite offen: Sie geht von selbst weiter, sobald einer frei ist.
+full-network = Alle { $places } Plätze für ein Netz sind besetzt; die übrigen werden für andere Netze freigehalten. Lass diese Seite offen: Sie geht von selbst weiter, sobald einer frei ist.
 
 coming-title = Einen Augenblick
-coming-text = Viele kommen gerade auf einmal. Dein Labor öffnet sich in ein paar Sekunden.
+coming-text = Gerade verbinden sich viele auf einmal. Dein Labor öffnet sich in ein paar Sekunden.
 
 test-title_before = Vor dem Kurs: { $title }
 test-title_after = Nach dem Kurs: { $title }
@@ -224,7 +224,7 @@ test-open_name = Test öffnen: { $title }
 test-hand_in = Abgeben
 test-handed_in = abgegeben
 test-answered = { $part } von { $all } beantwortet. Bis du abgibst, kannst du deine Antworten ändern.
-test-locked = In einem Test steht das Labor still.
+test-locked = Während eines Tests steht das Labor still.
 test-over = Der Test ist schon abgegeben.
 test-thanks = Abgegeben. Danke.
 test-later = Was richtig ist, und warum, erfährst du, wenn du den Test nach dem Kurs abgegeben hast.
@@ -236,8 +236,8 @@ test-chosen_after = Nachher:
 test-none = keine Antwort
 test-students = { $count ->
         [0] Noch hat niemand beide Tests abgegeben.
-        [one] 1 Lernender hat beide Tests abgegeben. In einer so kleinen Klasse lässt sich erraten, wer gemeint ist.
-       *[other] { $count } Lernende haben beide Tests abgegeben.
+        [one] 1 Person hat beide Tests abgegeben. In einer so kleinen Klasse lässt sich erraten, wer es ist.
+       *[other] { $count } Personen haben beide Tests abgegeben.
     }
 test-means = Richtige Antworten: vorher { $before } %, nachher { $after } %.
 test-gain = Normierter Lernzuwachs: { $gain }
@@ -252,10 +252,10 @@ class-title = Klasse
 class-code = Klassencode
 class-code_hint = Er steht auf der Leinwand
 class-nickname = Spitzname
-class-nickname_hint = Höchstens 24 Zeichen; mehr wird von dir nicht behalten
+class-nickname_hint = Höchstens 24 Zeichen; mehr wird von dir nicht gespeichert
 class-join = Der Klasse beitreten
 class-leave = Die Klasse verlassen
-class-elsewhere = Diese Klasse hat eine eigene Seite: dorthin
+class-elsewhere = Diese Klasse hat eine eigene Seite: Öffne sie
 class-member = Du bist als { $name } in der Klasse. Die Lehrkraft sieht, wo du in den Lektionen bist, und dein Labor.
 class-teacher = Lehrkraft…
 class-key = Schlüssel der Lehrkraft
@@ -266,7 +266,7 @@ class-frozen = Die Lehrkraft hat alle Labore angehalten: Schau nach vorn. Deines
 class-setup = Die Lehrkraft hat dein Labor aufgebaut.
 class-setup_in_step = Die Lehrkraft hat dein Labor aufgebaut. „Neu aufbauen“ bringt den Aufbau dieses Schritts zurück.
 class-step = Die Lehrkraft hat diesen Schritt für dich geöffnet.
-class-step_elsewhere = Die Lehrkraft hat diesen Schritt für dich geöffnet. Die Lektion, in der du warst, wartet unter „Lektionen“, wo du sie verlassen hast.
+class-step_elsewhere = Die Lehrkraft hat diesen Schritt für dich geöffnet. Die Lektion, in der du warst, steht unter „Lektionen“, wie du sie verlassen hast.
 class-step_again = Die Lehrkraft stellt diese Frage noch einmal. Besprich sie zuerst mit jemandem neben dir.
 class-ask_again = Nach einer Diskussion noch einmal fragen
 class-show_answers = Antworten der Klasse zeigen
@@ -288,7 +288,7 @@ class-nobody = Noch ist niemand beigetreten.
 class-follow = Zusehen bei
 class-own_lab = Mein eigenes Labor
 class-following = Das ist das Labor von { $name }. Du kannst nur zusehen.
-class-hidden = Diese Person hat ihr Labor nicht vor sich: Der Tab ist verdeckt, das Labor wartet.
+class-hidden = Der Tab dieser Person ist verdeckt: Das Labor wartet.
 class-absent = Diese Person ist nicht verbunden: Das Labor wartet.
 class-freeze = Alle Labore anhalten
 class-unfreeze = Alle Labore weiterlaufen lassen
@@ -303,7 +303,7 @@ class-sent =
     } Wer später beitritt, bekommt es.
 class-standing_setup = Wer beitritt, bekommt den Aufbau, den du zuletzt gesendet hast.
 class-standing_step = Wer beitritt, kommt zu dem Schritt, den du zuletzt geöffnet hast: { $lesson }, Schritt { $step }.
-class-push_end = Nicht mehr für alle, die beitreten
+class-push_end = Nicht mehr an alle senden, die beitreten
 class-predictions = Vorhersagen
 class-truth = Zeigen, was wirklich geschieht
 class-no_prediction = In diesem Schritt gibt es nichts vorherzusagen.
@@ -311,17 +311,17 @@ class-no_truth = Was wirklich geschieht, ist noch nicht bekannt: Es muss erst in
 class-predicted = Vorhersagen
 class-given = { $given } vorhergesagt, { $skipped } übersprungen, { $waiting } noch nicht
 class-record = Ergebnisse
-class-record_text = Eine Zeile für jede Person und jede Vorhersage, Aufgabe und Frage der begonnenen Lektionen. Sie enthält Spitznamen: Behandle sie als persönliche Daten.
+class-record_text = Eine Zeile für jede Person und jede Vorhersage, Aufgabe und Frage der begonnenen Lektionen. Sie enthält Spitznamen: Behandle sie als personenbezogene Daten.
 class-export = Ergebnisse der Klasse (CSV)
 class-end = Die Klasse beenden
-class-end_sure = Die Klasse beenden? Spitznamen und Ergebnisse der Klasse werden vergessen; die Labore gehen ohne Klasse weiter. Sichere die Ergebnisse zuerst.
+class-end_sure = Die Klasse beenden? Spitznamen und Ergebnisse der Klasse werden gelöscht; die Labore gehen ohne Klasse weiter. Sichere die Ergebnisse zuerst.
 class-ended = Die Klasse ist zu Ende. { $count ->
         [0] Niemand war dabei.
         [one] 1 Person war dabei.
        *[other] { $count } Personen waren dabei.
     } Die nächste Klasse hat einen neuen Code.
-class-forget = Alles Behaltene löschen
-class-forget_sure = Alle Labore löschen, die dieser Server behält, und die Klasse beenden? Offene Labore bleiben offen und werden wieder behalten, sobald sich etwas in ihnen ändert.
+class-forget = Alles Gespeicherte löschen
+class-forget_sure = Alle Labore löschen, die dieser Server speichert, und die Klasse beenden? Offene Labore bleiben offen und werden wieder gespeichert, sobald sich etwas in ihnen ändert.
 class-forgotten =
     { $count ->
         [0] Kein Labor wurde gelöscht.
@@ -366,29 +366,29 @@ law-path_following-text = Bleibt auf der Kurve und regelt das Tempo auf ihr; ein
 law-path_following-good = Festgehalten und losgelassen bleibt sie auf der Kurve und geht ohne Hast mit dem gewünschten Tempo weiter.
 law-path_following-limits = Verlorene Zeit bleibt verloren: Nach der Bremse ist sie um so viel zu spät, wie sie festgehalten wurde.
 law-contouring-label = Konturregelung
-law-contouring-text = Folgt der Uhr, aber steif quer zur Kurve und weich längs von ihr.
+law-contouring-text = Folgt der Uhr, aber steif quer zur Kurve und weich längs der Kurve.
 law-contouring-good = Sie ist pünktlich und gibt längs der Kurve nach, während sie quer zu ihr steif ist, solange ihr Fehler klein ist.
-law-contouring-limits = Lange festgehalten gerät sie weit ab: Ihre Achsen sind die eines Punktes, der davongelaufen ist.
+law-contouring-limits = Wird sie lange festgehalten, gerät sie weit ab: Ihre Achsen sind die eines Punktes, der davongelaufen ist.
 law-event_based-label = Ereignisbasiert
 law-event_based-text = Folgt mit der gewünschten Rate dem nächsten Punkt, als wäre er der Punkt einer Uhr.
-law-event_based-good = Sie nimmt das gewünschte Tempo schneller auf als alle anderen ohne Fahrplan.
-law-event_based-limits = Festgehalten behält sie die Drehung eines Tempos bei, das sie nicht hat, und wird von der Kurve gedrückt.
+law-event_based-good = Sie erreicht das gewünschte Tempo schneller als alle anderen ohne Fahrplan.
+law-event_based-limits = Festgehalten verlangt sie weiter die Beschleunigung zu einem Tempo, das sie nicht hat, und verlässt die Kurve.
 law-set_point-label = Festwertregelung
 law-set_point-text = Geht geradewegs zum Ziel und weiß nichts von der Kurve dazwischen.
 law-set_point-good = Sie erreicht das Ziel und bleibt dort, wo auch immer sie beginnt.
 law-set_point-limits = Unterwegs verlässt sie die Kurve, weil sie den geraden Weg nimmt.
 law-velocity_field-label = Geschwindigkeitsfeld
 law-velocity_field-text = Eine Strömung längs der Kurve trägt den Roboter und gibt einer Hand nie mehr Energie, als sie vorrätig hat.
-law-velocity_field-good = Von der Kurve gezogen gibt es der Hand weniger Energie als jedes Gesetz mit einem Fahrplan.
+law-velocity_field-good = Wird es von der Kurve gezogen, gibt es der Hand weniger Energie als jedes Gesetz mit einem Fahrplan.
 law-velocity_field-limits = Es regelt seine Energie und nicht sein Tempo, sodass es auch ungestört zu früh oder zu spät kommt.
 law-virtual_constraint-label = Virtuelle Zwangsbedingung
-law-virtual_constraint-text = Hält die Spitze auf der Kurve und lässt sie längs von ihr in Ruhe, wie eine Perle auf einem Draht.
+law-virtual_constraint-text = Hält die Spitze auf der Kurve und lässt sie längs der Kurve in Ruhe, wie eine Perle auf einem Draht.
 law-virtual_constraint-good = Sie hält die Kurve ein und überlässt das Tempo dem, der sie schiebt.
 law-virtual_constraint-limits = Sie bewegt sich nicht von selbst: In Ruhe bleibt sie, wo sie ist.
 law-waiting_clock-label = Wartende Uhr
 law-waiting_clock-text = Folgt einem Punkt, dessen Uhr langsamer geht, wenn der Roboter zurückbleibt.
 law-waiting_clock-good = Festgehalten und losgelassen bleibt sie der Kurve so nah wie die Bahnfolgeregelung.
-law-waiting_clock-limits = Eine Hand, die sie wegzieht, stört auch ihre Uhr: Danach eilt sie erst, um sie wiederzufinden.
+law-waiting_clock-limits = Eine Hand, die den Roboter wegzieht, stört auch seine Uhr: Danach eilt er erst, um seinen Punkt wieder einzuholen.
 law-own-label = Eigenes Gesetz
 law-own-xi = Abstand von der Bahn, positiv links von ihr
 law-own-dxi = Änderungsrate von xi
@@ -412,7 +412,7 @@ law-own-y3 = dritte Koordinate der Spitze
 law-own-v3 = dritte Komponente ihrer Geschwindigkeit
 
 aim-theta = zielt auf den nächsten Bahnpunkt
-aim-theta_ref = zielt auf seinen Bezugspunkt
+aim-theta_ref = zielt auf seinen Sollpunkt
 
 ## Die Seite: was immer da ist
 
@@ -429,7 +429,7 @@ spoken-held = Festgehalten.
 spoken-on_path = Beide auf der Bahn.
 
 display-title = Sprache, Anzeige
-display-speaks = Sagen, was geschieht (für Bildschirmleser)
+display-speaks = Ansagen, was geschieht (für Bildschirmleser)
 display-sounds = Abstand als Ton: linker Roboter im linken Ohr, rechter im rechten
 breakdown-slowly = Langsam zeigen
 breakdown-end = Nicht weiter zeigen
@@ -485,7 +485,7 @@ laws-own_hint = Die Eingabetaste setzt das Gesetz ein; mit der Umschalttaste beg
 laws-use = Dieses Gesetz einsetzen
 laws-about = Über die Regelgesetze
 laws-source = Quelle: { $source }
-laws-own_text = Eine Zeile across = … gibt die Beschleunigung quer zur Bahn in m/s² vor, eine Zeile along = … die längs von ihr in rad/s²; oder u1 = …, u2 = … geben die Drehmomente aller Motoren in N m vor.
+laws-own_text = Eine Zeile across = … gibt die Beschleunigung quer zur Bahn in m/s² vor, eine Zeile along = … die längs der Bahn in rad/s²; oder u1 = …, u2 = … geben die Drehmomente aller Motoren in N m vor.
 laws-own_space = Bei einem Roboter, der sich im Raum bewegt, ist across2 = … die Beschleunigung längs der zweiten Normalen.
 laws-own_language = Eine Formel hat Zahlen, die Namen unten, + - * /, ** mit einem Exponenten von 0 bis { $most }, { $functions } und a if xi > 0 else b („a, wenn xi > 0, sonst b“); Bedingungen verbindet man mit and, or und not.
 laws-name = Name
@@ -522,7 +522,7 @@ controls-help = Hilfe und Tasten
 
 wall-title = Wand
 wall-switch = Eine Wand im Weg
-wall-hint = Beide Roboter haben sie am selben Ort bei sich. Sie drückt und zieht nie; die schraffierte Seite ist fest. Zieh sie in der Szene; zieh an einem gelben Ende, um sie zu drehen. Tasten: M, I J K L, T, V
+wall-hint = Jeder Roboter hat seine eigene, an derselben Stelle. Sie drückt, aber zieht nie; die schraffierte Seite ist fest. Zieh sie in der Szene; zieh an einem gelben Ende, um sie zu drehen. Tasten: M, I J K L, T, V
 wall-place = Wand { $name } [mm]
 wall-angle = Normale [°]
 wall-angle_hint = Richtung der freien Seite, gegen den Uhrzeigersinn von rechts aus: 90 ist oben
@@ -530,9 +530,9 @@ wall-forces = Kraft auf die Wand
 
 start-title = Start
 start-show = Zeigen, um ihn zu ziehen
-start-show_hint = Eine grüne Kugel in der Szene: dort beginnt der nächste Lauf; ihr Pfeil ist die Geschwindigkeit
+start-show_hint = Eine grüne Kugel in der Szene: Dort beginnt der nächste Lauf; ihr Pfeil ist die Geschwindigkeit
 start-theta = Längs der Bahn [°]
-start-theta_hint = θ des Punktes der Bahn, bei dem er beginnt
+start-theta_hint = θ des Bahnpunktes, bei dem der Roboter beginnt
 start-beside = Neben der Bahn [mm]
 start-beside_hint = Abstand nach links von der Bahn; negativ: nach rechts
 start-along = Tempo längs [mm/s]
@@ -540,7 +540,7 @@ start-along_hint = Geschwindigkeit der Spitze längs der Bahn
 start-across = Tempo quer [mm/s]
 start-across_hint = Geschwindigkeit der Spitze quer zur Bahn, nach links
 start-clock_offset = Uhr voraus [°]
-start-clock_offset_hint = Wie weit der Bezugspunkt eines Gesetzes mit Uhr dem nächsten Bahnpunkt voraus ist
+start-clock_offset_hint = Wie weit der Sollpunkt eines Gesetzes mit Uhr dem nächsten Bahnpunkt voraus ist
 start-reset = Dort beginnen
 start-default = Auf der Bahn
 
@@ -561,7 +561,7 @@ design-remove = Entfernen
 design-selected = Ausgewählt
 design-selected_hint = Nummer des Kontrollpunkts; 0: keiner
 design-coordinate = { $name } [mm]
-design-arrows = Pfeiltasten schieben den ausgewählten Punkt um 1 mm; N wählt den nächsten. Wo die Spitze ihn verdeckt, fasst die Maus den ausgewählten Punkt.
+design-arrows = Pfeiltasten schieben den ausgewählten Punkt um 1 mm; N wählt den nächsten. Um einen Punkt zu ziehen, den die Spitze verdeckt, wähle ihn zuerst aus.
 design-slanted = Die Bahn liegt in der Ebene y₁ = b y₂ + d von (23). Was in (y₂, y₃) ein Kreis ist, ist im Raum eine Ellipse, wie im Artikel. Ihre Mitte liegt bei y₂ = 0 und der Höhe unten; die des Artikels, y₃ = ℓ₁, liegt außer Reichweite dieses Arms. Mit einer anderen Ebene beginnt der Lauf neu.
 design-slanted_circle = Ellipse von (23)
 design-rank = Rangtest (11) längs der Bahn: mindestens **{ $number }** von 1.
@@ -577,7 +577,7 @@ gains-ideal = Alles aus: ein idealer Roboter und ein genaues Modell. *Werte nur 
 gains-across = Quer
 gains-along = Längs
 gains-pulse = Prüfstoß
-gains-pulse_hint = Zieht beide Endpunkte eine Achtelsekunde lang quer zur Bahn und zeigt so, was die Verstärkungen bewirken
+gains-pulse_hint = Zieht beide Spitzen eine Achtelsekunde lang quer zur Bahn und zeigt so, was die Verstärkungen bewirken
 gains-plane = Die Pole in der Ebene: { $names }. Links der Achse klingt eine Bewegung ab, rechts von ihr wächst sie an.
 gains-rate = Abklingen [1/s]
 gains-swing = Schwingen [rad/s]
@@ -589,7 +589,7 @@ gains-identify_hint = Schätzt M und b aus den letzten 3 s des rechten Roboters 
 ## Der biegsame Balken
 
 flexible-title = Biegsamer Balken
-flexible-pull = Ziehen in
+flexible-pull = Zugebene
 flexible-pull_hint = Die Ebene durch die Spitze, in der die Maus an ihr zieht
 flexible-larger = Vergrößert [×]
 flexible-larger_hint = Die Durchbiegung, nur in der Zeichnung; 1 ist maßstäblich
@@ -612,23 +612,23 @@ flexible-deflection = { $robot } **{ $value } mm**
 flexible-drawn = { $factor }× gezeichnet
 
 pull-path-s-plane = Bahnebene
-pull-horizontal-plane = waagerechter Ebene
+pull-horizontal-plane = waagerechte Ebene
 
 ## Was auf Wunsch in der Szene gezeigt wird
 
 show-title = Zeigen
 show-labels = Namen, Achsen
-show-labels_hint = Winkel q, Längen ℓ und die Achsen von y, wie in den Bildern 1 und 4 der Arbeit
+show-labels_hint = Winkel q, Längen ℓ und die Achsen von y, wie in den Bildern 1 und 4 des Artikels
 show-tube = Schlauch
 show-tube_hint = Wo der nächste Punkt der Bahn eindeutig ist: Dort ist der virtuelle Ausgang definiert
 show-grid = Netz (θ, ξ)
 show-grid_hint = Linien quer zur Bahn haben denselben nächsten Punkt, also dasselbe θ; Linien längs der Bahn denselben Abstand ξ.
 show-rank = Rangtest (11)
-show-rank_hint = Wie weit der Endpunkt an jedem Ort davon entfernt ist, dass es die Regelgesetze nicht mehr gibt
+show-rank_hint = Wie weit jeder Ort davon entfernt ist, dass der Rang verloren geht und die Regelgesetze nicht mehr definiert sind
 show-errors = Beide Fehler
 show-errors_hint = e (orange) führt zum Punkt des Fahrplans, dem Ring des linken Roboters; d (blau) führt zum nächsten Punkt der Bahn.
 show-mass = Effektive Masse
-show-mass_hint = Wie schwer sich der Endpunkt in jeder Richtung anfühlt: Der Radius wächst mit der Wurzel der Masse, und 6 cm stehen für 1 kg.
+show-mass_hint = Wie schwer sich die Spitze in jeder Richtung anfühlt: Der Radius wächst mit der Wurzel der Masse, und 6 cm stehen für 1 kg.
 show-width = Bis { $width } mm neben der Bahn ist der nächste Punkt eindeutig.
 show-width_none = Die Bahn ist gerade: Der nächste Punkt ist überall eindeutig.
 show-steps = Linien alle { $xi } mm in ξ und alle { $theta }° in θ.
@@ -686,7 +686,7 @@ export-table = CSV, letzte 60 s
 export-picture = Bild der Verläufe
 export-film = Aufnahme (HTML), letzte 10 s
 export-making = { $name } entsteht …
-export-busy = Eine Datei nach der anderen: die zuletzt verlangte entsteht noch.
+export-busy = Eine Datei nach der anderen: Die zuletzt verlangte entsteht noch.
 export-ready = { $name } ist fertig.
 export-failed = { $name } ist misslungen.
 export-nothing = Es gibt noch nichts zu exportieren: Lass es erst laufen.
@@ -698,14 +698,14 @@ compare-text = Für alle derselbe Roboter, dieselbe Bahn, dasselbe Tempo und die
 compare-own_hint = Das Gesetz, das für diesen Roboter eingegeben ist, so wie es zu Beginn des Vergleichs lautet
 compare-obstruction = Hindernis
 compare-run = Vergleichen
-compare-count = Bitte ein bis { $most } Regelungen auswählen.
+compare-count = Wähle ein bis { $most } Regelungen aus.
 compare-law = Regelung
 compare-distance = größter Abstand zur Bahn  [mm]
 compare-delay = Verspätung am Ende  [s]
 compare-force = größte Kraft  [N]
 compare-stopped = * Eine Simulation ist divergiert und wurde angehalten.
 compare-picture = Größter Abstand zur Bahn über der Verspätung am Ende, für jede Regelung
-compare-path = Ein Vergleich braucht eine geschlossene Bahn und ein Tempo ungleich 0: bitte eine solche Bahn und den Auftrag Tempo wählen.
+compare-path = Ein Vergleich braucht eine geschlossene Bahn und ein Tempo ungleich 0: Wähle eine solche Bahn und den Auftrag Tempo.
 obstruction-none = keines
 obstruction-brake = 2 s festgehalten, an acht Stellen
 obstruction-push_across = quer zur Bahn gezogen
@@ -751,7 +751,7 @@ key-none = Keinen Punkt auswählen
 key-add = Einen Kontrollpunkt hinter dem ausgewählten einfügen
 key-remove = Den ausgewählten Kontrollpunkt entfernen
 key-undo = Eine Änderung der Bahn rückgängig machen
-key-redo = Sie wiederholen
+key-redo = Eine Änderung der Bahn wiederholen
 key-pull_left = Die Spitzen nach links ziehen
 key-pull_right = Die Spitzen nach rechts ziehen
 key-pull_up = Die Spitzen nach oben ziehen
@@ -793,8 +793,8 @@ help-text =
     - **Fasse eine Spitze** und ziehe daran. Mit *Für beide* geht die andere denselben Weg.
     - **Ziehe an einer kleinen grauen Kugel**, um die Bahn zu verbiegen, während es läuft.
     - **Wähle für jeden Roboter ein Regelgesetz**, auch während er sich bewegt.
-    - **Ring oder Punkt**: worauf der Regler zielt. Ein Ring ist ein Bezugspunkt des Reglers, der etwa
-      nach der Uhr läuft, ein Punkt mit weißem Rand der nächste Punkt der Bahn.
+    - **Ring oder Punkt**: worauf der Regler zielt. Ein Ring ist ein Sollpunkt des Reglers, der zum
+      Beispiel nach der Uhr läuft, ein Punkt mit weißem Rand der nächste Punkt der Bahn.
     - **Pfeil**: die Kraft von Hand oder Bremse auf die Spitze.
     - **Drehe die Ansicht** mit der rechten Taste oder zwei Fingern; *Ansicht zurück* stellt sie wieder her.
     - **Ein neues Labor beginnt langsam**: Das gewünschte Tempo steigt von 0 auf 2 rad/s, deshalb sind
@@ -814,10 +814,10 @@ say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
 say-begun_anew = Mit dieser Änderung haben beide Roboter neu begonnen, am Start.
-say-ramps_at_start = Angefahren wird vom Beginn eines Laufs an: Zurücksetzen zeigt es.
+say-ramps_at_start = Das Tempo wird vom Beginn eines Laufs an hochgefahren: Drücke Zurücksetzen, um es zu sehen.
 say-nothing_to_undo = es gibt nichts rückgängig zu machen
 say-nothing_to_redo = es gibt nichts zu wiederholen
-say-select_first = wähle erst einen Kontrollpunkt: klicke einen an, oder drücke N für den nächsten
+say-select_first = wähle erst einen Kontrollpunkt: Klicke einen an, oder drücke N für den nächsten
 say-laws_replaced = Nicht für diesen Roboter: { $laws }. An dieser Stelle steht ein übliches Gesetz.
 say-looking_back = Das ist die Vergangenheit. Laufen lassen kehrt in die Gegenwart zurück; Von hier aus weiter verwirft, was danach kam, und lässt sich rückgängig machen.
 say-let_go = Die Spitzen sind losgelassen.
@@ -846,7 +846,7 @@ route-here = { $route }: Teil { $stop } von { $stops }, bis Schritt { $last }, {
 ## Handreichung und Arbeitsblätter (app/exports/guide.py)
 
 guide-title = Handreichung für Lehrkräfte
-guide-intro = Was jede Lektion fragt, der Reihe nach, mit den Antworten. Die Klasse soll sich auf jede Vorhersage festlegen, bevor man etwas sieht. Stellt dann die hier vorgeschlagene Frage, lasst Nachbarn diskutieren, und lasst es erst danach geschehen. Die Buchstaben sind die der Präsentation und der Arbeitsblätter; die Labore der Lernenden zeigen die Möglichkeiten in anderer Reihenfolge.
+guide-intro = Was jede Lektion fragt, der Reihe nach, mit den Antworten. Die Klasse soll sich auf jede Vorhersage festlegen, bevor man etwas sieht. Stelle dann die hier vorgeschlagene Frage, lass Nachbarn diskutieren, und lass es erst danach geschehen. Die Buchstaben sind die der Präsentation und der Arbeitsblätter; die Labore der Lernenden zeigen die Möglichkeiten in anderer Reihenfolge.
 guide-assumed = Die Minuten sind aus Wörtern, Läufen und Aufgaben der Lektionen geschätzt, nicht in einer Klasse gemessen.
 guide-needs = Voraussetzungen
 guide-goals = Danach können die Lernenden
@@ -870,8 +870,8 @@ guide-right = Richtig:
 guide-curves = Die wirklichen Kurven beider Roboter
 guide-solution = Eine Lösung
 guide-why = Warum sie geht:
-guide-test = Verständnistest
-guide-test_intro = Dieselben Fragen vor und nach dem Kurs. Öffne sie für die Klasse auf der Seite „Vorhersagen“; die Antworten werden erst verraten, wenn der zweite Test abgegeben ist, also besprich sie nicht vorher. Der normierte Zugewinn der Klasse steht dann auf derselben Seite und in der CSV-Datei, ohne Namen.
+guide-test = Konzepttest
+guide-test_intro = Dieselben Fragen vor und nach dem Kurs. Öffne sie für die Klasse auf der Seite „Vorhersagen“; die Antworten werden erst verraten, wenn der zweite Test abgegeben ist, also besprich sie nicht vorher. Der normierte Lernzuwachs der Klasse steht dann auf derselben Seite und in der CSV-Datei, ohne Namen.
 guide-aims = Zielt auf die Vorstellung:
 guide-at = bei { $time } s: { $what }
 guide-pull = um { $right } mm nach rechts und { $up } mm nach oben ziehen
@@ -879,7 +879,7 @@ guide-move = Kontrollpunkt { $index } um { $right } mm nach rechts und { $up } m
 guide-run = laufen lassen
 guide-pause = anhalten
 guide-rate = simulierte Zeit mit dem { $rate }-fachen Tempo der Uhr
-guide-start = an einer anderen Stelle anfangen
+guide-start = an einer anderen Stelle beginnen
 worksheet-title = Arbeitsblatt: { $lesson }
 worksheet-key = Lösungen: { $lesson }
 worksheet-name = Name
@@ -1078,10 +1078,10 @@ parameter-tip_shaping-label = Sanftes Tempo
 parameter-tip_shaping-help = wie schnell sich das gewünschte Tempo ändern darf
 
 parameter-tip_yielding-label = Nachgeben
-parameter-tip_yielding-help = wie sehr der Fortgang einer festgehaltenen Spitze nachgibt
+parameter-tip_yielding-help = wie stark das Fortschreiten längs der Bahn nachgibt, wenn die Spitze festgehalten wird
 
 parameter-plant-label = Regelstrecke
-parameter-plant-help = die Gleichungen von Lagrange, oder (20)-(21) mit ∫φ² = 1 gelesen: Einheiten der Kopplung passen nicht, keine Gelenkreibung
+parameter-plant-help = die Lagrange-Gleichungen, oder (20)-(21) mit ∫φ² = 1 gelesen: Die Einheiten passen nicht, und es gibt keine Gelenkreibung
 parameter-plant-option-lagrangian = nach Lagrange
 parameter-plant-option-unit_modes = Moden mit ∫φ² = 1
 
@@ -1134,11 +1134,11 @@ report-not_answered = Noch nicht beantwortet.
 report-chosen = Du hast gewählt:
 report-right = Richtig ist:
 report-curve = { $robot }: { $quantity }
-report-drawn = Deine Kurve hat ihre Spitze von { $value } { $unit } bei { $time } s.
-report-happened = Was wirklich geschah, hat diese Spitzen: { $first } und { $second }.
+report-drawn = Deine Kurve hat ihren größten Wert, { $value } { $unit }, bei { $time } s.
+report-happened = Die größten Werte dessen, was wirklich geschah: { $first } und { $second }.
 report-peak = { $robot } { $value } { $unit } bei { $time } s
 
-## How an error of the controller's model dies out (models/control/poles.py)
+## Wie ein Fehler abklingt (models/control/poles.py)
 
 behaviour-settles = klingt in { $seconds } s ab, { $kind }
 behaviour-no_overshoot = ohne Überschwingen
@@ -1147,39 +1147,39 @@ behaviour-damping = Dämpfungsgrad { $damping }
 behaviour-unstable = instabil: Ein Fehler wächst alle { $seconds } s auf das e-fache
 behaviour-not_stable = nicht stabil: Ein Fehler klingt nie ab
 behaviour-swings = nicht stabil: Ein Fehler schwingt ewig
-behaviour-free = wie eine Perle auf einem Draht: Was sie an einer Stelle schneller wird, wird sie an einer anderen wieder langsamer
+behaviour-free = wie eine Perle auf einem Draht: Was sie an einer Stelle an Tempo gewinnt, verliert sie in einer Runde an einer anderen
 behaviour-no_poles = für dieses Gesetz werden keine Pole berechnet
 behaviour-not_constant = keine Pole: Das Gesetz hängt vom Ort oder von der Zeit ab oder gibt Drehmomente vor
 behaviour-not_smooth = keine Pole: Auf der Bahn hat das Gesetz einen Knick oder Sprung, oder es bleibt nicht dort
-behaviour-coupled = keine Pole: Die Bewegungen quer und längs zur Bahn wirken aufeinander
+behaviour-coupled = keine Pole: Die Bewegungen quer zur Bahn und längs der Bahn wirken aufeinander
 
-## Why a curve cannot be a path (models/paths/curve_faults.py)
+## Warum eine Kurve keine Bahn sein kann (models/paths/curve_faults.py)
 
 fault-not_numbers = die Kurve hat Punkte, die keine Zahlen sind
 fault-outside = die Bahn verlässt den Arbeitsraum: Dorthin reicht der Arm nicht
 fault-singular = die Bahn kommt einer singulären Stellung zu nahe: Dort ist der Arm gestreckt oder gefaltet und kann sich nicht in jede Richtung bewegen
-fault-bends = die Bahn ist zu scharf gebogen: Eine Biegung braucht mindestens { $radius } mm Radius, sonst ist der nächste Punkt nicht überall eindeutig
+fault-bends = die Bahn ist zu scharf gebogen: Eine Biegung braucht mindestens { $radius } mm Radius, sonst ist der nächste Punkt in ihrer Nähe nicht eindeutig
 fault-cusp = die Bahn hat einen Umkehrpunkt, an dem sie keine Richtung hat
 fault-crosses = die Bahn kreuzt sich selbst: An der Kreuzung hat sie zwei Richtungen
 fault-narrow = zwei Stränge der Bahn liegen weniger als { $least } mm auseinander: Dazwischen ist der nächste Punkt nicht eindeutig
 
-## Why a robot has stopped (the models' `fault`)
+## Warum ein Roboter stehen geblieben ist (`fault` der Modelle)
 
 stop-range = die Zahlen sind größer, als ein Rechner rechnen kann
 stop-typed_law = das eingetippte Regelgesetz ergibt eine Zahl, die nicht endlich oder größer als { $most } ist
-stop-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist davongelaufen
+stop-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist divergiert
 stop-collapsed = das Getriebe ist zusammengeklappt (alle Glieder auf einer Geraden): Aus einer singulären Stellung führt der Regler es nicht heraus
-stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren den Endpunkt nicht in jede Richtung bewegen
+stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren die Spitze nicht in jede Richtung bewegen
 stop-bent = der Balken biegt sich zu weit, obwohl seine Nulldynamik stabil ist: Der Zug ist zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
 stop-unstable = der Ausgang ist auf der Bahn, das Innere nicht: instabile Nulldynamik
 
-## Refusals: a path's points
+## Ablehnungen: die Punkte einer Bahn
 
 error-point_not_finite = ein Kontrollpunkt braucht endliche Koordinaten
 error-too_many_points = eine Bahn hat höchstens { $most } Kontrollpunkte
 error-too_few_points = diese Bahn braucht mindestens { $least } Kontrollpunkte
 error-no_point = Kontrollpunkt { $index }: Es gibt { $count }
-error-stroke_not_finite = ein Strich braucht Punkte
+error-stroke_not_finite = ein Strich braucht Punkte mit endlichen Koordinaten
 error-stroke_without_points = ein Strich braucht Punkte
 error-points_coincide = eine Bahn braucht mindestens { $least } Punkte, die auseinander liegen
 error-path_too_short = die Bahn ist zu kurz: { $length } mm, mindestens { $least } mm
@@ -1193,22 +1193,22 @@ error-implicit_lines =
         [one] die Lösungen der Gleichung sind eine offene Linie oder verlassen den Umkreis von { $region } mm: erwartet wird eine geschlossene Linie
        *[other] die Lösungen der Gleichung sind { $count } Linien: erwartet wird eine geschlossene Linie
     }
-error-implicit_shape = die Lösungen der Gleichung haben eine Form, der eine glatte Bahn nicht folgen kann: sie läge bis zu { $apart } mm daneben
+error-implicit_shape = die Lösungen der Gleichung haben eine Form, der eine glatte Bahn nicht folgen kann: Sie läge bis zu { $apart } mm daneben
 error-no_level_set = diese Bahn hat keine Niveaumenge s(y): Eine solche haben hier nur Kreise und Ellipsen, und auf der Kommandozeile Bahnen mit einer Gleichung
-error-level_no_polynomial = nach seiner Niveaumenge wird nur ein Polynom von z1 und z2 verfolgt; nach ihrem Abstand jede Bahn mit einer Gleichung
-error-level_gradient = nach dieser Niveaumenge kann die Bahn nicht verfolgt werden: { $beside } mm neben ihr zeigt der Gradient von s nicht mehr von ihr weg, und der Schlauch um die Bahn ist { $tube } mm weit
+error-level_no_polynomial = mit der Niveaumenge lässt sich einer Bahn nur folgen, wenn ihre Gleichung ein Polynom in z1 und z2 ist; mit dem Abstand jeder Bahn mit einer Gleichung
+error-level_gradient = mit dieser Niveaumenge lässt sich der Bahn nicht folgen: { $beside } mm neben ihr zeigt der Gradient von s nicht mehr von ihr weg, und der Schlauch um die Bahn ist { $tube } mm weit
 error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
 
-## Refusals: numbers and names
+## Ablehnungen: Zahlen und Namen
 
-error-start_out_of_reach = dort kann der Roboter nicht starten: der Ort ist außer Reichweite oder zu nah an einer singulären Stellung
+error-start_out_of_reach = dort kann der Roboter nicht starten: Der Ort ist außer Reichweite oder zu nah an einer singulären Stellung
 error-start_not_possible = so kann der Roboter nicht starten: { $reason }
 error-half_a_wall = eine Wand hat einen Ort und einen Winkel: drei Zahlen
 error-not_a_number = das ist keine Zahl
 error-not_a_point = das ist kein Punkt
 error-value_out_of_range = { $name }: { $value } liegt nicht zwischen { $low } und { $high }
 error-value_not_a_number = { $name }: { $value } ist keine Zahl
-error-value_not_an_option = { $name }: { $value } ist nichts von { $options }
+error-value_not_an_option = { $name }: { $value } ist keiner der Werte { $options }
 error-unknown_name =
     { $kind ->
         [robot] unbekannter Roboter
@@ -1218,10 +1218,10 @@ error-unknown_name =
        [parameter] unbekannter Parameter
        *[other] unbekannter Name ({ $kind })
     } { $name }: { $hint }
-error-law_does_not_suit = { $law } ist mit diesem Roboter nicht möglich: es ist für eine andere Zahl von Motoren, Ausgängen oder Koordinaten gemacht
+error-law_does_not_suit = { $law } ist mit diesem Roboter nicht möglich: Es ist für eine andere Zahl von Motoren, Ausgängen oder Koordinaten gemacht
 error-did_you_mean = meintest du { $names }?
 error-there_are = es gibt { $names }
-error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: sie hat { $steps ->
+error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: Sie hat { $steps ->
         [one] 1 Schritt
        *[other] { $steps } Schritte
     }
@@ -1234,7 +1234,7 @@ error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es z
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
 error-law = Zeile { $line }, Spalte { $column }: { $reason }
 error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $count }
-error-law_too_complex = das Regelgesetz ist zu verwickelt: höchstens { $most } Namen, Zahlen und Operationen, höchstens { $deepest }-fach verschachtelt
+error-law_too_complex = das Regelgesetz ist zu kompliziert: höchstens { $most } Namen, Zahlen und Operationen, höchstens { $deepest }-fach verschachtelt
 error-law_character = { $character } bedeutet hier nichts
 error-law_not_a_number = { $text } ist keine Zahl; zwischen den Faktoren eines Produkts steht ein *
 error-law_large_number = eine Zahl ist höchstens { $most }
@@ -1256,7 +1256,7 @@ error-law_exponent = ein Exponent ist eine ganze Zahl von 0 bis { $most }
 error-law_condition_alone = ein Vergleich steht nur in einer Bedingung: a if xi > 0 else b
 error-law_not_a_condition = eine Bedingung vergleicht, etwa xi > 0
 
-## Refusals: identification
+## Ablehnungen: Identifikation
 
 error-nothing_recorded = es gibt noch nichts, woraus zu lernen wäre: Lass es erst ein paar Sekunden laufen
 error-hardly_any_data = es gibt noch kaum Daten: Lass es erst ein paar Sekunden laufen
@@ -1265,12 +1265,12 @@ error-hardly_moved = der Arm hat sich kaum bewegt: Lass ihn erst mit wechselndem
 error-motion_too_regular = die Bewegung war zu gleichmäßig, um die Parameter zu trennen: Ändere das Tempo, während es läuft, und versuche es noch einmal
 error-not_identifiable = { $name } lässt sich aus dieser Bewegung nicht bestimmen ({ $value } ± { $error } kg m²): Lass ihn erst mit wechselndem Tempo einer Bahn folgen
 
-## Refusals: predictions
+## Ablehnungen: Vorhersagen
 
 error-sketch_direction = zeichne eine Kurve von links nach rechts
 error-sketch_without_points = eine Zeichnung braucht Punkte
 
-## Refusals: share codes and session codes
+## Ablehnungen: Codes zum Teilen und Codes von Laboren
 
 error-share_too_long = Dieser Text ist viel zu lang: Ein Code zum Teilen hat einige Hundert Zeichen.
 error-share_missing = In diesem Text ist kein Code zum Teilen: Er beginnt mit ONPATH{ $version }-.
@@ -1284,31 +1284,31 @@ error-share_does_not_fit = Dieser Code passt nicht zu diesem OnPath: { $error }.
 error-no_such_lab = zu diesem Code gibt es kein Labor
 error-lab_is_open = dieses Labor ist in einem anderen Fenster offen: Schließe erst jenes
 error-session_code_length = der Code eines Labors hat { $length } Buchstaben und Ziffern, wie { $example }
-error-session_code_letters = das ist kein Code eines Labors: 0, 1, i, l und o kommen in keinem vor, wie { $example }
+error-session_code_letters = das ist kein Code eines Labors: 0, 1, i, l und o kommen in keinem vor; einer sieht aus wie { $example }
 
-## Refusals: what is kept in a database (app/storage)
+## Ablehnungen: was in einer Datenbank gespeichert wird (app/storage)
 
 error-database = die Datenbank meldet: { $reason }
 error-database_at = { $place } ist nicht zu gebrauchen: { $reason }
-error-database_keeps_breaking = die Datenbank geht immer wieder kaputt
+error-database_keeps_breaking = die Datenbank wird immer wieder beschädigt
 error-database_busy = die Datenbank ist beschäftigt
 error-database_table = ihre Tabelle { $table } gehört nicht zu OnPath
 error-database_tables_newer = ihre Tabellen ({ $revision }) stammen von einem neueren OnPath, das hier nötig ist
 error-database_newer = sie hat die Version { $version } und stammt von einem neueren OnPath, das hier nötig ist
-error-lab_newer = dieses Labor hat ein neueres OnPath aufbewahrt
-error-lab_unreadable = was von diesem Labor aufbewahrt ist, lässt sich nicht lesen
-say-path_of_then = Die Bahn, die mit diesem Labor aufbewahrt wurde, geht heute nicht mehr: { $reasons }. An ihrer Stelle steht der Kreis.
-say-lab_kept = Dein Labor ist aufbewahrt, lässt sich aber gerade nicht öffnen: { $reason }
+error-lab_newer = dieses Labor hat ein neueres OnPath gespeichert
+error-lab_unreadable = was von diesem Labor gespeichert ist, lässt sich nicht lesen
+say-path_of_then = Die Bahn, die mit diesem Labor gespeichert wurde, wird heute abgelehnt: { $reasons }. An ihrer Stelle steht der Kreis.
+say-lab_kept = Dein Labor ist gespeichert, lässt sich aber gerade nicht öffnen: { $reason }
 
-## Refusals: the class
+## Ablehnungen: die Klasse
 
-error-too_many_codes = zu viele falsche Codes: warte eine Minute
+error-too_many_codes = zu viele falsche Codes: Warte eine Minute
 error-not_the_key = das ist nicht der Schlüssel der Lehrkraft
 error-not_the_class_code = das ist nicht der Klassencode auf der Leinwand
 error-class_full = diese Klasse ist voll
 error-no_nickname = ein Spitzname hat mindestens ein Zeichen
 
-## A figure without a server
+## Eine Abbildung ohne Server
 
 standalone-path = Bahn
 standalone-plot = Abstand von der Bahn [mm] über der Zeit [s]
@@ -1323,42 +1323,42 @@ standalone-no_script = Diese Abbildung braucht JavaScript.
 ## Der Kurs als statische Seiten: assets/site, app/exports/site
 
 site-title = OnPath: Bahnfolge ist nicht Trajektorienfolge
-site-intro = Zwei Roboter zeichnen dieselbe Bahn. Einer folgt einem Fahrplan, der andere einer Kurve: Sehen Sie, was geschieht, wenn man sie festhält. Im Kurs sagen Sie vorher, probieren, sehen und verstehen; alles läuft auf dieser Seite.
-site-lab = Probieren Sie es aus
+site-intro = Zwei Roboter zeichnen dieselbe Bahn. Einer folgt einem Fahrplan, der andere einer Kurve: Sieh, was geschieht, wenn man sie festhält. Im Kurs sagst du vorher, probierst, siehst und verstehst; alles läuft auf dieser Seite.
+site-lab = Probiere es aus
 site-skip = Zum Text
 site-only_lab = Nur im Labor: { $what }.
 site-run_only_lab = Dieser Lauf lässt sich nur im Labor abspielen. Das Bild zeigt ihn.
 site-task_only_lab = Diese Aufgabe lässt sich nur im Labor lösen; dort gibt es, was ihre Lösung braucht.
 site-link_only_lab = nur im Labor
-site-plot = ein Diagramm von { $plot }
+site-plot = das Diagramm „{ $plot }“
 site-picture = Was geschieht, { $quantity } [{ $unit }] über { $seconds } s. Die größten Werte: { $peaks }.
 site-answers = Antworten
 site-hint = Hinweis { $number }
-site-why = Warum es so geht
-site-progress = Ihr Fortschritt
-site-kept = Ihr Fortschritt wird nur in diesem Browser aufbewahrt. Sichern Sie ihn als Datei, um anderswo weiterzumachen.
+site-why = Warum es geht
+site-progress = Dein Fortschritt
+site-kept = Dein Fortschritt wird nur in diesem Browser gespeichert. Sichere ihn als Datei, um anderswo weiterzumachen.
 site-save = Als Datei sichern
 site-read = Datei lesen
 site-forget = Löschen
 site-forget_sure = Allen Fortschritt löschen, der in diesem Browser gespeichert ist?
 site-forgotten = Gelöscht.
 site-read_done = Gelesen.
-site-no_progress = Diese Datei ist kein Fortschritt in diesem Kurs.
-site-not_kept = Dieser Browser bewahrt für diese Seite nichts auf. Ihr Fortschritt bleibt, bis Sie sie schließen.
+site-no_progress = Diese Datei enthält keinen Fortschritt in diesem Kurs.
+site-not_kept = Dieser Browser speichert für diese Seite nichts. Dein Fortschritt bleibt, bis du sie schließt.
 site-sketch = Tafel zum Zeichnen: { $quantity } [{ $unit }] von 0 bis { $seconds } s. Mit der Maus oder dem Finger, von links nach rechts; oder mit den Zahlen darunter.
 site-done = { $done } von { $all } Schritten gesehen, { $tasks } Aufgaben gelöst
 site-next_lesson = Nächste Lektion: { $title }
 site-end = Das Ende dieser Lektion
 site-features = Was diese Seiten nicht haben
-site-features_text = Sie haben keine Aufzeichnung zum Zurückblicken, keinen Bahneditor, kein eigenes Gesetz, keinen anderen Roboter und kein anderes Gesetz im selben Schritt, kein Diagramm außer dem des Abstands, keine Wand, keinen Start neben der Bahn, keine Identifikation, keine Klasse, keinen Konzepttest und kein CSV. Wo eine Lektion etwas davon benutzt, sagt sie es. Das Labor hat all das.
+site-features_text = Diese Seiten haben keine Aufzeichnung zum Zurückblicken, keinen Bahneditor, kein eigenes Gesetz, keinen anderen Roboter und kein anderes Gesetz im selben Schritt, kein Diagramm außer dem des Abstands, keine Wand, keinen Start neben der Bahn, keine Identifikation, keine Klasse, keinen Konzepttest und kein CSV. Wo eine Lektion etwas davon benutzt, sagt sie es. Das Labor hat all das.
 site-control-editor = der Bahneditor
-site-control-gains = alle Verstärkungen und Nichtidealitäten
+site-control-gains = alle Verstärkungen und der Realismus
 site-control-plots = die anderen Diagramme
 site-control-past = das Zurückblicken
 site-control-robot = die Wahl des Roboters
 site-control-laws = die Wahl des Gesetzes
 site-control-copy = das Ziehen an nur einem Roboter
-site-control-flexible = Ausgang, Zugebene und Überhöhung des elastischen Glieds
+site-control-flexible = Ausgang, Zugebene und Vergrößerung des biegsamen Balkens
 site-control-identify = die Identifikation
 site-control-show = Beschriftungen, Schlauch, Koordinaten und Rangtest
 site-control-direction = die Richtung des Festhaltens

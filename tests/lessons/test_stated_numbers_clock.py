@@ -90,7 +90,7 @@ def test_how_strongly_a_clock_must_feel() -> None:
     assert at_three == [True, False]
     lazy, better, far = said(
         LESSON,
-        "μ = # still loses its point at two places; μ = # at none, but the arm then stands up to"
+        "the point still escapes at two places with μ = #, and at none with μ = #; but the arm then stands up to"
         " # mm off",
     )
     gone = [
@@ -199,7 +199,7 @@ def test_no_speed_reference_takes_the_follower_off(path: str, phase: float) -> N
 
 def test_relatives() -> None:
     event = shown(LESSON, "Side road: the event-based clock")
-    stated = said(LESSON, "it waits, but # mm beside the circle. It leans on the brake with # N,")
+    stated = said(LESSON, "it waits, but # mm off the circle. It leans on the brake with # N,")
     assert_stated(stated, [event["tracker"].at(5.1), event["tracker"].at(5.1, "force")])
     lean = said(LESSON, "the follower with # N: all the time")
     assert_stated(lean, [event["follower"].at(5.1, "force")])
@@ -214,7 +214,7 @@ def test_relatives() -> None:
     assert_within(said(LESSON, "at 20 rad/s², it stays within # mm.")[0], gently.largest(3, 8))
 
     field = shown(LESSON, "Side road: a velocity field")["tracker"]
-    stated = said(LESSON, "Held, it waits # mm beside the circle and leans on the brake with # N.")
+    stated = said(LESSON, "Held, it waits # mm off the circle and leans on the brake with # N.")
     assert_stated(stated, [field.at(4.9), field.at(4.9, "force")])
     stated = said(LESSON, "it goes round again, but at # mm/s instead of #:")
     assert_stated(stated, [float(field.speed[7000:].mean()), field.at(2.9, "speed")])

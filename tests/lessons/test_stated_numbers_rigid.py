@@ -165,7 +165,7 @@ def test_near_the_path_and_far_from_the_timetable() -> None:
     assert_stated([most], [float(lag[3000:5000].max())])
     assert lag[3300:5000].min() < 0.5
     assert np.count_nonzero(np.diff(lag[3000:5000] > 50)) == 4
-    assert_stated(said("02", "- **After.** # mm, and it stays so."), [float(lag[7000])])
+    assert_stated(said("02", "- **After.** The gap is # mm, and it stays that wide."), [float(lag[7000])])
     most, after, within = said(
         "02",
         "never further than # mm from its circle. Before the hold it was at 0.00 mm, and from"
@@ -229,7 +229,7 @@ def test_cost_of_a_bulge() -> None:
 
 
 def test_weight_that_nobody_told_of() -> None:
-    both = shown("03", "A weight that nobody told them of")
+    both = shown("03", "A weight that nobody told them about")
     follower, tracker = both["follower"], both["tracker"]
     told = said("03", "the tracker # mm off at most, the follower #.")
     assert_stated(told, [tracker.largest(2, 5), follower.largest(2, 5)])
@@ -241,7 +241,7 @@ def test_weight_that_nobody_told_of() -> None:
     assert follower.distance[-1] < 0.001 and abs(follower.rate[-1]) < 0.001
     assert_stated([below], [360 - float(np.degrees(follower.place[-1])) % 360])
     assert_stated(said("03", "push all the time, with # N m"), [float(follower.torque[-1])])
-    leans, share = said("03", r"$0.98\,\mathrm{N}\cdot\cos #° = #$ N: there it stands")
+    leans, share = said("03", r"$0.98\,\mathrm{N}\cdot\cos #° = #$ N: there the follower stands")
     assert_stated([share], [0.98 * float(np.cos(np.radians(value(leans))))])
     assert value(leans) == pytest.approx(360 - np.degrees(follower.place[-1]) % 360, abs=0.1)
     creeps, stands = said("03", "With # kg it creeps over; with # it stands.")

@@ -32,6 +32,6 @@ LAW = Law(
     source="Tarn, Xi and Bejczy, Path-based planning and control, reference [3]",
     command=event_based,
     good="It takes up the wanted speed sooner than all others that have no timetable.",
-    limits="Held back, it keeps the turning of a speed that it does not have, and is pressed off"
-    " the curve.",
+    limits="Held back, it still asks for the acceleration of a speed that it does not have, and"
+    " leaves the curve.",
 )

@@ -83,7 +83,7 @@ def test_a_lab_that_cannot_be_opened_is_told_of_in_the_language_of_the_new_one(
     words = Words(language)
     assert lab.message == words("say.lab_kept", reason=words("error.lab_newer"))
     assert lab.message_level == "warning"
-    assert ("aufbewahrt" in lab.message) == (language == "de")
+    assert ("gespeichert" in lab.message) == (language == "de")
 
 
 def test_reload_comes_back_to_the_same_lab(desk: Desk) -> None:
