@@ -90,8 +90,8 @@ def test_how_strongly_a_clock_must_feel() -> None:
     assert at_three == [True, False]
     lazy, better, far = said(
         LESSON,
-        "the point still escapes at two places with μ = #, and at none with μ = #; but the arm then stands up to"
-        " # mm off",
+        "the point still escapes at two places with μ = #, and at none with μ = #;"
+        " but the arm then stands up to # mm off",
     )
     gone = [
         [lost(held_at(begin, clock_gain=value(mu)), begin) for begin in PLACES]

@@ -165,7 +165,9 @@ def test_near_the_path_and_far_from_the_timetable() -> None:
     assert_stated([most], [float(lag[3000:5000].max())])
     assert lag[3300:5000].min() < 0.5
     assert np.count_nonzero(np.diff(lag[3000:5000] > 50)) == 4
-    assert_stated(said("02", "- **After.** The gap is # mm, and it stays that wide."), [float(lag[7000])])
+    assert_stated(
+        said("02", "- **After.** The gap is # mm, and it stays that wide."), [float(lag[7000])]
+    )
     most, after, within = said(
         "02",
         "never further than # mm from its circle. Before the hold it was at 0.00 mm, and from"

@@ -399,7 +399,9 @@ def test_what_cannot_be_kept_is_told_in_german_too() -> None:
     assert Words("de").sentence(refused) == "die Datenbank meldet: disk full"
     assert said_by(refused) == refused.message == pickle.loads(pickle.dumps(refused)).message
     whole = Message("say.lab_kept", {"reason": NotKept("error.lab_newer").message})
-    assert whole.text("de").endswith("nicht öffnen: dieses Labor hat ein neueres OnPath gespeichert")
+    assert whole.text("de").endswith(
+        "nicht öffnen: dieses Labor hat ein neueres OnPath gespeichert"
+    )
 
 
 @pytest.mark.parametrize("ask", ["_end", "_forget"])
