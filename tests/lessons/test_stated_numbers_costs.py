@@ -80,12 +80,13 @@ def test_wrong_model_costs_some_millimetres() -> None:
 def test_more_gain_until_it_is_fatal() -> None:
     follower = shown("06", "Turn it up")["follower"]
     stated = said(
-        "06", "In the last second of each step the follower is # mm off on average, then #, then #:"
+        "06",
+        "In the last second of each stage the follower is # mm off on average, then #, then #:",
     )
     assert_stated(
         stated, [float(follower.distance[a : a + 1000].mean()) for a in (1000, 3000, 5000)]
     )
-    low, high = said("06", "In the first step, from 1 s on, the follower is # to # mm off")
+    low, high = said("06", "In the first stage, from 1 s on, the follower is # to # mm off")
     off = follower.distance[1000:2000]
     assert_stated([low, high], [float(off.min()), float(off.max())])
     do = [Action(at=2.0, set={"K1": 2500, "K2": 150})]
@@ -169,14 +170,14 @@ def test_bulge_costs_what_its_bend_needs() -> None:
     told = said(
         "08",
         "$M_{22} = #$ is only half as large: # by this estimate, and # in the plot."
-        " (The # of before is motor 1's,",
+        " (The # given earlier is motor 1's,",
     )
     first, second = (float(most) for most in top.torques[4000:].max(axis=0))
     assert_stated(told, [0.012, 0.012 * value(stated[2]) / 0.2, second, first])
 
 
 def test_six_times_the_gain_and_less_speed() -> None:
-    both = shown("08", "Louder, or slower")
+    both = shown("08", "More gain, or less speed")
     follower, tracker = both["follower"], both["tracker"]
     stated = said("08", "| six times the gain | # mm | # mm | # N m |")
     parts = [follower.largest(4.5, 8), tracker.largest(4.5, 8), 0.3]
@@ -195,7 +196,7 @@ def test_six_times_the_gain_and_less_speed() -> None:
 
 
 def test_tracker_is_closer_from_the_second_lap_on() -> None:
-    both = shown("08", "Louder, or slower")
+    both = shown("08", "More gain, or less speed")
     tracker, follower = both["tracker"], both["follower"]
     off = [follower.largest(1, 4), tracker.largest(1, 4)]
     assert_stated(said("08", "| full speed, from 1 s | # mm | # mm |"), off)

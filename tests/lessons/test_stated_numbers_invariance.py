@@ -96,7 +96,7 @@ def test_the_hand_lets_go_at_585_mm_s_just_past_the_circle() -> None:
     speed = 1e3 * abs(rate @ y) / np.linalg.norm(y)
     (stated,) = said(LESSON, "The velocity is # mm/s, straight across the circle.")
     assert speed == pytest.approx(value(stated), abs=2.5)
-    assert stated == said(LESSON, "you let the controller stop # mm/s in no time.")[0]
+    assert stated == said(LESSON, "you expected the controller to stop # mm/s in no time.")[0]
     texts = said(
         LESSON,
         "for # mm/s it is # mm. You have seen #, because the hand let go # mm after the circle.",
@@ -266,7 +266,7 @@ def test_the_integral_brings_it_back_to_the_path_against_the_brake() -> None:
     within = said("06", "is then back within # mm of the circle")[0]
     later = said("06", "the follower gets up to # mm off, and within # mm after")
     assert [within, *later] == told[1:]
-    asked = said("06", "After letting go the follower gets up to # mm off: that is what")
+    asked = said("06", "Once let go, the follower gets up to # mm off: that is what")
     assert asked == later[:1]
     assert said("01", "after two seconds of holding it is within # mm of the circle") == [within]
     readme = "the follower ends within # mm of the circle,"
