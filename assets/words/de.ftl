@@ -846,8 +846,8 @@ route-here = { $route }: Teil { $stop } von { $stops }, bis Schritt { $last }, {
 ## Handreichung und Arbeitsblätter (app/exports/guide.py)
 
 guide-title = Handreichung für Lehrkräfte
-guide-intro = Was jede Lektion fragt, der Reihe nach, mit den Antworten. Die Klasse soll sich auf jede Vorhersage festlegen, bevor man etwas sieht. Stelle dann die hier vorgeschlagene Frage, lass Nachbarn diskutieren, und lass es erst danach geschehen. Die Buchstaben sind die der Präsentation und der Arbeitsblätter; die Labore der Lernenden zeigen die Möglichkeiten in anderer Reihenfolge.
-guide-assumed = Die Minuten sind aus Wörtern, Läufen und Aufgaben der Lektionen geschätzt, nicht in einer Klasse gemessen.
+guide-intro = Was jede Lektion fragt, der Reihe nach, mit den Antworten. Die Klasse soll sich auf jede Vorhersage festlegen, bevor man etwas sieht. Stelle dann die hier vorgeschlagene Frage, lass Nachbarn diskutieren, und zeige erst danach, was geschieht. Die Buchstaben sind die der Präsentation und der Arbeitsblätter; die Labore der Lernenden zeigen die Möglichkeiten in anderer Reihenfolge.
+guide-assumed = Nichts davon ist in einer Klasse gemessen. Die Minuten sind aus Wörtern, Läufen und Aufgaben der Lektionen geschätzt; was Lernende zeichnen oder sagen könnten, ist die Erwartung der Verfasser; und wie viel sie lernen, ist nicht bekannt. Mit dem Konzepttest lässt sich das in der eigenen Klasse messen.
 guide-needs = Voraussetzungen
 guide-goals = Danach können die Lernenden
 guide-misconception = Die Fehlvorstellung
@@ -863,8 +863,8 @@ guide-open = Frage, mit eigenen Worten
 guide-reasons = Begründungen zur Wahl:
 guide-task = Aufgabe
 guide-ask = Zu fragen, bevor man es sieht:
-guide-usual = Meist wird gezeichnet:
-guide-distractors = Was oft gesagt wird, und die Antwort darauf:
+guide-usual = Gezeichnet wird vielleicht:
+guide-distractors = Was Lernende sagen könnten, und die Antwort darauf:
 guide-answer = Was geschieht:
 guide-right = Richtig:
 guide-curves = Die wirklichen Kurven beider Roboter
