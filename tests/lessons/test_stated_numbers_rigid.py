@@ -65,7 +65,7 @@ def test_tracker_draws_four_arches_of_one_height() -> None:
 def test_soft_tracker_is_torn_off_further() -> None:
     soft = shown("01", "The same hold, softer")["tracker"].largest(3, 5)
     stiff = shown("01", "Held from 3 s to 5 s")["tracker"].largest(3, 5)
-    assert_stated(said("01", "torn off to # mm; the stiff one got to # mm"), [soft, stiff])
+    assert_stated(said("01", "torn # mm off the circle; the stiff one got to # mm"), [soft, stiff])
     for answer in ("a soft spring. It got # mm", "the arm itself to move. It got #", "Yes: # mm."):
         assert_stated(said("01", answer), [soft])
 
@@ -73,7 +73,7 @@ def test_soft_tracker_is_torn_off_further() -> None:
 def test_slower_clock_runs_on_and_no_clock_takes_any_speed() -> None:
     slow = held(3.0, robot="tracker", speed=TURN / 2, **PD).distance[3000:]
     usual = held(3.0, robot="tracker", **PD).distance[3000:]
-    for arches, distance in ((2, slow), (4, usual)):  # "the same arches come, only wider"
+    for arches, distance in ((2, slow), (4, usual)):  # "the same arches appear, only wider"
         assert np.count_nonzero(np.diff(distance > 25)) == 2 * arches
         assert 45 < distance.max() < 50
     jumps = [
