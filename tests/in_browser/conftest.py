@@ -1,4 +1,4 @@
-"""Fixtures: one Chromium for all tests in a browser, and one server for each file."""
+"""Fixtures: one Chromium for all tests in a browser, one server for each file, and its free lab."""
 
 from __future__ import annotations
 
@@ -7,11 +7,15 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from tests.support.free_lab import begin_anew, fresh
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
+
+    from tests.support.browser import Tab
 
 
 @pytest.fixture(scope="package")
@@ -33,3 +37,32 @@ def server() -> Iterator[LabServer]:
     server = LabServer("127.0.0.1", 0, LoopCache())
     yield server
     server.stop()
+
+
+@pytest.fixture(scope="module")
+def free_lab(browser: Browser, server: LabServer) -> Iterator[Tab]:
+    """A tab for a whole file; see `tab`."""
+    from tests.support.browser import Tab
+
+    context = fresh(browser)
+    yield Tab(server, context, draws=False)
+    context.close()
+
+
+@pytest.fixture
+def tab(free_lab: Tab) -> Iterator[Tab]:
+    """A tab in its initial state; asserts afterwards that its page reports no error."""
+    begin_anew(free_lab)
+    yield free_lab
+    free_lab.ask(c.SetRunning(False))  # stops drawing: other tabs need the processor
+    assert free_lab.errors == []
+
+
+@pytest.fixture
+def other(browser: Browser, server: LabServer) -> Iterator[Tab]:
+    """A tab in another browser."""
+    from tests.support.browser import Tab
+
+    context = fresh(browser)
+    yield Tab(server, context, draws=False)
+    context.close()

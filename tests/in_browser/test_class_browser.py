@@ -212,7 +212,6 @@ def test_on_a_projector_the_prediction_is_large_and_comes_first(tabs: Class) -> 
     wait_for(lambda: picture.evaluate(size) < 24)
 
 
-@pytest.mark.thorough
 def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None:
     teacher, (first, _) = tabs.teacher, tabs.students
     teacher.ask(c.SetParameter("K2", 33.0))
@@ -230,7 +229,6 @@ def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None
     teacher.page.get_by_text("Students who join receive").wait_for(state="hidden")
 
 
-@pytest.mark.thorough
 def test_the_teacher_watches_a_lab_without_changing_it(tabs: Class) -> None:
     teacher, (first, _) = tabs.teacher, tabs.students
     teacher.page.get_by_role("tab", name="Class").click()
@@ -253,7 +251,6 @@ def test_the_teacher_watches_a_lab_without_changing_it(tabs: Class) -> None:
     assert first.client.scene.get_handle_by_name("/show/tube") is None
 
 
-@pytest.mark.thorough
 def test_a_route_is_opened_for_all(tabs: Class) -> None:
     teacher = tabs.teacher
     teacher.page.get_by_role("tab", name="Predictions").click()
@@ -265,14 +262,12 @@ def test_a_route_is_opened_for_all(tabs: Class) -> None:
         assert student.lab.lessons.progress.route == "2-lecture-20-minutes"
 
 
-@pytest.mark.thorough
 def test_a_teacher_who_reloads_is_still_the_teacher(tabs: Class) -> None:
     tabs.teacher.page.reload(wait_until="commit")
     tabs.teacher.page.get_by_text("2 in the class").first.wait_for()
     assert [member.name for member in tabs.room.members().values()] == ["Ada", HOSTILE]
 
 
-@pytest.mark.thorough
 def test_axe_finds_nothing_serious_on_the_teachers_page(tabs: Class) -> None:
     tabs.teacher.page.get_by_role("tab", name="Predictions").wait_for()
     assert violations(tabs.teacher) == []

@@ -1,4 +1,4 @@
-"""Lesson 1 from its first page to its end, by mouse: what is shown is what the lesson says."""
+"""Every lesson from its first page to its end, by mouse: what is shown is what the lesson says."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ pytestmark = pytest.mark.thorough
 
 COURSE, _ = built_in_course()
 NUMBERS = COURSE.numbers()
-LESSONS = ["01-path-or-timetable"]
+LESSONS = list(COURSE.lessons)
 Asked = Choice | Sketch | Quiz | NumberQuestion | OpenQuestion
 MISSING = """([htmls, other]) => {
     const bare = text => text.replace(/\\s+/g, "")
@@ -50,7 +50,7 @@ MISSING = """([htmls, other]) => {
 STEP_OF = "each.dataset.step"
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     """A student's tab in which time runs four times as fast."""
     context = browser.new_context(viewport={"width": 1280, "height": 800})

@@ -1,0 +1,156 @@
+"""Tests of files that the free lab writes, of several tabs, and of narrow ones."""
+
+from __future__ import annotations
+
+import gc
+import io
+import threading
+import weakref
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser, Download, Page
+
+from onpath.app.bench.mouse_latency import NO_TRIANGLES
+from onpath.app.server.lab_server import LabServer
+from onpath.models.closed_loop.trajectory import read_csv
+from onpath.models.control.benches import LEFT, RIGHT
+from tests.support.browser import SELDOM, THREE_FRAMES, Tab, wait_for
+from tests.support.free_lab import fresh
+
+TRACKER, FOLLOWER = LEFT, RIGHT
+PLAYED = """seconds => [...document.querySelectorAll("[role=slider]")].some(
+    each => each.getAttribute("aria-valuenow") > seconds)"""
+
+
+def download(tab: Tab, button: str) -> Download:
+    tab.open("Export")
+    with tab.page.expect_download(timeout=30_000) as waiting:
+        tab.press(button)
+    return waiting.value
+
+
+def test_exports(tab: Tab, browser: Browser, tmp_path: Path) -> None:
+    wait_for(lambda: tab.session.time > 1.0)
+    table = download(tab, "CSV, last 60 s")
+    assert table.suggested_filename == "onpath.csv"
+    records = read_csv(io.StringIO(Path(table.path()).read_text()))
+    assert set(records) == {TRACKER, FOLLOWER}
+    for columns in records.values():
+        assert len(columns["t_s"]) > 900
+        np.testing.assert_allclose(np.diff(columns["t_s"]), 1e-3, atol=1e-9)
+        assert np.isfinite(columns["distance_m"]).all()
+    picture = download(tab, "Picture of the plots")
+    assert Path(picture.path()).read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+    film = tmp_path / "film.html"
+    download(tab, "Recording (HTML), last 10 s").save_as(film)
+    context = fresh(browser)
+    context.add_init_script(NO_TRIANGLES + SELDOM)
+    plays_without_complaint(context.new_page(), film)
+    context.close()
+
+
+def plays_without_complaint(page: Page, film: Path) -> None:
+    complaints: list[str] = []
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
+    page.goto(film.as_uri())
+    page.locator("canvas").first.wait_for()
+    page.wait_for_function(PLAYED, arg=1.5)
+    assert complaints == []
+
+
+# Tabs.
+
+
+def test_a_reload_comes_back_to_the_same_lab(other: Tab) -> None:
+    lab = other.lab
+    old = weakref.ref(other.view)
+    other.enter("K1", "150")
+    other.choose("Path", "clover")
+    wait_for(
+        lambda: lab.session.parameters.K1 == 150.0 and lab.session.editor.design.name == "clover"
+    )
+    wait_for(lambda: lab.session.time > 0.5)
+    before = lab.session.time
+    other.reload()
+    assert other.lab is lab
+    assert (lab.session.parameters.K1, lab.session.editor.design.name) == (150.0, "clover")
+    wait_for(lambda: lab.session.time > before)
+    assert other.number("K1").input_value() == "150"
+    assert other.page.get_by_label("Path", exact=True).input_value() == "clover"
+    assert len(other.server.server.get_clients()) == len(other._looked_at())
+    wait_for(lambda: gc.collect() >= 0 and old() is None)
+
+
+def test_another_tab_is_another_lab_that_ends_with_it(tab: Tab) -> None:
+    tab.press("Pause")
+    wait_for(lambda: not tab.session.running)
+    clients, threads = len(tab.server.server.get_clients()), export_threads()
+    second = Tab(tab.server, tab.page.context, draws=False)
+    assert second.lab is not tab.lab
+    assert second.session.running and not tab.session.running
+    second.press("Help and keys")
+    second.page.get_by_role("dialog").wait_for()
+    second.page.keyboard.press("Escape")
+    second.page.get_by_role("dialog").wait_for(state="hidden")
+    download(second, "CSV, last 60 s")
+    left: list[weakref.ref[object]] = [weakref.ref(second.view), weakref.ref(second.client)]
+    second.close()
+    stopped = second.session.time
+    with pytest.raises(AssertionError, match="in vain"):
+        wait_for(lambda: second.session.time != stopped, seconds=0.5)
+    del second.view, second.client
+    wait_for(lambda: gc.collect() >= 0 and not [ref for ref in left if ref() is not None])
+    assert len(tab.server.server.get_clients()) == clients
+    wait_for(lambda: export_threads() == threads)
+
+
+def export_threads() -> int:
+    return sum(thread.name.startswith("export") for thread in threading.enumerate())
+
+
+def test_a_narrow_screen_shows_both_robots_and_the_buttons(
+    browser: Browser, server: LabServer
+) -> None:
+    context = fresh(browser, viewport={"width": 390, "height": 844}, has_touch=True)
+    tab = Tab(server, context, draws=False)
+    for name in (TRACKER, FOLLOWER):
+        for point in tab.session.editor.points():
+            x, y = tab.placed(name, point)
+            assert 0 < x < 390 and 0 < y < 0.5 * 844
+    tab.button("Hold both back").scroll_into_view_if_needed()
+    tab.press("Hold both back")
+    wait_for(lambda: len(tab.session.grips.held) == 2)
+    assert tab.page.evaluate("document.documentElement.scrollWidth") <= 390
+    context.close()
+
+
+def test_an_upright_tablet_has_the_robots_across_its_width_above_the_panel(
+    browser: Browser, server: LabServer
+) -> None:
+    context = fresh(browser, viewport={"width": 820, "height": 1180}, has_touch=True)
+    tab = Tab(server, context, draws=False)
+    places = [tab.pixel(name, np.zeros(3)) for name in (TRACKER, FOLLOWER)]
+    assert places[1][0] - places[0][0] > 0.45 * 820
+    for name in (TRACKER, FOLLOWER):
+        for point in tab.session.editor.points():
+            x, y = tab.placed(name, point)
+            assert 0 < x < 820 and 0 < y < 0.4 * 1180
+    context.close()
+
+
+def test_hostile_text_is_not_rendered(tab: Tab) -> None:
+    """No browser can make the lab show this text, but no code may rely on that."""
+    tab.page.evaluate("window.harmed = false")
+    tab.lab.show_message("<img src=x onerror='window.harmed = true'><b>bold</b>", "warning")
+    tab.page.get_by_role("status").filter(has_text="<b>bold</b>").wait_for()
+    tab.page.evaluate("fetch('x').then(reply => reply.text())")  # longer than a picture takes
+    tab.page.evaluate(THREE_FRAMES)
+    assert tab.page.get_by_role("status").locator("b, img").count() == 0
+    assert tab.page.evaluate("window.harmed") is False
+    tab.lab.show_message("")
