@@ -20,6 +20,9 @@ from onpath.lessons.progress import SURENESS, Answer
 from onpath.lessons.schema import Choice, NumberQuestion, Prediction, Quiz, Sketch
 from onpath.lessons.words import Words
 
+DIGITS = 9
+"""Decimals of a number that a student types."""
+
 
 class SureAndWhy:
     """How sure the student is of a prediction, and why; both may be left unsaid.
@@ -159,6 +162,7 @@ class AnswerBox:
         unit = {"unit": block.unit} if block.unit else {}
         label = self.words("answer.type_unit" if unit else "answer.type_number", **unit)
         field = self.gui.add_number(label, float(typed.get(self.name, given)))
+        field.precision = DIGITS  # viser's is that of the first value, 0, and drops the decimals
         on_user_update(field, lambda value: typed.update({self.name: value}))
         button = self.gui.add_button(
             self.words("answer.check"), color="gray", icon=viser.Icon.CHECK

@@ -175,4 +175,10 @@
   }, { capture: true });
   document.addEventListener("scroll", place, { capture: true, passive: true });
   addEventListener("resize", place);
+
+  // What is said of a box goes with it.
+  new MutationObserver(() => {
+    if (marked !== null && marked !== field && !marked.isConnected) unsay();
+    if (box !== null && !box.isConnected) putBack();
+  }).observe(document, { childList: true, subtree: true });
 })();

@@ -29,7 +29,7 @@ PLACE_OF = """(options, html) => {
     return options.findIndex(each => bare(each.textContent).slice(1) === bare(wanted.textContent))
 }"""
 """The place among the options on the page of the one with a text; -1 if there is none."""
-BOARD = ((0.22, 0.57), (0.4, 0.55), (0.5, 0.45), (0.6, 0.43), (0.78, 0.56))
+BOARD = ((0.22, 0.47), (0.4, 0.46), (0.5, 0.38), (0.6, 0.36), (0.78, 0.47))
 """A curve on the board for sketches, in shares of the scene's width and height."""
 
 
@@ -186,10 +186,13 @@ class Pupil:
     def number(self, block: NumberQuestion, given: float) -> None:
         """Answer a question with a number."""
         unit = f" [{block.unit}]" if block.unit else ""
-        self.field(f"Your number{unit}").fill(f"{given:g}")
+        typed = f"{given:g}"
+        self.tab.number(f"Your number{unit}").click()
+        self.tab.page.keyboard.press("Control+A")
+        self.tab.page.keyboard.type(typed)
         self.press("Check")
         run = self.tab.lab.lessons
-        wait_for(lambda: given in run.notes.numbers.values())
+        wait_for(lambda: float(typed) in run.notes.numbers.values())
         self.tab.wait_until_built()
 
     def _write(self, block: OpenQuestion) -> None:
@@ -200,7 +203,7 @@ class Pupil:
 
     def field(self, label: str) -> Locator:
         """Return a field of the page."""
-        return self.tab.page.get_by_label(label)
+        return self.tab.page.get_by_label(label).filter(visible=True)
 
     def _pass(self, task: Task) -> None:
         """Do what the task's last hint says."""
