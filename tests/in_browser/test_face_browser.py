@@ -325,6 +325,17 @@ def test_a_number_beyond_the_limits_is_not_changed_silently(tab: Tab) -> None:
     tab.blur()
 
 
+def test_what_is_said_of_a_box_goes_with_it(tab: Tab) -> None:
+    retype(tab, "K1 across", "99999")
+    tab.page.keyboard.press("Enter")
+    expect(tab.page.locator(WRONG)).to_be_visible()
+    tab.ask(c.SetLanguage("de"))
+    tab.wait_until_built()
+    expect(tab.page.locator(WRONG)).to_be_hidden()
+    tab.ask(c.SetLanguage("en"), c.SetParameter("K1", 400.0))
+    tab.wait_until_built()
+
+
 def test_text_that_is_not_a_number_stays_and_is_reported(tab: Tab) -> None:
     typed, wrong = tab.page.locator(TYPED), tab.page.locator(WRONG)
     for leave in ("Enter", "Tab"):
