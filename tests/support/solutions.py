@@ -50,10 +50,13 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
             *(Enter("K4", 100), Enter("K5", 20), RESET),
             *(Key("w", 6), Wait(1), Key("x"), Wait(2)),
         ),
-        "enough": (Enter("K1", 400), Enter("K2", 40), Wait(4)),
+        "enough": (Wait(5), Enter("K1", 900), Enter("K2", 60), RESET, Wait(4)),
     },
     "05-invariance": {
-        "tour": (Slide("Target", 3.1), Wait(2), Slide("Target", 0), Wait(2)),
+        "tour": (
+            *(RESET, Enter("K4", 100), Enter("K5", 20)),
+            *(Slide("Target", 3.1), Wait(2), Slide("Target", 0), Wait(2)),
+        ),
         "obstruction": (
             *(Press("run round the circle"), Enter("K1", 2500), Enter("K2", 100), RESET),
             *(Wait(1), HOLD, Wait(2.2), LET_GO, Wait(2)),
