@@ -3,6 +3,7 @@
 import { made } from "../standalone/controls"
 import { said, type BlockData, type PageData } from "./data"
 import type { Notes } from "./notes"
+import { accepted } from "./own"
 
 /** The order in which a student sees the options: always the same for one student. */
 export function ordered(list: Element, student: string, question: string): void {
@@ -29,42 +30,34 @@ export function ask(
     const told = element.querySelector<HTMLElement>(".verdict")!
     const after = element.querySelector<HTMLDetailsElement>(".after")!
     after.hidden = true
-    if (block.kind === "quiz") {
-        const show = () => {
-            const own = notes.quiz[key]
-            if (own === undefined) return
-            element.querySelector<HTMLInputElement>(`input[value="${own}"]`)!.checked = true
-            told.replaceChildren(...judged(page, element, block.right, own).childNodes)
-        }
-        element.addEventListener("change", event => {
-            notes.quiz[key] = Number((event.target as HTMLInputElement).value)
-            show()
-            changed()
-        })
-        return show()
-    }
     const input = element.querySelector<HTMLInputElement | HTMLTextAreaElement>("input, textarea")!
-    const button = made("button", "script-only", said(page, block.kind === "number" ? "answer.check" : "answer.keep"))
+    const button = made("button", "script-only", said(page, block.kind === "open" ? "answer.keep" : "answer.check"))
     button.type = "button"
     told.before(button)
+    const kept = () => (block.kind === "quiz" ? notes.quiz : block.kind === "number" ? notes.numbers : notes.written)[key]
     const show = () => {
-        if (block.kind === "number" && notes.numbers[key] !== undefined) {
-            const right = Math.abs(notes.numbers[key] - block.number) <= block.tolerance * (1 + 1e-9)
+        const own = kept()
+        if (block.kind === "quiz") return told.replaceChildren(...judged(page, element, block.right, own as number).childNodes)
+        if (block.kind === "number") {
+            const right = accepted(own as number, block)
             told.className = `verdict ${right ? "right" : "wrong"}`
             told.textContent = said(page, right ? "lesson.right" : "lesson.not_quite")
         }
         after.hidden = false
         after.open = true
     }
-    if (block.kind === "number" && notes.numbers[key] !== undefined) {
-        input.value = String(notes.numbers[key]).replace(".", page.words["point"]!)
-        show()
-    } else if (block.kind === "open" && notes.written[key]) {
-        input.value = notes.written[key]
+    const own = kept()
+    if (own !== undefined) {
+        if (block.kind === "quiz") element.querySelector<HTMLInputElement>(`input[value="${own}"]`)!.checked = true
+        else input.value = block.kind === "number" ? String(own).replace(".", page.words["point"]!) : String(own)
         show()
     }
     button.addEventListener("click", () => {
-        if (block.kind === "number") {
+        if (block.kind === "quiz") {
+            const chosen = element.querySelector<HTMLInputElement>("input:checked")
+            if (!chosen) return
+            notes.quiz[key] = Number(chosen.value)
+        } else if (block.kind === "number") {
             const given = Number(input.value.trim().replace(page.words["point"]!, ".").replace("−", "-") || NaN)
             if (!Number.isFinite(given)) return void (told.textContent = said(page, "lesson.no_number"))
             notes.numbers[key] = given
@@ -78,6 +71,5 @@ export function ask(
 function hash(text: string): number {
     let value = 2166136261
     for (const letter of text) value = Math.imul(value ^ letter.codePointAt(0)!, 16777619)
-    value ^= value >>> 15
-    return Math.imul(value, 2246822519) >>> 0
+    return Math.imul(value ^ (value >>> 15), 2246822519) >>> 0
 }

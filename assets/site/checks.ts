@@ -212,10 +212,7 @@ function duration(check: Window, record: RunRecord, mask: boolean[], said: Said,
     const have = sum(steps(record).filter((_, i) => mask[i]))
     const need = said["need"]!
     const enough = have >= check.least - INSTANT
-    const shown = enough ? (need.includes(".") ? need : `${need}.0`) : fixedTenths(Math.floor(10 * have))
+    const tenths = Math.floor(10 * have)
+    const shown = enough ? (need.includes(".") ? need : `${need}.0`) : `${Math.floor(tenths / 10)}.${tenths % 10}`
     return [enough, filled(words["check.seconds"]!, { have: shown, need })]
-}
-
-function fixedTenths(tenths: number): string {
-    return `${Math.floor(tenths / 10)}.${tenths % 10}`
 }

@@ -1,6 +1,7 @@
 // What Python puts into the pages: see app/exports/site.
 
 import type { FigureData, Place } from "../standalone/data"
+import type { Curves } from "./notes"
 
 export type Robot = "tracker" | "follower"
 export const ROBOTS: Robot[] = ["tracker", "follower"]
@@ -16,6 +17,7 @@ export interface Act {
     path?: number
     reset?: boolean
     run?: boolean
+    rate?: number
     bench?: number | null
 }
 
@@ -104,7 +106,7 @@ export interface SketchData {
 }
 
 export type BlockData =
-    | { kind: "text"; links: (Act[] | null)[] }
+    | { kind: "text"; links: (Act[] | null)[]; when?: [string, number[]] }
     | { kind: "choice" | "quiz"; right: number }
     | { kind: "number"; number: number; tolerance: number }
     | { kind: "open" }
@@ -116,6 +118,7 @@ export interface StepData {
     optional: boolean
     running: boolean
     script: Script | null
+    truth?: Curves // of a run that only the lab can play
     values: Record<string, Setting> & { lengths: number[]; paths: string[] }
     blocks: BlockData[]
     figure: number

@@ -4,6 +4,7 @@ import { made } from "../standalone/controls"
 import { ask, ordered } from "./asked"
 import { said, type PageData } from "./data"
 import { keep, notesOf, thinned, type Notes } from "./notes"
+import { showOwn } from "./own"
 import { Comparison, elementOf, given, predict, predictionAt, type Prediction } from "./predictions"
 import type { Progress } from "./progress"
 import { Stage } from "./stage"
@@ -37,10 +38,7 @@ export class LessonPage {
         void this.open(asked >= 0 ? asked : Math.min(this.notes.step, page.steps.length), asked >= 0)
     }
 
-    private asked(): number {
-        return Number(/^#(\d+)$/.exec(location.hash)?.[1] ?? 0) - 1
-    }
-
+    private readonly asked = (): number => Number(/^#(\d+)$/.exec(location.hash)?.[1] ?? 0) - 1
     private key(event: KeyboardEvent): void {
         const by = { PageDown: 1, PageUp: -1 }[event.key]
         if (!by) return
@@ -58,14 +56,9 @@ export class LessonPage {
         void this.open(this.index + by, true)
     }
 
-    private prediction(index: number): Prediction | null {
-        return index < this.page.steps.length ? predictionAt(this.page.steps, index) : null
-    }
-
-    private waits(found: Prediction): boolean {
-        return this.notes.answers[String(found.step)] === undefined
-    }
-
+    private readonly prediction = (index: number): Prediction | null =>
+        index < this.page.steps.length ? predictionAt(this.page.steps, index) : null
+    private readonly waits = (found: Prediction): boolean => this.notes.answers[String(found.step)] === undefined
     /** Show a step; after the last one comes the end. */
     async open(wanted: number, move = true): Promise<void> {
         const { page, notes } = this
@@ -104,10 +97,8 @@ export class LessonPage {
         this.shown()
     }
 
-    private block(place: number, index = this.index): HTMLElement {
-        return this.sections[index]!.querySelector<HTMLElement>(`[data-block="${place}"]`)!
-    }
-
+    private readonly block = (place: number, index = this.index): HTMLElement =>
+        this.sections[index]!.querySelector<HTMLElement>(`[data-block="${place}"]`)!
     /** Make a step's parts answerable. */
     private prepare(index: number): void {
         const { page, notes } = this
@@ -195,10 +186,8 @@ export class LessonPage {
     }
 
     /** Whether a run was seen here; what only the lab can play is seen in its picture. */
-    private happened(index: number): boolean {
-        return Boolean(this.notes.played[String(index)]) || !this.page.steps[index]!.script
-    }
-
+    private readonly happened = (index: number): boolean =>
+        Boolean(this.notes.played[String(index)]) || !this.page.steps[index]!.script
     /** Show of a run what may be seen: nothing before the prediction, the words after it. */
     private shown(): void {
         const { page, index } = this
@@ -207,6 +196,7 @@ export class LessonPage {
         const section = this.sections[index]!
         const found = this.prediction(index)
         const waits = found !== null && this.waits(found)
+        if (step.truth && !waits) this.notes.truths[String(found?.step ?? index)] = step.truth
         const told = section.querySelector<HTMLElement>(".play")
         const button = told?.querySelector<HTMLButtonElement>("button.main")
         if (button) {
@@ -231,10 +221,7 @@ export class LessonPage {
         if (this.happened(index) && !waits) this.comparison(found)?.draw(this.notes.truths[String(found!.step)])
     }
 
-    private follow(): void {
-        if (this.stage) for (const task of this.tasks) task.follow(this.stage.simulation)
-    }
-
+    private readonly follow = () => this.tasks.forEach(task => this.stage && task.follow(this.stage.simulation))
     private told(line: string): void {
         this.save()
         if (line) document.querySelector("#live")!.textContent = line
@@ -243,6 +230,7 @@ export class LessonPage {
     private save(): void {
         const { page, notes, progress } = this
         keep(progress, page.lesson, notes)
+        showOwn(page, notes)
         const required = page.steps.filter(step => !step.optional)
         const tasks = required.flatMap(step => step.blocks).flatMap(block => (block.kind === "task" && block.checks ? [block.id] : []))
         const done = tasks.filter(id => id in notes.tasks).length
@@ -269,8 +257,8 @@ export class LessonPage {
         const { page, notes } = this
         const words = this.sections[this.index]!.querySelector(".words")!
         words.querySelectorAll(".compared").forEach(each => each.remove())
-        const tasks = Object.keys(notes.tasks).length
-        const counts = { done: String(notes.seen), all: String(page.steps.length), tasks: String(tasks) }
+        const tasks = String(Object.keys(notes.tasks).length)
+        const counts = { done: String(notes.seen), all: String(page.steps.length), tasks }
         document.querySelector("#counts")!.textContent = said(page, "site.done", counts)
         page.steps.forEach((_, i) => {
             const found = this.prediction(i)

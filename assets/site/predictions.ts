@@ -23,8 +23,7 @@ export function predictionAt(steps: StepData[], index: number): Prediction | nul
 }
 
 export function elementOf(prediction: Prediction): HTMLElement {
-    const section = document.getElementById(`step-${prediction.step + 1}`)!
-    return section.querySelector<HTMLElement>(`[data-block="${prediction.block}"]`)!
+    return document.querySelector<HTMLElement>(`#step-${prediction.step + 1} [data-block="${prediction.block}"]`)!
 }
 
 /** Make it answerable; it cannot be changed once it is answered. */

@@ -15,8 +15,7 @@ const PREFIX = "onpath."
 /** In the browser's local storage, for all pages of the site; in memory where there is none. */
 export class LocalProgress implements Progress {
     private readonly memory = new Map<string, string>()
-    /** Whether nothing could be kept. */
-    lost = false
+    lost = false // whether nothing could be kept
 
     get(key: string): string | null {
         try {

@@ -143,10 +143,7 @@ export class Recorded extends Simulation {
         })
     }
 
-    private at(frame: number): number {
-        return Math.floor((frame * FRAME) / this.data.dt + 1e-9)
-    }
-
+    private readonly at = (frame: number): number => Math.floor((frame * FRAME) / this.data.dt + 1e-9)
     private note(name: string, detail = "", robots: Robot[] = ROBOTS): void {
         this.happenings?.push({ run: this.run, time: this.time, name, detail, robots })
     }

@@ -117,10 +117,7 @@ export class Board extends Chart {
         this.hand()
     }
 
-    private time(i: number): number {
-        return (i / (POINTS - 1)) * this.axes.seconds
-    }
-
+    private readonly time = (i: number): number => (i / (POINTS - 1)) * this.axes.seconds
     private hand(): void {
         const { canvas } = this
         canvas.addEventListener("pointerdown", event => {

@@ -86,6 +86,7 @@ export class Stage {
             }
             while (waiting.length && waiting[0]![0] <= before + time + 1e-9) {
                 const [, act] = waiting.shift()!
+                if (act.rate) figure.rate = act.rate
                 simulation.act(act)
                 if (simulation.record().run === run) continue
                 run = simulation.record().run
@@ -103,6 +104,7 @@ export class Stage {
 
     private cancel(): void {
         this.simulation.before = () => true
+        this.figure.rate = 1
     }
 
     /** Show the values on the sliders. */
@@ -111,7 +113,7 @@ export class Stage {
             const value = this.simulation.values[i]!
             if (input.valueAsNumber === value) return
             input.value = String(value)
-            input.dispatchEvent(new Event("input"))
+            input.dispatchEvent(new Event("told"))
         })
     }
 

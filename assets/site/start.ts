@@ -32,10 +32,7 @@ export class StartPage {
         this.figure = new Figure(simulation, document.querySelector<HTMLElement>(".stage")!)
     }
 
-    private button(name: string, act: () => void): void {
-        document.getElementById(name)!.addEventListener("click", act)
-    }
-
+    private readonly button = (name: string, act: () => void) => document.getElementById(name)!.addEventListener("click", act)
     private show(): void {
         for (const element of document.querySelectorAll<HTMLElement>("[data-lesson]")) {
             const { steps, required, tasks } = this.page.lessons[element.dataset["lesson"]!]!

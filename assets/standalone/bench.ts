@@ -13,8 +13,7 @@ export class Bench {
     stopped = 0
     ticks = 0
     distance = 0
-    /** Largest distance since it has been held back. */
-    most = 0
+    most = 0 // largest distance since it has been held back
     law = this.data.law
     private readonly sizes = this.figure.sizes
     private readonly longest = Math.max(...this.path.data.states.map(each => each.length))
@@ -24,10 +23,8 @@ export class Bench {
     private readonly result = this.kernels.room(2 * this.sizes.p + 4)
     private readonly points = this.kernels.room(4 * this.sizes.bars + 2 * this.sizes.joints)
     private readonly y = this.kernels.room(this.sizes.p)
-    /** Where the tip was when a pull began. */
-    private readonly grabbed = this.kernels.room(this.sizes.p)
-    /** The last row of the log. */
-    private row = this.log
+    private readonly grabbed = this.kernels.room(this.sizes.p) // where the tip was when a pull began
+    private row = this.log // the last one
 
     constructor(
         readonly data: BenchData,

@@ -1,6 +1,6 @@
 // Buttons, the choice of a path, and sliders.
 
-import { said, written, type Point, type SliderData } from "./data"
+import { said, significant, type Point, type SliderData } from "./data"
 import type { Figure } from "./figure"
 import type { Simulation } from "./simulation"
 
@@ -113,7 +113,7 @@ export class Controls {
         const input = made("input", "")
         const shown = made("span", "value")
         const show = () => {
-            shown.textContent = `${written(data, input.valueAsNumber)} ${slider.unit}`.trim()
+            shown.textContent = `${significant(data, this.simulation.values[number]!, 4)} ${slider.unit}`.trim()
             input.setAttribute("aria-valuetext", shown.textContent)
         }
         shown.setAttribute("aria-hidden", "true")
@@ -124,6 +124,7 @@ export class Controls {
             this.page.changed()
             show()
         })
+        input.addEventListener("told", show) // the value was set by something else
         show()
         return made("label", "slider", made("span", "", slider.label), input, shown)
     }

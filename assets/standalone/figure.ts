@@ -2,7 +2,7 @@
 
 import { caption, notes, spoken } from "./captions"
 import { Controls, made } from "./controls"
-import { said, type Point } from "./data"
+import { said, written as number, type Point } from "./data"
 import { Plot } from "./plot"
 import type { Simulation } from "./simulation"
 import { View } from "./view"
@@ -30,13 +30,13 @@ export class Figure {
     private readonly live = made("p", "live")
     private readonly note = made("p", "note")
     private readonly poles = made("p", "poles")
+    private readonly axis = made("p", "axis")
     readonly controls = new Controls(this.simulation, this, this.ended)
-    /** What is to be done before the next picture: a drag. */
-    private pending: (() => void) | null = null
+    private pending: (() => void) | null = null // what is to be done before the next picture: a drag
+    rate = 1 // of time; less in slow motion
     private last = performance.now()
     private due = 0
-    /** Simulated time that was lost lately, [s]. */
-    private lost = 0
+    private lost = 0 // of simulated time, lately, [s]
     private stale = true
     private kind = ""
     private said = 0
@@ -103,7 +103,7 @@ export class Figure {
             this.note,
             this.controls.element,
             ...(data.controls.includes("poles") ? [this.poles] : []),
-            ...(data.controls.includes("plot") ? [made("p", "axis", plotted), made("div", "plot", canvas)] : []),
+            ...(data.controls.includes("plot") ? [this.axis, made("div", "plot", canvas)] : []),
             this.live,
         ]
     }
@@ -112,7 +112,7 @@ export class Figure {
         if (this.ended.aborted) return
         const now = performance.now()
         const passed = (now - this.last) / 1e3
-        this.due += Math.min(passed, LONGEST)
+        this.due += this.rate * Math.min(passed, LONGEST)
         this.last = now
         if (this.running && passed < 1) // longer, the page was hidden
             this.lost = 0.98 * this.lost + Math.max(0, passed - LONGEST)
@@ -139,6 +139,8 @@ export class Figure {
         this.plot.draw()
         const captions = simulation.benches.map(bench => caption(bench, data))
         this.captions.forEach((element, i) => written(element, captions[i]!))
+        const now = simulation.benches.map((bench, i) => `${simulation.title(i)} ${number(data, 1e3 * bench.distance, 1)}`)
+        written(this.axis, `${said(data, "standalone.plot")}: ${now.join(", ")}`)
         const late = this.lost > LATE ? said(data, "standalone.late") : ""
         const note = [notes(simulation), late].filter(Boolean).join(" ")
         written(this.note, note)

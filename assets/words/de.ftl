@@ -1172,6 +1172,7 @@ stop-collapsed = das Getriebe ist zusammengeklappt (alle Glieder auf einer Gerad
 stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren die Spitze nicht in jede Richtung bewegen
 stop-bent = der Balken biegt sich zu weit, obwohl seine Nulldynamik stabil ist: Der Zug ist zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
 stop-unstable = der Ausgang ist auf der Bahn, das Innere nicht: instabile Nulldynamik
+stop-bent_or_unstable = der Balken biegt sich zu weit: Seine Nulldynamik ist instabil, der Zug zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
 
 ## Ablehnungen: die Punkte einer Bahn
 
@@ -1360,9 +1361,8 @@ site-control-laws = die Wahl des Gesetzes
 site-control-copy = das Ziehen an nur einem Roboter
 site-control-flexible = Ausgang, Zugebene und Vergrößerung des biegsamen Balkens
 site-control-identify = die Identifikation
-site-control-show = Beschriftungen, Schlauch, Koordinaten und Rangtest
+site-control-show = was in der Szene gezeigt wird: Beschriftungen, Schlauch, Koordinaten, Rangtest, beide Fehler, effektive Masse
 site-control-direction = die Richtung des Festhaltens
-site-control-rate = die Zeitlupe
 site-control-wall = die Wand
 site-control-start = der Start neben der Bahn
 site-control-path = die Wahl der Bahn

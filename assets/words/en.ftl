@@ -902,6 +902,7 @@ stop-collapsed = the linkage has collapsed (all links in one line): the controll
 stop-singular = the robot is close to a singular configuration (two links in one line): there its motors cannot move the end-point in every direction
 stop-bent = the link bends too far although its zero dynamics are stable: the pull is too strong, the control too slow or the controller's model too wrong
 stop-unstable = the output is on the path, the inside is not: unstable zero dynamics
+stop-bent_or_unstable = the link bends too far: its zero dynamics are unstable, the pull is too strong, the control too slow or the controller's model too wrong
 
 ## Refusals: a path's points
 
@@ -1082,9 +1083,8 @@ site-control-laws = the choice of the law
 site-control-copy = pulling one robot alone
 site-control-flexible = output, pull plane and exaggeration of the flexible link
 site-control-identify = identification
-site-control-show = labels, tube, coordinates and rank test
+site-control-show = what is shown in the scene: labels, tube, coordinates, rank test, both errors, effective mass
 site-control-direction = the direction of the hold
-site-control-rate = slow motion
 site-control-wall = the wall
 site-control-start = the start beside the path
 site-control-path = the choice of the path

@@ -41,6 +41,26 @@ def is_shown(when: str, steps: Sequence[Step], notes: Notes, index: int, block: 
     return not when or (found is not None and when in _outcomes(*found, notes))
 
 
+def answers_meant(
+    when: str, steps: Sequence[Step], index: int, block: int
+) -> tuple[str, list[int]] | None:
+    """The question above a text and the answers for which the text is shown, for a page's script.
+
+    An answer is the number of an option, or -1 for a skipped prediction; of a question whose answer
+    is a number, it is 1 if right, else 0. None: there is no such question.
+    """
+    found = question_before(steps, index, block)
+    if found is None:
+        return None
+    key, asked = found
+    if isinstance(asked, NumberQuestion):
+        return key, [value for value, said in enumerate(("wrong", "right")) if when == said]
+    if when == "skipped":
+        return key, [-1]
+    options = enumerate(asked.options)
+    return key, [i for i, o in options if when in ("right" if o.right else "wrong", o.key)]
+
+
 def faults_of_when(steps: Sequence[Step]) -> Iterator[tuple[int, str, str]]:
     """Line of the step, condition and fault of each condition of a lesson that has one."""
     for index, step in enumerate(steps):

@@ -47,6 +47,24 @@ def filled(html: Markup, steps: Sequence[Step], index: int, notes: Notes, words:
     return Markup(OWN.sub(own, str(html)))
 
 
+def marked(html: Markup, steps: Sequence[Step], index: int) -> Markup:
+    """A text whose places for a number of a drawn curve are elements that a page's script fills.
+
+    They have `data-own`, the statistic, and `data-step`, the index of the step with the curve.
+    """
+    drawn = [i for i, step in enumerate(steps) if any(isinstance(b, Sketch) for b in step.blocks)]
+    before = [i for i in drawn if i <= index]
+
+    def own(match: re.Match[str]) -> str:
+        kind, other = _parts(match[1])
+        if not kind.startswith("sketch") or not before:
+            return match[0]
+        place = Markup('<span data-own="{}" data-step="{}">{}</span>')
+        return str(place.format(kind.removeprefix("sketch "), before[-1], other))
+
+    return Markup(OWN.sub(own, str(html)))
+
+
 def _parts(said: str) -> tuple[str, Markup]:
     """What is wanted, and what is shown without it, which is part of a safe text."""
     kind, _, other = said.partition(" or ")

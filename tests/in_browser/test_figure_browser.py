@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 from collections.abc import Iterator
 from functools import partial
@@ -326,17 +327,21 @@ def test_a_tip_is_dragged_with_a_finger_and_the_page_still_scrolls(
         page.evaluate(THREE_FRAMES)
         return [pulled, page.evaluate("scrollY > 0")]
 
-    assert swiped(box["x"] + x, box["y"] + y) == [True, False]
+    beside = 20  # a place for a finger is at least 44 px wide
+    assert swiped(box["x"] + x + beside, box["y"] + y) == [True, False]
     assert not page.evaluate("onpath.simulation.benches[0].pulled")
     assert swiped(box["x"] + 30, box["y"] + box["height"] - 20) == [False, True]
     context.close()
 
 
-def test_axe_finds_nothing_serious(browser: Browser, tmp_path: Path) -> None:
-    context = browser.new_context(bypass_csp=True)  # which would refuse axe, too
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_serious(browser: Browser, tmp_path: Path, scheme: Any) -> None:
+    context = browser.new_context(bypass_csp=True, color_scheme=scheme)  # it would refuse axe, too
     page = context.new_page()
     page.goto(written(tmp_path).as_uri())
     page.wait_for_function("window.onpath")
+    paper = page.evaluate("getComputedStyle(document.documentElement).backgroundColor")
+    assert (sum(json.loads(f"[{paper[4:-1]}]")) < 150) == (scheme == "dark")
     page.add_script_tag(path=SCRIPT)
     assert page.evaluate(RUN) == []
     context.close()

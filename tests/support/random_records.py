@@ -25,7 +25,7 @@ def some_record(rng: np.random.Generator) -> Record:
     own = list(QUANTITIES)[: int(rng.integers(1, len(QUANTITIES) + 1))]
     scale = float(rng.choice([1e-4, 1.0, 50.0]))
     entry = CATALOGUE["five_bar"]
-    gains = {name: float(rng.choice([400.0, 600.1, 1600.5])) for name in ("K1", "K2")}
+    gains = {name: float(rng.choice([400.0, 600.1, 600.7, 1600.5])) for name in ("K1", "K2")}
     return Record(
         times=times,
         values={robot: {name: some_values(rng, count, scale) for name in own} for robot in ROBOTS},
@@ -81,7 +81,8 @@ def some_check(rng: np.random.Generator) -> Check:
     event: Any = str(rng.choice(EVENTS))
     name = "K1" if event == "set" and rng.random() < 0.5 else ""
     if kind == "event":
-        return Event(event=event, name=name, times=int(rng.integers(1, 4)))
+        since = tuple(map(str, rng.choice(["reset", "set", "set:K2", event], int(rng.integers(3)))))
+        return Event(event=event, name=name, times=int(rng.integers(1, 4)), since=since)
     if kind == "order":
         return Order(events=tuple(map(str, rng.choice([*EVENTS[:5], "set:K1"], 3))))
     return some_setting(rng, bounds)

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tests.support.site_reader import WAIT, SiteReader
 from tests.support.waiting import wait_for
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator
 
 END = "A timetable says where the end-point must be"
 
@@ -58,9 +63,10 @@ def lesson_one_by_mouse(reader: SiteReader) -> None:
     reader.press("Next")
     reader.ready()
     _pull_and_let_go(reader)
-    page.get_by_role("radio", name="There is no time in").check()
-    page.get_by_role("radio", name="Putting chocolates").check()
-    assert page.locator(".step.open .right").filter(has_text="Right.").count() == 2
+    for question, option in _questions(reader):
+        question.get_by_role("radio", name=option).check()
+        question.get_by_role("button", name="Check").click()
+    _answered_right(reader)
     reader.press("Next")
     reader.press("Finish")
     assert "11" in page.locator("#counts").inner_text() and page.get_by_text(END).is_visible()
@@ -108,6 +114,12 @@ def lesson_one_by_keys(reader: SiteReader) -> None:
     keys.press("PageDown")
     reader.ready()
     _pull_and_let_go(reader)
+    for question, option in _questions(reader):
+        _mark(reader, question, option)
+        assert question.locator(".verdict").inner_text() == ""  # arrows answer nothing
+        reader.focus(question.get_by_role("button", name="Check"))
+        keys.press("Enter")
+    _answered_right(reader)
     keys.press("PageDown")
     keys.press("PageDown")
     assert page.get_by_text(END).is_visible()
@@ -123,15 +135,30 @@ def _pull_and_let_go(reader: SiteReader) -> None:
     wait_for(reader.passed, WAIT)
 
 
-def _choose(reader: SiteReader, option: str) -> None:
-    """Commit to an option, and turn the page; radio buttons are one stop of Tab."""
-    keys = reader.page.keyboard
-    wanted = reader.page.get_by_role("radio", name=option)
-    first = reader.page.locator(".step.open input[type=radio]").first
-    reader.focus(first)
-    keys.press(" ")
+def _questions(reader: SiteReader) -> list[tuple[Locator, str]]:
+    """The questions of the quiz, and the right answers."""
+    found = reader.page.locator(".step.open .quiz").all()
+    return list(zip(found, ("There is no time in", "Putting chocolates"), strict=True))
+
+
+def _answered_right(reader: SiteReader) -> None:
+    right = reader.page.locator(".step.open .quiz .right").filter(has_text="Right.")
+    assert right.count() == 2
+
+
+def _mark(reader: SiteReader, place: Locator, option: str) -> None:
+    """Mark an option; radio buttons are one stop of Tab."""
+    wanted = place.get_by_role("radio", name=option)
+    reader.focus(place.locator("input[type=radio]").first)
+    reader.page.keyboard.press(" ")
     while not wanted.is_checked():
-        keys.press("ArrowDown")
+        reader.page.keyboard.press("ArrowDown")
+
+
+def _choose(reader: SiteReader, option: str) -> None:
+    """Commit to an option, and turn the page."""
+    keys = reader.page.keyboard
+    _mark(reader, reader.page.locator(".step.open"), option)
     reader.focus(reader.button("Commit to this prediction"))
     keys.press("Enter")
     keys.press("PageDown")

@@ -33,7 +33,7 @@ def python_server(folder: Path) -> Iterator[str]:
     """The address of a folder under `python -m http.server`."""
     (port,) = free_ports(1)
     command = [sys.executable, "-m", "http.server", str(port), "--bind", "127.0.0.1"]
-    with _running([*command, "--directory", str(folder)], port) as address:
+    with running([*command, "--directory", str(folder)], port) as address:
         yield address
 
 
@@ -52,13 +52,15 @@ def nginx(folder: Path, own: Path, policy: str) -> Iterator[str]:
     text = CONFIGURATION.format(own=own, paths=paths, port=port, folder=folder, policy=policy)
     (own / "nginx.conf").write_text(text)
     command = [NGINX or "", "-e", "stderr", "-p", str(own), "-c", str(own / "nginx.conf")]
-    with _running(command, port) as address:
+    with running(command, port) as address:
         yield address
 
 
 @contextmanager
-def _running(command: list[str], port: int) -> Iterator[str]:
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+def running(command: list[str], port: int, folder: Path | None = None) -> Iterator[str]:
+    """The address of a web server, which a command starts in a folder."""
+    silent = subprocess.DEVNULL
+    process = subprocess.Popen(command, cwd=folder, stdout=silent, stderr=silent)
     try:
         wait_for(lambda: _answers(port) or process.poll() is not None, 60.0)
         assert process.poll() is None

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from markupsafe import Markup
 from msgspec.structs import replace
 
 from onpath.app.exports.site.step_figures import StepFigure, figure_of, lacking_words, step_figure
 from onpath.app.exports.site.task_data import task_data
-from onpath.lessons.adaptive.own_numbers import filled
+from onpath.lessons.adaptive.branches import answers_meant
+from onpath.lessons.adaptive.own_numbers import filled, marked
 from onpath.lessons.benches import robot_names
 from onpath.lessons.progress import Notes
 from onpath.lessons.record import QUANTITIES
@@ -86,7 +88,7 @@ def site_step(
         "running": lesson.scene_at(index).running,
         "script": script,
         "values": _values(step, figure),
-        "blocks": [_block(each, lesson, index, figure, words) for each in blocks],
+        "blocks": [_block(each, lesson, index, i, figure, words) for i, each in enumerate(blocks)],
     }
     lab_only = step.script is not None and script is None
     shown = figure_of(figure, words) if figure.faithful else {}
@@ -94,10 +96,16 @@ def site_step(
 
 
 def _unpersonal(block: Block, lesson: Lesson, index: int, words: Words) -> Block:
-    """A block with what a text says without the student's own numbers."""
+    """A block with what a text says without the student's own numbers, and with marks for them.
+
+    On a narrow screen, tables scroll by themselves.
+    """
     if not isinstance(block, Text):
         return block
-    return replace(block, html=filled(block.html, lesson.steps, index, Notes(), words))
+    html = marked(block.html, lesson.steps, index)
+    html = filled(html, lesson.steps, index, Notes(), words)
+    html = html.replace("<table>", Markup('<div class="wide" tabindex="0"><table>'))
+    return replace(block, html=html.replace("</table>", Markup("</table></div>")))
 
 
 def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
@@ -117,12 +125,14 @@ def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
 
 
 def _block(
-    own: SiteBlock, lesson: Lesson, index: int, figure: StepFigure, words: Words
+    own: SiteBlock, lesson: Lesson, index: int, place: int, figure: StepFigure, words: Words
 ) -> dict[str, Any]:
     block, laws = own.block, lesson.laws_shown(index)
     data: dict[str, Any] = {"kind": own.kind}
     if isinstance(block, Text):
         data["links"] = [figure.link(link.actions) for link in block.links]
+        if block.when:
+            data["when"] = answers_meant(block.when, lesson.steps, index, place)
     elif isinstance(block, Sketch):
         names = robot_names(laws, words)
         data |= {name: getattr(block, name) for name in ("quantity", "seconds", "top", "bottom")}

@@ -9,11 +9,16 @@ from typing import Any
 from onpath.app.exports.site.settings_places import Unsupported
 from onpath.app.exports.site.step_actions import Act, link_acts, script_acts
 from onpath.app.exports.standalone.figure_choice import FigureChoice, check_slider, chosen
-from onpath.app.exports.standalone.figure_data import figure_data, slider_data
+from onpath.app.exports.standalone.figure_data import (
+    figure_data,
+    slider_data,
+    stop_messages,
+    stops_in_words,
+)
 from onpath.lessons.action_schema import Action, Script, StepSetup
 from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import Lesson, Text
+from onpath.lessons.schema import Lesson, Step, Text
 from onpath.lessons.task_schema import Better, Reference, Task
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import raised
@@ -41,12 +46,14 @@ class StepFigure:
         lacking: names of the step's controls that only the lab has.
         plots: of the lab's plots, those that the step shows there.
         faithful: whether the figure begins where the lab does; only then is it shown.
+        changing: names of the parameters that sliders, links or the script change.
     """
 
     choice: FigureChoice
     lacking: tuple[str, ...]
     plots: tuple[str, ...]
     faithful: bool
+    changing: frozenset[str]
 
     def script(self, script: Script | None) -> dict[str, Any] | None:
         """A script as data; None if there is none, or only the lab can play it."""
@@ -120,20 +127,26 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
         lacking["show"] = None
     if scene.start.numbers:
         lacking["start"] = None
-    if step.script and any(action.rate for action in step.script.do):
-        lacking["rate"] = None
     figure = replace(bare, sliders=sliders)
-    return StepFigure(figure, tuple(lacking), scene.plots, not scene.start.numbers)
+    set_by = (name for action in _actions(step) for name in action.set or {})
+    changing = frozenset((*sliders, *set_by))
+    return StepFigure(figure, tuple(lacking), scene.plots, not scene.start.numbers, changing)
 
 
 def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
     """The data of a step's figure, with its module of kernels as Base64."""
     data, choice = _shared_data(figure.choice, words), figure.choice
-    log = choice.kernel(choice.laws[0], next(iter(choice.paths.values()))).log
+    curve = next(iter(choice.paths.values()))
+    stops = [
+        stops_in_words(stop_messages(choice, law, curve), "alpha" in figure.changing, words)
+        for law in choice.every_law
+    ]
+    log = choice.kernel(choice.laws[0], curve).log
     places = {n: [(s := log.slices[n]).start, s.stop - s.start] for n in RECORDED}
     return {
         **data,
         "log": data["log"] | places,
+        "laws": [{**law, "stops": own} for law, own in zip(data["laws"], stops, strict=True)],
         "sliders": [slider_data(choice, name, words) for name in choice.sliders],
         "controls": choice.controls,
         "names": choice.sliders,
@@ -166,12 +179,16 @@ def lacking_words(figure: StepFigure, words: Words) -> str:
 
 def _paths(lesson: Lesson, index: int, scene: StepSetup) -> list[str]:
     """The step's path, and those that its links and its script choose."""
-    step = lesson.steps[index]
-    links = [link for block in step.blocks if isinstance(block, Text) for link in block.links]
-    actions = [action for link in links for action in link.actions]
-    actions += step.script.do if step.script else ()
+    actions = _actions(lesson.steps[index])
     paths = [scene.path or "circle", *(action.path for action in actions if action.path)]
     return list(dict.fromkeys(paths))
+
+
+def _actions(step: Step) -> list[Action]:
+    """What a step's links and its script do."""
+    links = [link for block in step.blocks if isinstance(block, Text) for link in block.links]
+    actions = [action for link in links for action in link.actions]
+    return actions + list(step.script.do if step.script else ())
 
 
 def _possible(figure: FigureChoice, names: Iterable[str]) -> dict[str, Curve]:

@@ -128,7 +128,7 @@ class _Writer:
         if problems:
             raise ValueError(str(problems[0]))
         steps = [site_step(lesson, i, references, words) for i in range(len(lesson.steps))]
-        steps = [replace(step, figure=self._shared_kernels(step.figure)) for step in steps]
+        steps = [self._completed(name, step) for step in steps]
         pictures = dict(self._pictures(name, steps, words))
         page = lesson_page(
             lesson,
@@ -142,6 +142,14 @@ class _Writer:
         )
         self._write(name, words, page)
         return self._address(name, words.language)
+
+    def _completed(self, name: str, step: SiteStep) -> SiteStep:
+        """A step with shared kernels, and with what happens if only the lab can play it."""
+        truth = self._truths.get((name, step.number - 1)) if step.lab_only else None
+        curves = ("times", "tracker", "follower")
+        more = {"truth": {each: getattr(truth, each) for each in curves}} if truth else {}
+        figure = self._shared_kernels(step.figure)
+        return replace(step, figure=figure, data=step.data | more)
 
     def _following(self, name: str, words: Words) -> dict[str, str] | None:
         names = list(self._course.lessons)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from base64 import b64encode
+from collections.abc import Iterable
 from typing import Any
 
 import casadi as ca
@@ -39,6 +41,7 @@ from onpath.models.page.fit import FINE, PIECE
 from onpath.models.page.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 from onpath.models.paths.curve_faults import SAMPLES
 from onpath.models.paths.curves import TERMS, Curve
+from onpath.models.systems.flexible_robot import BENT, UNSTABLE
 from onpath.models.systems.parameters import specs, time_step
 
 
@@ -163,13 +166,23 @@ def _laws(figure: FigureChoice, words: Words) -> list[dict[str, Any]]:
             "aim": law_named(law).aim,
             "byClock": law_named(law).by_clock,
             "linear": law_named(law).linear,
-            "stops": [words.sentence(why) for why in _stops(figure, law, curve)],
+            "stops": stops_in_words(
+                stop_messages(figure, law, curve), "alpha" in figure.sliders, words
+            ),
         }
         for law in figure.every_law
     ]
 
 
-def _stops(figure: FigureChoice, law: str, curve: Curve) -> list[Message]:
+def stops_in_words(reasons: Iterable[Message], any_output: bool, words: Words) -> list[str]:
+    """Why robots stop; what is said of a bent link holds for every output if it may change."""
+    either = Message("stop.bent_or_unstable")
+    return [
+        words.sentence(either if any_output and why in (BENT, UNSTABLE) else why) for why in reasons
+    ]
+
+
+def stop_messages(figure: FigureChoice, law: str, curve: Curve) -> list[Message]:
     kernel, start = figure.kernel(law, curve), figure.start(law, curve)
     q = kernel.state.unpack(start)["q"]
     return stop_reasons(figure.machine, figure.parameters, q, law)
@@ -201,11 +214,12 @@ def slider_data(figure: FigureChoice, name: str, words: Words) -> dict[str, Any]
     kernel = figure.kernel(figure.laws[0], next(iter(figure.paths.values())))
     unit = words.get(f"parameter.{name}.unit", spec.unit)
     place = kernel.settings.slices.get(name)
+    zero_is_a_step = spec.step * math.ceil(spec.low / spec.step)
     return {
         "label": words.get(f"parameter.{name}.label", spec.label),
         "unit": unit,
         "help": words.get(f"parameter.{name}.help", spec.help),
-        "low": spec.low,
+        "low": zero_is_a_step if spec.low < 0 else spec.low,
         "high": spec.high,
         "step": spec.step,
         "value": getattr(figure.parameters, name),

@@ -20,12 +20,14 @@ from onpath.lessons.words import ENGLISH, Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.page_functions import GRID, grid_of, page_functions, stop_reasons
 from onpath.models.closed_loop.simulation import brake_at, kind_of, raised
+from onpath.models.control.laws.registry import law_named
 from onpath.models.paths.distance import path_distance
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 
 CURVES = {name: presets()[name].curve for name in ("circle", "clover", "segment")}
 LINES = 1200
+LARGEST = 1_500_000  # [B]
 
 
 def numbers(function: Any, *arguments: Any) -> Array:
@@ -90,6 +92,16 @@ def test_a_page_is_small_the_same_every_time_and_names_no_other_place(tmp_path: 
     assert page == figure_page(chosen("five_bar", paths=CURVES), ENGLISH)
     assert len(page.encode()) < 300_000
     assert not re.findall(r"(?:src|href|url)\s*[=(]|https?:|import\(", page)
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_page_with_all_laws_has_at_most_a_megabyte_and_a_half(robot: str, tmp_path: Path) -> None:
+    """Whatever laws the author includes."""
+    system = ROBOTS[robot].make(ROBOTS[robot].lab).system
+    laws = [name for name in onpath.laws() if law_named(name).suits(system)]
+    assert len(laws) > 4
+    file = onpath.figure(tmp_path / "a.html", robot, choices=laws)
+    assert file.stat().st_size < LARGEST
 
 
 def test_texts_of_the_author_are_texts(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -21,6 +22,7 @@ from tests.support.site_export import LESSON, exported_site
 pytestmark = pytest.mark.thorough
 
 LINES = 1800
+FIGURE = 600_000  # [B]
 EVENTS = re.compile(r"^on[a-z]+$")
 
 
@@ -97,8 +99,18 @@ def test_nothing_of_a_page_is_inline_or_from_elsewhere(site: Path) -> None:
 def test_figures_share_their_kernels(site: Path) -> None:
     kernels = list((site / "site" / "kernels").iterdir())
     assert len(kernels) == 2  # the free lab's, and that of eleven steps in two languages
-    size = sum(file.stat().st_size for file in site.rglob("*") if file.is_file())
-    assert size / 24 < 600_000
+
+
+def test_each_figure_of_a_site_is_small(site: Path) -> None:
+    """What a figure adds to the script that all share: its numbers, and its kernels."""
+    found = 0
+    for page in site.glob("*.html"):
+        (text,) = re.findall(r'id="data">(.*?)</script>', page.read_text("utf-8"), re.DOTALL)
+        for figure in json.loads(text)["figures"]:
+            kernels = site / "site" / "kernels" / f"{figure['module']}.js"
+            assert len(json.dumps(figure)) + kernels.stat().st_size < FIGURE, page.name
+            found += 1
+    assert found >= 20 and (site / "site" / "site.js").stat().st_size < FIGURE
 
 
 def test_what_runs_was_built_from_these_sources() -> None:

@@ -17,13 +17,14 @@ from onpath.app.lab.setups.setup import RATES as LAB_RATES
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.lesson_view import LessonView
 from onpath.lessons.action_schema import Action, Script
+from onpath.lessons.adaptive.branches import answers_meant, is_shown
 from onpath.lessons.adaptive.own_numbers import filled
 from onpath.lessons.checks import verdict
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.progress import Answer, Notes
 from onpath.lessons.record import Record
-from onpath.lessons.schema import Text
+from onpath.lessons.schema import Choice, NumberQuestion, Option, Quiz, Step, Text
 from onpath.lessons.task_schema import Better, Task
 from onpath.lessons.vocabulary.names import RATES
 from onpath.lessons.words import Words
@@ -123,6 +124,32 @@ def test_a_branch_is_passed_over_by_those_whom_it_does_not_concern(lab: Lab) -> 
         assert lab.lessons.index == wanted
         do(lab, c.GoToStep(-1))
         assert lab.lessons.index == (EXPLAIN if wanted == TASK else wanted - 1)
+
+
+OPTIONS = (Option("a", "A", key="first"), Option("b", "B", right=True), Option("c", "C"))
+CHOICE, QUIZ = Choice("?", OPTIONS), Quiz("?", OPTIONS)
+NUMBER = NumberQuestion("?", 60.0, 0.5, "60")
+
+
+@pytest.mark.parametrize(
+    ("asked", "notes", "answer"),
+    [
+        *((CHOICE, Notes(answers={"0": Answer(option=i)}), i) for i in range(3)),
+        (CHOICE, Notes(answers={"0": Answer()}), -1),
+        *((QUIZ, Notes(quiz={"0.0": i}), i) for i in range(3)),
+        *((NUMBER, Notes(numbers={"0.0": x}), int(x in (60.0, 59.5))) for x in (60.0, 59.5, 59.4)),
+    ],
+)
+@pytest.mark.parametrize("when", ["right", "wrong", "skipped", "first"])
+def test_a_page_without_a_lab_knows_for_which_answers_a_text_is_meant(
+    asked: Choice | Quiz | NumberQuestion, notes: Notes, answer: int, when: str
+) -> None:
+    steps = [Step("explain", "", 1, (asked, Text(Markup(""), when=when)))]
+    meant = answers_meant(when, steps, 0, 1)
+    key = "0" if asked is CHOICE else "0.0"
+    assert meant is not None and meant[0] == key
+    assert (answer in meant[1]) == is_shown(when, steps, notes, 0, 1)
+    assert answers_meant(when, steps, 0, 0) is None
 
 
 def _texts(lab: Lab) -> str:
