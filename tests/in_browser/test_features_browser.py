@@ -178,7 +178,7 @@ def seen(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
 def _before_and_while_held(reader: SiteReader) -> Iterator[SiteReader]:
     """A page with a figure that says what its robots do once they are held, if they can be."""
     yield reader
-    hold = reader.page.locator("button", has_text="Hold both back").filter(visible=True)
+    hold = reader.page.locator(".controls button.main:visible")
     if hold.count():
         hold.first.click()
         told = "Boolean(document.querySelector('.live[role=status]:not(:empty)'))"
