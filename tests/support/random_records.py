@@ -29,7 +29,7 @@ def some_record(rng: np.random.Generator) -> Record:
     return Record(
         times=times,
         values={robot: {name: some_values(rng, count, scale) for name in own} for robot in ROBOTS},
-        happenings=some_happenings(rng, float(steps.sum())),
+        happenings=some_happenings(rng, times, float(steps.sum())),
         run=1,
         parameters=replace(entry.lab, **gains),
         end=float(times[-1] + rng.choice([1 / 60, 0.0, 0.1])) if count else 0.0,
@@ -42,12 +42,20 @@ def some_record(rng: np.random.Generator) -> Record:
 def some_values(rng: np.random.Generator, count: int, scale: float) -> np.ndarray:
     """Numbers, some of them with few digits, so that roundings meet ties and bounds."""
     values = scale * rng.normal(size=count)
+    if rng.random() < 0.3:  # it settles, or just does not
+        left = rng.choice([0.045, 0.055, 0.065]) * np.abs(values).max(initial=0.0)
+        values[count // 2 :] = left
     return np.where(rng.random(count) < 0.3, np.round(4 * values) / 4, values)
 
 
-def some_happenings(rng: np.random.Generator, end: float) -> tuple[Happening, ...]:
-    """Events of this run and of the one before."""
-    times = np.sort(rng.uniform(0, end + 0.1, int(rng.integers(0, 9))))
+def some_happenings(
+    rng: np.random.Generator, instants: np.ndarray, end: float
+) -> tuple[Happening, ...]:
+    """Events of this run and of the one before, some of them at an instant of the record."""
+    times = rng.uniform(0, end + 0.1, int(rng.integers(0, 9)))
+    if len(instants):
+        times = np.where(rng.random(len(times)) < 0.5, rng.choice(instants, len(times)), times)
+    times.sort()
     names = rng.choice(EVENTS, len(times), p=[0.2, 0.2, 0.2, 0.2, 0.1, 0.05, 0.03, 0.02])
     return tuple(
         Happening(
