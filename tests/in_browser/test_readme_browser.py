@@ -27,6 +27,7 @@ SECTION = (ROOT / "README.md").read_text("utf-8").split("## Try it")[1].split("\
 COMMANDS = re.findall(r"^onpath .*$", SECTION, re.MULTILINE)
 SERVE = re.findall(r"`(python -m http\.server [^`]*)`", SECTION)[0]
 FRAME = re.findall(r"`(<iframe .*</iframe>)`", SECTION)[0]
+BLOG = '<!doctype html><title>Blog</title><link rel="icon" href="data:,">{}'
 FIGURES = ("held.html", "arm.html", "laws.html")
 MOVES = "(window.onpath ?? window.site?.figure)?.simulation.time ?? 0"
 LARGEST = 250_000  # [B], of "one page of 0.2 MB"
@@ -90,7 +91,7 @@ def test_its_course_opens_from_the_folder_and_as_it_is_served(
 
 
 def test_its_frame_shows_the_figure_whole(browser: Browser, folder: Path, address: str) -> None:
-    (folder / "blog.html").write_text(f"<!doctype html><title>Blog</title>{FRAME}")
+    (folder / "blog.html").write_text(BLOG.format(FRAME))
     for width in (1280, 800):
         size = {"width": width, "height": 900}
         reader = SiteReader(browser, f"{address}/blog.html", viewport=size)

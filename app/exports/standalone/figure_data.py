@@ -183,6 +183,7 @@ def stops_in_words(reasons: Iterable[Message], any_output: bool, words: Words) -
 
 
 def stop_messages(figure: FigureChoice, law: str, curve: Curve) -> list[Message]:
+    """Why a robot under a law may stop, in the order of the page's `fault`."""
     kernel, start = figure.kernel(law, curve), figure.start(law, curve)
     q = kernel.state.unpack(start)["q"]
     return stop_reasons(figure.machine, figure.parameters, q, law)
