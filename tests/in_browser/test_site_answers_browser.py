@@ -72,6 +72,11 @@ def test_a_text_has_the_numbers_of_the_curve_that_was_drawn(browser: Browser, ad
     reader.press("Commit to this prediction")
     page.evaluate("site.open(5)")
     assert "You drew 12.3, and chose: –." in page.locator(".step.open").inner_text()
+    page.evaluate("site.open(2)")  # only the lab can play it: the truth comes with the page
+    assert page.locator(".step.open .compared canvas").is_visible()
+    times = page.evaluate("site.notes.truths['1'].times")
+    assert times[0] == 0 and times[-1] > 0.9
+    page.evaluate("site.open(5)")
     page.reload()
     assert "You drew 12.3, and chose: –." in page.locator(".step.open").inner_text()
     reader.context.close()

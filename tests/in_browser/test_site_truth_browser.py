@@ -60,6 +60,43 @@ def test_what_happens_is_what_happens_in_the_lab(browser: Browser, site: Path, s
     reader.context.close()
 
 
+def test_slow_motion_is_as_slow_as_the_script_says(browser: Browser, site: Path) -> None:
+    reader = SiteReader(browser, f"{(site / LESSON).as_uri()}.html#3")
+    reader.ready()
+    reader.page.locator("#next").click()  # skips the prediction
+    reader.press("Let it happen")
+    reader.advance(3.0)
+    gained, passed = reader.page.evaluate(FRAMES)
+    assert 0 < gained < 0.25 * passed + 0.005
+    reader.played(6)
+    assert reader.page.evaluate("site.stage.figure.rate") == 1
+    reader.context.close()
+
+
+FRAMES = """async () => {
+    const now = () => [site.stage.simulation.time, performance.now() / 1e3]
+    const frame = () => new Promise(done => requestAnimationFrame(done))
+    const before = (await frame(), now())
+    for (let i = 0; i < 20; i++) await frame()
+    return now().map((each, i) => each - before[i])
+}"""
+"""Simulated time in 20 frames, and the time of the clock, [s]."""
+
+
+def test_a_slider_shows_the_number_that_acts(browser: Browser, site: Path) -> None:
+    """Also where it is no multiple of the slider's step."""
+    reader = SiteReader(browser, f"{(site / LESSON).as_uri()}.html#7", reduced_motion="reduce")
+    reader.ready()
+    speed = 2 * np.pi
+    for _ in range(2):
+        shown = reader.page.locator(".step.open .slider", has_text="Speed").inner_text()
+        assert f"{speed:.4g}" in shown
+        acting = reader.page.evaluate("site.stage.simulation.values")
+        assert speed in [pytest.approx(each) for each in acting]
+        reader.page.evaluate("site.stage.act([{set: {K1: 300}, write: []}])")
+    reader.context.close()
+
+
 def test_tasks_accept_the_solution_and_not_the_failure(browser: Browser, site: Path) -> None:
     lesson = read_course([BUILT_IN])[0].lesson(LESSON, "en")
     references, _ = read_references(lesson, BUILT_IN / LESSON / REFERENCE)
