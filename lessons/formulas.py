@@ -58,7 +58,18 @@ def mathml(latex: str, options: dict[str, Any]) -> str:
 def reader() -> MarkdownIt:
     """A CommonMark parser with tables and formulas, and without HTML."""
     markdown = MarkdownIt("commonmark", {"html": False, "typographer": True}).enable(["table"])
+    markdown.add_render_rule("table_open", _table_open)
+    markdown.add_render_rule("table_close", _table_close)
     return markdown.use(dollarmath_plugin, renderer=mathml, double_inline=True)
+
+
+def _table_open(*_: object) -> str:
+    """A table scrolls by itself where it is wider than the page, with keys, too."""
+    return '<div class="wide" tabindex="0"><table>\n'
+
+
+def _table_close(*_: object) -> str:
+    return "</table></div>\n"
 
 
 def render(markdown: MarkdownIt, tokens: Sequence[Token]) -> Markup:

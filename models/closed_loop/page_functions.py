@@ -186,11 +186,11 @@ def _fault(robot: Robot) -> ca.Function:
     return ca.Function("fault", [q, v, theta_ref], [code])
 
 
-def stop_reasons(robot: Robot, parameters: Parameters, q: Array, law: str) -> list[Message]:
+def stop_reasons(robot: Robot, parameters: Parameters, q: Array | None, law: str) -> list[Message]:
     """Why a run may stop, in the order of `fault`.
 
     Args:
-        q: a configuration of the run; see `Robot.reasons`.
+        q: a configuration of the run, or None; see `Robot.reasons`.
     """
     fast = Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})
     return [fast, *robot.reasons(q, parameters), NOT_FINITE, not_finite(law)]

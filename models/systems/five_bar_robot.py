@@ -115,7 +115,7 @@ class RigidFiveBar(PlanarRobot):
         """See `Robot.broken` and `collapse`."""
         return ca.fabs(ca.sin(q[0] - q[1])) < COLLAPSED
 
-    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+    def reasons(self, q: Array | None, parameters: Parameters) -> tuple[Message, ...]:
         """See `Robot.reasons`."""
         return (COLLAPSE,)
 

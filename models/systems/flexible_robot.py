@@ -38,6 +38,7 @@ MOST_BENT = 0.3  # largest deflection over beam length; far outside the small-de
 FASTEST_TIP = 20.0  # [m/s], largest rate of the deflection
 BENT = Message("stop.bent")
 UNSTABLE = Message("stop.unstable")
+BENT_OR_UNSTABLE = Message("stop.bent_or_unstable")
 # The tip is light and soft (15 N/m): stiff springs, with forces held over a tick, would chatter.
 _SOFT = SpringLimits(500.0, 4.0, 5.0)
 SOFT_GRIP = Grip(SpringLimits(100.0, 2.0, 1.0), _SOFT, _SOFT)
@@ -200,8 +201,10 @@ class FlexibleFiveBar:
         bad = ca.fmax(bent > MOST_BENT * self.links.beam, rate > FASTEST_TIP)
         return ca.vertcat(bad, ca.fabs(ca.sin(q[0] - q[1])) < COLLAPSED)
 
-    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+    def reasons(self, q: Array | None, parameters: Parameters) -> tuple[Message, ...]:
         """See `Robot.reasons`."""
+        if q is None:
+            return BENT_OR_UNSTABLE, COLLAPSE
         return (UNSTABLE if self.is_unstable_inside(q, parameters) else BENT), COLLAPSE
 
     @property

@@ -41,7 +41,7 @@ class RigidRobot:
         """See `Robot.broken`: nothing is checked."""
         return ca.SX(0, 1)
 
-    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+    def reasons(self, q: Array | None, parameters: Parameters) -> tuple[Message, ...]:
         """See `Robot.reasons`: none."""
         return ()
 

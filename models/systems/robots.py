@@ -174,8 +174,12 @@ class Robot(Protocol):
         """1 for each check of `fault` that fails, besides those of every robot, else 0, (k, 1)."""
         ...
 
-    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
-        """What `fault` says if each of these checks fails at q, shape (n,): k reasons."""
+    def reasons(self, q: Array | None, parameters: Parameters) -> tuple[Message, ...]:
+        """What `fault` says if each of these checks fails: k reasons.
+
+        Args:
+            q: the configuration, shape (n,); None: any, while the output may change.
+        """
         ...
 
     @property

@@ -233,7 +233,7 @@ class SpatialArm(RigidRobot):
         radius = self.links.l2 * ca.cos(q[1]) + self.links.l3 * ca.cos(q[1] + q[2])
         return ca.fmax(ca.sin(q[2]) > -STRETCHED, radius < ABOVE_BASE)
 
-    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+    def reasons(self, q: Array | None, parameters: Parameters) -> tuple[Message, ...]:
         """See `Robot.reasons`."""
         return (SINGULAR,)
 

@@ -201,7 +201,7 @@ class TwoLinkArm(PlanarRobot):
         """See `Robot.broken`."""
         return ca.sin(q[1]) > -STRETCHED
 
-    def reasons(self, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+    def reasons(self, q: Array | None, parameters: Parameters) -> tuple[Message, ...]:
         """See `Robot.reasons`."""
         return (SINGULAR,)
 

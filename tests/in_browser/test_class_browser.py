@@ -119,7 +119,7 @@ def test_frozen_labs_are_paused_and_say_so(tabs: Class) -> None:
     for student in tabs.students:
         before = student.session.time
         wait_for(lambda student=student, before=before: student.session.time > before)
-        wait_for(lambda student=student: student.said() == "")
+        student.wait_for_silence()
         student.ask(c.SetRunning(False))
 
 

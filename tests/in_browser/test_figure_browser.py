@@ -438,7 +438,9 @@ def test_why_a_robot_has_stopped_is_said_as_in_the_lab(browser: Browser, tmp_pat
     assert opened.number("onpath.simulation.benches[1].stopped") == 0
     opened.press("Reset")
     opened.page.evaluate(THREE_FRAMES)
-    assert opened.page.locator(".note").inner_text() == ""
+    assert (
+        "stopped" not in opened.page.locator(".note").inner_text()
+    )  # it may say that time is late
     opened.page.close()
 
 

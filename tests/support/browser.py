@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -374,6 +375,15 @@ class Tab:
         """The row of a widget: the smallest box around its label and an input."""
         named = self.page.locator("label").filter(has_text=re.compile(f"^{re.escape(label)}"))
         return named.first.locator("xpath=ancestor::*[.//input][1]")
+
+    def wait_for_silence(self) -> None:
+        """Return when the page shows no message; fail with the message that it goes on showing."""
+        deadline = time.monotonic() + WAIT
+        while said := self.said():
+            assert time.monotonic() < deadline, (
+                f"it still says {said!r}; the lab: {self.lab.notice}"
+            )
+            time.sleep(0.005)
 
     def said(self) -> str:
         """The message shown on the page."""

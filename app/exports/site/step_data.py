@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from markupsafe import Markup
 from msgspec.structs import replace
 
 from onpath.app.exports.site.step_figures import StepFigure, figure_of, lacking_words, step_figure
@@ -96,16 +95,11 @@ def site_step(
 
 
 def _unpersonal(block: Block, lesson: Lesson, index: int, words: Words) -> Block:
-    """A block with what a text says without the student's own numbers, and with marks for them.
-
-    On a narrow screen, tables scroll by themselves.
-    """
+    """A block with what a text says without the student's own numbers, and with marks for them."""
     if not isinstance(block, Text):
         return block
     html = marked(block.html, lesson.steps, index)
-    html = filled(html, lesson.steps, index, Notes(), words)
-    html = html.replace("<table>", Markup('<div class="wide" tabindex="0"><table>'))
-    return replace(block, html=html.replace("</table>", Markup("</table></div>")))
+    return replace(block, html=filled(html, lesson.steps, index, Notes(), words))
 
 
 def _values(step: Step, figure: StepFigure) -> dict[str, Any]:

@@ -9,12 +9,7 @@ from typing import Any
 from onpath.app.exports.site.settings_places import Unsupported
 from onpath.app.exports.site.step_actions import Act, link_acts, script_acts
 from onpath.app.exports.standalone.figure_choice import FigureChoice, check_slider, chosen
-from onpath.app.exports.standalone.figure_data import (
-    figure_data,
-    slider_data,
-    stop_messages,
-    stops_in_words,
-)
+from onpath.app.exports.standalone.figure_data import figure_data, slider_data, stop_texts
 from onpath.lessons.action_schema import Action, Script, StepSetup
 from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
@@ -138,7 +133,7 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
     data, choice = _shared_data(figure.choice, words), figure.choice
     curve = next(iter(choice.paths.values()))
     stops = [
-        stops_in_words(stop_messages(choice, law, curve), "alpha" in figure.changing, words)
+        stop_texts(choice, law, curve, "alpha" in figure.changing, words)
         for law in choice.every_law
     ]
     log = choice.kernel(choice.laws[0], curve).log

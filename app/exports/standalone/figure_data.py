@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from base64 import b64encode
-from collections.abc import Iterable
 from typing import Any
 
 import casadi as ca
@@ -35,13 +34,11 @@ from onpath.models.closed_loop.page_functions import (
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.benches import BENCHES, RIGHT
 from onpath.models.control.laws.registry import law_named
-from onpath.models.errors import Message
 from onpath.models.page.edit import CHECKS, OUTLINE, ROW
 from onpath.models.page.fit import FINE, PIECE
 from onpath.models.page.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 from onpath.models.paths.curve_faults import SAMPLES
 from onpath.models.paths.curves import TERMS, Curve
-from onpath.models.systems.flexible_robot import BENT, UNSTABLE
 from onpath.models.systems.parameters import specs, time_step
 
 
@@ -166,27 +163,23 @@ def _laws(figure: FigureChoice, words: Words) -> list[dict[str, Any]]:
             "aim": law_named(law).aim,
             "byClock": law_named(law).by_clock,
             "linear": law_named(law).linear,
-            "stops": stops_in_words(
-                stop_messages(figure, law, curve), "alpha" in figure.sliders, words
-            ),
+            "stops": stop_texts(figure, law, curve, "alpha" in figure.sliders, words),
         }
         for law in figure.every_law
     ]
 
 
-def stops_in_words(reasons: Iterable[Message], any_output: bool, words: Words) -> list[str]:
-    """Why robots stop; what is said of a bent link holds for every output if it may change."""
-    either = Message("stop.bent_or_unstable")
-    return [
-        words.sentence(either if any_output and why in (BENT, UNSTABLE) else why) for why in reasons
-    ]
+def stop_texts(
+    figure: FigureChoice, law: str, curve: Curve, any_output: bool, words: Words
+) -> list[str]:
+    """Why a robot under a law may stop, in the order of the page's `fault`.
 
-
-def stop_messages(figure: FigureChoice, law: str, curve: Curve) -> list[Message]:
-    """Why a robot under a law may stop, in the order of the page's `fault`."""
+    Args:
+        any_output: whether the output may change: what is said must then hold for all of them.
+    """
     kernel, start = figure.kernel(law, curve), figure.start(law, curve)
-    q = kernel.state.unpack(start)["q"]
-    return stop_reasons(figure.machine, figure.parameters, q, law)
+    q = None if any_output else kernel.state.unpack(start)["q"]
+    return [*map(words.sentence, stop_reasons(figure.machine, figure.parameters, q, law))]
 
 
 def _path(figure: FigureChoice, name: str, curve: Curve, words: Words) -> dict[str, Any]:

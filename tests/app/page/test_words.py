@@ -41,7 +41,7 @@ from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS, found_robots
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.five_bar_robot import rigid_five_bar
-from onpath.models.systems.flexible_robot import BENT, UNSTABLE
+from onpath.models.systems.flexible_robot import BENT, BENT_OR_UNSTABLE, UNSTABLE
 from onpath.models.systems.parameters import specs
 from onpath.models.systems.robots import RobotEntry, first_fault
 from tests.support.catalogues import arguments, counts, messages
@@ -437,7 +437,7 @@ def reasons() -> Iterator[Message]:
         yield found[1]
     collapsed = robot.fault(v, v, FiveBarParameters())
     assert collapsed is not None
-    yield from (collapsed[1], UNSTABLE, BENT)
+    yield from (collapsed[1], UNSTABLE, BENT, BENT_OR_UNSTABLE)
 
 
 def behaviours() -> Iterator[Message]:
