@@ -76,7 +76,7 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
     value = statistic(record, check.robot, check.quantity, check.stat, chosen)
     if value is None:
         return Verdict(False, words("check.nothing", **names, seconds=seconds))
-    shown = _rounded(value, check.below, check.above)
+    shown = words.written(_rounded(value, check.below, check.above))
     said = words("check.bound", **names, value=shown) + seconds
     return Verdict(enough and _within(value, check.below, check.above), said)
 
@@ -96,11 +96,11 @@ def _(check: Compare, record: Record, words: Words) -> Verdict:
     names = compare_words(check, robots, words)
     large, small = both
     if large is None or small is None:
-        names |= {"robot": robots[check.larger], "wanted": f"{check.ratio:g}×"}
+        names |= {"robot": robots[check.larger], "wanted": f"{names['wanted']}×"}
         return Verdict(False, words("check.nothing", **names, seconds=seconds))
     ratio = large / max(small, TINY)
     shown = _rounded(ratio, None, check.ratio) if ratio < 1000 else ">1000"
-    said = words("check.compare", **names, ratio=shown)
+    said = words("check.compare", **names, ratio=words.written(shown))
     return Verdict(enough and ratio >= check.ratio, said + seconds)
 
 
@@ -121,10 +121,14 @@ def _(check: Better, record: Record, words: Words) -> Verdict:
         robot=robots[check.robot],
         stat=stat_words(check.stat, check.quantity, words),
         during=words(f"during.{check.during}"),
-        value="–" if value is None else f"{_rounded(value, limit, None)} {unit}",
-        before="–" if before is None else f"{_rounded(before, None, None)} {unit}",
+        value=_shown(value, limit, unit, words),
+        before=_shown(before, None, unit, words),
     )
     return Verdict(passed, said + seconds)
+
+
+def _shown(value: float | None, below: float | None, unit: str, words: Words) -> str:
+    return "–" if value is None else f"{words.written(_rounded(value, below, None))} {unit}"
 
 
 def measured(check: Better, record: Record) -> float | None:
@@ -258,7 +262,7 @@ def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> tuple
     shown = f"{math.floor(10 * have) / 10:.1f}"
     if enough:
         shown = need if "." in need else f"{need}.0"
-    return enough, words("check.seconds", have=shown, need=need)
+    return enough, words("check.seconds", have=words.written(shown), need=words.written(need))
 
 
 def bound_words(check: Bound, robots: Mapping[RobotName, str], words: Words) -> dict[str, str]:
@@ -283,7 +287,7 @@ def compare_words(check: Compare, robots: Mapping[RobotName, str], words: Words)
         "larger": robots[check.larger],
         "stat": stat_words(check.stat, check.quantity, words),
         "during": words(f"during.{check.during}"),
-        "wanted": f"{check.ratio:g}",
+        "wanted": words.written(f"{check.ratio:g}"),
     }
 
 
@@ -307,7 +311,7 @@ def stat_words(stat: Stat, quantity: str, words: Words) -> str:
 def range_words(below: float | None, above: float | None, unit: str, words: Words) -> str:
     """What lies between two bounds, at least one of them given, in words."""
     limits = [
-        words(f"check.{way}", limit=f"{limit:g}", unit=unit).rstrip()
+        words(f"check.{way}", limit=words.written(f"{limit:g}"), unit=unit).rstrip()
         for way, limit in (("above", above), ("below", below))
         if limit is not None
     ]

@@ -23,7 +23,7 @@ def setting_label(name: str, parameters: Parameters, words: Words) -> str:
 def value_label(name: str, value: object, words: Words) -> str:
     """Displayed value of a setting; see `setting_label` for its name."""
     if isinstance(value, int | float):
-        return f"{value:.4g}" if isinstance(value, float) else str(value)
+        return words.written(f"{value:.4g}") if isinstance(value, float) else str(value)
     text = str(value)
     if name in DEFAULT_LAWS:
         return law_label(text, words)

@@ -47,7 +47,11 @@ class Words:
     def number(self, value: float, digits: int = 4) -> str:
         """A number with so many significant digits, with the decimal point of the language."""
         text = f"{float(f'{value:.{digits}g}') + 0.0:g}"
-        return text.replace("-", "−").replace(".", self("report.point"))
+        return self.written(text.replace("-", "−"))
+
+    def written(self, number: str) -> str:
+        """A number that is written with a point, with the decimal point of the language."""
+        return number.replace(".", self("report.point"))
 
     def sentence(self, said: Message | Exception) -> str:
         """The text of a message or an error; an error without a code is not translated."""

@@ -64,7 +64,7 @@ function bound(check: Bound, record: RunRecord, words: Words): Verdict {
     const value = statistic(record, check.robot, check.quantity, check.stat, mask)
     if (value === null)
         return { passed: false, words: filled(words["check.nothing"]!, { ...said, seconds }) }
-    const shown = filled(words["check.bound"]!, { ...said, value: digits(value, below, above) })
+    const shown = filled(words["check.bound"]!, { ...said, value: digits(value, below, above, words) })
     return { passed: enough && within(value, below, above), words: shown + seconds }
 }
 
@@ -81,7 +81,7 @@ function compare(check: Compare, record: RunRecord, words: Words): Verdict {
         return { passed: false, words: filled(words["check.nothing"]!, values) }
     }
     const ratio = large / Math.max(small, TINY)
-    const shown = ratio < 1000 ? digits(ratio, null, check.ratio) : ">1000"
+    const shown = ratio < 1000 ? digits(ratio, null, check.ratio, words) : ">1000"
     return {
         passed: enough && ratio >= check.ratio,
         words: filled(words["check.compare"]!, { ...said, ratio: shown }) + seconds,
@@ -96,7 +96,7 @@ function setting(check: SettingCheck, record: RunRecord, words: Words): Verdict 
             ? same(value, equals, check.whole)
             : typeof value === "number" && within(value, check.below, check.above)
     const shown =
-        typeof value !== "number" ? (check.labels[value] ?? value) : check.whole ? String(value) : general(value, 4)
+        typeof value !== "number" ? (check.labels[value] ?? value) : check.whole ? String(value) : general(value, 4).replace(".", words["point"]!)
     return { passed, words: filled(words["check.setting"]!, { ...said, value: shown }) }
 }
 
@@ -197,22 +197,23 @@ function within(value: number, below: number | null, above: number | null): bool
 }
 
 /** With as few digits as keep it on its side of the bounds; see `_rounded` in lessons/checks.py. */
-function digits(value: number, below: number | null, above: number | null): string {
+function digits(value: number, below: number | null, above: number | null, words: Words): string {
     const bounds = [below, above].filter(each => each !== null && each !== 0).map(each => Math.abs(each!))
     const least = bounds.length ? Math.min(...bounds) : 1
     const decimals = Math.max(2, 2 - Math.floor(Math.log10(least)))
     const holds = within(value, below, above)
     const tried = [Math.abs(value) < 1 ? fixed(value, decimals) : general(value, 3)]
     for (let count = 3; count < 17; count++) tried.push(general(value, count))
-    return tried.find(text => within(Number(text), below, above) === holds) ?? String(value)
+    const shown = tried.find(text => within(Number(text), below, above) === holds) ?? String(value)
+    return shown.replace(".", words["point"]!)
 }
 
 /** Whether the instants last long enough, and the words for it, rounded down. */
 function duration(check: Window, record: RunRecord, mask: boolean[], said: Said, words: Words): [boolean, string] {
     const have = sum(steps(record).filter((_, i) => mask[i]))
-    const need = said["need"]!
+    const need = said["need"]!, point = words["point"]!
     const enough = have >= check.least - INSTANT
     const tenths = Math.floor(10 * have)
-    const shown = enough ? (need.includes(".") ? need : `${need}.0`) : `${Math.floor(tenths / 10)}.${tenths % 10}`
+    const shown = enough ? (need.includes(point) ? need : `${need}${point}0`) : `${Math.floor(tenths / 10)}${point}${tenths % 10}`
     return [enough, filled(words["check.seconds"]!, { have: shown, need })]
 }

@@ -18,7 +18,7 @@ from onpath.lessons.benches import robot_names
 from onpath.lessons.checks import verdict
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.record import Record
-from onpath.lessons.words import ENGLISH
+from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import short_name
 from tests.support.random_records import some_check, some_record
@@ -166,21 +166,24 @@ JUDGE_ALL = """text => {
 }"""
 
 
-def test_checks_say_and_decide_what_the_lab_s_do(judging: Page) -> None:
+@pytest.mark.parametrize(("language", "records"), [("en", RECORDS), ("de", RECORDS // 10)])
+def test_checks_say_and_decide_what_the_lab_s_do(
+    judging: Page, language: str, records: int
+) -> None:
     """On thousands of random records, among them ties and bounds that are met exactly."""
-    rng = np.random.default_rng(20)
-    words, cases, expected = check_words(ENGLISH), list[Any](), list[Any]()
-    for _ in range(RECORDS):
+    rng, words = np.random.default_rng(20), Words(language)
+    cases, expected = list[Any](), list[Any]()
+    for _ in range(records):
         record, check = some_record(rng), some_check(rng)
-        names = robot_names(record.laws, ENGLISH)
-        data = check_data(check, record.parameters, names, ENGLISH)
+        names = robot_names(record.laws, words)
+        data = check_data(check, record.parameters, names, words)
         cases.append({"check": data, "record": as_data(record)})
-        found = verdict(check, record, ENGLISH)
+        found = verdict(check, record, words)
         expected.append({"passed": found.passed, "words": found.words})
     passed = sum(each["passed"] for each in expected)
-    assert RECORDS / 10 < passed < RECORDS * 9 / 10
-    for i in range(0, RECORDS, 500):
-        text = json.dumps({"cases": cases[i : i + 500], "words": words})
+    assert records / 10 < passed < records * 9 / 10
+    for i in range(0, records, 500):
+        text = json.dumps({"cases": cases[i : i + 500], "words": check_words(words)})
         assert judging.evaluate(JUDGE_ALL, text) == expected[i : i + 500]
 
 

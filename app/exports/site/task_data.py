@@ -42,7 +42,8 @@ SAID = {
 
 def check_words(words: Words) -> dict[str, str]:
     """The messages of the checks, with places for their values."""
-    return {key: words(key, **{n: f"{{{n}}}" for n in names}) for key, names in SAID.items()}
+    said = {key: words(key, **{n: f"{{{n}}}" for n in names}) for key, names in SAID.items()}
+    return said | {"point": words("report.point")}
 
 
 def task_data(
@@ -76,7 +77,9 @@ def _more(check: Check, parameters: Parameters, robots: dict[Any, str], words: W
 
 @_more.register
 def _(check: Bound, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
-    return {"said": {**bound_words(check, robots, words), "need": f"{check.least:g}"}}
+    return {
+        "said": {**bound_words(check, robots, words), "need": words.written(f"{check.least:g}")}
+    }
 
 
 @_more.register
@@ -85,7 +88,7 @@ def _(check: Compare, parameters: Parameters, robots: dict[Any, str], words: Wor
     said = {
         **compare_words(check, robots, words),
         "smaller": robots[smaller],
-        "need": f"{check.least:g}",
+        "need": words.written(f"{check.least:g}"),
     }
     return {"smaller": smaller, "said": said}
 
