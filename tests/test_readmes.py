@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -36,3 +37,8 @@ def test_modules_that_are_named_exist(name: str) -> None:
 @pytest.mark.parametrize("file", READMES, ids=lambda file: str(file.relative_to(ROOT)))
 def test_no_text_breaks_off(file: Path) -> None:
     assert re.search(r"(\.|\||```|-->)\n\Z", file.read_text("utf-8"))
+
+
+def test_the_version_to_cite_is_this_one() -> None:
+    text = (ROOT / "README.md").read_text("utf-8")
+    assert re.findall(r'"OnPath, version ([\d.]+)"', text) == [version("onpath")]

@@ -6,6 +6,7 @@ The pages are rendered from the templates in assets/templates/guide.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from importlib.metadata import version
 from pathlib import Path
 
 from onpath.app.common.templates import render
@@ -30,7 +31,8 @@ def guide(course: Course, folder: Path, names: Iterable[str], words: Words) -> s
     lessons = [taught_lesson(course, folder, name, words) for name in names]
     whole = {taught.lesson.name for taught in lessons} == {*course.lessons}
     test = course.lesson(BEFORE, words.language) if whole and course.tests else None
-    return render("guide/guide.html", lessons=lessons, test=test, words=words, letters=LETTERS)
+    given = {"lessons": lessons, "test": test, "words": words, "letters": LETTERS}
+    return render("guide/guide.html", **given, version=version("onpath"))
 
 
 def worksheet(course: Course, folder: Path, name: str, words: Words) -> tuple[str, str]:
