@@ -22,7 +22,7 @@ from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.law_poles import channels_of
 from onpath.models.errors import Message
 from onpath.models.paths.path_design import presets
-from tests.support.axe import RUN, SCRIPT
+from tests.support.axe import RUN, SCRIPT, nameless
 from tests.support.browser import THREE_FRAMES
 from tests.support.figure_runs import Act, PythonFigure
 from tests.support.waiting import wait_for
@@ -343,7 +343,7 @@ def test_axe_finds_nothing_serious(browser: Browser, tmp_path: Path, scheme: Any
     paper = page.evaluate("getComputedStyle(document.documentElement).backgroundColor")
     assert (sum(json.loads(f"[{paper[4:-1]}]")) < 150) == (scheme == "dark")
     page.add_script_tag(path=SCRIPT)
-    assert page.evaluate(RUN) == []
+    assert page.evaluate(RUN) == [] and nameless(page) == []
     context.close()
 
 

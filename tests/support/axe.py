@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import re
+from typing import TYPE_CHECKING
+
 from tests.support.browser import Tab
 from tests.support.checkout import ROOT
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
 
 SCRIPT = ROOT / "tests" / "vendor" / "axe-core" / "axe.min.js"
 RUN = """async () => (await axe.run({ resultTypes: ["violations"] })).violations
@@ -21,3 +27,13 @@ def violations(tab: Tab) -> list[list[str]]:
     if not tab.page.evaluate("'axe' in window"):
         tab.page.add_script_tag(path=SCRIPT)
     return tab.page.evaluate(RUN)
+
+
+def nameless(page: Page) -> list[str]:
+    """Pictures and groups of options without a role and a name, which axe-core lets pass."""
+    found = list[str]()
+    for selector, role in (("canvas", "img"), (".options", "radiogroup")):
+        shown = page.locator(f"{selector}:visible")
+        named = page.get_by_role(role, name=re.compile(r"\w"))
+        found += [selector] * (shown.count() - shown.and_(named).count())
+    return found
