@@ -34,7 +34,7 @@ def download(tab: Tab, button: str) -> Download:
     return waiting.value
 
 
-def test_exports(tab: Tab, browser: Browser, tmp_path: Path) -> None:
+def test_exports(tab: Tab) -> None:
     wait_for(lambda: tab.session.time > 1.0)
     table = download(tab, "CSV, last 60 s")
     assert table.suggested_filename == "onpath.csv"
@@ -46,6 +46,11 @@ def test_exports(tab: Tab, browser: Browser, tmp_path: Path) -> None:
         assert np.isfinite(columns["distance_m"]).all()
     picture = download(tab, "Picture of the plots")
     assert Path(picture.path()).read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+
+
+@pytest.mark.thorough
+def test_a_recording_plays_from_a_file(tab: Tab, browser: Browser, tmp_path: Path) -> None:
+    wait_for(lambda: tab.session.time > 1.0)
     film = tmp_path / "film.html"
     download(tab, "Recording (HTML), last 10 s").save_as(film)
     context = fresh(browser)
