@@ -380,9 +380,8 @@ class Tab:
         """Return when the page shows no message; fail with the message that it goes on showing."""
         deadline = time.monotonic() + WAIT
         while said := self.said():
-            assert time.monotonic() < deadline, (
-                f"it still says {said!r}; the lab: {self.lab.notice}"
-            )
+            lab = f"the lab says {self.lab.notice}, seen: {self.scheduled.is_seen}"
+            assert time.monotonic() < deadline, f"waited in vain: {said!r}; {lab}"
             time.sleep(0.005)
 
     def said(self) -> str:
