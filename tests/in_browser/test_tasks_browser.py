@@ -18,6 +18,7 @@ from onpath.app.server.lab_server import LabServer
 from tests.support.browser import Tab, wait_for
 from tests.support.built_in import built_in_course
 from tests.support.hands import ROBOT, DragBall, Enter, Gesture, Hands, Pull, Slide, Wait
+from tests.support.pupil import sketch
 from tests.support.solutions import SOLUTIONS, passed, verdicts
 
 pytestmark = pytest.mark.thorough
@@ -124,3 +125,11 @@ def test_the_ball_under_the_end_point_is_dragged(by: str, request: pytest.Fixtur
     end = lab.session.editor.design.points[-1] * 1e3
     assert np.linalg.norm(tab.tip(ROBOT) * 1e3 - end) < 1
     DragBall((end[0], end[1]), (end[0] - 10, end[1] + 25))(hands)
+
+
+@pytest.mark.parametrize("by", ["mouse", "finger"])
+def test_a_curve_is_drawn_on_the_board(by: str, request: pytest.FixtureRequest) -> None:
+    hands: Hands = request.getfixturevalue(by)
+    go_to(hands.tab, "01-path-or-timetable", 1)
+    hands.tab.page.get_by_text("Draw with the mouse or a finger").wait_for()
+    sketch(hands)

@@ -33,6 +33,17 @@ BOARD = ((0.22, 0.47), (0.4, 0.46), (0.5, 0.38), (0.6, 0.36), (0.78, 0.47))
 """A curve on the board for sketches, in shares of the scene's width and height."""
 
 
+def sketch(hands: Hands) -> None:
+    """Draw a curve on the board."""
+    page = hands.tab.page
+    box = Hands.box(page.locator("canvas").first)
+    with hands.dragging(
+        *((box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in BOARD)
+    ):
+        pass
+    page.get_by_text("Draw again, or commit").wait_for()
+
+
 class Pupil:
     """Does lessons in a tab.
 
@@ -128,11 +139,7 @@ class Pupil:
         else:
             page.get_by_text("Draw with the mouse").wait_for()
             self.tab.settle()
-            box = Hands.box(page.locator("canvas").first)
-            curve = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in BOARD]
-            with self.tab.dragging(*curve):
-                pass
-            page.get_by_text("Draw again, or commit").wait_for()
+            sketch(Hands(self.tab, touch=False))
         self.tab.choose("How sure are you? (optional)", "fairly sure")
         if block.reasons:
             page.get_by_label("Why? (optional)").first.click()
