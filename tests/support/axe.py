@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from tests.support.browser import Tab
 from tests.support.checkout import ROOT
@@ -19,6 +19,7 @@ RUN = """async () => (await axe.run({ resultTypes: ["violations"] })).violations
 NAMED = """() => [...document.querySelectorAll("[role=slider]")]
     .every(each => each.getAttribute("aria-label"))"""
 """Whether assets/page/names.js has seen what is on the page."""
+ROLES: dict[str, Literal["img", "radiogroup"]] = {"canvas": "img", ".options": "radiogroup"}
 
 
 def violations(tab: Tab) -> list[list[str]]:
@@ -32,7 +33,7 @@ def violations(tab: Tab) -> list[list[str]]:
 def nameless(page: Page) -> list[str]:
     """Pictures and groups of options without a role and a name, which axe-core lets pass."""
     found = list[str]()
-    for selector, role in (("canvas", "img"), (".options", "radiogroup")):
+    for selector, role in ROLES.items():
         shown = page.locator(f"{selector}:visible")
         named = page.get_by_role(role, name=re.compile(r"\w"))
         found += [selector] * (shown.count() - shown.and_(named).count())
