@@ -76,7 +76,7 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
     value = statistic(record, check.robot, check.quantity, check.stat, chosen)
     if value is None:
         return Verdict(False, words("check.nothing", **names, seconds=seconds))
-    shown = words.written(_rounded(value, check.below, check.above))
+    shown = _rounded(value, check.below, check.above, words)
     said = words("check.bound", **names, value=shown) + seconds
     return Verdict(enough and _within(value, check.below, check.above), said)
 
@@ -99,8 +99,8 @@ def _(check: Compare, record: Record, words: Words) -> Verdict:
         names |= {"robot": robots[check.larger], "wanted": f"{names['wanted']}×"}
         return Verdict(False, words("check.nothing", **names, seconds=seconds))
     ratio = large / max(small, TINY)
-    shown = _rounded(ratio, None, check.ratio) if ratio < 1000 else ">1000"
-    said = words("check.compare", **names, ratio=words.written(shown))
+    shown = _rounded(ratio, None, check.ratio, words) if ratio < 1000 else ">1000"
+    said = words("check.compare", **names, ratio=shown)
     return Verdict(enough and ratio >= check.ratio, said + seconds)
 
 
@@ -121,14 +121,10 @@ def _(check: Better, record: Record, words: Words) -> Verdict:
         robot=robots[check.robot],
         stat=stat_words(check.stat, check.quantity, words),
         during=words(f"during.{check.during}"),
-        value=_shown(value, limit, unit, words),
-        before=_shown(before, None, unit, words),
+        value="–" if value is None else f"{_rounded(value, limit, None, words)} {unit}",
+        before="–" if before is None else f"{_rounded(before, None, None, words)} {unit}",
     )
     return Verdict(passed, said + seconds)
-
-
-def _shown(value: float | None, below: float | None, unit: str, words: Words) -> str:
-    return "–" if value is None else f"{words.written(_rounded(value, below, None))} {unit}"
 
 
 def measured(check: Better, record: Record) -> float | None:
@@ -213,7 +209,7 @@ def statistic(
     return float({"max": np.max, "min": np.min, "mean": np.mean}[stat](values))
 
 
-def _rounded(value: float, below: float | None, above: float | None) -> str:
+def _rounded(value: float, below: float | None, above: float | None, words: Words) -> str:
     """The number with as few digits as keep it on its side of the bounds.
 
     Three digits, and at most two decimals, unless rounding would turn a missed bound into a met one
@@ -225,8 +221,8 @@ def _rounded(value: float, below: float | None, above: float | None) -> str:
     holds = _within(value, below, above)
     for shown in (short, *(f"{value:.{digits}g}" for digits in range(3, 17))):
         if _within(float(shown), below, above) == holds:
-            return shown
-    return f"{value!r}"
+            return words.written(shown)
+    return words.written(f"{value!r}")
 
 
 def _within(value: float, below: float | None, above: float | None) -> bool:
@@ -257,12 +253,12 @@ def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> tuple
 
     The shown duration is rounded down, so that it never looks sufficient when it is not.
     """
-    have, need = record.seconds(chosen), f"{check.least:g}"
+    have, need, point = record.seconds(chosen), words.number(check.least), words("report.point")
     enough = have >= check.least - INSTANT
-    shown = f"{math.floor(10 * have) / 10:.1f}"
+    shown = words.written(f"{math.floor(10 * have) / 10:.1f}")
     if enough:
-        shown = need if "." in need else f"{need}.0"
-    return enough, words("check.seconds", have=words.written(shown), need=words.written(need))
+        shown = need if point in need else f"{need}{point}0"
+    return enough, words("check.seconds", have=shown, need=need)
 
 
 def bound_words(check: Bound, robots: Mapping[RobotName, str], words: Words) -> dict[str, str]:
@@ -287,7 +283,7 @@ def compare_words(check: Compare, robots: Mapping[RobotName, str], words: Words)
         "larger": robots[check.larger],
         "stat": stat_words(check.stat, check.quantity, words),
         "during": words(f"during.{check.during}"),
-        "wanted": words.written(f"{check.ratio:g}"),
+        "wanted": words.number(check.ratio),
     }
 
 

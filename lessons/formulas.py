@@ -64,7 +64,7 @@ def reader() -> MarkdownIt:
 
 
 def _table_open(*_: object) -> str:
-    """A table scrolls by itself where it is wider than the page, with keys, too."""
+    """A table in a box that scrolls, also by keyboard, where the table is wider than the page."""
     return '<div class="wide" tabindex="0"><table>\n'
 
 

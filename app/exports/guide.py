@@ -31,8 +31,14 @@ def guide(course: Course, folder: Path, names: Iterable[str], words: Words) -> s
     lessons = [taught_lesson(course, folder, name, words) for name in names]
     whole = {taught.lesson.name for taught in lessons} == {*course.lessons}
     test = course.lesson(BEFORE, words.language) if whole and course.tests else None
-    given = {"lessons": lessons, "test": test, "words": words, "letters": LETTERS}
-    return render("guide/guide.html", **given, version=version("onpath"))
+    return render(
+        "guide/guide.html",
+        lessons=lessons,
+        test=test,
+        words=words,
+        letters=LETTERS,
+        version=version("onpath"),
+    )
 
 
 def worksheet(course: Course, folder: Path, name: str, words: Words) -> tuple[str, str]:

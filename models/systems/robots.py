@@ -178,7 +178,8 @@ class Robot(Protocol):
         """What `fault` says if each of these checks fails: k reasons.
 
         Args:
-            q: the configuration, shape (n,); None: any, while the output may change.
+            q: the configuration, shape (n,). None if the output may change during the run; the
+                reasons then hold for every output.
         """
         ...
 

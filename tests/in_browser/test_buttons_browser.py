@@ -110,7 +110,7 @@ def test_a_refused_path_is_explained_and_the_old_one_kept(tab: Tab) -> None:
     assert tab.session.editor.design.name == "circle"
     tab.choose("Path", "clover")
     wait_for(lambda: tab.session.editor.design.name == "clover")
-    tab.wait_for_silence()
+    tab.wait_for_no_message()
 
 
 def test_a_robot_that_leaves_its_workspace_stops_and_says_why(tab: Tab) -> None:
@@ -121,7 +121,7 @@ def test_a_robot_that_leaves_its_workspace_stops_and_says_why(tab: Tab) -> None:
     tab.ask(c.ResetParameters())
     tab.press("Reset")
     wait_for(lambda: all(run.diverged is None for run in tab.session.runs.values()))
-    tab.wait_for_silence()
+    tab.wait_for_no_message()
     wait_for(lambda: tab.session.runs[FOLLOWER].distance < 1e-3 < tab.session.time)
 
 

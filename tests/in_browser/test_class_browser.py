@@ -122,7 +122,7 @@ def test_frozen_labs_are_paused_and_say_so(tabs: Class) -> None:
     for student in tabs.students:
         before = student.session.time
         wait_for(lambda student=student, before=before: student.session.time > before)
-        student.wait_for_silence()
+        student.wait_for_no_message()
         student.page.locator("#op-bar").wait_for()
         student.page.set_viewport_size({"width": 800, "height": 400})
         student.ask(c.SetRunning(False))

@@ -22,7 +22,7 @@ from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.law_poles import channels_of
 from onpath.models.errors import Message
 from onpath.models.paths.path_design import presets
-from tests.support.axe import RUN, SCRIPT, nameless
+from tests.support.axe import RUN, SCRIPT, unnamed
 from tests.support.browser import THREE_FRAMES
 from tests.support.figure_runs import Act, PythonFigure
 from tests.support.waiting import wait_for
@@ -343,7 +343,7 @@ def test_axe_finds_nothing_serious(browser: Browser, tmp_path: Path, scheme: Any
     paper = page.evaluate("getComputedStyle(document.documentElement).backgroundColor")
     assert (sum(json.loads(f"[{paper[4:-1]}]")) < 150) == (scheme == "dark")
     page.add_script_tag(path=SCRIPT)
-    assert page.evaluate(RUN) == [] and nameless(page) == []
+    assert page.evaluate(RUN) == [] and unnamed(page) == []
     context.close()
 
 
@@ -438,9 +438,8 @@ def test_why_a_robot_has_stopped_is_said_as_in_the_lab(browser: Browser, tmp_pat
     assert opened.number("onpath.simulation.benches[1].stopped") == 0
     opened.press("Reset")
     opened.page.evaluate(THREE_FRAMES)
-    assert (
-        "stopped" not in opened.page.locator(".note").inner_text()
-    )  # it may say that time is late
+    # On a busy machine the note may say now that time runs late.
+    assert "stopped" not in opened.page.locator(".note").inner_text()
     opened.page.close()
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from onpath.app.exports.site.pages import POLICY
-from tests.support.axe import RUN, SCRIPT, nameless
+from tests.support.axe import RUN, SCRIPT, unnamed
 from tests.support.site import NGINX
 from tests.support.site_export import LESSON, exported_site
 from tests.support.site_lesson import END, lesson_one_by_keys, lesson_one_by_mouse
@@ -209,9 +209,9 @@ def test_axe_finds_nothing_serious_on_light_or_dark_pages(
     wait_for(lambda: page.evaluate(INKED, ".plot canvas") == INK[scheme], WAIT)
     for number in range(page.evaluate("site.page.steps?.length ?? 0")):
         page.evaluate("number => site.open(number)", number)
-        assert page.evaluate(RUN) == [] and nameless(page) == [], number
+        assert page.evaluate(RUN) == [] and unnamed(page) == [], number
         answered(reader)
-        assert page.evaluate(RUN) == [] and nameless(page) == [], f"{number}, answered"
+        assert page.evaluate(RUN) == [] and unnamed(page) == [], f"{number}, answered"
     reader.context.close()
 
 

@@ -20,6 +20,7 @@ NAMED = """() => [...document.querySelectorAll("[role=slider]")]
     .every(each => each.getAttribute("aria-label"))"""
 """Whether assets/page/names.js has seen what is on the page."""
 ROLES: dict[str, Literal["img", "radiogroup"]] = {"canvas": "img", ".options": "radiogroup"}
+"""The role that every element of a CSS selector must have."""
 
 
 def violations(tab: Tab) -> list[list[str]]:
@@ -30,8 +31,8 @@ def violations(tab: Tab) -> list[list[str]]:
     return tab.page.evaluate(RUN)
 
 
-def nameless(page: Page) -> list[str]:
-    """Pictures and groups of options without a role and a name, which axe-core lets pass."""
+def unnamed(page: Page) -> list[str]:
+    """Canvases and groups of options that lack a role or a name; axe-core does not report them."""
     found = list[str]()
     for selector, role in ROLES.items():
         shown = page.locator(f"{selector}:visible")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -376,13 +375,12 @@ class Tab:
         named = self.page.locator("label").filter(has_text=re.compile(f"^{re.escape(label)}"))
         return named.first.locator("xpath=ancestor::*[.//input][1]")
 
-    def wait_for_silence(self) -> None:
-        """Return when the page shows no message; fail with the message that it goes on showing."""
-        deadline = time.monotonic() + WAIT
-        while said := self.said():
-            lab = f"the lab says {self.lab.notice}, seen: {self.scheduled.is_seen}"
-            assert time.monotonic() < deadline, f"waited in vain: {said!r}; {lab}"
-            time.sleep(0.005)
+    def wait_for_no_message(self) -> None:
+        """Return when the page shows no message; a failure tells page and lab apart."""
+        wait_for(
+            lambda: not self.said(),
+            state=lambda: f"{self.said()!r}, lab {self.lab.notice}, {self.scheduled.is_seen=}",
+        )
 
     def said(self) -> str:
         """The message shown on the page."""

@@ -7,10 +7,14 @@ from collections.abc import Callable
 from typing import Any
 
 
-def wait_for(condition: Callable[[], Any], seconds: float) -> Any:
-    """Return the value of `condition` as soon as it is true; fail on time-out."""
+def wait_for(condition: Callable[[], Any], seconds: float, state: Callable[[], str] = str) -> Any:
+    """Return the value of `condition` as soon as it is true.
+
+    Args:
+        state: describes what was found instead, for the failure on time-out.
+    """
     deadline = time.monotonic() + seconds
     while not (result := condition()):
-        assert time.monotonic() < deadline, "waited in vain"
+        assert time.monotonic() < deadline, f"waited in vain {state()}"
         time.sleep(0.005)
     return result

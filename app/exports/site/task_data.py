@@ -77,9 +77,7 @@ def _more(check: Check, parameters: Parameters, robots: dict[Any, str], words: W
 
 @_more.register
 def _(check: Bound, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
-    return {
-        "said": {**bound_words(check, robots, words), "need": words.written(f"{check.least:g}")}
-    }
+    return {"said": {**bound_words(check, robots, words), "need": words.number(check.least)}}
 
 
 @_more.register
@@ -88,7 +86,7 @@ def _(check: Compare, parameters: Parameters, robots: dict[Any, str], words: Wor
     said = {
         **compare_words(check, robots, words),
         "smaller": robots[smaller],
-        "need": words.written(f"{check.least:g}"),
+        "need": words.number(check.least),
     }
     return {"smaller": smaller, "said": said}
 

@@ -175,7 +175,7 @@ def stop_texts(
     """Why a robot under a law may stop, in the order of the page's `fault`.
 
     Args:
-        any_output: whether the output may change: what is said must then hold for all of them.
+        any_output: whether the output may change; the texts then hold for every output.
     """
     kernel, start = figure.kernel(law, curve), figure.start(law, curve)
     q = None if any_output else kernel.state.unpack(start)["q"]

@@ -18,6 +18,7 @@ from onpath.assets import asset_path
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.schema import Text
 from onpath.lessons.words import ENGLISH
+from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.flexible_robot import BENT
 from tests.support.site_export import LESSON, exported_site
 
@@ -156,7 +157,9 @@ def test_a_task_is_offered_if_its_solution_can_be_done_here() -> None:
 
 def test_a_bent_link_is_not_called_stable_where_its_output_changes() -> None:
     lesson = read_course([BUILT_IN])[0].lesson("07-flexible-link", "en")
-    either = ENGLISH("stop.bent_or_unstable")
+    either, flexible = ENGLISH("stop.bent_or_unstable"), ROBOTS["flexible"]
+    reasons = flexible.make(flexible.lab).reasons(None, flexible.lab)
+    assert [ENGLISH.sentence(reason) for reason in reasons].count(either) == 1
     said = {
         i: figure_of(step_figure(lesson, i), ENGLISH)["laws"][1]["stops"]
         for i, step in enumerate(lesson.steps)
