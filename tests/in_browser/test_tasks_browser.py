@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import re
 from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -43,6 +44,7 @@ def cases(solutions: dict[str, dict[str, tuple[Gesture, ...]]]) -> list[tuple[st
     return [(lesson, task) for lesson, tasks in solutions.items() for task in tasks]
 
 
+@contextmanager
 def opened(browser: Browser, server: LabServer, touch: bool) -> Iterator[Hands]:
     """Open a student's tab."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, has_touch=touch)
@@ -54,12 +56,14 @@ def opened(browser: Browser, server: LabServer, touch: bool) -> Iterator[Hands]:
 
 @pytest.fixture(scope="module")
 def mouse(browser: Browser, server: LabServer) -> Iterator[Hands]:
-    yield from opened(browser, server, touch=False)
+    with opened(browser, server, touch=False) as hands:
+        yield hands
 
 
 @pytest.fixture(scope="module")
 def finger(browser: Browser, server: LabServer) -> Iterator[Hands]:
-    yield from opened(browser, server, touch=True)
+    with opened(browser, server, touch=True) as hands:
+        yield hands
 
 
 def go_to(tab: Tab, lesson: str, index: int) -> None:
@@ -127,9 +131,10 @@ def test_the_ball_under_the_end_point_is_dragged(by: str, request: pytest.Fixtur
     DragBall((end[0], end[1]), (end[0] - 10, end[1] + 25))(hands)
 
 
-@pytest.mark.parametrize("by", ["mouse", "finger"])
-def test_a_curve_is_drawn_on_the_board(by: str, request: pytest.FixtureRequest) -> None:
-    hands: Hands = request.getfixturevalue(by)
-    go_to(hands.tab, "01-path-or-timetable", 1)
-    hands.tab.page.get_by_text("Draw with the mouse or a finger").wait_for()
-    sketch(hands)
+@pytest.mark.parametrize("touch", [False, True], ids=["mouse", "finger"])
+def test_a_curve_is_drawn_on_the_board(browser: Browser, server: LabServer, touch: bool) -> None:
+    """In a tab of its own: a prediction counts as skipped once a later step has been opened."""
+    with opened(browser, server, touch) as hands:
+        go_to(hands.tab, "01-path-or-timetable", 1)
+        hands.tab.page.get_by_text("Draw with the mouse or a finger").wait_for()
+        sketch(hands)
