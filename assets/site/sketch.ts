@@ -95,22 +95,20 @@ export class Chart {
 export class Board extends Chart {
     readonly element: HTMLElement
     answer: Answer = {}
-    private drawing = false
+    private drawing: number | null = null // the pointer
     private readonly inputs: HTMLInputElement[]
 
     constructor(page: PageData, axes: SketchData, private readonly changed: () => void) {
         super(page, axes)
         this.canvas.classList.add("board")
-        const { label: quantity, unit } = axes
         const seconds = local(axes.seconds, 4, page.words["point"]!)
-        this.canvas.setAttribute("aria-label", said(page, "site.sketch", { quantity, unit, seconds }))
+        this.canvas.setAttribute("aria-label", said(page, "site.sketch", { quantity: axes.label, unit: axes.unit, seconds }))
         this.inputs = Array.from({ length: POINTS }, () => made("input", ""))
         const labels = this.inputs.map((input, i) => {
             const time = local(this.time(i), 3, page.words["point"]!)
-            input.type = "text"
             input.inputMode = "decimal"
             input.addEventListener("change", () => this.typed())
-            return made("label", "", said(page, "lesson.at", { time, unit }), " ", input)
+            return made("label", "", said(page, "lesson.at", { time, unit: axes.unit }), " ", input)
         })
         const summary = made("summary", "", said(page, "lesson.numbers"))
         this.element = made("div", "", this.canvas, made("details", "", summary, made("div", "points", ...labels)))
@@ -121,19 +119,21 @@ export class Board extends Chart {
     private hand(): void {
         const { canvas } = this
         canvas.addEventListener("pointerdown", event => {
+            if (this.drawing !== null) return
+            this.drawing = event.pointerId
             canvas.setPointerCapture(event.pointerId)
-            this.drawing = true
             this.answer = { times: [], values: [] }
             this.extend(event)
         })
         canvas.addEventListener("pointermove", event => {
-            if (!this.drawing) return
+            if (event.pointerId !== this.drawing) return
             for (const each of event.getCoalescedEvents?.() ?? [event]) this.extend(each)
         })
         for (const end of ["pointerup", "pointercancel"] as const)
-            canvas.addEventListener(end, () => {
-                if (this.drawing && this.answer.times!.length < 2) this.answer = {}
-                this.drawing = false
+            canvas.addEventListener(end, event => {
+                if (event.pointerId !== this.drawing) return
+                if (this.answer.times!.length < 2) this.answer = {}
+                this.drawing = null
                 this.show()
             })
     }

@@ -175,7 +175,7 @@ export class Figure {
         canvas.addEventListener("touchstart", begin, { passive: false })
         canvas.addEventListener("pointerdown", event => {
             const what = at(event)
-            if (what === null) return
+            if (what === null || grabbed) return
             grabbed = { what, from: event }
             canvas.setPointerCapture(event.pointerId)
             if (what === "tip") act([0, 0])
@@ -188,9 +188,10 @@ export class Figure {
             this.pending = () => act(by)
         })
         for (const end of ["pointerup", "pointercancel"] as const)
-            canvas.addEventListener(end, () => {
+            canvas.addEventListener(end, event => {
+                if (event.pointerId !== grabbed?.from.pointerId) return
                 this.drag()
-                if (grabbed) act(null)
+                act(null)
                 grabbed = null
             })
     }

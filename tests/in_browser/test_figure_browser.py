@@ -25,6 +25,7 @@ from onpath.models.paths.path_design import presets
 from tests.support.axe import RUN, SCRIPT, unnamed
 from tests.support.browser import THREE_FRAMES
 from tests.support.figure_runs import Act, PythonFigure
+from tests.support.fingers import fingers
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.thorough
@@ -36,6 +37,13 @@ WAIT = 60.0  # [s]
 
 LAWS = ("trajectory_tracking", "path_following")
 PATHS = ("circle", "clover", "segment")
+HAND_TARGET = """(() => {
+    onpath.drag()
+    const [{figure, kernels, settings}] = onpath.simulation.benches
+    return figure.settings.hand_target.map(place => kernels.numbers[settings + place])
+})()"""
+"""Where a hand pulls the first robot's end-point to."""
+IS_PULLED = "onpath.simulation.benches[0].pulled"
 CLOSE = 1e-12
 EDITED = 1e-10
 """After an edit: the curve itself is fitted with other roundings, to 1e-13."""
@@ -298,9 +306,9 @@ def test_inside_an_iframe_of_a_web_server_s_page(browser: Browser, tmp_path: Pat
         server.shutdown()
 
 
-def test_a_tip_is_dragged_with_a_finger_and_the_page_still_scrolls(
-    browser: Browser, tmp_path: Path
-) -> None:
+@pytest.fixture
+def phone(browser: Browser, tmp_path: Path) -> Iterator[Page]:
+    """A paused figure on a phone."""
     context = browser.new_context(viewport={"width": 390, "height": 600}, has_touch=True)
     page = context.new_page()
     page.goto(written(tmp_path).as_uri())
@@ -308,30 +316,52 @@ def test_a_tip_is_dragged_with_a_finger_and_the_page_still_scrolls(
     page.get_by_role("button", name="Pause").click()
     page.evaluate("scrollTo(0, 0)")
     page.evaluate(THREE_FRAMES)
+    yield page
+    context.close()
+
+
+def tip_on(page: Page) -> tuple[float, float]:
+    """Where the first robot's end-point is in the window."""
     box = page.locator("canvas").first.bounding_box()
     assert box
     x, y = page.evaluate("onpath.views[0].pixel(onpath.simulation.benches[0].tip())")
-    touched = context.new_cdp_session(page)
+    return box["x"] + x, box["y"] + y
 
-    def tell(kind: str, *places: tuple[float, float]) -> None:
-        points = [{"x": x, "y": y} for x, y in places]
-        touched.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
 
+def test_a_tip_is_dragged_with_a_finger_and_the_page_still_scrolls(phone: Page) -> None:
     def swiped(x: float, y: float) -> list[Any]:
-        """Whether the tip is pulled on the way, and how far the page is scrolled after it."""
-        tell("touchStart", (x, y))
-        for way in range(10, 90, 10):
-            tell("touchMove", (x, y - way))
-        pulled = page.evaluate("onpath.simulation.benches[0].pulled")
-        tell("touchEnd")
-        page.evaluate(THREE_FRAMES)
-        return [pulled, page.evaluate("scrollY > 0")]
+        """Whether the tip is pulled on the way, and whether the page is scrolled after it."""
+        with fingers(phone) as hand:
+            hand.tell("touchStart", (x, y))
+            for way in range(10, 90, 10):
+                hand.tell("touchMove", (x, y - way))
+            pulled = phone.evaluate(IS_PULLED)
+            hand.tell("touchEnd")
+        phone.evaluate(THREE_FRAMES)
+        return [pulled, phone.evaluate("scrollY > 0")]
 
+    x, y = tip_on(phone)
     beside = 20  # a place for a finger is at least 44 px wide
-    assert swiped(box["x"] + x + beside, box["y"] + y) == [True, False]
-    assert not page.evaluate("onpath.simulation.benches[0].pulled")
-    assert swiped(box["x"] + 30, box["y"] + box["height"] - 20) == [False, True]
-    context.close()
+    assert swiped(x + beside, y) == [True, False]
+    assert not phone.evaluate(IS_PULLED)
+    box = phone.locator("canvas").first.bounding_box()
+    assert box and swiped(box["x"] + 30, box["y"] + box["height"] - 20) == [False, True]
+
+
+def test_a_second_finger_neither_pulls_nor_lets_go(phone: Page) -> None:
+    x, y = tip_on(phone)
+    first, second = (x, y - 40), (x + 15, y + 15)  # the second one is near the tip, too
+    with fingers(phone) as hand:
+        hand.tell("touchStart", (x, y))
+        hand.tell("touchMove", first)
+        pulled = phone.evaluate(HAND_TARGET)
+        hand.tell("touchStart", first, second)
+        hand.tell("touchMove", first, (second[0] + 60, second[1]))
+        assert phone.evaluate(HAND_TARGET) == pulled
+        hand.tell("touchMove", first)  # the second one is lifted
+        assert phone.evaluate(IS_PULLED) and phone.evaluate(HAND_TARGET) == pulled
+        hand.tell("touchCancel")
+        wait_for(lambda: not phone.evaluate(IS_PULLED), WAIT)
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -14,6 +14,7 @@ from playwright.sync_api import Browser
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import Tab, wait_for
+from tests.support.fingers import fingers
 
 pytestmark = pytest.mark.thorough
 
@@ -72,19 +73,18 @@ def test_the_right_button_turns_the_view(tab: Tab) -> None:
 
 def test_two_fingers_move_the_view(tab: Tab) -> None:
     before = view(tab)
-    touched = tab.page.context.new_cdp_session(tab.page)
     (x, y), _ = beside(tab)
+    with fingers(tab.page) as hand:
 
-    def has_moved() -> bool:
-        """Whether it has after another gesture; a page that is busy may miss one."""
-        for kind, shift in (("Start", 0), ("Move", 30), ("Move", 60), ("End", 0)):
-            places = [{"x": x + shift, "y": y}, {"x": x + shift - 80, "y": y}]
-            points = [] if kind == "End" else places
-            event = {"type": f"touch{kind}", "touchPoints": points}
-            touched.send("Input.dispatchTouchEvent", event)
-        return bool(np.linalg.norm(view(tab) - before) > 0.01)
+        def has_moved() -> bool:
+            """Whether it has after another gesture; a page that is busy may miss one."""
+            hand.tell("touchStart", (x, y), (x - 80, y))
+            for shift in (30, 60):
+                hand.tell("touchMove", (x + shift, y), (x + shift - 80, y))
+            hand.tell("touchEnd")
+            return bool(np.linalg.norm(view(tab) - before) > 0.01)
 
-    wait_for(has_moved)
+        wait_for(has_moved)
 
 
 def test_a_pull_still_pulls_and_shows_no_arrow_of_viser(tab: Tab) -> None:

@@ -13,6 +13,8 @@ import pytest
 
 from onpath.app.exports.site.pages import POLICY
 from tests.support.axe import RUN, SCRIPT, unnamed
+from tests.support.browser import THREE_FRAMES
+from tests.support.fingers import fingers
 from tests.support.site import NGINX
 from tests.support.site_export import LESSON, exported_site
 from tests.support.site_lesson import END, lesson_one_by_keys, lesson_one_by_mouse
@@ -170,6 +172,31 @@ def test_with_one_thumb_on_a_telephone(browser: Browser, addresses: dict[str, st
         page.evaluate("number => site.open(number)", number)
         assert page.evaluate("document.documentElement.scrollWidth") == 390, number
         assert page.locator(TOUCHED).evaluate_all(SMALL) == [], number
+    at_peace(reader, addresses["files"])
+
+
+def test_a_second_finger_does_not_draw(browser: Browser, addresses: dict[str, str]) -> None:
+    reader = read_on(browser, addresses, "files", PAGE, **PHONE)
+    page = reader.page
+    reader.ready()
+    reader.button("Next").tap()
+    x, y = reader.place(page.locator(".step.open canvas.board"))
+    first, second = (x + 100, y + 120), (x + 250, y + 60)
+    with fingers(page) as hand:
+        hand.tell("touchStart", (x + 60, y + 190))
+        hand.tell("touchMove", first)
+        page.evaluate(THREE_FRAMES)
+        hand.tell("touchStart", first, (x + 150, y + 60))
+        hand.tell("touchMove", first, second)
+        page.evaluate(THREE_FRAMES)
+        hand.tell("touchMove", first)  # the second one is lifted
+        hand.tell("touchMove", (x + 200, y + 190))
+        page.evaluate(THREE_FRAMES)
+        hand.tell("touchCancel")
+        page.evaluate(THREE_FRAMES)
+    reader.button("Commit to this prediction").tap()
+    drawn = page.evaluate("site.notes.answers[1].values")
+    assert len(drawn) == 3 and max(drawn) == drawn[1]
     at_peace(reader, addresses["files"])
 
 

@@ -30,6 +30,7 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import FRAME, ScheduledLab
 from onpath.models.systems.parameters import time_step
 from tests.support import waiting
+from tests.support.fingers import fingers
 
 CHROMIUM = "/usr/bin/chromium"
 PLAIN = (*ARGUMENTS, "--disable-gpu-rasterization", "--disable-gpu-compositing")
@@ -255,22 +256,16 @@ class Tab:
         Args:
             in_scene: see `dragging`.
         """
-        touched = self.page.context.new_cdp_session(self.page)
-
-        def tell(kind: str, *places: tuple[float, float]) -> None:
-            points = [{"x": x, "y": y} for x, y in places]
-            touched.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
-
         self.settle()
-        tell("touchStart", way[0])
-        for begin, end in pairwise(way):
-            for place in np.linspace(begin, end, 4)[1:].tolist():
-                tell("touchMove", (place[0], place[1]))
-            if in_scene:
-                self._until_dragged(end)
-        yield
-        tell("touchEnd")
-        touched.detach()
+        with fingers(self.page) as hand:
+            hand.tell("touchStart", way[0])
+            for begin, end in pairwise(way):
+                for place in np.linspace(begin, end, 4)[1:].tolist():
+                    hand.tell("touchMove", place)
+                if in_scene:
+                    self._until_dragged(end)
+            yield
+            hand.tell("touchEnd")
 
     def _until_dragged(self, place: tuple[float, float]) -> None:
         """viser passes on twenty places a second, and drops those between."""

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from onpath.lessons.action_schema import RobotName
 from onpath.lessons.record import QUANTITIES, ROBOTS, Happening, Record
 from onpath.lessons.task_schema import Bound, Check, Compare, Event, Order, Setting, Stat
 from onpath.models.systems.catalogue import ROBOTS as CATALOGUE
@@ -14,6 +15,7 @@ from onpath.models.systems.catalogue import ROBOTS as CATALOGUE
 EVENTS = ("hold", "let_go", "pull", "release", "set", "path", "reset", "diverged")
 STATS: tuple[Stat, ...] = ("max", "min", "mean", "rms", "final", "settling", "overshoot")
 DURING = ("always", "held", "pulled", "free")
+GAINS = (5e-7, 0.005, 400.0, 600.1, 600.7, 1600.5)
 PLACES = ("left", "right", "path", "robot", "length", "K1", "K2", "task", "encoder_counts")
 
 
@@ -23,20 +25,32 @@ def some_record(rng: np.random.Generator) -> Record:
     steps = np.where(rng.random(count) < 0.9, 1 / 60, rng.choice([0.1, 0.05, 0.017], count))
     times = np.concatenate([[0.0], np.cumsum(steps)])[:count]
     own = list(QUANTITIES)[: int(rng.integers(1, len(QUANTITIES) + 1))]
-    scale = float(rng.choice([1e-4, 1.0, 50.0]))
     entry = CATALOGUE["five_bar"]
-    gains = {name: float(rng.choice([400.0, 600.1, 600.7, 1600.5])) for name in ("K1", "K2")}
+    gains: dict[str, Any] = {name: float(rng.choice(GAINS)) for name in ("K1", "K2")}
+    counts = int(rng.choice([0, 2000]))
     return Record(
         times=times,
-        values={robot: {name: some_values(rng, count, scale) for name in own} for robot in ROBOTS},
+        values=some_columns(rng, count, own),
         happenings=some_happenings(rng, times, float(steps.sum())),
         run=1,
-        parameters=replace(entry.lab, **gains),
+        parameters=replace(entry.lab, **gains, encoder_counts=counts),
         end=float(times[-1] + rng.choice([1 / 60, 0.0, 0.1])) if count else 0.0,
         path=str(rng.choice(["circle", "ellipse", "edited"])),
         laws={"left": str(rng.choice(["trajectory_tracking", "set_point"]))},
         length=lambda: 314.159,
     )
+
+
+def some_columns(
+    rng: np.random.Generator, count: int, names: list[str]
+) -> dict[RobotName, dict[str, np.ndarray]]:
+    """Quantities of both robots; at times the one's are those of the other, divided by a number."""
+    scale = float(rng.choice([1e-4, 1.0, 50.0]))
+    tracker, follower = ({name: some_values(rng, count, scale) for name in names} for _ in range(2))
+    if rng.random() < 0.2:
+        divisor = float(rng.choice([1.0, 1.5, 1000.0, 1000.5]))
+        follower = {name: values / divisor for name, values in tracker.items()}
+    return {"tracker": tracker, "follower": follower}
 
 
 def some_values(rng: np.random.Generator, count: int, scale: float) -> np.ndarray:
@@ -77,8 +91,8 @@ def some_check(rng: np.random.Generator) -> Check:
     robot: Any = ROBOTS[int(rng.integers(2))]
     quantity, stat = str(rng.choice(list(QUANTITIES))), STATS[int(rng.integers(len(STATS)))]
     during: Any = str(rng.choice(DURING))
-    last = float(rng.choice([0.0, 0.1, 0.5, 2.0]))
-    least = float(rng.choice([0.05, 0.25, 1.0]))
+    last = float(rng.choice([0.0, 0.1, 0.1005, 0.5, 2.0]))
+    least = float(rng.choice([0.05, 0.1000005, 0.105, 0.25, 1.0, 2.5]))
     window: dict[str, Any] = {"during": during, "last": last, "least": least}
     bounds: dict[str, Any] = {**some_bounds(rng)}
     if kind == "bound":
@@ -105,9 +119,9 @@ def some_setting(rng: np.random.Generator, bounds: dict[str, float]) -> Setting:
         "path": "ellipse",
         "robot": "five_bar",
         "task": "speed",
-        "K1": 600,
+        "K1": [600, 0][int(rng.integers(2))],
         "K2": 1600.5,
-        "encoder_counts": 0,
+        "encoder_counts": [0, 2001][int(rng.integers(2))],
     }
     if name in wanted and rng.random() < 0.7:
         return Setting(name=name, equals=wanted[name])

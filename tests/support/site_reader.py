@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from tests.support.browser import THREE_FRAMES
+from tests.support.fingers import fingers
 from tests.support.waiting import wait_for
 
 if TYPE_CHECKING:
@@ -70,16 +71,14 @@ class SiteReader:
 
     def swipe(self, *way: Sequence[float]) -> None:
         """Touch the first place with a finger, move it through the others, and lift it."""
-        touched = self.context.new_cdp_session(self.page)
-        for kind, places in (
-            ("touchStart", way[:1]),
-            *(("touchMove", (place,)) for place in way[1:]),
-            ("touchEnd", ()),
-        ):
-            points = [{"x": place[0], "y": place[1]} for place in places]
-            touched.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        with fingers(self.page) as hand:
+            hand.tell("touchStart", way[0])
             self.page.evaluate(THREE_FRAMES)
-        touched.detach()
+            for place in way[1:]:
+                hand.tell("touchMove", place)
+                self.page.evaluate(THREE_FRAMES)
+            hand.tell("touchEnd")
+            self.page.evaluate(THREE_FRAMES)
 
     def place(self, what: Locator) -> tuple[float, float]:
         """Upper left corner in the window, once it is scrolled into view."""
