@@ -18,7 +18,7 @@ from playwright.sync_api import Browser, sync_playwright
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import CHROMIUM, PLAIN, SELDOM, Tab, wait_for
+from tests.support.browser import CHROMIUM, PLAIN, SELDOM, THREE_FRAMES, Tab, wait_for
 from tests.support.built_in import built_in_course
 
 COURSE, _ = built_in_course()
@@ -55,6 +55,7 @@ def shots(tab: Tab, name: str, folder: Path) -> Iterator[Path]:
             read.click()
             read.wait_for(state="detached")
         tab.settle()
+        tab.page.evaluate(THREE_FRAMES)
         file = folder / f"{name}-{index + 1:02}.png"
         tab.page.screenshot(path=file, type="png")
         for fault in tab.page.evaluate(WRONG):
@@ -84,7 +85,7 @@ def photograph(
     for name in sys.argv[5:] or COURSE.lessons:
         context = browser.new_context(viewport={"width": width, "height": height})
         context.add_init_script(SELDOM)
-        tab = Tab(server, context, draws=False)
+        tab = Tab(server, context)
         tab.ask(c.SetLanguage(language), c.SetPresenting(width >= PRESENTED))
         tab.wait_until_built()
         files += shots(tab, name, folder)
