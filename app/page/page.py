@@ -249,8 +249,8 @@ class Page:
 
     def _build_distance(self, first: PageSnapshot, words: Words) -> None:
         """Build the plot of the distance from the path."""
-        plot = LivePlot(self._client.gui, words, first.key.fields, DISTANCE, height=190)
-        self._parts.append(plot)
+        parts, large = (self._client.gui, words, first.key.fields, DISTANCE), first.key.presenting
+        self._parts.append(LivePlot(*parts, height=240 if large else 190, large=large))
 
     def _is_narrow(self) -> bool:
         camera = self._client.camera

@@ -120,9 +120,10 @@ class PanelFactory:
 
     def plot_of_step(self, scene: StepSetup, first: PageSnapshot, height: int = 200) -> list[Part]:
         """Build the plots of a lesson's step, if it has any, those over time of a height [px]."""
-        fields = first.key.fields
+        fields, large = first.key.fields, first.key.presenting
         plots = [MORE[name] for name in scene.plots if MORE[name].field in dict(fields)]
-        return [add_plot(self._gui, self._words, fields, plot, height) for plot in plots]
+        parts = self._gui, self._words, fields
+        return [add_plot(*parts, plot, height, large=large) for plot in plots]
 
     def show(self) -> Part:
         """Build the folder "Show" alone, open."""

@@ -28,6 +28,11 @@ PADDING = (10, 12, 0, 0)
 """Above, to the right, below and to the left of a plot, for the halves of its outermost numbers."""
 XI = ("xi", "xi_rate")  # fields in another unit with a level set
 LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and third line
+MARKS = ("―", "╌", "┈")  # of these patterns in the legend, which has colours only
+ROW, FEW = 22, 2  # [px], height of a row of the legend, which has room for so many lines
+_LARGE: uplot.Axis = {"font": "17px sans-serif", "ticks": {"show": False}}
+LARGE: tuple[uplot.Axis, ...] = (_LARGE, {**_LARGE, "size": 60})
+"""Axes for a projector."""
 
 
 Fields = tuple[tuple[str, int], ...]
@@ -97,7 +102,12 @@ def _at_least(limits: tuple[float, float] | None) -> uplot.Scale:
 
 
 class LivePlot:
-    """One uPlot chart."""
+    """One uPlot chart.
+
+    Args:
+        height: without the first row of the legend, [px]; more rows are at its cost.
+        large: whether it is shown with a projector.
+    """
 
     def __init__(
         self,
@@ -107,6 +117,7 @@ class LivePlot:
         plot: Plot,
         height: int,
         level_set: bool = False,
+        large: bool = False,
     ) -> None:
         self._gui, self._words, self._has_xi = gui, words, plot.field in XI
         in_level_set = level_set and self._has_xi
@@ -123,7 +134,8 @@ class LivePlot:
         lines = len(self._series()) - 1
         self._empty = (np.array([0.0, PLOT_WINDOW]), *[nothing] * lines)
         self._title = words(f"axis.{plot.name}{'-level_set' if in_level_set else ''}")
-        self._height, self._least = height, least
+        self._height = height if lines <= FEW else height - ROW
+        self._least, self._axes = least, LARGE if large else None
         self._handle = self._chart(None)
 
     def _chart(self, order: float | None) -> viser.GuiUplotHandle:
@@ -133,6 +145,7 @@ class LivePlot:
             self._series(),
             title=self._title,
             scales={"x": uplot.Scale(time=False), "y": _at_least(self._least)},
+            axes=self._axes,
             legend=uplot.Legend(live=False),
             height=self._height,
             padding=PADDING,
@@ -154,8 +167,8 @@ class LivePlot:
         """Time and the lines of each bench, named after its law."""
         series = [uplot.Series(label=self._words("plots.time"))]
         for bench, title in bench_titles(self._laws, self._words).items():
-            for name, dash in zip(self._names, LINES, strict=False):
-                label = f"{title} {name}".rstrip()
+            for name, dash, mark in zip(self._names, LINES, MARKS, strict=False):
+                label = f"{title} {name} {mark}" if name else title
                 width = 4 if bench == LEFT else 2  # so that one is seen under the other
                 line = uplot.Series(label=label, stroke=OF_BENCH[bench].hex, width=width)
                 if dash is not None:
@@ -200,11 +213,12 @@ def add_plot(
     plot: Plot,
     height: int = 200,
     level_set: bool = False,
+    large: bool = False,
 ) -> LivePlot | PhasePlot:
-    """Add a plot of those that can be chosen; one over time has a height [px]."""
+    """Add a plot of those that can be chosen; see `LivePlot`."""
     if plot is PHASE:
         return PhasePlot(gui, words)
-    return LivePlot(gui, words, fields, plot, height, level_set)
+    return LivePlot(gui, words, fields, plot, height, level_set, large)
 
 
 class MorePlots:

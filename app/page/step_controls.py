@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import viser
 
@@ -21,9 +22,26 @@ Build = Callable[[StepSetup, PageSnapshot], list[Part]]
 """Adds the widgets of a set-up."""
 
 GAP = 12  # to the edges of the scene, [px]
-WIDTH, HEIGHT, PLOT = 440, 240, 160  # of the window, and height of its plot, [px]
-SHARE = 0.31
-"""Of the scene's height, which is left to the window."""
+
+
+@dataclass(frozen=True, slots=True)
+class WindowSize:
+    """Size of the window with a step's plot.
+
+    Attributes:
+        width, height: [px].
+        plot: height of the plot, [px].
+        share: of the scene's height, which is left to the window.
+    """
+
+    width: int
+    height: int
+    plot: int
+    share: float
+
+
+WINDOW, LARGE_WINDOW = WindowSize(440, 240, 160, 0.31), WindowSize(680, 380, 285, 0.37)
+"""Large: with a projector."""
 
 
 class StepControls:
@@ -107,13 +125,14 @@ class StepPlot:
         self._build, self._change, self._on_change = build, change, on_change
         self._panel: viser.PanelHandle | None = None
         self._parts: list[Part] = []
+        self._size = LARGE_WINDOW if first.key.presenting else WINDOW
         self._setup = self._setup_of(first)
         self._open(first)
 
     @property
     def share(self) -> float:
         """Of the scene's height, from below, that the window takes."""
-        return 0.0 if self._panel is None else SHARE
+        return 0.0 if self._panel is None else self._size.share
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the open step's plot."""
@@ -134,8 +153,8 @@ class StepPlot:
             panel = self._gui.add_panel()
             with panel.add_tab(self._words("lesson.plot"), viser.Icon.CHART_LINE):
                 self._gui.add_html(render("panel/step_plot.html"))
-                self._parts = self._build(self._setup, first, PLOT)
-            panel.float(x=GAP, y=-GAP, width=WIDTH, height=HEIGHT)
+                self._parts = self._build(self._setup, first, self._size.plot)
+            panel.float(x=GAP, y=-GAP, width=self._size.width, height=self._size.height)
             self._panel = panel
         if was_open != (self._panel is not None):
             self._on_change()

@@ -135,6 +135,23 @@ def test_the_plot_a_step_speaks_of_is_seen_with_its_text_and_both_robots(tab: Ta
     expect(plot).to_have_count(0)
 
 
+@pytest.mark.parametrize("presenting", [False, True])
+def test_the_legend_of_a_step_s_plot_is_seen_whole(browser: Browser, presenting: bool) -> None:
+    """Also that of both motors of both robots."""
+    server, size = LabServer("127.0.0.1", 0, LoopCache()), {"width": 1280, "height": 800}
+    if presenting:
+        size = {"width": 1920, "height": 1080}
+    tab = Tab(server, browser.new_context(viewport=size), draws=False)
+    tab.ask(c.SetPresenting(presenting))
+    tab.wait_until_built()
+    take(tab, 4, "03-the-five-bar")
+    names = tab.page.locator(".mantine-Paper-root:has([data-step-plot]) .u-legend tr")
+    expect(names.filter(has_text="u2")).to_have_count(2)
+    for name in names.filter(has_text="u").all():
+        expect(name).to_be_in_viewport(ratio=1)  # and within what may be scrolled
+    server.stop()
+
+
 def test_a_teachers_key_is_not_shown_while_it_is_typed(browser: Browser) -> None:
     server = LabServer("127.0.0.1", 0, LoopCache(), classrooms=[Classroom()])
     context = browser.new_context(viewport={"width": 1280, "height": 800})

@@ -73,3 +73,15 @@ def test_of_two_lines_that_coincide_both_are_seen_and_no_number_is_cut() -> None
         assert under["width"] >= above["width"] + 2 and under["stroke"] != above["stroke"]
         above_the_axis, right_of_it, *_ = made[-1]["padding"]
         assert min(above_the_axis, right_of_it) >= 9  # half of a number, [px]
+
+
+def test_the_legend_tells_the_lines_of_a_robot_apart() -> None:
+    """uPlot's legend has colours only."""
+    made = list[Sequence[uplot.Series]]()
+    gui: Any = SimpleNamespace(add_uplot=lambda _, series, **__: made.append(series))
+    fields = take_page_snapshot(Lab(store()), 1.0).key.fields
+    plots.LivePlot(gui, ENGLISH, fields, plots.MORE["torques"], 100)
+    plots.LivePlot(gui, ENGLISH, fields, plots.DISTANCE, 100)
+    labels = [series.get("label", "") for series in made[0][1:]]
+    assert [label.split()[-2:] for label in labels] == 2 * [["u1", "―"], ["u2", "╌"]]
+    assert made[1][1].get("label") == "Trajectory tracking"
