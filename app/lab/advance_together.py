@@ -133,7 +133,7 @@ def _advance(loop: Loop, members: Sequence[Row]) -> None:
     for i in set(range(len(members))).difference(good):
         (run, own), each, fault = members[i], rows[i], faults[i]
         if fault is not None:
-            run.stop(fault, each, own.time + fault[0] * own.dt)
+            run.stop(fault, each, own.curve, own.time + fault[0] * own.dt)
 
 
 def _gathered(places: Sequence[Place]) -> tuple[Array | Sequence[Array], Array]:

@@ -215,18 +215,22 @@ class ClosedLoopRun:
             self._loop = self._store.get(self.robot, self.kind, self._loop)
         return self._loop
 
-    def stop(self, fault: tuple[int, Message], rows: Array, time: float) -> None:
+    def stop(self, fault: tuple[int, Message], rows: Array, curve: Curve, time: float) -> None:
         """Stop at the last good state, and show the last good row before the fault.
 
         Args:
             fault: tick and reason.
             rows: log rows of the ticks.
+            curve: the path.
             time: of the fault, [s].
         """
         self.diverged = Diverged(fault[1], time)
         good = np.flatnonzero(np.isfinite(rows[: fault[0]]).all(axis=1))
         if good.size:
-            self._change(row=rows[good[-1]])
+            row = rows[good[-1]]
+            own = self.log.unpack(row)
+            found = float(near_distance(self.robot.frame, curve, own["y"][None], own["theta"])[0])
+            self._change(row=row, distance=found, largest=max(self.max_distance, found))
 
     def configure(
         self,

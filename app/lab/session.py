@@ -217,6 +217,8 @@ class Session:
             part = Ticks(moving, count, self.time, dt, parameters, curve, table)
             begun = [run.place for run in runs]
             yield part
+            for i, run in enumerate(runs):
+                begun[i] = begun[i] if run.diverged is None else run.place  # it stands still
             self.history.append(self._recorder.record(part, runs, begun))
             for run, _ in moving:
                 if run.diverged is not None:

@@ -19,7 +19,7 @@ export class Bench {
     private readonly longest = Math.max(...this.path.data.states.map(each => each.length))
     private readonly state = this.kernels.room(this.longest)
     readonly settings = this.kernels.room(this.path.data.settings.length)
-    private readonly log = this.kernels.room(MOST_TICKS * this.sizes.log)
+    private readonly log = this.kernels.room((1 + MOST_TICKS) * this.sizes.log) // the last row, then new ones
     private readonly result = this.kernels.room(2 * this.sizes.p + 4)
     private readonly points = this.kernels.room(4 * this.sizes.bars + 2 * this.sizes.joints)
     private readonly y = this.kernels.room(this.sizes.p)
@@ -56,16 +56,17 @@ export class Bench {
     }
 
     readonly set = (place: number, value: number) => (this.kernels.numbers[this.settings + place] = value)
-    /** Advance by some ticks; a robot that has stopped stays where it is. */
+    /** Advance by some ticks; a robot that stops stays as it was one tick before, as in the lab. */
     advance(ticks: number): void {
         if (this.stopped) return
         const { kernels, state, settings, log, sizes } = this
-        kernels.loop(this.name(`loop${this.law}`), [state, settings, this.path.table, log], ticks)
-        for (let i = 0; i < ticks && !this.stopped; i++, this.ticks++) {
+        kernels.copy(this.row, log, sizes.log)
+        kernels.loop(this.name(`loop${this.law}`), [state, settings, this.path.table, log + sizes.log], ticks)
+        for (let i = 1; i <= ticks && !this.stopped; i++, this.ticks++) {
             this.row = log + i * sizes.log
             this.call("fault", this.field("q"), this.field("v"), this.field("theta_ref"), this.result)
-            this.stopped = kernels.numbers[this.result]!
-            if (i % 4 === 3 || i === ticks - 1) this.measure()
+            if ((this.stopped = kernels.numbers[this.result]!)) this.row -= sizes.log
+            if (i % 4 === 0 || i === ticks || this.stopped) this.measure()
         }
     }
 

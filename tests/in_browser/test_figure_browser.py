@@ -44,6 +44,11 @@ HAND_TARGET = """(() => {
 })()"""
 """Where a hand pulls the first robot's end-point to."""
 IS_PULLED = "onpath.simulation.benches[0].pulled"
+SPEEDS = """(() => {
+    const [begin, size] = onpath.data.log.v
+    return [...onpath.simulation.benches[0].logged().slice(begin, begin + size)]
+})()"""
+"""Speeds of the first robot's joints in the last row of its log, [rad/s]."""
 CLOSE = 1e-12
 EDITED = 1e-10
 """After an edit: the curve itself is fitted with other roundings, to 1e-13."""
@@ -466,6 +471,7 @@ def test_why_a_robot_has_stopped_is_said_as_in_the_lab(browser: Browser, tmp_pat
     said = opened.page.locator(".note").inner_text()
     assert said.startswith("Trajectory tracking stopped at 0.0 s: a joint turns faster than 100")
     assert opened.number("onpath.simulation.benches[1].stopped") == 0
+    assert max(map(abs, opened.number(SPEEDS))) < 100  # it is seen as it was before that
     opened.press("Reset")
     opened.page.evaluate(THREE_FRAMES)
     # On a busy machine the note may say now that time runs late.

@@ -9,6 +9,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.breakdown import LARGER, LASTS, RESTS, SPAN
 from onpath.app.lab.commands import Freeze
 from onpath.app.lab.lab import Lab
+from onpath.models.paths.distance import near_distance
 from tests.support.lab import FRAME, do, new_lab, run, take_snapshot
 
 
@@ -119,3 +120,18 @@ def test_without_a_stopped_robot_both_are_refused() -> None:
     for command in (c.ReplayBreakdown(), c.UseEarlierSettings()):
         do(lab, command)
         assert lab.message and lab.message_level == "warning"
+
+
+def test_the_distance_of_a_stopped_robot_is_that_of_its_pose(blown_up: Lab) -> None:
+    """In the readout as in the plot, and also as the largest one."""
+    session = blown_up.session
+    column = session.sample_layout.slices["distance"].start
+    _, samples = session.history.samples(0.0, session.time, 1000)
+    stopped = [(i, each) for i, each in enumerate(session.runs.values()) if each.diverged]
+    assert stopped
+    for place, each in stopped:
+        y, theta = each.shown()["y"], each.shown()["theta"]
+        far = near_distance(session.robot.frame, session.editor.curve, y[None], theta)
+        assert each.distance == pytest.approx(float(far[0]))
+        assert each.max_distance >= each.distance
+        assert samples[-1, place, column] == pytest.approx(each.distance, rel=1e-6)
