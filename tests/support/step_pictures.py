@@ -18,11 +18,13 @@ from playwright.sync_api import Browser, sync_playwright
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import CHROMIUM, PLAIN, SELDOM, THREE_FRAMES, Tab, wait_for
+from tests.support.browser import CHROMIUM, PLAIN, THREE_FRAMES, Tab, wait_for
 from tests.support.built_in import built_in_course
 
 COURSE, _ = built_in_course()
 PRESENTED = 1900  # [px], from this width on the steps are shown in large type
+RARELY = "requestAnimationFrame = act => setTimeout(() => act(performance.now()), 400)"
+"""Between two pictures of the scene, drawn in software, the page has time for the rest."""
 ACROSS, DOWN = 4, 3  # pictures on a sheet
 WRONG = """() => {
     const RAW = /.{0,20}(\\$|\\\\[a-z]|\\{\\{|\\*\\*).{0,20}/g
@@ -84,7 +86,7 @@ def photograph(
     files = list[Path]()
     for name in sys.argv[5:] or COURSE.lessons:
         context = browser.new_context(viewport={"width": width, "height": height})
-        context.add_init_script(SELDOM)
+        context.add_init_script(RARELY)
         tab = Tab(server, context)
         tab.ask(c.SetLanguage(language), c.SetPresenting(width >= PRESENTED))
         tab.wait_until_built()
