@@ -293,9 +293,13 @@ class ClosedLoopRun:
             self._change(primed(self._kernel, self.state))
 
     def _fill_row(self, curve: Curve) -> None:
-        """Fill the log row of a robot that has not moved yet."""
+        """Fill the log row of a robot that has not moved yet, and on which nothing has acted."""
         self._change()
         row, state = self.shown(), self.fields()
+        _, rows = self.loop().run(self.state.copy(), self.settings, curve.table(), 1)
+        first = self.log.unpack(rows[0])
+        for name in ("xi", "xi_rate"):
+            row[name][:] = np.nan_to_num(first[name], posinf=0.0, neginf=0.0)
         for name in ("q", "v", "theta", "theta_rate", "theta_ref", "speed_ref", "u"):
             row[name][:] = state[name]
         row["y"][:] = self.robot.endpoint(state["q"])

@@ -18,6 +18,7 @@ export class Bench {
     private readonly sizes = this.figure.sizes
     private readonly longest = Math.max(...this.path.data.states.map(each => each.length))
     private readonly state = this.kernels.room(this.longest)
+    private readonly begun = this.kernels.room(this.longest) // the state at the start
     readonly settings = this.kernels.room(this.path.data.settings.length)
     private readonly log = this.kernels.room((1 + MOST_TICKS) * this.sizes.log) // the last row, then new ones
     private readonly result = this.kernels.room(2 * this.sizes.p + 4)
@@ -113,15 +114,14 @@ export class Bench {
     readonly arrow = (): Point => this.point("arrow", this.field("y"), this.field("force"))
     /** The last row of the log. */
     readonly logged = (): Float64Array => this.kernels.numbers.slice(this.row, this.row + this.sizes.log)
-    /** Before the first tick there is no log: what is seen of it is made from the state. */
+    /** Before the first tick there is no log: what is seen is a tick's that is not kept, and nothing acts. */
     private seeStart(): void {
-        const { kernels, figure, sizes, state, log } = this
+        const { kernels, figure, state, log } = this
+        kernels.copy(state, this.begun, this.longest)
+        kernels.loop(this.name(`loop${this.law}`), [state, this.settings, this.path.table, log], 1)
+        kernels.copy(this.begun, state, this.longest)
         this.row = log
-        kernels.numbers.fill(0, log, log + sizes.log)
-        kernels.copy(state + figure.state.q[0], this.field("q"), sizes.n)
-        this.call("tip", state + figure.state.q[0], this.field("y"))
-        for (const name of ["theta", "theta_ref"] as const)
-            kernels.copy(state + figure.state.theta[0], this.field(name), 1)
+        for (const [from, size] of [figure.log.u, figure.log.force]) kernels.numbers.fill(0, log + from, log + from + size)
         this.measure()
     }
 

@@ -36,7 +36,7 @@ export interface FigureData extends Texts<"language" | "title" | "module"> {
     sizes: Numbers<"p" | "n" | "log" | "bars" | "joints">
     state: Record<"q" | "theta" | "theta_ref", Place>
     settings: Record<"hold_active" | "hold_anchor" | "hold_tangent" | "hand_active" | "hand_target", Place>
-    log: Record<"q" | "v" | "y" | "theta" | "theta_ref" | "force", Place>
+    log: Record<"q" | "v" | "y" | "theta" | "theta_ref" | "u" | "force", Place>
     benches: BenchData[]
     laws: LawData[]
     /** Laws from which readers may choose. */

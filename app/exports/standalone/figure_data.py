@@ -59,7 +59,7 @@ def figure_data(figure: FigureChoice, words: Words, title: str = "") -> dict[str
         "sizes": _sizes(figure, kernel),
         "state": _places(kernel.state, ("q", "theta", "theta_ref")),
         "settings": _places(kernel.settings, _SET),
-        "log": _places(kernel.log, ("q", "v", "y", "theta", "theta_ref", "force")),
+        "log": _places(kernel.log, ("q", "v", "y", "theta", "theta_ref", "u", "force")),
         "benches": _benches(figure),
         "laws": _laws(figure, words),
         "choices": [figure.every_law.index(law) for law in _choices(figure)],
