@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from io import BytesIO
 
+import numpy as np
 import pytest
+from PIL import Image
 
 pytest.importorskip("playwright")
 
@@ -13,7 +16,7 @@ from playwright.sync_api import Browser, Locator, expect
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import WAIT, Tab, wait_for
+from tests.support.browser import THREE_FRAMES, WAIT, Tab, wait_for
 from tests.support.built_in import built_in_course
 
 pytestmark = pytest.mark.thorough
@@ -22,6 +25,7 @@ expect.set_options(timeout=WAIT * 1e3)
 COURSE, _ = built_in_course()
 LESSON, STEP = "01-path-or-timetable", 6
 PINNED = ":has(> * [data-pinned])"
+SCENE = 30, 20, 790, 260  # on an upright tablet, [px]
 UNCOVERED = """(thing) => {
     const { x, y, width, height } = thing.getBoundingClientRect()
     const at = document.elementFromPoint(x + width / 2, y + height / 2)
@@ -102,3 +106,18 @@ def test_a_control_of_every_step_is_seen_together_with_its_text(tab: Tab, lesson
         if not heading(tab).evaluate(UNCOVERED) or not first.evaluate(UNCOVERED):
             covered.append((step.title, names))
     assert covered == []
+
+
+def test_controls_with_more_than_fits_leave_the_robots_to_be_seen(
+    browser: Browser, server: LabServer
+) -> None:
+    """Chromium without a GPU painted the background of the controls over the scene as well."""
+    context = browser.new_context(viewport={"width": 820, "height": 1180})
+    tab = Tab(server, context)
+    take(tab, "07-flexible-link", 0)
+    controls = tab.page.locator(f".mantine-Paper-root{PINNED}").last
+    assert controls.evaluate("each => each.scrollHeight > each.clientHeight")
+    tab.page.evaluate(THREE_FRAMES)
+    picture = Image.open(BytesIO(tab.page.screenshot())).convert("L")
+    assert np.asarray(picture.crop(SCENE)).min() < 128
+    context.close()
