@@ -15,7 +15,7 @@ from markdown_it.token import Token
 from markupsafe import Markup
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
-from onpath.lessons.vocabulary.latex import latex_faults
+from onpath.lessons.vocabulary.latex import brace_faults, latex_faults
 
 MIME = {
     ".svg": "image/svg+xml",
@@ -45,6 +45,8 @@ def mathml(latex: str, options: dict[str, Any]) -> str:
         FormulaError: the LaTeX cannot be converted.
     """
     display = "block" if options.get("display_mode") else "inline"
+    if faults := list(brace_faults(latex)):
+        raise FormulaError(f"formula {latex!r}: {'; '.join(faults)}")
     try:
         written = convert(latex, display=display)
     except Exception as error:  # the library raises many kinds

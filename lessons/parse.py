@@ -6,7 +6,6 @@ import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, get_args
 
@@ -20,7 +19,7 @@ from onpath.lessons.formulas import FormulaError, reader
 from onpath.lessons.kept.option_keys import keys_of
 from onpath.lessons.measures.stated import Stated, take_stated
 from onpath.lessons.problems import LessonError, Problem
-from onpath.lessons.prose import data_faults, read_prose
+from onpath.lessons.prose import data_faults, read_prose, text_faults
 from onpath.lessons.rendered import rendered
 from onpath.lessons.schema import (
     Block,
@@ -43,17 +42,16 @@ from onpath.lessons.vocabulary.blocks import (
     prediction_faults,
     task_faults,
 )
+from onpath.lessons.vocabulary.fences import FENCES
 from onpath.lessons.vocabulary.setups import release_faults, scene_faults, script_faults
 
 NO_MARK = StepMark()
 LARGEST = 1_000_000
 """Largest size of a lesson file, [B]."""
 KINDS: tuple[str, ...] = get_args(StepKind)
-FENCES = ("step", "scene", "script", "predict", "task", "quiz", "number", "open")
-KNOWN = (*FENCES, "fold", "when")
 HEADING = re.compile(r"(\w+):\s*(.+)")
-FOLD = re.compile(r"fold\b\s*(.*)")
-BRANCH = re.compile(r"when\b\s*(.*)")
+FOLD = re.compile(r"fold(?:\s+(.*))?")
+BRANCH = re.compile(r"when(?:\s+(.*))?")
 
 
 @dataclass(slots=True)
@@ -135,7 +133,9 @@ class _Reader:
         if len(ends) < 2 or ends[0] != 0:
             self._complain(1, "a lesson begins with facts between two lines +++")
             return None, 0
-        front = read_toml("\n".join(lines[1 : ends[1]]), 2, Front, self._complain)
+        content = "\n".join(lines[1 : ends[1]])
+        front = read_toml(content, 2, Front, self._complain)
+        self._complain_all(2, _words_faults(content))
         if front is not None:
             self._complain_all(1, scene_faults(StepSetup(robot=front.robot), front.robot))
             self._robot = self._home = front.robot
@@ -157,11 +157,9 @@ class _Reader:
             elif head.type == "fence" and head.info.strip() in FENCES:
                 self._fence(drafts[-1], head.info.strip(), head.content, line + 1)
             elif head.type == "fence" and (fold := FOLD.fullmatch(head.info.strip())):
-                self._fold(drafts[-1], fold[1], head.content, line + 1)
+                self._fold(drafts[-1], fold[1] or "", head.content, line + 1)
             elif head.type == "fence" and (branch := BRANCH.fullmatch(head.info.strip())):
-                self._branch(drafts[-1], branch[1], head.content, line + 1)
-            elif head.type == "fence" and (near := get_close_matches(head.info, KNOWN, 1)):
-                self._complain(line, f"unknown block {head.info.strip()!r}: did you mean {near[0]}")
+                self._branch(drafts[-1], branch[1] or "", head.content, line + 1)
             else:
                 self._prose(drafts[-1], tokens, line)
         broken = {draft.line for draft in drafts if draft.broken}
@@ -181,6 +179,7 @@ class _Reader:
                 line, f"heading {heading!r}: `# kind: Title`, kind one of {', '.join(KINDS)}"
             )
             return _Draft("play", heading, line, [])
+        self._complain_all(line, text_faults(match[2]))
         return _Draft(match[1], match[2], line, [])
 
     def _fence(self, draft: _Draft, what: str, content: str, line: int) -> None:
@@ -228,6 +227,7 @@ class _Reader:
         """Read a fenced block of Markdown that is shown when its title is pressed."""
         if not title:
             self._complain(line, "a fold needs a title: ```fold I cannot play: tell me")
+        self._complain_all(line - 1, text_faults(title))
         self._prose(draft, self._markdown.parse(content), line, title)
 
     def _branch(self, draft: _Draft, when: str, content: str, line: int) -> None:

@@ -16,15 +16,15 @@ from onpath.lessons.adaptive.own_numbers import own_faults
 from onpath.lessons.formulas import FormulaError, embedded, folded, render
 from onpath.lessons.links import read_link
 from onpath.lessons.schema import LabLink, Text
+from onpath.lessons.vocabulary.fences import fence_faults
 from onpath.lessons.vocabulary.setups import action_faults
 
 HTML = re.compile(
-    r"</?(script|style|iframe|object|embed|img|div|span|br|p|table|svg|details|font|center|sub|sup"
-    r"|video|audio|input|button|form|link|meta)(\s[^<>]*)?/?>",
-    re.IGNORECASE,
+    r"</?[A-Za-z][\w-]*(\s+[\w:-]+(\s*=\s*(\"[^\"]*\"|'[^']*'|[^\s<>\"']+))?)*\s*/?>|<!--"
 )
 """Typed tags; they are shown, which nobody wants."""
-CODE = re.compile(r"`[^`]*`")
+CODE = re.compile(r"`[^`]*`|(?<!\\)\$[^$]*\$|<https?://[^\s<>]*>")
+"""Where a block of TOML has code, a formula or an address, in which `<` is no tag."""
 
 
 @dataclass(slots=True)
@@ -110,6 +110,8 @@ def _written_faults(token: Token) -> Iterator[str]:
     """The faults of the words of a paragraph, a heading or a cell."""
     words = "".join(child.content for child in token.children or () if child.type == "text")
     yield from text_faults(words)
+    if token.type == "fence":
+        yield from fence_faults(token.info)
     if words.count("$") > token.content.count("\\$"):
         yield _unclosed(words)
 

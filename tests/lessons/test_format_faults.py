@@ -15,6 +15,7 @@ from tests.support.format_texts import FORMAT_LESSON, FORMAT_REFERENCE
 from tests.support.lesson_texts import LESSON, write_lesson
 
 LATEX = "$$\\dot x = v$$"
+COMMANDS = ("\\frac", "\\theta", "\\beta", "\\rho", "\\nu", "\\sin", "\\xi")
 Capture = pytest.CaptureFixture[str]
 
 
@@ -57,6 +58,25 @@ def faults(path: Path) -> list[tuple[int, str]]:
         ('kind = "bound"', 'kind = "bound"\nstat = "setling"', "did you mean settling?"),
         ('kind = "bound"', 'kind = "bond"', "did you mean bound?"),
         ("{ at = 0.5, hold = true }", "{ at = 0.5, rate = 0.01 }", "between 0.125 and 4"),
+        (LATEX, "```folds Why\nSo.\n```", "did you mean fold"),
+        (LATEX, "```foldd Why\nSo.\n```", "did you mean fold"),
+        (LATEX, "```Fold Why\nSo.\n```", "did you mean fold"),
+        (LATEX, "```foldLiterature\nSo.\n```", "did you mean fold"),
+        (LATEX, "```When right\nSo.\n```", "did you mean when"),
+        (LATEX, "```tasks\nSo.\n```", "did you mean task"),
+        (LATEX, "```quiz one\nSo.\n```", "nothing stands after quiz"),
+        (LATEX, "- ```quiz\n  So.\n  ```", "not in a list"),
+        (LATEX, "<b>So</b>", "HTML is shown as it is typed"),
+        (LATEX, 'so <mark class="a">it</mark>', "HTML is shown as it is typed"),
+        ('"Draw the distance."', "'<i>Draw</i>'", "HTML is shown as it is typed"),
+        ('"For tests."', "'<i>For</i> tests.'", "HTML is shown as it is typed"),
+        (LATEX, "$\\frac{K_2{2\\sqrt{K_1}}$", "a { is not closed"),
+        (LATEX, "$\\sqrt{K_1}}$", "a } closes nothing"),
+        (LATEX, "$\\left( x$", "1 \\left and 0 \\right"),
+        *(
+            ('"Draw the distance."', f'"${each} x$"', "or the text stands between single")
+            for each in COMMANDS
+        ),
     ],
 )
 def test_it_is_told_with_its_line(tmp_path: Path, right: str, wrong: str, said: str) -> None:
@@ -66,6 +86,27 @@ def test_it_is_told_with_its_line(tmp_path: Path, right: str, wrong: str, said: 
     assert len(found) == 1 and said in found[0][1], found
     at = text[: text.index(wrong)].count("\n") + 1
     assert -6 <= at - found[0][0] <= 6  # its line, or that of its block, or of its step
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "```text\n<b>\n```",
+        "```python\nfold = 1\n```",
+        "```toml\na = 1\n```",
+        "```c\nint a;\n```",
+        "```\nscene\n```",
+        "`<b>` and $a<b>c$ and <https://a.org>",
+        "$\\left\\{a\\right\\}\\leftarrow b \\\\ c$",
+    ],
+)
+def test_what_is_like_a_fault_and_is_none_is_read(tmp_path: Path, text: str) -> None:
+    read_lesson(write_lesson(tmp_path, LESSON.replace(LATEX, text)))
+
+
+@pytest.mark.parametrize("text", ["'$\\theta$'", '"$\\\\theta$"', '"""\na\n\tb"""', "'$a<b>c$'"])
+def test_a_backslash_that_is_one_is_read(tmp_path: Path, text: str) -> None:
+    read_lesson(write_lesson(tmp_path, LESSON.replace('"Draw the distance."', text)))
 
 
 def test_what_a_prediction_hides_is_not_told_before_it_except_in_a_fold(tmp_path: Path) -> None:
