@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_args
 
@@ -13,12 +13,13 @@ from markdown_it.token import Token
 
 from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.adaptive.branches import faults_of_when
-from onpath.lessons.completeness import lacks, order_faults
+from onpath.lessons.adaptive.own_numbers import unanswered
+from onpath.lessons.completeness import first_page_faults, lacks, order_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
 from onpath.lessons.formulas import FormulaError, reader
 from onpath.lessons.kept.option_keys import keys_of
 from onpath.lessons.measures.stated import Stated, take_stated
-from onpath.lessons.problems import LessonError, Problem
+from onpath.lessons.problems import LessonError, Problem, line_of
 from onpath.lessons.prose import data_faults, read_prose, text_faults
 from onpath.lessons.rendered import rendered
 from onpath.lessons.schema import (
@@ -65,6 +66,7 @@ class _Draft:
     scene: StepSetup | None = None
     script: Script | None = None
     mark: StepMark = NO_MARK
+    seen: set[str] = field(default_factory=set[str])  # names of its blocks of TOML
     broken: bool = False  # whether one of its blocks could not be read
 
     def step(self, stated: tuple[Stated, ...] = ()) -> Step:
@@ -101,6 +103,7 @@ class _Reader:
         self._markdown = reader()
         self._robot = self._home = "five_bar"
         self._scene = StepSetup()
+        self._ids: set[str] = set()  # of tasks
         self._branches: dict[tuple[int, str], int] = {}  # step's line, condition -> its line
 
     def lesson(self) -> Lesson:
@@ -112,6 +115,9 @@ class _Reader:
         front, first = self._front()
         body = self._text.split("\n", first)[first] if first else self._text
         steps = self._steps(body, first)
+        if front is not None:
+            for fault in first_page_faults(front, self._made(steps)):
+                self._complain(line_of(fault, self._text, 1), fault)
         if not self._problems and front is not None:
             name, language = self._path.parent.name, self._path.stem
             made = self._made(steps)
@@ -165,12 +171,22 @@ class _Reader:
         broken = {draft.line for draft in drafts if draft.broken}
         steps = self._made(drafts)
         is_test = self._path.parent.name == FOLDER
-        self._complain_all(1, lacks_of_test(steps) if is_test else lacks(steps, broken))
+        if is_test:
+            self._complain_all(1, lacks_of_test(steps))
+        for line, fault in () if is_test else lacks(steps, broken):
+            self._complain(line, fault)
         for line, when, fault in faults_of_when(steps):
             self._complain(self._branches.get((line, when), line), fault)
         for line, fault in order_faults(steps, broken):
             self._complain(line, fault)
+        for line, place, fault in unanswered(steps):
+            self._complain(self._text.count("\n", 0, self._at(place, line)) + 1, fault)
         return drafts
+
+    def _at(self, words: str, line: int) -> int:
+        """Where words stand in the file, from a line on; else the beginning of that line."""
+        begin = len("".join(self._text.splitlines(keepends=True)[: line - 1]))
+        return max(begin, self._text.find(words, begin))
 
     def _begin(self, heading: str, line: int) -> _Draft:
         match = HEADING.fullmatch(heading.strip())
@@ -185,6 +201,9 @@ class _Reader:
     def _fence(self, draft: _Draft, what: str, content: str, line: int) -> None:
         """Read a fenced block of TOML."""
         before = len(self._problems)
+        if what in draft.seen and what in ("step", "scene", "script"):
+            self._complain(line - 1, f"a second {what} in step {draft.title!r}: only one is used")
+        draft.seen.add(what)
         self._complain_all(line, _words_faults(content))
         if what == "step":
             draft.mark = self._checked(content, line, StepMark, lambda _: ()) or draft.mark
@@ -221,7 +240,10 @@ class _Reader:
         yield from release_faults(script)
 
     def _task_faults(self, task: Task) -> Iterator[str]:
-        return task_faults(task, self._robot)
+        yield from task_faults(task, self._robot)
+        if task.id in self._ids:
+            yield f"id {task.id!r}: another task has it"
+        self._ids.add(task.id)
 
     def _fold(self, draft: _Draft, title: str, content: str, line: int) -> None:
         """Read a fenced block of Markdown that is shown when its title is pressed."""
@@ -244,6 +266,7 @@ class _Reader:
         read = read_prose(self._markdown, tokens, self._path.parent, self._robot, fold)
         for below, fault in read.faults:
             self._complain(line + below, fault)
+            draft.broken |= tokens[0].type == "fence"
         last = draft.blocks[-1] if draft.blocks else None
         if isinstance(last, Text) and not last.links and last.when == when:
             draft.blocks[-1] = Text(last.html + read.html, tuple(read.links), when)
@@ -284,4 +307,4 @@ def _words_faults(content: str) -> Iterator[str]:
 
 
 def _quiz_faults(quiz: Quiz) -> Iterator[str]:
-    return option_faults([option.right for option in quiz.options])
+    return option_faults(quiz.options)

@@ -73,6 +73,25 @@ def faults(path: Path) -> list[tuple[int, str]]:
         (LATEX, "$\\frac{K_2{2\\sqrt{K_1}}$", "a { is not closed"),
         (LATEX, "$\\sqrt{K_1}}$", "a } closes nothing"),
         (LATEX, "$\\left( x$", "1 \\left and 0 \\right"),
+        ('```quiz\nquestion = "And?"', '```text\nquestion = "And?"', "has no question"),
+        ("```script", "```scene\n```\n\n```scene\n```\n\n```script", "a second scene"),
+        ("```script", "```step\n```\n\n```step\n```\n\n```script", "a second step"),
+        ("```script", "```script\nuntil = 2.0\n```\n\n```script", "a second script"),
+        (LATEX, "```script\n```", "a script stands in a `run` step"),
+        ("Which one *waits*?", "{{your sketch max}}", "no prediction by a sketch is above"),
+        ("Which one *waits*?", "{{your choice or *no*}}", "no prediction by choice is above"),
+        (LATEX, "so\n{{your number}}", "{{your number}}: no question with a number is above"),
+        (LATEX, "{{your best}}", "no task with `best = …` is above"),
+        (LATEX, "{-5.2 = min across follower}", "between two braces"),
+        (LATEX, "{your choice}", "between two braces"),
+        (LATEX, "{{{0.0 = min distance follower}}}", "three braces"),
+        (LATEX, "{{{your choice}}}", "three braces"),
+        (LATEX, "{{-5.2 ± 500 = min across follower}}", "0 would be accepted as -5.2"),
+        ('"Draw the distance."', '"{{47 = max distance tracker}}"', "not into a block"),
+        ('"For tests."', '"{{47 = max distance tracker}}"', "not into a block"),
+        ('question = "Which?"', 'question = "W"\nhidden = [""]', "an empty word"),
+        ('text = "b"', 'text = "a"', "two options have the text 'a'"),
+        ('text = "that"', 'text = "this"', "two options have the text 'this'"),
         *(
             ('"Draw the distance."', f'"${each} x$"', "or the text stands between single")
             for each in COMMANDS
@@ -119,6 +138,17 @@ def test_what_a_prediction_hides_is_not_told_before_it_except_in_a_fold(tmp_path
     assert told.split("\n")[line - 1] == "# play: Look around"
     fold = text.replace("Which one *waits*?", "```fold Tell me\nUp to 47 mm.\n```")
     read_lesson(write_lesson(tmp_path, fold))
+    first = text.replace("For tests.", "Of 47 mm.")
+    ((line, words),) = faults(write_lesson(tmp_path, first))
+    assert "summary: '47 mm' is told before step 'Before'" in words and line == 3
+
+
+def test_a_second_task_with_an_id_is_named(tmp_path: Path) -> None:
+    task = LESSON[LESSON.index("```task") : LESSON.index("# quiz")]
+    text = LESSON + "\n# task: Again\n\n" + task
+    ((line, words),) = faults(write_lesson(tmp_path, text))
+    assert "another task has it" in words and text.split("\n")[line - 1] == 'id = "hold"'
+    assert line > LESSON.count("\n")
 
 
 def test_a_lesson_with_all_of_the_format_is_read(tmp_path: Path, capsys: Capture) -> None:
@@ -147,7 +177,7 @@ def test_a_lesson_is_checked_by_its_own_folder(tmp_path: Path, capsys: Capture) 
     [
         ("{{0.0 = min distance follower}}", True),
         ("{{47 = max distance tracker}}", False),
-        ("{{30 ± 30 = max distance tracker during held from 0.5 to 1.5}}", True),
+        ("{{30 ± 29 = max distance tracker during held from 0.5 to 1.5}}", True),
         ("{{30 ± 1 = max distance tracker during held from 0.5 to 0.6}}", False),
     ],
 )
