@@ -59,25 +59,25 @@ def read_toml(content: str, line: int, kind: type[T], complain: Complain) -> T |
         )
         complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}{hint}")
     except msgspec.ValidationError as error:
-        near = _near_field(str(error), kind) or _near_value(str(error), kind)
-        complain(line_of(str(error), content, line), f"{error}{near}")
+        complain(line_of(str(error), content, line), f"{error}{nearest(str(error), kind)}")
     except RecursionError:
         complain(line, "nested too deeply")
     return None
 
 
-def _near_field(error: str, kind: Any) -> str:
-    """The known field whose name is nearest to the unknown one of an error, as a suggestion."""
-    unknown = re.search(r"unknown field `(.+?)`", error)
-    near = get_close_matches(unknown[1], sorted(_fields(kind)), 1) if unknown else []
-    return f"; did you mean {near[0]}?" if near else ""
+def nearest(error: str, kind: Any) -> str:
+    """The field or value of a type that is nearest to the unknown one of an error, as a hint."""
+    field = re.search(r"unknown field `(.+?)`", error)
+    if field:
+        return near(field[1], _fields(kind))
+    value = re.search(r"Invalid (?:enum )?value '(.+?)'", error)
+    return near(value[1], _values(kind)) if value else ""
 
 
-def _near_value(error: str, kind: Any) -> str:
-    """The known value that is nearest to the unknown one of an error, as a suggestion."""
-    unknown = re.search(r"Invalid (?:enum )?value '(.+?)'", error)
-    near = get_close_matches(unknown[1], sorted(_values(kind)), 1) if unknown else []
-    return f"; did you mean {near[0]}?" if near else ""
+def near(name: str, known: Iterable[str]) -> str:
+    """The known name that is nearest to an unknown one, as a hint; empty if none is near."""
+    found = get_close_matches(name, sorted(known), 1)
+    return f"; did you mean {found[0]}?" if found else ""
 
 
 def _values(kind: Any) -> set[str]:

@@ -12,7 +12,7 @@ from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.schema import Text
 from tests.support.format_texts import FORMAT_LESSON, FORMAT_REFERENCE
-from tests.support.lesson_texts import LESSON, write_lesson
+from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 
 LATEX = "$$\\dot x = v$$"
 COMMANDS = ("\\frac", "\\theta", "\\beta", "\\rho", "\\nu", "\\sin", "\\xi")
@@ -57,6 +57,11 @@ def faults(path: Path) -> list[tuple[int, str]]:
         ('controls = ["K1", "hold"]', "start = { acros = 5 }", "did you mean across"),
         ('kind = "bound"', 'kind = "bound"\nstat = "setling"', "did you mean settling?"),
         ('kind = "bound"', 'kind = "bond"', "did you mean bound?"),
+        (LATEX, "![](b.svg)", "what it shows"),
+        (LATEX, "![A](a.svg)", "no well-formed XML"),
+        ("{ at = 0.5, hold", "{ at = 1.6, run = true }, { at = 0.5, hold", "order of their times"),
+        ("lab:K3=100", "lab:goto=9", "lab:goto: neither an action nor a parameter"),
+        ("lab:K3=100", "lab:pth=circle", "parameter; did you mean path?"),
         ("{ at = 0.5, hold = true }", "{ at = 0.5, rate = 0.01 }", "between 0.125 and 4"),
         (LATEX, "```folds Why\nSo.\n```", "did you mean fold"),
         (LATEX, "```foldd Why\nSo.\n```", "did you mean fold"),
@@ -101,7 +106,10 @@ def faults(path: Path) -> list[tuple[int, str]]:
 def test_it_is_told_with_its_line(tmp_path: Path, right: str, wrong: str, said: str) -> None:
     assert right in LESSON
     text = LESSON.replace(right, wrong, 1)
-    found = faults(write_lesson(tmp_path, text))
+    file = write_lesson(tmp_path, text)
+    file.with_name("a.svg").write_text("<svg><text>a & b</text></svg>")
+    file.with_name("b.svg").write_text("<svg/>")
+    found = faults(file)
     assert len(found) == 1 and said in found[0][1], found
     at = text[: text.index(wrong)].count("\n") + 1
     assert -6 <= at - found[0][0] <= 6  # its line, or that of its block, or of its step
@@ -194,6 +202,90 @@ def test_a_number_of_the_text_is_compared_with_the_run(
     shown = number[2:].split()[0]
     html = next(step for step in read_lesson(file).steps if step.kind == "explain").blocks[0]
     assert isinstance(html, Text) and f"It is {shown} mm." in html.html
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "said"),
+    [
+        ("top = 60.0", "top = 9.0", "top = 9: the distance of the tracker goes up to 48.05 mm"),
+        (
+            '"distance"\nseconds',
+            '"across"\nseconds',
+            "bottom = 0: the across of the tracker goes down to -",
+        ),
+        ('"distance"\nseconds', '"energy"\nseconds', "has no energy of the tracker"),
+        (
+            LATEX,
+            "{{4 = max distance follower during pulled}}",
+            "measured: the follower is never pulled",
+        ),
+        (
+            LATEX,
+            "{{4 = max distance follower from 3 to 5}}",
+            "no instant from 3 to 5 s; the run ends at",
+        ),
+        (LATEX, "{{4 = max energy follower}}", "robot of this run has no energy"),
+    ],
+)
+def test_what_the_run_shows_is_told(
+    tmp_path: Path, capsys: Capture, right: str, wrong: str, said: str
+) -> None:
+    assert right in LESSON
+    file = write_lesson(tmp_path, LESSON.replace(right, wrong, 1))
+    assert run_command(["lessons", "check", str(tmp_path)]) == 1
+    (told,) = capsys.readouterr().err.splitlines()
+    assert told.startswith(f"{file}:") and said in told
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "said"),
+    [
+        ("minutes = 1", 'robot = "flexible"', "robot is 'flexible', and 'five_bar' in en.md"),
+        (LATEX, f"{LATEX}\n\n```fold A\nB\n```", "line 51: not the same number of folds"),
+        ("lab:K3=100", "lab:K3=10", "not the same lab links"),
+        ("until = 1.0", "until = 1.5", "not the same script"),
+        ('controls = ["K1", "hold"]', 'controls = ["K1"]', "not the same scene"),
+    ],
+)
+def test_it_is_told_what_differs_in_a_translation(
+    tmp_path: Path, right: str, wrong: str, said: str
+) -> None:
+    assert right in LESSON
+    file = write_lesson(tmp_path).with_name("de.md")
+    file.write_text(LESSON.replace(right, wrong))
+    found = read_course([tmp_path])[1]
+    assert [said in each.text and each.path == str(file) for each in found] == [True], found
+
+
+def test_files_and_folders_that_nobody_reads_are_named(tmp_path: Path) -> None:
+    home = write_lesson(tmp_path).parent
+    (home / "DE.md").write_text(LESSON)
+    write_lesson(tmp_path, name="01-b")
+    (tmp_path / "route").mkdir()
+    (tmp_path / ".git").mkdir()
+    told = {Path(each.path).name: each.text for each in read_course([tmp_path])[1]}
+    assert set(told) == {"DE.md", "01-b", "route"}
+    assert "two small letters" in told["DE.md"] and "'01-a' has the number 01" in told["01-b"]
+    assert "did you mean routes?" in told["route"]
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "said", "line"),
+    [
+        ("[hold.failure]", "[hold.failed]", "task 'hold': .*did you mean failure?", 5),
+        ("until = 1.5", "untill = 1.5", "task 'hold': .*did you mean until?", 6),
+        ("[hold", "[holt", "there is no task 'holt'; did you mean hold?", 2),
+    ],
+)
+def test_what_is_wrong_in_the_references_is_named(
+    tmp_path: Path, right: str, wrong: str, said: str, line: int
+) -> None:
+    write_lesson(tmp_path, reference=REFERENCE.replace(right, wrong))
+    found = [each for each in read_course([tmp_path])[1] if "no solution" not in each.text]
+    first, _, last = said.partition(".*")
+    assert [(first in each.text and last in each.text, each.line) for each in found] == [
+        (True, line)
+    ], found
 
 
 HELD = "until = 2.0\ndo = [{ at = 0.5, hold = true }, { at = 1.5, hold = false }]"
