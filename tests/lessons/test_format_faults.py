@@ -11,6 +11,7 @@ from onpath.lessons.course import read_course
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.schema import Text
+from tests.support.checkout import ROOT
 from tests.support.format_texts import FORMAT_LESSON, FORMAT_REFERENCE
 from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 
@@ -289,3 +290,11 @@ def test_what_is_wrong_in_the_references_is_named(
 
 
 HELD = "until = 2.0\ndo = [{ at = 0.5, hold = true }, { at = 1.5, hold = false }]"
+
+
+def test_the_whole_lesson_of_the_readme_passes(tmp_path: Path, capsys: Capture) -> None:
+    readme = (ROOT / "lessons" / "README.md").read_text("utf-8")
+    lesson, reference = (part.partition("````")[0] for part in readme.split("````\n")[1:4:2])
+    write_lesson(tmp_path, lesson, reference)
+    assert run_command(["lessons", "check", str(tmp_path)]) == 0, capsys.readouterr().err
+    assert "1 lesson, 1 solution and 1 failure played" in capsys.readouterr().out
