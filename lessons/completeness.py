@@ -7,15 +7,24 @@ from collections.abc import Collection, Iterator, Sequence
 
 from markupsafe import Markup
 
-from onpath.lessons.schema import Choice, Sketch, Step, Text
+from onpath.lessons.schema import (
+    Choice,
+    Front,
+    NumberQuestion,
+    OpenQuestion,
+    Quiz,
+    Sketch,
+    Step,
+    Text,
+)
 from onpath.lessons.task_schema import Task
 
 NEEDED = ("play", "predict", "run", "explain", "task")
 """Kinds of steps of which each lesson has one that is not optional."""
 
 
-def lacks(steps: Sequence[Step], broken: Collection[int] = ()) -> Iterator[str]:
-    """Problems of the lesson: missing kinds of steps, repeated ids, incomplete steps.
+def lacks(steps: Sequence[Step], broken: Collection[int] = ()) -> Iterator[tuple[int, str]]:
+    """Lines and problems of the lesson: missing kinds of steps, incomplete steps.
 
     Args:
         broken: lines at which steps begin of which a block could not be read.
@@ -24,14 +33,11 @@ def lacks(steps: Sequence[Step], broken: Collection[int] = ()) -> Iterator[str]:
     for kind in NEEDED:
         if kind not in kinds:
             optional = any(step.kind == kind for step in steps)
-            yield f"the lesson has no step `# {kind}: …`" + " that is not optional" * optional
-    ids = [task.id for step in steps for task in step.tasks()]
-    for repeated in {task for task in ids if ids.count(task) > 1}:
-        yield f"two tasks have the id {repeated!r}"
+            yield 1, f"the lesson has no step `# {kind}: …`" + " that is not optional" * optional
     for step, after in zip(steps, [*steps[1:], None], strict=False):
         if step.line not in broken:
             for fault in _step_lacks(step, after):
-                yield f"step {step.title!r} at line {step.line}{fault}"
+                yield step.line, f"step {step.title!r}{fault}"
 
 
 def _step_lacks(step: Step, after: Step | None) -> Iterator[str]:
@@ -43,10 +49,15 @@ def _step_lacks(step: Step, after: Step | None) -> Iterator[str]:
         yield ": the `run` step after it must be optional, too, or neither of them"
     if step.kind == "run" and step.script is None:
         yield " has no script"
+    if step.kind != "run" and step.script is not None:
+        yield f": a script stands in a `run` step, and this is a `{step.kind}` step"
+    if step.kind == "quiz" and not any(isinstance(b, Asked) for b in step.blocks):
+        yield " has no question: a quiz, number or open block"
     if step.kind == "task" and not any(isinstance(b, Task) for b in step.blocks):
         yield " has no task"
 
 
+Asked = Quiz | NumberQuestion | OpenQuestion
 FOLDED = re.compile(r"<details>.*?</details>", re.DOTALL)
 
 
@@ -65,6 +76,22 @@ def order_faults(steps: Sequence[Step], broken: Collection[int] = ()) -> Iterato
                 yield from ((s.line, f) for s, f in _told_before(told, steps[: index + 1], step))
 
 
+def first_page_faults(front: Front, steps: Sequence[Step]) -> Iterator[str]:
+    """The faults of facts about a lesson that tell what a prediction hides."""
+    for name in ("title", "summary", "needs", "goals"):
+        words = Markup(getattr(front, name)).striptags()
+        for step in steps:
+            for told in (each for asked in step.predictions() for each in asked.hidden):
+                if _says(words, told):
+                    yield f"{name}: {told!r} is told before step {step.title!r} asks for it"
+
+
+def _says(words: str, told: str) -> bool:
+    """Whether a text has a word, or words, that are not to be told."""
+    word = rf"(?<!\w){re.escape(' '.join(told.split()))}(?!\w)"
+    return bool(told.strip()) and re.search(word, words, re.IGNORECASE) is not None
+
+
 def _length_faults(sketch: Sketch, run: Step) -> Iterator[str]:
     if run.kind == "run" and run.script is not None and run.script.until != sketch.seconds:
         yield (
@@ -75,11 +102,10 @@ def _length_faults(sketch: Sketch, run: Step) -> Iterator[str]:
 
 def _told_before(told: str, steps: Sequence[Step], asked: Step) -> Iterator[tuple[Step, str]]:
     """The steps up to a prediction whose text tells what it hides."""
-    word = re.compile(rf"(?<!\w){re.escape(' '.join(told.split()))}(?!\w)", re.IGNORECASE)
     for step in steps:
         blocks = [block.html for block in step.blocks if isinstance(block, Text)]
         words = Markup(FOLDED.sub(" ", "".join(blocks))).striptags()
-        if word.search(f"{step.title} {words}") and told.strip():
+        if _says(f"{step.title} {words}", told):
             yield (
                 step,
                 f"{told!r} is told before step {asked.title!r} asks for it; put it in a fold",

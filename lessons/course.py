@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -14,10 +14,12 @@ from msgspec.structs import replace
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
 from onpath.lessons.parse import read_lesson
-from onpath.lessons.problems import LessonError, Problem
+from onpath.lessons.problems import LessonError, Problem, line_of
+from onpath.lessons.routes import FOLDER as ROUTES
 from onpath.lessons.routes import Route, read_routes
 from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Sketch, Step, Text
 from onpath.lessons.task_schema import Reference, Task
+from onpath.lessons.toml_blocks import near, nearest
 from onpath.lessons.vocabulary.setups import script_faults
 from onpath.lessons.words import DEFAULT
 
@@ -25,6 +27,8 @@ BUILT_IN = Path(__file__).parent / "course"
 REFERENCE = "reference.toml"
 NOTES = ("usual", "answer", "ask", "passed")
 """Texts that a block has in all languages or in none."""
+NUMBER = re.compile(r"(\d+[a-z]?)-")  # of a lesson's folder
+LANGUAGE = re.compile(r"[a-z]{2}")  # name of a language's file
 SIDE_ROAD = re.compile(r"\d+([a-z])-")  # folder of a lesson that may be left out, such as 01b-...
 
 
@@ -98,9 +102,27 @@ def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
                 problems.append(Problem(str(home), 1, f"a second lesson {home.name!r}"))
             elif versions:
                 lessons[home.name] = versions
+        problems += _folder_faults(folder, found)
         read = read_routes(folder, lessons)
         routes, problems = {**read.routes, **routes}, problems + read.problems
     return Course(lessons, routes, tests), sorted(problems)
+
+
+def _folder_faults(folder: Path, lessons: Sequence[Path]) -> Iterator[Problem]:
+    """Problems of the folders in a course: two of one number, and those that nobody reads."""
+    numbered: dict[str, str] = {}
+    for home in lessons:
+        if number := NUMBER.match(home.name):
+            first = numbered.setdefault(number[1], home.name)
+            if first != home.name:
+                yield Problem(str(home), 1, f"{first!r} has the number {number[1]}, too")
+    others = sorted(each for each in folder.iterdir() if each.is_dir()) if lessons else []
+    known = [ROUTES, FOLDER]
+    for other in others:
+        if other not in lessons and other.name not in known and other.name[0] not in "._":
+            text = f"no lesson, since it has no en.md, and neither {ROUTES} nor {FOLDER}"
+            text += near(other.name.lower(), known)
+            yield Problem(str(other), 1, text)
 
 
 def read_folder(folder: Path) -> tuple[Course, list[Problem], Path]:
@@ -126,6 +148,12 @@ def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
     versions: dict[str, Lesson] = {}
     problems: list[Problem] = []
     for file in sorted(home.glob("*.md"), key=lambda f: (f.stem != DEFAULT, f.stem)):
+        if file.stem == "README":
+            continue
+        if not LANGUAGE.fullmatch(file.stem):
+            text = "the file of a language is named by two small letters, such as en.md"
+            problems.append(Problem(str(file), 1, text))
+            continue
         try:
             versions[file.stem] = read_lesson(file)
         except LessonError as error:
@@ -153,13 +181,23 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
 
     try:
         content = file.read_text("utf-8-sig")
-        read = msgspec.convert(tomllib.loads(content), dict[str, Reference])
+        tables = tomllib.loads(content)
     except (OSError, ValueError) as error:
         text = "there must be one" if isinstance(error, FileNotFoundError) else str(error)
         return {}, [problem(text)]
     ids = [task.id for task in lesson.tasks()]
-    problems = [problem(f"no solution of task {task!r}") for task in ids if task not in read]
-    problems += [problem(f"there is no task {name!r}") for name in read if name not in ids]
+    problems = [problem(f"no solution of task {task!r}") for task in ids if task not in tables]
+    read: dict[str, Reference] = {}
+    for name, table in tables.items():
+        line = next((i for i, each in enumerate(content.split("\n"), 1) if f"[{name}" in each), 1)
+        if name not in ids:
+            problems.append(problem(f"there is no task {name!r}{near(name, ids)}", line))
+        try:
+            read[name] = msgspec.convert(table, Reference)
+        except msgspec.ValidationError as error:
+            own = "\n".join(content.split("\n")[line - 1 :])
+            told = f"{error}{nearest(str(error), Reference)}"
+            problems.append(problem(f"task {name!r}: {told}", line_of(told, own, line)))
     for name, reference in read.items():
         for script in (reference.solution, reference.failure):
             faults = script_faults(script, lesson.front.robot)
@@ -177,11 +215,15 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
     if len(first.steps) != len(other.steps):
         text = f"{len(other.steps)} steps, {len(first.steps)} in {first.language}.md"
         yield Problem(str(file), 1, text)
+    if first.front.robot != other.front.robot:
+        robots = f"robot is {other.front.robot!r}, and {first.front.robot!r} in {first.language}.md"
+        front = file.read_text("utf-8-sig").partition("\n+++")[0]
+        yield Problem(str(file), line_of(robots, front, 1), robots)
     for own, theirs in zip(first.steps, other.steps, strict=False):
-        if _structure(own) != _structure(theirs):
+        ours, others = _structure(own), _structure(theirs)
+        if differs := [what for what, part in ours.items() if others[what] != part]:
             text = f"step {theirs.title!r} is not as in {first.language}.md, line {own.line}"
-            same = "same kind, scene, script, tasks, predictions, questions and links"
-            yield Problem(str(file), theirs.line, f"{text}: {same}")
+            yield Problem(str(file), theirs.line, f"{text}: not the same {', '.join(differs)}")
 
 
 def _without_words(scene: StepSetup | None) -> StepSetup | None:
@@ -191,24 +233,42 @@ def _without_words(scene: StepSetup | None) -> StepSetup | None:
     return replace(scene, marks=tuple(replace(m, text=str(bool(m.text))) for m in scene.marks))
 
 
-def _structure(step: Step) -> tuple[object, ...]:
-    """The parts of a step that are the same in all languages."""
-    tasks = [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()]
-    blocks = [block for block in step.blocks if not isinstance(block, Text | Task)]
-    right = [[o.right for o in b.options] for b in blocks if isinstance(b, Choice | Quiz)]
-    aims = [bool(b.misconception) for b in blocks if isinstance(b, Quiz)]
-    asked = [(b.why, len(b.reasons), len(b.hidden)) for b in step.predictions()]
-    checked = [(b.number, b.tolerance) for b in blocks if isinstance(b, NumberQuestion)]
-    drawn = [
-        replace(b, question="", usual="", answer="", ask="", reasons=(), hidden=())
-        for b in blocks
-        if isinstance(b, Sketch)
-    ]
-    told = [tuple(bool(getattr(b, name, "")) for name in NOTES) for b in step.blocks]
+def _structure(step: Step) -> dict[str, object]:
+    """The parts of a step that are the same in all languages, by their names for messages."""
     texts = [block for block in step.blocks if isinstance(block, Text)]
-    links = [link.actions for text in texts for link in text.links]
-    branches = [text.when for text in texts if text.when]
-    kinds = [type(block) for block in blocks]
-    shown = step.kind, step.optional, step.when, _without_words(step.scene), step.script
-    stated = [replace(each, line=0, text="") for each in step.stated]
-    return *shown, branches, stated, tasks, kinds, right, drawn, told, links, asked, checked, aims
+    return {
+        "kind": step.kind,
+        "block `step`": (step.optional, step.when),
+        "scene": _without_words(step.scene),
+        "script": step.script,
+        "conditions of texts (`when`)": [text.when for text in texts if text.when],
+        "number of folds": sum(text.html.count("<details>") for text in texts),
+        "lab links": [link.actions for text in texts for link in text.links],
+        "stated numbers": [replace(each, line=0, text="") for each in step.stated],
+        **_asked(step),
+    }
+
+
+def _asked(step: Step) -> dict[str, object]:
+    """What a step asks, in the same way."""
+    blocks = [block for block in step.blocks if not isinstance(block, Text | Task)]
+    return {
+        "tasks": [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()],
+        "order of texts and questions": [type(block) for block in step.blocks],
+        "right options": [
+            [o.right for o in b.options] for b in blocks if isinstance(b, Choice | Quiz)
+        ],
+        "axes to draw on": [
+            replace(b, question="", usual="", answer="", ask="", reasons=(), hidden=())
+            for b in blocks
+            if isinstance(b, Sketch)
+        ],
+        "number of reasons or hidden words": [
+            (b.why, len(b.reasons), len(b.hidden)) for b in step.predictions()
+        ],
+        "right number": [(b.number, b.tolerance) for b in blocks if isinstance(b, NumberQuestion)],
+        "misconceptions": [bool(b.misconception) for b in blocks if isinstance(b, Quiz)],
+        f"texts ({', '.join(NOTES)})": [
+            tuple(bool(getattr(b, name, "")) for name in NOTES) for b in step.blocks
+        ],
+    }

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
+from xml.parsers.expat import ExpatError, ParserCreate
 
 from latex2mathml.converter import convert
 from markdown_it import MarkdownIt
@@ -15,7 +16,7 @@ from markdown_it.token import Token
 from markupsafe import Markup
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
-from onpath.lessons.vocabulary.latex import latex_faults
+from onpath.lessons.vocabulary.latex import brace_faults, latex_faults
 
 MIME = {
     ".svg": "image/svg+xml",
@@ -45,6 +46,8 @@ def mathml(latex: str, options: dict[str, Any]) -> str:
         FormulaError: the LaTeX cannot be converted.
     """
     display = "block" if options.get("display_mode") else "inline"
+    if faults := list(brace_faults(latex)):
+        raise FormulaError(f"formula {latex!r}: {'; '.join(faults)}")
     try:
         written = convert(latex, display=display)
     except Exception as error:  # the library raises many kinds
@@ -104,7 +107,7 @@ def embedded(picture: Path) -> str:
     """A picture as a data: URL.
 
     Raises:
-        ValueError: the file type is not supported, or the file is too large.
+        ValueError: the file type is not supported, or the file is too large, or no SVG.
         OSError: the file cannot be read.
     """
     mime = MIME.get(picture.suffix.lower())
@@ -112,4 +115,10 @@ def embedded(picture: Path) -> str:
         raise ValueError(f"picture {picture.name!r}: its name must end in {', '.join(MIME)}")
     if picture.stat().st_size > LARGEST:
         raise ValueError(f"picture {picture.name!r} is larger than {LARGEST // 1000} kB")
-    return f"data:{mime};base64,{base64.b64encode(picture.read_bytes()).decode()}"
+    content = picture.read_bytes()
+    if picture.suffix.lower() == ".svg":
+        try:
+            ParserCreate().Parse(content, True)
+        except ExpatError as error:
+            raise ValueError(f"picture {picture.name!r} is no well-formed XML: {error}") from None
+    return f"data:{mime};base64,{base64.b64encode(content).decode()}"

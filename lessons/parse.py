@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
-from difflib import get_close_matches
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_args
 
@@ -14,13 +13,14 @@ from markdown_it.token import Token
 
 from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.adaptive.branches import faults_of_when
-from onpath.lessons.completeness import lacks, order_faults
+from onpath.lessons.adaptive.own_numbers import unanswered
+from onpath.lessons.completeness import first_page_faults, lacks, order_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
 from onpath.lessons.formulas import FormulaError, reader
 from onpath.lessons.kept.option_keys import keys_of
 from onpath.lessons.measures.stated import Stated, take_stated
-from onpath.lessons.problems import LessonError, Problem
-from onpath.lessons.prose import data_faults, read_prose
+from onpath.lessons.problems import LessonError, Problem, line_of
+from onpath.lessons.prose import data_faults, read_prose, text_faults
 from onpath.lessons.rendered import rendered
 from onpath.lessons.schema import (
     Block,
@@ -43,17 +43,16 @@ from onpath.lessons.vocabulary.blocks import (
     prediction_faults,
     task_faults,
 )
+from onpath.lessons.vocabulary.fences import FENCES
 from onpath.lessons.vocabulary.setups import release_faults, scene_faults, script_faults
 
 NO_MARK = StepMark()
 LARGEST = 1_000_000
 """Largest size of a lesson file, [B]."""
 KINDS: tuple[str, ...] = get_args(StepKind)
-FENCES = ("step", "scene", "script", "predict", "task", "quiz", "number", "open")
-KNOWN = (*FENCES, "fold", "when")
 HEADING = re.compile(r"(\w+):\s*(.+)")
-FOLD = re.compile(r"fold\b\s*(.*)")
-BRANCH = re.compile(r"when\b\s*(.*)")
+FOLD = re.compile(r"fold(?:\s+(.*))?")
+BRANCH = re.compile(r"when(?:\s+(.*))?")
 
 
 @dataclass(slots=True)
@@ -67,6 +66,7 @@ class _Draft:
     scene: StepSetup | None = None
     script: Script | None = None
     mark: StepMark = NO_MARK
+    seen: set[str] = field(default_factory=set[str])  # names of its blocks of TOML
     broken: bool = False  # whether one of its blocks could not be read
 
     def step(self, stated: tuple[Stated, ...] = ()) -> Step:
@@ -103,6 +103,7 @@ class _Reader:
         self._markdown = reader()
         self._robot = self._home = "five_bar"
         self._scene = StepSetup()
+        self._ids: set[str] = set()  # of tasks
         self._branches: dict[tuple[int, str], int] = {}  # step's line, condition -> its line
 
     def lesson(self) -> Lesson:
@@ -114,6 +115,9 @@ class _Reader:
         front, first = self._front()
         body = self._text.split("\n", first)[first] if first else self._text
         steps = self._steps(body, first)
+        if front is not None:
+            for fault in first_page_faults(front, self._made(steps)):
+                self._complain(line_of(fault, self._text, 1), fault)
         if not self._problems and front is not None:
             name, language = self._path.parent.name, self._path.stem
             made = self._made(steps)
@@ -135,7 +139,9 @@ class _Reader:
         if len(ends) < 2 or ends[0] != 0:
             self._complain(1, "a lesson begins with facts between two lines +++")
             return None, 0
-        front = read_toml("\n".join(lines[1 : ends[1]]), 2, Front, self._complain)
+        content = "\n".join(lines[1 : ends[1]])
+        front = read_toml(content, 2, Front, self._complain)
+        self._complain_all(2, _words_faults(content))
         if front is not None:
             self._complain_all(1, scene_faults(StepSetup(robot=front.robot), front.robot))
             self._robot = self._home = front.robot
@@ -157,22 +163,30 @@ class _Reader:
             elif head.type == "fence" and head.info.strip() in FENCES:
                 self._fence(drafts[-1], head.info.strip(), head.content, line + 1)
             elif head.type == "fence" and (fold := FOLD.fullmatch(head.info.strip())):
-                self._fold(drafts[-1], fold[1], head.content, line + 1)
+                self._fold(drafts[-1], fold[1] or "", head.content, line + 1)
             elif head.type == "fence" and (branch := BRANCH.fullmatch(head.info.strip())):
-                self._branch(drafts[-1], branch[1], head.content, line + 1)
-            elif head.type == "fence" and (near := get_close_matches(head.info, KNOWN, 1)):
-                self._complain(line, f"unknown block {head.info.strip()!r}: did you mean {near[0]}")
+                self._branch(drafts[-1], branch[1] or "", head.content, line + 1)
             else:
                 self._prose(drafts[-1], tokens, line)
         broken = {draft.line for draft in drafts if draft.broken}
         steps = self._made(drafts)
         is_test = self._path.parent.name == FOLDER
-        self._complain_all(1, lacks_of_test(steps) if is_test else lacks(steps, broken))
+        if is_test:
+            self._complain_all(1, lacks_of_test(steps))
+        for line, fault in () if is_test else lacks(steps, broken):
+            self._complain(line, fault)
         for line, when, fault in faults_of_when(steps):
             self._complain(self._branches.get((line, when), line), fault)
         for line, fault in order_faults(steps, broken):
             self._complain(line, fault)
+        for line, place, fault in unanswered(steps):
+            self._complain(self._text.count("\n", 0, self._at(place, line)) + 1, fault)
         return drafts
+
+    def _at(self, words: str, line: int) -> int:
+        """Where words stand in the file, from a line on; else the beginning of that line."""
+        begin = len("".join(self._text.splitlines(keepends=True)[: line - 1]))
+        return max(begin, self._text.find(words, begin))
 
     def _begin(self, heading: str, line: int) -> _Draft:
         match = HEADING.fullmatch(heading.strip())
@@ -181,11 +195,15 @@ class _Reader:
                 line, f"heading {heading!r}: `# kind: Title`, kind one of {', '.join(KINDS)}"
             )
             return _Draft("play", heading, line, [])
+        self._complain_all(line, text_faults(match[2]))
         return _Draft(match[1], match[2], line, [])
 
     def _fence(self, draft: _Draft, what: str, content: str, line: int) -> None:
         """Read a fenced block of TOML."""
         before = len(self._problems)
+        if what in draft.seen and what in ("step", "scene", "script"):
+            self._complain(line - 1, f"a second {what} in step {draft.title!r}: only one is used")
+        draft.seen.add(what)
         self._complain_all(line, _words_faults(content))
         if what == "step":
             draft.mark = self._checked(content, line, StepMark, lambda _: ()) or draft.mark
@@ -222,12 +240,16 @@ class _Reader:
         yield from release_faults(script)
 
     def _task_faults(self, task: Task) -> Iterator[str]:
-        return task_faults(task, self._robot)
+        yield from task_faults(task, self._robot)
+        if task.id in self._ids:
+            yield f"id {task.id!r}: another task has it"
+        self._ids.add(task.id)
 
     def _fold(self, draft: _Draft, title: str, content: str, line: int) -> None:
         """Read a fenced block of Markdown that is shown when its title is pressed."""
         if not title:
             self._complain(line, "a fold needs a title: ```fold I cannot play: tell me")
+        self._complain_all(line - 1, text_faults(title))
         self._prose(draft, self._markdown.parse(content), line, title)
 
     def _branch(self, draft: _Draft, when: str, content: str, line: int) -> None:
@@ -244,6 +266,7 @@ class _Reader:
         read = read_prose(self._markdown, tokens, self._path.parent, self._robot, fold)
         for below, fault in read.faults:
             self._complain(line + below, fault)
+            draft.broken |= tokens[0].type == "fence"
         last = draft.blocks[-1] if draft.blocks else None
         if isinstance(last, Text) and not last.links and last.when == when:
             draft.blocks[-1] = Text(last.html + read.html, tuple(read.links), when)
@@ -284,4 +307,4 @@ def _words_faults(content: str) -> Iterator[str]:
 
 
 def _quiz_faults(quiz: Quiz) -> Iterator[str]:
-    return option_faults([option.right for option in quiz.options])
+    return option_faults(quiz.options)

@@ -12,19 +12,24 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from markupsafe import Markup
 
+from onpath.lessons.action_schema import Action
 from onpath.lessons.adaptive.own_numbers import own_faults
 from onpath.lessons.formulas import FormulaError, embedded, folded, render
-from onpath.lessons.links import read_link
+from onpath.lessons.links import SCHEME, SIMPLE, read_link
 from onpath.lessons.schema import LabLink, Text
+from onpath.lessons.toml_blocks import near
+from onpath.lessons.vocabulary.fences import fence_faults
 from onpath.lessons.vocabulary.setups import action_faults
+from onpath.models.control.benches import BENCHES
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import specs
 
 HTML = re.compile(
-    r"</?(script|style|iframe|object|embed|img|div|span|br|p|table|svg|details|font|center|sub|sup"
-    r"|video|audio|input|button|form|link|meta)(\s[^<>]*)?/?>",
-    re.IGNORECASE,
+    r"</?[A-Za-z][\w-]*(\s+[\w:-]+(\s*=\s*(\"[^\"]*\"|'[^']*'|[^\s<>\"']+))?)*\s*/?>|<!--"
 )
 """Typed tags; they are shown, which nobody wants."""
-CODE = re.compile(r"`[^`]*`")
+CODE = re.compile(r"`[^`]*`|(?<!\\)\$[^$]*\$|<https?://[^\s<>]*>")
+"""Where a block of TOML has code, a formula or an address, in which `<` is no tag."""
 
 
 @dataclass(slots=True)
@@ -110,6 +115,8 @@ def _written_faults(token: Token) -> Iterator[str]:
     """The faults of the words of a paragraph, a heading or a cell."""
     words = "".join(child.content for child in token.children or () if child.type == "text")
     yield from text_faults(words)
+    if token.type == "fence":
+        yield from fence_faults(token.info)
     if words.count("$") > token.content.count("\\$"):
         yield _unclosed(words)
 
@@ -120,6 +127,8 @@ def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
         if image.type != "image":
             continue
         source = str(image.attrGet("src") or "")
+        if not image.content.strip():
+            yield f"picture {source!r}: what it shows stands between [ and ], for who cannot see it"
         picture = (home / source).resolve()
         try:
             if not picture.is_relative_to(home.resolve()):
@@ -152,8 +161,19 @@ def _links(children: list[Token], robot: str, faults: list[str]) -> Iterator[Lab
             faults.append(str(error))
             continue
         for action in actions:
-            faults += action_faults(action, robot)
+            faults += _unknown_names(action, robot) or action_faults(action, robot)
         yield LabLink(label, actions)
+
+
+def _unknown_names(action: Action, robot: str) -> list[str]:
+    """The faults of names in a link that are neither actions nor parameters."""
+    known = specs(ROBOTS[robot].parameters) if robot in ROBOTS else action.set or {}
+    names = [*SIMPLE, "path", "robot", *BENCHES, *known]
+    return [
+        f"{SCHEME}{name}: neither an action nor a parameter{near(name, names)}"
+        for name in action.set or {}
+        if name not in known
+    ]
 
 
 def _separate(after: list[Token]) -> None:

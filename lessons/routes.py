@@ -120,6 +120,9 @@ def route_faults(route: Route, lessons: Lessons) -> Iterator[str]:
             continue
         steps = next(iter(lessons[stop.lesson].values())).steps
         first, last = stop.steps
+        if last < first:
+            yield f"steps = [{first}, {last}]: it ends before it begins"
+            continue
         if not 1 <= first <= last <= len(steps):
             yield f"steps = [{first}, {last}]: {stop.lesson!r} has 1 to {len(steps)}"
             continue

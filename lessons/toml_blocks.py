@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from difflib import get_close_matches
 from typing import Any, TypeVar, get_args
 
@@ -17,33 +17,67 @@ Complain = Callable[[int, str], None]
 """Callback for an error: the line of the file, and a description."""
 
 
+BACKSLASH = "in TOML a backslash is written \\\\, or the text stands between single quotes"
+STRING = re.compile(
+    r"""\"{3}(?P<long>(?:[^\\]|\\.)*?)\"{3}|'{3}.*?'{3}|"(?P<short>(?:[^"\\\n]|\\.)*)"|'[^'\n]*'|#[^\n]*""",
+    re.DOTALL,
+)
+ESCAPE = re.compile(r"\\(.)([A-Za-z]*)", re.DOTALL)
+
+
+def escape_faults(content: str) -> Iterator[tuple[int, str]]:
+    """Commands of LaTeX that TOML reads as a tab, a new line or another sign that is not seen.
+
+    Yields:
+        the number of lines after the first one, and the fault.
+    """
+    for string in STRING.finditer(content):
+        kind = string.lastgroup
+        if kind is None:
+            continue  # a text between single quotes, or a comment
+        text, begin = string[kind], string.start(kind)
+        for escape in ESCAPE.finditer(text):
+            sign, rest = escape.groups()
+            formula = text[: escape.start()].replace("\\\\$", "").count("$") % 2
+            if sign in "bfe" or (sign in "tnr" and rest and formula):
+                below = content.count("\n", 0, begin + escape.start())
+                yield below, f"\\{sign}{rest}: {BACKSLASH}"
+
+
 def read_toml(content: str, line: int, kind: type[T], complain: Complain) -> T | None:
     """Convert TOML that begins at a line to a value of a type; None if errors were reported."""
+    if found := list(escape_faults(content)):
+        for below, fault in found:
+            complain(line + below, fault)
+        return None
     try:
         return msgspec.convert(tomllib.loads(content), kind)
     except tomllib.TOMLDecodeError as error:
         place = re.search(r"at line (\d+)", str(error))
-        complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}")
+        hint = (
+            f"; {BACKSLASH}" if re.search("backslash|escape|hex|\\\\\\\\", str(error), re.I) else ""
+        )
+        complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}{hint}")
     except msgspec.ValidationError as error:
-        near = _near_field(str(error), kind) or _near_value(str(error), kind)
-        complain(line_of(str(error), content, line), f"{error}{near}")
+        complain(line_of(str(error), content, line), f"{error}{nearest(str(error), kind)}")
     except RecursionError:
         complain(line, "nested too deeply")
     return None
 
 
-def _near_field(error: str, kind: Any) -> str:
-    """The known field whose name is nearest to the unknown one of an error, as a suggestion."""
-    unknown = re.search(r"unknown field `(.+?)`", error)
-    near = get_close_matches(unknown[1], sorted(_fields(kind)), 1) if unknown else []
-    return f"; did you mean {near[0]}?" if near else ""
+def nearest(error: str, kind: Any) -> str:
+    """The field or value of a type that is nearest to the unknown one of an error, as a hint."""
+    field = re.search(r"unknown field `(.+?)`", error)
+    if field:
+        return near(field[1], _fields(kind))
+    value = re.search(r"Invalid (?:enum )?value '(.+?)'", error)
+    return near(value[1], _values(kind)) if value else ""
 
 
-def _near_value(error: str, kind: Any) -> str:
-    """The known value that is nearest to the unknown one of an error, as a suggestion."""
-    unknown = re.search(r"Invalid (?:enum )?value '(.+?)'", error)
-    near = get_close_matches(unknown[1], sorted(_values(kind)), 1) if unknown else []
-    return f"; did you mean {near[0]}?" if near else ""
+def near(name: str, known: Iterable[str]) -> str:
+    """The known name that is nearest to an unknown one, as a hint; empty if none is near."""
+    found = get_close_matches(name, sorted(known), 1)
+    return f"; did you mean {found[0]}?" if found else ""
 
 
 def _values(kind: Any) -> set[str]:

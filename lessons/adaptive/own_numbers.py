@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from operator import itemgetter
 
 from markupsafe import Markup
 
 from onpath.lessons.progress import Notes
-from onpath.lessons.schema import Choice, NumberQuestion, Sketch, Step
+from onpath.lessons.schema import Block, Choice, NumberQuestion, Sketch, Step, Text
+from onpath.lessons.task_schema import Task
 from onpath.lessons.words import Words
 
 OWN = re.compile(r"\{\{\s*your\s+([^{}]*?)\s*\}\}")
@@ -19,6 +20,14 @@ SKETCH: dict[str, Callable[[Sequence[float]], float]] = {
     "final": itemgetter(-1),
 }
 KINDS = (*(f"sketch {stat}" for stat in SKETCH), "number", "choice", "best")
+WANTED = {
+    "sketch": "no prediction by a sketch",
+    "number": "no question with a number",
+    "choice": "no prediction by choice",
+    "best": "no task with `best = …`",
+}
+"""What there must be for a kind, for messages."""
+SINGLE = re.compile(r"\{\s*(your\s|[−+-]?\d+([.,]\d+)?\s*(±[^{}=]*)?=)[^{}]*\}")
 NOTHING = "–"
 
 
@@ -29,6 +38,34 @@ def own_faults(text: str) -> Iterator[str]:
             yield f"{match[0]}: it is {{{{your …}}}} with one of {', '.join(KINDS)}, and `or …`"
     if "{{" in OWN.sub("", text):
         yield "{{ is not understood: a number is {{47 = max distance tracker}} or {{your number}}"
+    elif single := SINGLE.search(OWN.sub("", text)):
+        yield f"{single[0]}: a number stands between two braces, {{{{…}}}}"
+    elif "{{{" in text or "}}}" in text:
+        yield "three braces: a number stands between two, {{…}}"
+
+
+def unanswered(steps: Sequence[Step]) -> Iterator[tuple[int, str, str]]:
+    """Line of the step, first words and fault of a place for an answer that nobody asked for."""
+    asked = set[str]()
+    for step in steps:
+        for block in step.blocks:
+            asked |= set(_answered(block))
+        for block in step.blocks:
+            for place in OWN.finditer(block.html if isinstance(block, Text) else ""):
+                kind = _parts(place[1])[0]
+                if kind in KINDS and kind not in asked:
+                    words = f"{{{{your {kind}"
+                    yield step.line, words, f"{words}}}}}: {WANTED[kind.split()[0]]} is above it"
+
+
+def _answered(block: Block) -> Iterable[str]:
+    """The kinds of own numbers that a block asks for."""
+    if isinstance(block, Sketch):
+        return KINDS[: len(SKETCH)]
+    if isinstance(block, Task):
+        return ("best",) if block.best else ()
+    kinds: dict[type[Block], str] = {NumberQuestion: "number", Choice: "choice"}
+    return [kinds[type(block)]] if type(block) in kinds else ()
 
 
 def filled(html: Markup, steps: Sequence[Step], index: int, notes: Notes, words: Words) -> Markup:

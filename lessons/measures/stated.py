@@ -16,8 +16,16 @@ import numpy as np
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.task_schema import During, Stat
+from onpath.lessons.vocabulary.fences import FENCES
+from onpath.lessons.vocabulary.names import zero_faults
 
 STATED = re.compile(r"\{\{\s*([−+-]?\d+(?:[.,]\d+)?)\s*(?:±\s*(\d+(?:[.,]\d+)?)\s*)?=([^{}]*)\}\}")
+TOML = re.compile(
+    rf"\A\+\+\+\s*$.*?^\+\+\+"
+    rf"|^ {{0,3}}(?P<mark>`{{3,}}|~{{3,}})\s*({'|'.join(FENCES)})\s*$.*?^\s*(?P=mark)",
+    re.DOTALL | re.MULTILINE,
+)
+"""The parts of a lesson's file that are TOML."""
 FORM = "{{47 = max distance tracker}}, and if needed: during held, from 3 to 5"
 """What is expected, for messages."""
 KNOWN: dict[str, tuple[str, ...]] = {
@@ -57,9 +65,14 @@ class Stated(msgspec.Struct, frozen=True):
 def take_stated(text: str, complain: Callable[[int, str], None]) -> tuple[str, list[Stated]]:
     """The text with plain numbers in place of those that a run must confirm, and these."""
     found = list[Stated]()
+    blocks = [block.span() for block in TOML.finditer(text)]
 
     def plain(match: re.Match[str]) -> str:
+        if any(begin <= match.start() < end for begin, end in blocks):
+            return match[0]  # which is refused there
         line = text.count("\n", 0, match.start()) + 1
+        if text[: match.start()].endswith("{") or text.startswith("}", match.end()):
+            complain(line, f"{{{match[0]}}}: three braces, and a number stands between two")
         try:
             found.append(_read(line, *match.groups()))
         except ValueError as error:
@@ -92,6 +105,8 @@ def _read(line: int, number: str, tolerance: str | None, what: str) -> Stated:
     value = _value(number)
     digits = len(re.split("[.,]", number)[1]) if re.search("[.,]", number) else 0
     allowed = 0.5 * 10.0**-digits if tolerance is None else _value(tolerance)
+    for fault in zero_faults(value, allowed):
+        raise ValueError(fault)
     return Stated(line, number, value, allowed, **read)
 
 

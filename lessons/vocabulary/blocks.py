@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from onpath.lessons.measures.responses import WITH_SIGN
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import NumberQuestion, Prediction, Sketch
+from onpath.lessons.schema import NumberQuestion, Option, Prediction, Sketch
 from onpath.lessons.task_schema import Better, Bound, Check, Compare, Event, Order, Setting, Task
-from onpath.lessons.vocabulary.names import EVENTS, HIGHEST, LONGEST, one_of
+from onpath.lessons.vocabulary.names import EVENTS, HIGHEST, LONGEST, one_of, zero_faults
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import OWN
 from onpath.models.control.laws.registry import LAWS
@@ -23,6 +23,8 @@ def prediction_faults(prediction: Prediction) -> Iterator[str]:
         yield "why = true: reasons are given, so own words are not asked for"
     if len(prediction.reasons) == 1 or not all(map(str.strip, prediction.reasons)):
         yield "reasons: two or more are needed, none of them empty"
+    if not all(map(str.strip, prediction.hidden)):
+        yield "hidden: an empty word hides nothing"
     if isinstance(prediction, Sketch):
         yield from one_of(prediction.quantity, QUANTITIES, "quantity")
         if not 0 < prediction.seconds <= LONGEST:
@@ -31,7 +33,7 @@ def prediction_faults(prediction: Prediction) -> Iterator[str]:
         if not -HIGHEST <= low < high <= HIGHEST:
             yield f"top = {high:g} must be above bottom = {low:g}, both within ±{HIGHEST:g}"
     else:
-        yield from option_faults([option.right for option in prediction.options])
+        yield from option_faults(prediction.options)
 
 
 def number_faults(question: NumberQuestion) -> Iterator[str]:
@@ -40,18 +42,18 @@ def number_faults(question: NumberQuestion) -> Iterator[str]:
         yield f"number = {question.number:g}: within ±{HIGHEST:g}"
     if not 0 < question.tolerance <= HIGHEST:
         yield f"tolerance = {question.tolerance:g}: above 0, and at most {HIGHEST:g}"
-    elif question.number and question.tolerance >= abs(question.number):
-        yield f"tolerance = {question.tolerance:g}: 0 would be accepted as {question.number:g}"
+    else:
+        yield from zero_faults(question.number, question.tolerance)
 
 
-def option_faults(right: list[bool]) -> Iterator[str]:
-    """The faults of a question's options.
-
-    Args:
-        right: for every option, whether it is correct.
-    """
-    if len(right) < 2 or sum(right) != 1:
-        yield f"{len(right)} options, {sum(right)} right: two or more are needed, one of them right"
+def option_faults(options: Sequence[Option]) -> Iterator[str]:
+    """The faults of a question's options."""
+    right = sum(option.right for option in options)
+    if len(options) < 2 or right != 1:
+        yield f"{len(options)} options, {right} right: two or more are needed, one of them right"
+    texts = [" ".join(option.text.split()) for option in options]
+    for text in dict.fromkeys(text for text in texts if texts.count(text) > 1):
+        yield f"two options have the text {text!r}"
 
 
 def task_faults(task: Task, robot: str) -> Iterator[str]:

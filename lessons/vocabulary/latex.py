@@ -1,4 +1,4 @@
-"""Faults of formulas that the converter shows as they are typed: unknown commands."""
+"""Faults of formulas that the converter does not report: unknown commands, braces left open."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from difflib import get_close_matches
 from functools import cache
+from itertools import accumulate
 
 from latex2mathml import commands
 from latex2mathml.symbols_parser import SYMBOLS
@@ -30,6 +31,19 @@ def latex_faults(latex: str, mathml: str) -> Iterator[str]:
     for name in dict.fromkeys(UNKNOWN.findall(mathml)):
         plain = f"\\operatorname{{{name[1:]}}}"
         yield f"unknown command {name}{_near(name, _known())} A name is written {plain}"
+
+
+def brace_faults(latex: str) -> Iterator[str]:
+    """Braces, and `\\left` or `\\right`, that have no counterpart."""
+    bare = latex.replace("\\\\", " ").replace("\\{", " ").replace("\\}", " ")
+    depths = [0, *accumulate((char == "{") - (char == "}") for char in bare)]
+    if depths[-1] > 0:
+        yield "a { is not closed by }"
+    elif min(depths) < 0:
+        yield "a } closes nothing"
+    left, right = (len(re.findall(rf"\\{side}(?![A-Za-z])", bare)) for side in ("left", "right"))
+    if left != right:
+        yield f"{left} \\left and {right} \\right: each \\left( needs its \\right)"
 
 
 def _near(name: str, known: tuple[str, ...]) -> str:

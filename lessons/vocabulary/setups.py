@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 
 from onpath.lessons.action_schema import (
     Action,
@@ -79,6 +80,9 @@ def script_faults(script: Script, robot: str) -> Iterator[str]:
     """The faults of a script."""
     if not 0 < script.until <= LONGEST:
         yield f"until = {script.until:g}: a script ends between 0 and {LONGEST:g} s"
+    for before, action in pairwise(script.do):
+        if action.at < before.at:
+            yield f"at = {action.at:g} stands after at = {before.at:g}: in the order of their times"
     for action in script.do:
         if not 0 <= action.at <= script.until:
             yield f"at = {action.at:g}: between 0 and the script's end at {script.until:g} s"

@@ -11,10 +11,12 @@ from onpath.lessons.course import read_course
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.schema import Text
+from tests.support.checkout import ROOT
 from tests.support.format_texts import FORMAT_LESSON, FORMAT_REFERENCE
-from tests.support.lesson_texts import LESSON, write_lesson
+from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 
 LATEX = "$$\\dot x = v$$"
+COMMANDS = ("\\frac", "\\theta", "\\beta", "\\rho", "\\nu", "\\sin", "\\xi")
 Capture = pytest.CaptureFixture[str]
 
 
@@ -56,16 +58,83 @@ def faults(path: Path) -> list[tuple[int, str]]:
         ('controls = ["K1", "hold"]', "start = { acros = 5 }", "did you mean across"),
         ('kind = "bound"', 'kind = "bound"\nstat = "setling"', "did you mean settling?"),
         ('kind = "bound"', 'kind = "bond"', "did you mean bound?"),
+        (LATEX, "![](b.svg)", "what it shows"),
+        (LATEX, "![A](a.svg)", "no well-formed XML"),
+        ("{ at = 0.5, hold", "{ at = 1.6, run = true }, { at = 0.5, hold", "order of their times"),
+        ("lab:K3=100", "lab:goto=9", "lab:goto: neither an action nor a parameter"),
+        ("lab:K3=100", "lab:pth=circle", "parameter; did you mean path?"),
         ("{ at = 0.5, hold = true }", "{ at = 0.5, rate = 0.01 }", "between 0.125 and 4"),
+        (LATEX, "```folds Why\nSo.\n```", "did you mean fold"),
+        (LATEX, "```foldd Why\nSo.\n```", "did you mean fold"),
+        (LATEX, "```Fold Why\nSo.\n```", "did you mean fold"),
+        (LATEX, "```foldLiterature\nSo.\n```", "did you mean fold"),
+        (LATEX, "```When right\nSo.\n```", "did you mean when"),
+        (LATEX, "```tasks\nSo.\n```", "did you mean task"),
+        (LATEX, "```quiz one\nSo.\n```", "nothing stands after quiz"),
+        (LATEX, "- ```quiz\n  So.\n  ```", "not in a list"),
+        (LATEX, "<b>So</b>", "HTML is shown as it is typed"),
+        (LATEX, 'so <mark class="a">it</mark>', "HTML is shown as it is typed"),
+        ('"Draw the distance."', "'<i>Draw</i>'", "HTML is shown as it is typed"),
+        ('"For tests."', "'<i>For</i> tests.'", "HTML is shown as it is typed"),
+        (LATEX, "$\\frac{K_2{2\\sqrt{K_1}}$", "a { is not closed"),
+        (LATEX, "$\\sqrt{K_1}}$", "a } closes nothing"),
+        (LATEX, "$\\left( x$", "1 \\left and 0 \\right"),
+        ('```quiz\nquestion = "And?"', '```text\nquestion = "And?"', "has no question"),
+        ("```script", "```scene\n```\n\n```scene\n```\n\n```script", "a second scene"),
+        ("```script", "```step\n```\n\n```step\n```\n\n```script", "a second step"),
+        ("```script", "```script\nuntil = 2.0\n```\n\n```script", "a second script"),
+        (LATEX, "```script\n```", "a script stands in a `run` step"),
+        ("Which one *waits*?", "{{your sketch max}}", "no prediction by a sketch is above"),
+        ("Which one *waits*?", "{{your choice or *no*}}", "no prediction by choice is above"),
+        (LATEX, "so\n{{your number}}", "{{your number}}: no question with a number is above"),
+        (LATEX, "{{your best}}", "no task with `best = …` is above"),
+        (LATEX, "{-5.2 = min across follower}", "between two braces"),
+        (LATEX, "{your choice}", "between two braces"),
+        (LATEX, "{{{0.0 = min distance follower}}}", "three braces"),
+        (LATEX, "{{{your choice}}}", "three braces"),
+        (LATEX, "{{-5.2 ± 500 = min across follower}}", "0 would be accepted as -5.2"),
+        ('"Draw the distance."', '"{{47 = max distance tracker}}"', "not into a block"),
+        ('"For tests."', '"{{47 = max distance tracker}}"', "not into a block"),
+        ('question = "Which?"', 'question = "W"\nhidden = [""]', "an empty word"),
+        ('text = "b"', 'text = "a"', "two options have the text 'a'"),
+        ('text = "that"', 'text = "this"', "two options have the text 'this'"),
+        *(
+            ('"Draw the distance."', f'"${each} x$"', "or the text stands between single")
+            for each in COMMANDS
+        ),
     ],
 )
 def test_it_is_told_with_its_line(tmp_path: Path, right: str, wrong: str, said: str) -> None:
     assert right in LESSON
     text = LESSON.replace(right, wrong, 1)
-    found = faults(write_lesson(tmp_path, text))
+    file = write_lesson(tmp_path, text)
+    file.with_name("a.svg").write_text("<svg><text>a & b</text></svg>")
+    file.with_name("b.svg").write_text("<svg/>")
+    found = faults(file)
     assert len(found) == 1 and said in found[0][1], found
     at = text[: text.index(wrong)].count("\n") + 1
     assert -6 <= at - found[0][0] <= 6  # its line, or that of its block, or of its step
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "```text\n<b>\n```",
+        "```python\nfold = 1\n```",
+        "```toml\na = 1\n```",
+        "```c\nint a;\n```",
+        "```\nscene\n```",
+        "`<b>` and $a<b>c$ and <https://a.org>",
+        "$\\left\\{a\\right\\}\\leftarrow b \\\\ c$",
+    ],
+)
+def test_what_is_like_a_fault_and_is_none_is_read(tmp_path: Path, text: str) -> None:
+    read_lesson(write_lesson(tmp_path, LESSON.replace(LATEX, text)))
+
+
+@pytest.mark.parametrize("text", ["'$\\theta$'", '"$\\\\theta$"', '"""\na\n\tb"""', "'$a<b>c$'"])
+def test_a_backslash_that_is_one_is_read(tmp_path: Path, text: str) -> None:
+    read_lesson(write_lesson(tmp_path, LESSON.replace('"Draw the distance."', text)))
 
 
 def test_what_a_prediction_hides_is_not_told_before_it_except_in_a_fold(tmp_path: Path) -> None:
@@ -78,6 +147,17 @@ def test_what_a_prediction_hides_is_not_told_before_it_except_in_a_fold(tmp_path
     assert told.split("\n")[line - 1] == "# play: Look around"
     fold = text.replace("Which one *waits*?", "```fold Tell me\nUp to 47 mm.\n```")
     read_lesson(write_lesson(tmp_path, fold))
+    first = text.replace("For tests.", "Of 47 mm.")
+    ((line, words),) = faults(write_lesson(tmp_path, first))
+    assert "summary: '47 mm' is told before step 'Before'" in words and line == 3
+
+
+def test_a_second_task_with_an_id_is_named(tmp_path: Path) -> None:
+    task = LESSON[LESSON.index("```task") : LESSON.index("# quiz")]
+    text = LESSON + "\n# task: Again\n\n" + task
+    ((line, words),) = faults(write_lesson(tmp_path, text))
+    assert "another task has it" in words and text.split("\n")[line - 1] == 'id = "hold"'
+    assert line > LESSON.count("\n")
 
 
 def test_a_lesson_with_all_of_the_format_is_read(tmp_path: Path, capsys: Capture) -> None:
@@ -106,7 +186,7 @@ def test_a_lesson_is_checked_by_its_own_folder(tmp_path: Path, capsys: Capture) 
     [
         ("{{0.0 = min distance follower}}", True),
         ("{{47 = max distance tracker}}", False),
-        ("{{30 ± 30 = max distance tracker during held from 0.5 to 1.5}}", True),
+        ("{{30 ± 29 = max distance tracker during held from 0.5 to 1.5}}", True),
         ("{{30 ± 1 = max distance tracker during held from 0.5 to 0.6}}", False),
     ],
 )
@@ -125,4 +205,96 @@ def test_a_number_of_the_text_is_compared_with_the_run(
     assert isinstance(html, Text) and f"It is {shown} mm." in html.html
 
 
+@pytest.mark.parametrize(
+    ("right", "wrong", "said"),
+    [
+        ("top = 60.0", "top = 9.0", "top = 9: the distance of the tracker goes up to 48.05 mm"),
+        (
+            '"distance"\nseconds',
+            '"across"\nseconds',
+            "bottom = 0: the across of the tracker goes down to -",
+        ),
+        ('"distance"\nseconds', '"energy"\nseconds', "has no energy of the tracker"),
+        (
+            LATEX,
+            "{{4 = max distance follower during pulled}}",
+            "measured: the follower is never pulled",
+        ),
+        (
+            LATEX,
+            "{{4 = max distance follower from 3 to 5}}",
+            "no instant from 3 to 5 s; the run ends at",
+        ),
+        (LATEX, "{{4 = max energy follower}}", "robot of this run has no energy"),
+    ],
+)
+def test_what_the_run_shows_is_told(
+    tmp_path: Path, capsys: Capture, right: str, wrong: str, said: str
+) -> None:
+    assert right in LESSON
+    file = write_lesson(tmp_path, LESSON.replace(right, wrong, 1))
+    assert run_command(["lessons", "check", str(tmp_path)]) == 1
+    (told,) = capsys.readouterr().err.splitlines()
+    assert told.startswith(f"{file}:") and said in told
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "said"),
+    [
+        ("minutes = 1", 'robot = "flexible"', "robot is 'flexible', and 'five_bar' in en.md"),
+        (LATEX, f"{LATEX}\n\n```fold A\nB\n```", "line 51: not the same number of folds"),
+        ("lab:K3=100", "lab:K3=10", "not the same lab links"),
+        ("until = 1.0", "until = 1.5", "not the same script"),
+        ('controls = ["K1", "hold"]', 'controls = ["K1"]', "not the same scene"),
+    ],
+)
+def test_it_is_told_what_differs_in_a_translation(
+    tmp_path: Path, right: str, wrong: str, said: str
+) -> None:
+    assert right in LESSON
+    file = write_lesson(tmp_path).with_name("de.md")
+    file.write_text(LESSON.replace(right, wrong))
+    found = read_course([tmp_path])[1]
+    assert [said in each.text and each.path == str(file) for each in found] == [True], found
+
+
+def test_files_and_folders_that_nobody_reads_are_named(tmp_path: Path) -> None:
+    home = write_lesson(tmp_path).parent
+    (home / "DE.md").write_text(LESSON)
+    write_lesson(tmp_path, name="01-b")
+    (tmp_path / "route").mkdir()
+    (tmp_path / ".git").mkdir()
+    told = {Path(each.path).name: each.text for each in read_course([tmp_path])[1]}
+    assert set(told) == {"DE.md", "01-b", "route"}
+    assert "two small letters" in told["DE.md"] and "'01-a' has the number 01" in told["01-b"]
+    assert "did you mean routes?" in told["route"]
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "said", "line"),
+    [
+        ("[hold.failure]", "[hold.failed]", "task 'hold': .*did you mean failure?", 5),
+        ("until = 1.5", "untill = 1.5", "task 'hold': .*did you mean until?", 6),
+        ("[hold", "[holt", "there is no task 'holt'; did you mean hold?", 2),
+    ],
+)
+def test_what_is_wrong_in_the_references_is_named(
+    tmp_path: Path, right: str, wrong: str, said: str, line: int
+) -> None:
+    write_lesson(tmp_path, reference=REFERENCE.replace(right, wrong))
+    found = [each for each in read_course([tmp_path])[1] if "no solution" not in each.text]
+    first, _, last = said.partition(".*")
+    assert [(first in each.text and last in each.text, each.line) for each in found] == [
+        (True, line)
+    ], found
+
+
 HELD = "until = 2.0\ndo = [{ at = 0.5, hold = true }, { at = 1.5, hold = false }]"
+
+
+def test_the_whole_lesson_of_the_readme_passes(tmp_path: Path, capsys: Capture) -> None:
+    readme = (ROOT / "lessons" / "README.md").read_text("utf-8")
+    lesson, reference = (part.partition("````")[0] for part in readme.split("````\n")[1:4:2])
+    write_lesson(tmp_path, lesson, reference)
+    assert run_command(["lessons", "check", str(tmp_path)]) == 0, capsys.readouterr().err
+    assert "1 lesson, 1 solution and 1 failure played" in capsys.readouterr().out

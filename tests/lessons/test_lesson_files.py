@@ -91,18 +91,16 @@ def test_what_is_wrong_is_named_with_its_line(
 
 
 def test_a_fold_shows_its_title_and_keeps_the_rest(tmp_path: Path) -> None:
-    own = (
-        "```fold If *you* <b>cannot</b>\n$x^2$ and *more*, and [K3](lab:K3=1)\n```\n\n# predict: B"
-    )
+    own = "```fold If *you* <3 cannot\n$x^2$ and *more*, and [K3](lab:K3=1)\n```\n\n# predict: B"
     text = read_lesson(write_lesson(tmp_path, LESSON.replace("# predict: B", own, 1))).steps[0]
     *_, fold = text.blocks
     assert isinstance(fold, Text) and "<em>more</em>" in fold.html and "<math" in fold.html
-    assert "<details><summary>If *you* &lt;b&gt;cannot&lt;/b&gt;</summary><p>" in fold.html
+    assert "<details><summary>If *you* &lt;3 cannot</summary><p>" in fold.html
     assert fold.links[0].actions == (Action(set={"K3": 1.0}),)
     assert "<details" not in str(text.blocks[0])
     (found,) = problems(
         write_lesson(
-            tmp_path, LESSON.replace("# predict: B", own.replace(" If *you* <b>cannot</b>", ""), 1)
+            tmp_path, LESSON.replace("# predict: B", own.replace(" If *you* <3 cannot", ""), 1)
         )
     )
     assert "needs a title" in found[1]

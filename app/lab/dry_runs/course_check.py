@@ -8,6 +8,7 @@ from pathlib import Path
 
 from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.dry_runs.run_samples import Samples
+from onpath.app.lab.dry_runs.sketch_check import sketch_faults
 from onpath.app.lab.dry_runs.stated_check import stated_faults
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
@@ -39,9 +40,10 @@ def play_course(course: Course, folder: Path, store: LoopCache) -> Iterator[Prob
         lesson = course.lesson(name, DEFAULT)
         home = folder / name
         file = home / f"{lesson.language}.md"
-        faults = [fault for step in lesson.steps for fault in _script_faults(lesson, step, store)]
+        runs = dict[int, Record]()
+        faults = list(_script_faults(lesson, runs, store))
         if not faults:
-            faults += stated_faults(lesson, lambda at, of=lesson: measured_run(of, at, store))
+            faults = [*stated_faults(lesson, runs), *sketch_faults(lesson, runs)]
         yield from (Problem(str(file), line, text) for line, text in faults)
         yield from _reference_faults(lesson, home / REFERENCE, store)
 
@@ -107,14 +109,16 @@ def measured_run(lesson: Lesson, index: int, store: LoopCache) -> Record:
     return samples.record(lab.session)
 
 
-def _script_faults(lesson: Lesson, step: Step, store: LoopCache) -> Iterator[tuple[int, str]]:
-    if step.script is None:
-        return
-    try:
-        for _ in play(lab_at(lesson, step, store), step.script):
-            pass
-    except ValueError as error:
-        yield step.line, f"the script of step {step.title!r}: {error}"
+def _script_faults(
+    lesson: Lesson, runs: dict[int, Record], store: LoopCache
+) -> Iterator[tuple[int, str]]:
+    """Play all scripts of a lesson; what was measured is put into `runs` by the step's index."""
+    for index, step in enumerate(lesson.steps):
+        try:
+            if step.script is not None:
+                runs[index] = measured_run(lesson, index, store)
+        except ValueError as error:
+            yield step.line, f"the script of step {step.title!r}: {error}"
 
 
 def _reference_faults(lesson: Lesson, file: Path, store: LoopCache) -> Iterator[Problem]:

@@ -1,8 +1,10 @@
-"""Plays the runs of a lesson, and compares the numbers that its texts state of them."""
+"""Compares the numbers that the texts of a lesson state of its runs with these."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Mapping
+
+import numpy as np
 
 from onpath.lessons.checks import statistic
 from onpath.lessons.measures.responses import unit_of
@@ -11,14 +13,16 @@ from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson
 from onpath.lessons.task_schema import Window
 
+NAMES = {"always": "there", "held": "held", "pulled": "pulled", "free": "free"}
+"""What a robot is during a part of a run, for messages."""
 
-def stated_faults(lesson: Lesson, played: Callable[[int], Record]) -> Iterator[tuple[int, str]]:
+
+def stated_faults(lesson: Lesson, runs: Mapping[int, Record]) -> Iterator[tuple[int, str]]:
     """Lines and faults of the stated numbers of a lesson.
 
     Args:
-        played: plays the script of the step of an index, and returns what was measured.
+        runs: what was measured in the scripts, by the index of the step.
     """
-    runs = dict[int, Record]()
     for index, step in enumerate(lesson.steps):
         for stated in step.stated:
             at = _run_of(lesson, index)
@@ -28,8 +32,6 @@ def stated_faults(lesson: Lesson, played: Callable[[int], Record]) -> Iterator[t
                     f"{stated.text} is stated, but no step has a script",
                 )
                 continue
-            if at not in runs:
-                runs[at] = played(at)
             if fault := _fault(stated, runs[at]):
                 yield stated.line, f"{fault} (step {at + 1}, {lesson.steps[at].title!r})"
 
@@ -47,8 +49,23 @@ def _fault(stated: Stated, run: Record) -> str:
     measured = statistic(run, stated.robot, stated.quantity, stated.stat, chosen)
     what = f"{stated.stat} {stated.quantity} {stated.robot}"
     if measured is None:
-        return f"{stated.text} is stated of {what}, which was not measured"
+        return f"{stated.text} is stated of {what}, which was not measured: {_why(stated, run)}"
     if stated.agrees(measured):
         return ""
     unit = unit_of(stated.stat, stated.quantity)
     return f"{stated.text} is stated, but {what} is {measured:.4g} {unit}"
+
+
+def _why(stated: Stated, run: Record) -> str:
+    """Why there is no such number."""
+    values = run.values[stated.robot].get(stated.quantity)
+    if values is None or not np.isfinite(values).any():
+        return f"the robot of this run has no {stated.quantity}"
+    during = run.chosen(stated.robot, Window(during=stated.during))
+    if not during.any():
+        return f"the {stated.robot} is never {NAMES[stated.during]}"
+    if not (during & in_span(run.times, stated)).any():
+        span = f"from {stated.begin:g} to {stated.end:g} s"
+        part = "" if stated.during == "always" else f" at which it is {NAMES[stated.during]}"
+        return f"no instant {span}{part}; the run ends at {run.end:.4g} s"
+    return f"there is no {stated.stat} in this run"

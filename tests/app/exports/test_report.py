@@ -170,8 +170,8 @@ def test_the_same_record_gives_the_same_bytes(course: Course) -> None:
 def test_hostile_texts_stay_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Even if the check of lessons let them pass, which refuses HTML."""
     monkeypatch.setattr(prose, "HTML", re.compile("(?!)"))
-    literal = "'''" + HOSTILE.replace("'", "’") + "'''"
-    text = re.sub(r'(title|summary|question|text|answer) = "[^"]*"', rf"\1 = {literal}", LESSON)
+    literal = "'''\\2 " + HOSTILE.replace("'", "’") + "'''"  # no two options are the same
+    text = re.sub(r'(title|summary|question|text|answer) = "([^"]*)"', rf"\1 = {literal}", LESSON)
     text = re.sub(r"^# (\w+): .+$", rf"# \1: {HOSTILE}", text, flags=re.M)
     notes = {NAME: full(), HOSTILE: Notes()}
     page = page_of(read(tmp_path, text), notes)
