@@ -30,7 +30,7 @@ XI = ("xi", "xi_rate")  # fields in another unit with a level set
 LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and third line
 MARKS = ("―", "╌", "┈")  # of these patterns in the legend, which has colours only
 ROW, FEW = 22, 2  # [px], height of a row of the legend, which has room for so many lines
-_LARGE: uplot.Axis = {"font": "17px sans-serif", "ticks": {"show": False}}
+_LARGE: uplot.Axis = {"font": '17px "Inter", Arial, sans-serif', "ticks": {"show": False}}
 LARGE: tuple[uplot.Axis, ...] = (_LARGE, {**_LARGE, "size": 60})
 """Axes for a projector."""
 

@@ -138,10 +138,10 @@ def test_the_plot_a_step_speaks_of_is_seen_with_its_text_and_both_robots(tab: Ta
 @pytest.mark.parametrize("presenting", [False, True])
 def test_the_legend_of_a_step_s_plot_is_seen_whole(browser: Browser, presenting: bool) -> None:
     """Also that of both motors of both robots."""
-    server, size = LabServer("127.0.0.1", 0, LoopCache()), {"width": 1280, "height": 800}
-    if presenting:
-        size = {"width": 1920, "height": 1080}
-    tab = Tab(server, browser.new_context(viewport=size), draws=False)
+    server = LabServer("127.0.0.1", 0, LoopCache())
+    width, height = (1920, 1080) if presenting else (1280, 800)
+    context = browser.new_context(viewport={"width": width, "height": height})
+    tab = Tab(server, context, draws=False)
     tab.ask(c.SetPresenting(presenting))
     tab.wait_until_built()
     take(tab, 4, "03-the-five-bar")
