@@ -12,6 +12,7 @@ const LONGEST = 0.1 // [s], that a picture may be late before simulated time fal
 const SILENCE = 3000 // [ms], at least, between two lines of the same kind
 const LATE = 0.15 // [s], lost lately, from which on it is said that time runs late
 const DARK = matchMedia("(prefers-color-scheme: dark)")
+DARK.addEventListener("change", () => dispatchEvent(new Event("resize"))) // all is drawn anew
 const PULL = 0.03 // [m], by which a key pulls
 const PULLS: Record<string, Point> = { a: [-PULL, 0], d: [PULL, 0], w: [0, PULL], s: [0, -PULL] }
 
@@ -52,7 +53,6 @@ export class Figure {
         for (const view of this.views) this.grabs(view)
         if (this.data.controls.includes("pull")) this.keys()
         addEventListener("resize", () => (this.stale = true), { signal: ended })
-        DARK.addEventListener("change", () => dispatchEvent(new Event("resize")), { signal: ended })
         this.forget()
         requestAnimationFrame(() => this.frame())
     }

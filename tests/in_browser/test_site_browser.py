@@ -261,6 +261,7 @@ def test_a_page_follows_a_change_of_scheme(browser: Browser, addresses: dict[str
     page = reader.page
     reader.ready()
     page.locator("#next").click()
+    reader.ready()
     board = ".step.open canvas.board"
     assert page.evaluate(INKED, board) == INK["light"]
     page.emulate_media(color_scheme="dark")
