@@ -14,12 +14,12 @@ from msgspec.structs import replace
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
 from onpath.lessons.parse import read_lesson
-from onpath.lessons.problems import LessonError, Problem, line_of
+from onpath.lessons.problems import LessonError, Problem, line_of, near
 from onpath.lessons.routes import FOLDER as ROUTES
 from onpath.lessons.routes import Route, read_routes
 from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Sketch, Step, Text
 from onpath.lessons.task_schema import Reference, Task
-from onpath.lessons.toml_blocks import near, nearest
+from onpath.lessons.toml_blocks import nearest
 from onpath.lessons.vocabulary.setups import script_faults
 from onpath.lessons.words import DEFAULT
 
@@ -27,9 +27,9 @@ BUILT_IN = Path(__file__).parent / "course"
 REFERENCE = "reference.toml"
 NOTES = ("usual", "answer", "ask", "passed")
 """Texts that a block has in all languages or in none."""
-NUMBER = re.compile(r"(\d+[a-z]?)-")  # of a lesson's folder
 LANGUAGE = re.compile(r"[a-z]{2}")  # name of a language's file
-SIDE_ROAD = re.compile(r"\d+([a-z])-")  # folder of a lesson that may be left out, such as 01b-...
+NUMBER = re.compile(r"(\d+)([a-z]?)-")
+"""Number of a lesson's folder; with a letter, such as 01b-..., it may be left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +67,10 @@ class Course:
         """
         numbers, count = dict[str, str](), 0
         for name in self.lessons:
-            side = SIDE_ROAD.match(name) if count else None
-            count += side is None
-            numbers[name] = f"{count}{side[1]}" if side else str(count)
+            number = NUMBER.match(name)
+            letter = number[2] if number and count else ""
+            count += not letter
+            numbers[name] = f"{count}{letter}"
         return numbers
 
     def languages(self) -> list[str]:
@@ -113,16 +114,16 @@ def _folder_faults(folder: Path, lessons: Sequence[Path]) -> Iterator[Problem]:
     numbered: dict[str, str] = {}
     for home in lessons:
         if number := NUMBER.match(home.name):
-            first = numbered.setdefault(number[1], home.name)
+            first = numbered.setdefault(number[0], home.name)
             if first != home.name:
-                yield Problem(str(home), 1, f"{first!r} has the number {number[1]}, too")
-    others = sorted(each for each in folder.iterdir() if each.is_dir()) if lessons else []
+                own = number[0].removesuffix("-")
+                yield Problem(str(home), 1, f"{first!r} has the number {own}, too")
     known = [ROUTES, FOLDER]
-    for other in others:
-        if other not in lessons and other.name not in known and other.name[0] not in "._":
-            text = f"no lesson, since it has no en.md, and neither {ROUTES} nor {FOLDER}"
-            text += near(other.name.lower(), known)
-            yield Problem(str(other), 1, text)
+    for other in sorted(folder.iterdir()) if lessons else ():
+        unread = other not in lessons and other.name not in known and other.name[0] not in "._"
+        if unread and other.is_dir():
+            text = f"it is no lesson, having no en.md, and neither {ROUTES} nor {FOLDER}"
+            yield Problem(str(other), 1, text + near(other.name.lower(), known))
 
 
 def read_folder(folder: Path) -> tuple[Course, list[Problem], Path]:

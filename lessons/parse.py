@@ -43,7 +43,7 @@ from onpath.lessons.vocabulary.blocks import (
     prediction_faults,
     task_faults,
 )
-from onpath.lessons.vocabulary.fences import FENCES
+from onpath.lessons.vocabulary.fences import FENCES, toml_parts
 from onpath.lessons.vocabulary.setups import release_faults, scene_faults, script_faults
 
 NO_MARK = StepMark()
@@ -66,7 +66,7 @@ class _Draft:
     scene: StepSetup | None = None
     script: Script | None = None
     mark: StepMark = NO_MARK
-    seen: set[str] = field(default_factory=set[str])  # names of its blocks of TOML
+    fences: set[str] = field(default_factory=set[str])  # names of its blocks of TOML
     broken: bool = False  # whether one of its blocks could not be read
 
     def step(self, stated: tuple[Stated, ...] = ()) -> Step:
@@ -99,7 +99,7 @@ class _Reader:
     def __init__(self, path: Path, text: str) -> None:
         self._path = path
         self._problems: list[Problem] = []
-        self._text, self._stated = take_stated(text, self._complain)
+        self._text, self._stated = take_stated(text, self._complain, toml_parts(text))
         self._markdown = reader()
         self._robot = self._home = "five_bar"
         self._scene = StepSetup()
@@ -171,22 +171,21 @@ class _Reader:
         broken = {draft.line for draft in drafts if draft.broken}
         steps = self._made(drafts)
         is_test = self._path.parent.name == FOLDER
-        if is_test:
-            self._complain_all(1, lacks_of_test(steps))
-        for line, fault in () if is_test else lacks(steps, broken):
+        lacking = (
+            ((1, fault) for fault in lacks_of_test(steps)) if is_test else lacks(steps, broken)
+        )
+        for line, fault in [*lacking, *order_faults(steps, broken)]:
             self._complain(line, fault)
         for line, when, fault in faults_of_when(steps):
             self._complain(self._branches.get((line, when), line), fault)
-        for line, fault in order_faults(steps, broken):
-            self._complain(line, fault)
-        for line, place, fault in unanswered(steps):
-            self._complain(self._text.count("\n", 0, self._at(place, line)) + 1, fault)
+        for line, words, fault in unanswered(steps):
+            self._complain(self._line_of(words, line), fault)
         return drafts
 
-    def _at(self, words: str, line: int) -> int:
-        """Where words stand in the file, from a line on; else the beginning of that line."""
-        begin = len("".join(self._text.splitlines(keepends=True)[: line - 1]))
-        return max(begin, self._text.find(words, begin))
+    def _line_of(self, words: str, first: int) -> int:
+        """The line of the file in which words stand, from a line on; that line if nowhere."""
+        lines = enumerate(self._text.split("\n")[first - 1 :], first)
+        return next((number for number, line in lines if words in line), first)
 
     def _begin(self, heading: str, line: int) -> _Draft:
         match = HEADING.fullmatch(heading.strip())
@@ -201,9 +200,9 @@ class _Reader:
     def _fence(self, draft: _Draft, what: str, content: str, line: int) -> None:
         """Read a fenced block of TOML."""
         before = len(self._problems)
-        if what in draft.seen and what in ("step", "scene", "script"):
+        if what in draft.fences and what in ("step", "scene", "script"):
             self._complain(line - 1, f"a second {what} in step {draft.title!r}: only one is used")
-        draft.seen.add(what)
+        draft.fences.add(what)
         self._complain_all(line, _words_faults(content))
         if what == "step":
             draft.mark = self._checked(content, line, StepMark, lambda _: ()) or draft.mark

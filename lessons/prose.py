@@ -16,8 +16,8 @@ from onpath.lessons.action_schema import Action
 from onpath.lessons.adaptive.own_numbers import own_faults
 from onpath.lessons.formulas import FormulaError, embedded, folded, render
 from onpath.lessons.links import SCHEME, SIMPLE, read_link
+from onpath.lessons.problems import near
 from onpath.lessons.schema import LabLink, Text
-from onpath.lessons.toml_blocks import near
 from onpath.lessons.vocabulary.fences import fence_faults
 from onpath.lessons.vocabulary.setups import action_faults
 from onpath.models.control.benches import BENCHES
@@ -128,7 +128,7 @@ def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
             continue
         source = str(image.attrGet("src") or "")
         if not image.content.strip():
-            yield f"picture {source!r}: what it shows stands between [ and ], for who cannot see it"
+            yield f"picture {source!r}: say what it shows, for those who cannot see it: ![…](…)"
         picture = (home / source).resolve()
         try:
             if not picture.is_relative_to(home.resolve()):

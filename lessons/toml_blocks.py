@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
-from difflib import get_close_matches
 from typing import Any, TypeVar, get_args
 
 import msgspec
 
-from onpath.lessons.problems import line_of
+from onpath.lessons.problems import line_of, near
 
 T = TypeVar("T")
 Complain = Callable[[int, str], None]
@@ -26,7 +25,7 @@ ESCAPE = re.compile(r"\\(.)([A-Za-z]*)", re.DOTALL)
 
 
 def escape_faults(content: str) -> Iterator[tuple[int, str]]:
-    """Commands of LaTeX that TOML reads as a tab, a new line or another sign that is not seen.
+    """Commands of LaTeX that TOML reads as a tab, a new line or another control character.
 
     Yields:
         the number of lines after the first one, and the fault.
@@ -54,9 +53,7 @@ def read_toml(content: str, line: int, kind: type[T], complain: Complain) -> T |
         return msgspec.convert(tomllib.loads(content), kind)
     except tomllib.TOMLDecodeError as error:
         place = re.search(r"at line (\d+)", str(error))
-        hint = (
-            f"; {BACKSLASH}" if re.search("backslash|escape|hex|\\\\\\\\", str(error), re.I) else ""
-        )
+        hint = f"; {BACKSLASH}" if re.search("escape|hex", str(error), re.I) else ""
         complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}{hint}")
     except msgspec.ValidationError as error:
         complain(line_of(str(error), content, line), f"{error}{nearest(str(error), kind)}")
@@ -72,12 +69,6 @@ def nearest(error: str, kind: Any) -> str:
         return near(field[1], _fields(kind))
     value = re.search(r"Invalid (?:enum )?value '(.+?)'", error)
     return near(value[1], _values(kind)) if value else ""
-
-
-def near(name: str, known: Iterable[str]) -> str:
-    """The known name that is nearest to an unknown one, as a hint; empty if none is near."""
-    found = get_close_matches(name, sorted(known), 1)
-    return f"; did you mean {found[0]}?" if found else ""
 
 
 def _values(kind: Any) -> set[str]:

@@ -119,9 +119,25 @@ def graph() -> dict[str, set[str]]:
     return edges
 
 
-def modules_in_circles() -> set[str]:
-    """Modules that import each other, directly or by way of others."""
-    edges = graph()
+def folder_graph() -> dict[str, set[str]]:
+    """The folders from which each folder's modules import; a folder may use what is inside it."""
+    edges: dict[str, set[str]] = {}
+    for module, inner in graph().items():
+        own = place_of(module)
+        others = {place_of(each) for each in inner}
+        wanted = {each for each in others if each != own and not each.startswith(f"{own}.")}
+        edges.setdefault(own, set()).update(wanted)
+    return edges
+
+
+def place_of(module: str) -> str:
+    """The folder of a module; a package is its own."""
+    is_package = (ROOT / module.replace(".", "/") / "__init__.py").is_file()
+    return module if is_package else module.rpartition(".")[0]
+
+
+def in_circles(edges: dict[str, set[str]]) -> set[str]:
+    """Modules or folders that import each other, directly or by way of others."""
     while free := [module for module, inner in edges.items() if not inner & set(edges)]:
         for module in free:
             del edges[module]
@@ -132,7 +148,11 @@ def modules_in_circles() -> set[str]:
 
 
 def test_no_module_imports_itself_by_way_of_others() -> None:
-    assert modules_in_circles() == set()
+    assert in_circles(graph()) == set()
+
+
+def test_no_folder_imports_itself_by_way_of_others() -> None:
+    assert in_circles(folder_graph()) == set()
 
 
 def test_the_simulated_lab_knows_nothing_of_its_user() -> None:

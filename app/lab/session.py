@@ -218,7 +218,8 @@ class Session:
             begun = [run.place for run in runs]
             yield part
             for i, run in enumerate(runs):
-                begun[i] = begun[i] if run.diverged is None else run.place  # it stands still
+                if run.diverged is not None:
+                    begun[i] = run.place  # it stands still
             self.history.append(self._recorder.record(part, runs, begun))
             for run, _ in moving:
                 if run.diverged is not None:

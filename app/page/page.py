@@ -249,8 +249,9 @@ class Page:
 
     def _build_distance(self, first: PageSnapshot, words: Words) -> None:
         """Build the plot of the distance from the path."""
-        parts, large = (self._client.gui, words, first.key.fields, DISTANCE), first.key.presenting
-        self._parts.append(LivePlot(*parts, height=240 if large else 190, large=large))
+        gui, fields, large = self._client.gui, first.key.fields, first.key.presenting
+        height = 240 if large else 190
+        self._parts.append(LivePlot(gui, words, fields, DISTANCE, height, large=large))
 
     def _is_narrow(self) -> bool:
         camera = self._client.camera

@@ -28,8 +28,9 @@ PADDING = (10, 12, 0, 0)
 """Above, to the right, below and to the left of a plot, for the halves of its outermost numbers."""
 XI = ("xi", "xi_rate")  # fields in another unit with a level set
 LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and third line
-MARKS = ("―", "╌", "┈")  # of these patterns in the legend, which has colours only
-ROW, FEW = 22, 2  # [px], height of a row of the legend, which has room for so many lines
+MARKS = ("―", "╌", "┈")  # for these patterns in the legend, which shows colours only
+ROW = 22  # height of a row of the legend, [px]
+PER_ROW = 2  # lines in a row of the legend
 _LARGE: uplot.Axis = {"font": '17px "Inter", Arial, sans-serif', "ticks": {"show": False}}
 LARGE: tuple[uplot.Axis, ...] = (_LARGE, {**_LARGE, "size": 60})
 """Axes for a projector."""
@@ -105,7 +106,7 @@ class LivePlot:
     """One uPlot chart.
 
     Args:
-        height: without the first row of the legend, [px]; more rows are at its cost.
+        height: of the chart, [px]; less if its legend needs a second row.
         large: whether it is shown with a projector.
     """
 
@@ -134,7 +135,7 @@ class LivePlot:
         lines = len(self._series()) - 1
         self._empty = (np.array([0.0, PLOT_WINDOW]), *[nothing] * lines)
         self._title = words(f"axis.{plot.name}{'-level_set' if in_level_set else ''}")
-        self._height = height if lines <= FEW else height - ROW
+        self._height = height if lines <= PER_ROW else height - ROW
         self._least, self._axes = least, LARGE if large else None
         self._handle = self._chart(None)
 

@@ -95,7 +95,7 @@ export class Chart {
 export class Board extends Chart {
     readonly element: HTMLElement
     answer: Answer = {}
-    private drawing: number | null = null // the pointer
+    private drawing: number | null = null // the pointer that draws
     private readonly inputs: HTMLInputElement[]
 
     constructor(page: PageData, axes: SketchData, private readonly changed: () => void) {

@@ -114,7 +114,7 @@ export class Bench {
     readonly arrow = (): Point => this.point("arrow", this.field("y"), this.field("force"))
     /** The last row of the log. */
     readonly logged = (): Float64Array => this.kernels.numbers.slice(this.row, this.row + this.sizes.log)
-    /** Before the first tick there is no log: what is seen is a tick's that is not kept, and nothing acts. */
+    /** The row before the first tick: that of a tick which is then undone, without torque and force. */
     private seeStart(): void {
         const { kernels, figure, state, log } = this
         kernels.copy(state, this.begun, this.longest)

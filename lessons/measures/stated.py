@@ -6,7 +6,7 @@ The text shows the number, and `onpath lessons check` plays the run and compares
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from difflib import get_close_matches
 from typing import Any, get_args
 
@@ -16,16 +16,8 @@ import numpy as np
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.task_schema import During, Stat
-from onpath.lessons.vocabulary.fences import FENCES
-from onpath.lessons.vocabulary.names import zero_faults
 
 STATED = re.compile(r"\{\{\s*([−+-]?\d+(?:[.,]\d+)?)\s*(?:±\s*(\d+(?:[.,]\d+)?)\s*)?=([^{}]*)\}\}")
-TOML = re.compile(
-    rf"\A\+\+\+\s*$.*?^\+\+\+"
-    rf"|^ {{0,3}}(?P<mark>`{{3,}}|~{{3,}})\s*({'|'.join(FENCES)})\s*$.*?^\s*(?P=mark)",
-    re.DOTALL | re.MULTILINE,
-)
-"""The parts of a lesson's file that are TOML."""
 FORM = "{{47 = max distance tracker}}, and if needed: during held, from 3 to 5"
 """What is expected, for messages."""
 KNOWN: dict[str, tuple[str, ...]] = {
@@ -62,17 +54,22 @@ class Stated(msgspec.Struct, frozen=True):
         return bool(abs(measured - self.value) <= self.tolerance + 1e-9)
 
 
-def take_stated(text: str, complain: Callable[[int, str], None]) -> tuple[str, list[Stated]]:
-    """The text with plain numbers in place of those that a run must confirm, and these."""
+def take_stated(
+    text: str, complain: Callable[[int, str], None], toml: Sequence[tuple[int, int]] = ()
+) -> tuple[str, list[Stated]]:
+    """The text with plain numbers in place of those that a run must confirm, and these.
+
+    Args:
+        toml: parts of the text, from and to a place, in which numbers are not replaced.
+    """
     found = list[Stated]()
-    blocks = [block.span() for block in TOML.finditer(text)]
 
     def plain(match: re.Match[str]) -> str:
-        if any(begin <= match.start() < end for begin, end in blocks):
-            return match[0]  # which is refused there
+        if any(begin <= match.start() < end for begin, end in toml):
+            return match[0]
         line = text.count("\n", 0, match.start()) + 1
-        if text[: match.start()].endswith("{") or text.startswith("}", match.end()):
-            complain(line, f"{{{match[0]}}}: three braces, and a number stands between two")
+        if text.endswith("{", 0, match.start()) or text.startswith("}", match.end()):
+            complain(line, f"{{{match[0]}}}: three braces; a number stands between two")
         try:
             found.append(_read(line, *match.groups()))
         except ValueError as error:
@@ -108,6 +105,12 @@ def _read(line: int, number: str, tolerance: str | None, what: str) -> Stated:
     for fault in zero_faults(value, allowed):
         raise ValueError(fault)
     return Stated(line, number, value, allowed, **read)
+
+
+def zero_faults(number: float, tolerance: float) -> Iterator[str]:
+    """The fault of a tolerance so large that 0 would be accepted instead of a number."""
+    if number and tolerance >= abs(number):
+        yield f"tolerance = {tolerance:g}: 0 would be accepted as {number:g}"
 
 
 def _value(number: str) -> float:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from onpath.lessons.measures.responses import WITH_SIGN
+from onpath.lessons.measures.stated import zero_faults
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import NumberQuestion, Option, Prediction, Sketch
 from onpath.lessons.task_schema import Better, Bound, Check, Compare, Event, Order, Setting, Task
-from onpath.lessons.vocabulary.names import EVENTS, HIGHEST, LONGEST, one_of, zero_faults
+from onpath.lessons.vocabulary.names import EVENTS, HIGHEST, LONGEST, one_of
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import OWN
 from onpath.models.control.laws.registry import LAWS

@@ -1,4 +1,4 @@
-"""The names of a lesson's fenced blocks, and the answer to one that is nearly such a name."""
+"""The fenced blocks of a lesson: their names, their places, and the faults of misspelt names."""
 
 from __future__ import annotations
 
@@ -12,13 +12,24 @@ KNOWN = (*FENCES, "fold", "when")
 LANGUAGES = ("scheme", "opencl", "openscad")
 """Languages of code whose names are like those of blocks."""
 FIRST = re.compile(r"[^\W\d_]+")
+TOML = re.compile(
+    rf"\A\+\+\+\s*$.*?^\+\+\+"
+    rf"|^ {{0,3}}(?P<mark>`{{3,}}|~{{3,}})\s*({'|'.join(FENCES)})\s*$.*?^\s*(?P=mark)",
+    re.DOTALL | re.MULTILINE,
+)
+"""The facts at the beginning of a lesson's file, or a block of TOML."""
+
+
+def toml_parts(text: str) -> list[tuple[int, int]]:
+    """Where the parts of a lesson's file that are TOML begin and end."""
+    return [part.span() for part in TOML.finditer(text)]
 
 
 def fence_faults(info: str) -> Iterator[str]:
-    """The fault of a fence that would be shown as code, and is not meant so.
+    """The fault of a block that would be shown as code although it is meant as one of `KNOWN`.
 
     Args:
-        info: what stands after the marks that begin it.
+        info: what stands after the marks (```) at its beginning.
     """
     found = FIRST.match(info.strip())
     word = found[0].lower() if found else ""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from difflib import get_close_matches
 from functools import cache
 from itertools import accumulate
 
 from latex2mathml import commands
 from latex2mathml.symbols_parser import SYMBOLS
+
+from onpath.lessons.problems import near
 
 UNKNOWN = re.compile(r"<m[io][^>]*>(\\[A-Za-z]+)</m[io]>")
 ENVIRONMENT = re.compile(r"\\begin\s*\{([^}]*)\}")
@@ -27,10 +28,10 @@ def latex_faults(latex: str, mathml: str) -> Iterator[str]:
     """
     for name in dict.fromkeys(ENVIRONMENT.findall(latex)):
         if name not in ENVIRONMENTS:
-            yield f"unknown environment {name!r}{_near(name, ENVIRONMENTS)}"
+            yield f"unknown environment {name!r}{near(name, ENVIRONMENTS)}"
     for name in dict.fromkeys(UNKNOWN.findall(mathml)):
         plain = f"\\operatorname{{{name[1:]}}}"
-        yield f"unknown command {name}{_near(name, _known())} A name is written {plain}"
+        yield f"unknown command {name}{near(name, _known())} A name is written {plain}"
 
 
 def brace_faults(latex: str) -> Iterator[str]:
@@ -44,11 +45,6 @@ def brace_faults(latex: str) -> Iterator[str]:
     left, right = (len(re.findall(rf"\\{side}(?![A-Za-z])", bare)) for side in ("left", "right"))
     if left != right:
         yield f"{left} \\left and {right} \\right: each \\left( needs its \\right)"
-
-
-def _near(name: str, known: tuple[str, ...]) -> str:
-    near = get_close_matches(name, known, 1)
-    return f"; did you mean {near[0]}?" if near else ""
 
 
 @cache

@@ -32,9 +32,3 @@ def one_of(name: str, known: Iterable[object], what: str) -> Iterator[str]:
     names = [str(each) for each in known]
     if name not in names:
         yield str(unknown_name(name, names, what=what))
-
-
-def zero_faults(number: float, tolerance: float) -> Iterator[str]:
-    """The fault of a tolerance that says nothing about a number."""
-    if number and tolerance >= abs(number):
-        yield f"tolerance = {tolerance:g}: 0 would be accepted as {number:g}"

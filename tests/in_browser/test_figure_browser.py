@@ -336,12 +336,12 @@ def tip_on(page: Page) -> tuple[float, float]:
 def test_a_tip_is_dragged_with_a_finger_and_the_page_still_scrolls(phone: Page) -> None:
     def swiped(x: float, y: float) -> list[Any]:
         """Whether the tip is pulled on the way, and whether the page is scrolled after it."""
-        with fingers(phone) as hand:
-            hand.tell("touchStart", (x, y))
+        with fingers(phone) as tell:
+            tell("touchStart", (x, y))
             for way in range(10, 90, 10):
-                hand.tell("touchMove", (x, y - way))
+                tell("touchMove", (x, y - way))
             pulled = phone.evaluate(IS_PULLED)
-            hand.tell("touchEnd")
+            tell("touchEnd")
         phone.evaluate(THREE_FRAMES)
         return [pulled, phone.evaluate("scrollY > 0")]
 
@@ -356,16 +356,16 @@ def test_a_tip_is_dragged_with_a_finger_and_the_page_still_scrolls(phone: Page) 
 def test_a_second_finger_neither_pulls_nor_lets_go(phone: Page) -> None:
     x, y = tip_on(phone)
     first, second = (x, y - 40), (x + 15, y + 15)  # the second one is near the tip, too
-    with fingers(phone) as hand:
-        hand.tell("touchStart", (x, y))
-        hand.tell("touchMove", first)
+    with fingers(phone) as tell:
+        tell("touchStart", (x, y))
+        tell("touchMove", first)
         pulled = phone.evaluate(HAND_TARGET)
-        hand.tell("touchStart", first, second)
-        hand.tell("touchMove", first, (second[0] + 60, second[1]))
+        tell("touchStart", first, second)
+        tell("touchMove", first, (second[0] + 60, second[1]))
         assert phone.evaluate(HAND_TARGET) == pulled
-        hand.tell("touchMove", first)  # the second one is lifted
+        tell("touchMove", first)  # the second one is lifted
         assert phone.evaluate(IS_PULLED) and phone.evaluate(HAND_TARGET) == pulled
-        hand.tell("touchCancel")
+        tell("touchCancel")
         wait_for(lambda: not phone.evaluate(IS_PULLED), WAIT)
 
 

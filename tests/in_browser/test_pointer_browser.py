@@ -74,14 +74,14 @@ def test_the_right_button_turns_the_view(tab: Tab) -> None:
 def test_two_fingers_move_the_view(tab: Tab) -> None:
     before = view(tab)
     (x, y), _ = beside(tab)
-    with fingers(tab.page) as hand:
+    with fingers(tab.page) as tell:
 
         def has_moved() -> bool:
             """Whether it has after another gesture; a page that is busy may miss one."""
-            hand.tell("touchStart", (x, y), (x - 80, y))
+            tell("touchStart", (x, y), (x - 80, y))
             for shift in (30, 60):
-                hand.tell("touchMove", (x + shift, y), (x + shift - 80, y))
-            hand.tell("touchEnd")
+                tell("touchMove", (x + shift, y), (x + shift - 80, y))
+            tell("touchEnd")
             return bool(np.linalg.norm(view(tab) - before) > 0.01)
 
         wait_for(has_moved)

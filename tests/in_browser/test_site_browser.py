@@ -182,17 +182,17 @@ def test_a_second_finger_does_not_draw(browser: Browser, addresses: dict[str, st
     reader.button("Next").tap()
     x, y = reader.place(page.locator(".step.open canvas.board"))
     first, second = (x + 100, y + 120), (x + 250, y + 60)
-    with fingers(page) as hand:
-        hand.tell("touchStart", (x + 60, y + 190))
-        hand.tell("touchMove", first)
+    with fingers(page) as tell:
+        tell("touchStart", (x + 60, y + 190))
+        tell("touchMove", first)
         page.evaluate(THREE_FRAMES)
-        hand.tell("touchStart", first, (x + 150, y + 60))
-        hand.tell("touchMove", first, second)
+        tell("touchStart", first, (x + 150, y + 60))
+        tell("touchMove", first, second)
         page.evaluate(THREE_FRAMES)
-        hand.tell("touchMove", first)  # the second one is lifted
-        hand.tell("touchMove", (x + 200, y + 190))
+        tell("touchMove", first)  # the second one is lifted
+        tell("touchMove", (x + 200, y + 190))
         page.evaluate(THREE_FRAMES)
-        hand.tell("touchCancel")
+        tell("touchCancel")
         page.evaluate(THREE_FRAMES)
     reader.button("Commit to this prediction").tap()
     drawn = page.evaluate("site.notes.answers[1].values")

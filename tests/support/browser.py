@@ -257,15 +257,15 @@ class Tab:
             in_scene: see `dragging`.
         """
         self.settle()
-        with fingers(self.page) as hand:
-            hand.tell("touchStart", way[0])
+        with fingers(self.page) as tell:
+            tell("touchStart", way[0])
             for begin, end in pairwise(way):
                 for place in np.linspace(begin, end, 4)[1:].tolist():
-                    hand.tell("touchMove", place)
+                    tell("touchMove", place)
                 if in_scene:
                     self._until_dragged(end)
             yield
-            hand.tell("touchEnd")
+            tell("touchEnd")
 
     def _until_dragged(self, place: tuple[float, float]) -> None:
         """viser passes on twenty places a second, and drops those between."""

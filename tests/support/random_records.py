@@ -44,7 +44,7 @@ def some_record(rng: np.random.Generator) -> Record:
 def some_columns(
     rng: np.random.Generator, count: int, names: list[str]
 ) -> dict[RobotName, dict[str, np.ndarray]]:
-    """Quantities of both robots; at times the one's are those of the other, divided by a number."""
+    """Quantities of both robots; sometimes those of one are a multiple of the other's."""
     scale = float(rng.choice([1e-4, 1.0, 50.0]))
     tracker, follower = ({name: some_values(rng, count, scale) for name in names} for _ in range(2))
     if rng.random() < 0.2:
@@ -119,9 +119,9 @@ def some_setting(rng: np.random.Generator, bounds: dict[str, float]) -> Setting:
         "path": "ellipse",
         "robot": "five_bar",
         "task": "speed",
-        "K1": [600, 0][int(rng.integers(2))],
+        "K1": int(rng.choice([600, 0])),
         "K2": 1600.5,
-        "encoder_counts": [0, 2001][int(rng.integers(2))],
+        "encoder_counts": int(rng.choice([0, 2001])),
     }
     if name in wanted and rng.random() < 0.7:
         return Setting(name=name, equals=wanted[name])

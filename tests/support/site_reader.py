@@ -71,13 +71,13 @@ class SiteReader:
 
     def swipe(self, *way: Sequence[float]) -> None:
         """Touch the first place with a finger, move it through the others, and lift it."""
-        with fingers(self.page) as hand:
-            hand.tell("touchStart", way[0])
+        with fingers(self.page) as tell:
+            tell("touchStart", way[0])
             self.page.evaluate(THREE_FRAMES)
             for place in way[1:]:
-                hand.tell("touchMove", place)
+                tell("touchMove", place)
                 self.page.evaluate(THREE_FRAMES)
-            hand.tell("touchEnd")
+            tell("touchEnd")
             self.page.evaluate(THREE_FRAMES)
 
     def place(self, what: Locator) -> tuple[float, float]:

@@ -24,7 +24,7 @@ from tests.support.built_in import built_in_course
 COURSE, _ = built_in_course()
 PRESENTED = 1900  # [px], from this width on the steps are shown in large type
 RARELY = "requestAnimationFrame = act => setTimeout(() => act(performance.now()), 400)"
-"""Between two pictures of the scene, drawn in software, the page has time for the rest."""
+"""The scene is drawn in software: at a lower rate, the page has time to answer."""
 ACROSS, DOWN = 4, 3  # pictures on a sheet
 WRONG = """() => {
     const RAW = /.{0,20}(\\$|\\\\[a-z]|\\{\\{|\\*\\*).{0,20}/g

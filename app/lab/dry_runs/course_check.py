@@ -40,8 +40,7 @@ def play_course(course: Course, folder: Path, store: LoopCache) -> Iterator[Prob
         lesson = course.lesson(name, DEFAULT)
         home = folder / name
         file = home / f"{lesson.language}.md"
-        runs = dict[int, Record]()
-        faults = list(_script_faults(lesson, runs, store))
+        runs, faults = _measured_runs(lesson, store)
         if not faults:
             faults = [*stated_faults(lesson, runs), *sketch_faults(lesson, runs)]
         yield from (Problem(str(file), line, text) for line, text in faults)
@@ -109,16 +108,18 @@ def measured_run(lesson: Lesson, index: int, store: LoopCache) -> Record:
     return samples.record(lab.session)
 
 
-def _script_faults(
-    lesson: Lesson, runs: dict[int, Record], store: LoopCache
-) -> Iterator[tuple[int, str]]:
-    """Play all scripts of a lesson; what was measured is put into `runs` by the step's index."""
+def _measured_runs(
+    lesson: Lesson, store: LoopCache
+) -> tuple[dict[int, Record], list[tuple[int, str]]]:
+    """What is measured in all scripts of a lesson, by the step's index; lines and faults."""
+    runs, faults = dict[int, Record](), list[tuple[int, str]]()
     for index, step in enumerate(lesson.steps):
         try:
             if step.script is not None:
                 runs[index] = measured_run(lesson, index, store)
         except ValueError as error:
-            yield step.line, f"the script of step {step.title!r}: {error}"
+            faults.append((step.line, f"the script of step {step.title!r}: {error}"))
+    return runs, faults
 
 
 def _reference_faults(lesson: Lesson, file: Path, store: LoopCache) -> Iterator[Problem]:

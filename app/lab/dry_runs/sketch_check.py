@@ -10,13 +10,13 @@ from onpath.lessons.record import QUANTITIES, Record
 from onpath.lessons.schema import Lesson, Sketch
 
 ROOM = 1e-3
-"""By how much of its height a curve may leave an axis, which is not seen."""
+"""Share of its length by which a curve may leave the axis: less than a pixel."""
 
 
 def sketch_faults(lesson: Lesson, runs: Mapping[int, Record]) -> Iterator[tuple[int, str]]:
     """Lines of steps and faults of sketches whose true curve leaves their axis.
 
-    A robot that diverges, and is stopped by the lab, leaves every axis.
+    A robot that diverges is left out: until the lab stops it, it may leave any axis.
 
     Args:
         runs: what was measured in the scripts, by the index of the step.

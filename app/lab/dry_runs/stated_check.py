@@ -1,4 +1,4 @@
-"""Compares the numbers that the texts of a lesson state of its runs with these."""
+"""Compares the numbers that a lesson's texts state of its runs with what was measured in them."""
 
 from __future__ import annotations
 
@@ -12,9 +12,6 @@ from onpath.lessons.measures.stated import Stated, in_span
 from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson
 from onpath.lessons.task_schema import Window
-
-NAMES = {"always": "there", "held": "held", "pulled": "pulled", "free": "free"}
-"""What a robot is during a part of a run, for messages."""
 
 
 def stated_faults(lesson: Lesson, runs: Mapping[int, Record]) -> Iterator[tuple[int, str]]:
@@ -63,9 +60,9 @@ def _why(stated: Stated, run: Record) -> str:
         return f"the robot of this run has no {stated.quantity}"
     during = run.chosen(stated.robot, Window(during=stated.during))
     if not during.any():
-        return f"the {stated.robot} is never {NAMES[stated.during]}"
+        return f"the {stated.robot} is never {stated.during}"
     if not (during & in_span(run.times, stated)).any():
         span = f"from {stated.begin:g} to {stated.end:g} s"
-        part = "" if stated.during == "always" else f" at which it is {NAMES[stated.during]}"
+        part = "" if stated.during == "always" else f" at which it is {stated.during}"
         return f"no instant {span}{part}; the run ends at {run.end:.4g} s"
     return f"there is no {stated.stat} in this run"
