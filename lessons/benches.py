@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.words import Words
@@ -43,9 +44,16 @@ def bench_titles(laws: Mapping[str, str | tuple[str, ...]], words: Words) -> dic
     Args:
         laws: control law of each bench, or several, one after the other.
     """
+    return dict(_bench_titles(tuple(laws.items()), words))
+
+
+@lru_cache(maxsize=64)
+def _bench_titles(
+    laws: tuple[tuple[str, str | tuple[str, ...]], ...], words: Words
+) -> dict[str, str]:
     labels = {
         bench: ", ".join(dict.fromkeys(law_label(law, words) for law in _all(own)))
-        for bench, own in laws.items()
+        for bench, own in laws
     }
     if len(set(labels.values())) == len(labels):
         return labels

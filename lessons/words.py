@@ -23,6 +23,12 @@ class Words:
         self.language = language if language in languages() else DEFAULT
         self._plain = dict[str, str]()
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Words) and other.language == self.language
+
+    def __hash__(self) -> int:
+        return hash(self.language)
+
     @cached_property
     def _catalogue(self) -> Catalogue:
         return catalogue(self.language)

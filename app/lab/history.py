@@ -228,5 +228,7 @@ def _columns_of(
         states.append(part[:, : own.size])
         rows.append(part[:, place.size : -2])
         numbers.append(part[:, -2:])
-    distances, most = np.stack(numbers, axis=2).transpose(1, 0, 2)
-    return np.concatenate(states, axis=1), np.stack(rows, axis=1), distances, most
+    log_rows = np.concatenate(rows, axis=1).reshape(len(frames), len(rows), -1)
+    distances_and_most = np.concatenate(numbers, axis=1)
+    distances, most = distances_and_most[:, ::2], distances_and_most[:, 1::2]
+    return np.concatenate(states, axis=1), log_rows, distances, most

@@ -172,9 +172,9 @@ class Overlays:
         self._follow_marks()
 
     def _follow_labels(self, snapshot: PageSnapshot) -> None:
-        parts = self._scene, self.stage, self._robot, snapshot.motion
+        parts = self._scene, self.stage, self._robot
         if self.switches.labels:
-            self._labels.show(True, lambda: RobotLabels(*parts, self._letters))
+            self._labels.show(True, lambda: RobotLabels(*parts, snapshot.motion, self._letters))
         else:
             self._labels.remove()
 
@@ -201,8 +201,8 @@ class Overlays:
 
     def _follow_errors(self, snapshot: PageSnapshot) -> None:
         if self.switches.errors:
-            parts = self._scene, self.stage, snapshot.motion
-            self._errors.show(True, lambda: ErrorNodes(*parts))
+            parts = self._scene, self.stage
+            self._errors.show(True, lambda: ErrorNodes(*parts, snapshot.motion))
         else:
             self._errors.remove()
 

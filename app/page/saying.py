@@ -86,7 +86,9 @@ class Saying:
     def _said_aloud(self, snapshot: Snapshot, captions: dict[str, str]) -> str:
         """What is to be spoken. If only its numbers change, it is renewed once in `RENEWED`."""
         said, elapsed = _spoken(snapshot, captions, self._words), snapshot.time - self._spoken_at
-        if abs(elapsed) >= RENEWED or _without_numbers(said) != _without_numbers(self._spoken):
+        if said != self._spoken and (
+            abs(elapsed) >= RENEWED or _without_numbers(said) != _without_numbers(self._spoken)
+        ):
             self._spoken, self._spoken_at = said, snapshot.time
         return self._spoken
 

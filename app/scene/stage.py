@@ -13,6 +13,7 @@ from onpath.app.common import palette
 from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.pointer_projection import Box, DragPlane
 from onpath.app.scene.tones import LIGHT, Tones
+from onpath.app.viser_adapter.frame_channel import update_node
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.laws.registry import law_named
@@ -232,7 +233,7 @@ class ChangingText:
             return
         self._shown = text
         if text:
-            self.label.text = text
+            update_node(self.label, text=text)
         self._update()
 
     def hide(self, hidden: bool) -> None:

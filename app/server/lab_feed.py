@@ -45,7 +45,7 @@ class LabFeed:
     @property
     def is_outdated(self) -> bool:
         """See `app.simulation.simulation_thread.Display`."""
-        return self.page.is_ready and self.page.is_outdated
+        return self.page.is_outdated and self.page.is_ready
 
     def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
         """See `app.simulation.simulation_thread.Display`."""

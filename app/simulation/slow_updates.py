@@ -13,7 +13,8 @@ from typing import Protocol
 
 from onpath.app.simulation.display_rate import STRIDES
 
-FREQUENT, RARE = 6, 15  # frames between updates of a page, at ease and under load: 10 Hz, 4 Hz
+FREQUENT, USUAL, RARE = 6, 8, 15  # frames between updates of a page; see `interval`
+FEW = 10  # pages
 SLOWEST = 60  # frames in which every page gets an update, whatever it costs
 SHARE = 0.25  # of a frame, at most, for all slow updates
 
@@ -58,7 +59,7 @@ class SlowUpdates:
             seconds: that they may take; exceeded by one update, or by those that are overdue.
             stride: frames of simulation per frame of display.
         """
-        latest = frame - (FREQUENT if stride <= STRIDES[0] else RARE)
+        latest = frame - interval(len(pages), stride)
         due = [
             page
             for page in pages
@@ -70,3 +71,15 @@ class SlowUpdates:
             if i >= least and self._clock() >= until:
                 break
             page.refresh(frame)
+
+
+def interval(pages: int, stride: float) -> int:
+    """Frames between updates of a page: 10 Hz for a few pages, 7.5 Hz, and 4 Hz under load.
+
+    Args:
+        pages: number of pages.
+        stride: frames of simulation per frame of display.
+    """
+    if stride > STRIDES[0]:
+        return RARE
+    return FREQUENT if pages <= FEW else USUAL

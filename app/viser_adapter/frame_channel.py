@@ -37,9 +37,12 @@ _ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[FrameChannel]] = WeakK
 """Channels with pending messages, by the event loop that sends them."""
 
 
-def update_node(handle: Any, **arrays: np.ndarray) -> None:
-    """Set float32 properties of a scene node, without viser's check whether they have changed."""
-    values = {name: np.array(array, np.float32, order="C") for name, array in arrays.items()}
+def update_node(handle: Any, **given: np.ndarray | str) -> None:
+    """Set float32 arrays and texts of a scene node, without viser's check of type and of changes."""
+    values = {
+        name: value if isinstance(value, str) else np.array(value, np.float32, order="C")
+        for name, value in given.items()
+    }
     for name, value in values.items():
         setattr(handle._impl.props, name, value)
     message = _messages.SceneNodeUpdateMessage(handle._impl.name, values)

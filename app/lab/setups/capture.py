@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from onpath.app.lab.belongings import Belongings
 from onpath.app.lab.session import Session
 from onpath.app.lab.setups.setup import DRAWN, EDITED, UNIT, Path, RobotSetup, Setup
+from onpath.models.closed_loop.start import Start
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.catalogue import ROBOTS
@@ -37,18 +39,25 @@ def capture(session: Session) -> Setup:
 
 def _captured(name: str, own: Belongings, paths: Mapping[str, PathDesign]) -> RobotSetup:
     """The set-up of one robot."""
-    start = {n: _rounded(value) for n, value in asdict(own.start).items()}
     wall = own.wall
     return RobotSetup(
-        _differences(ROBOTS[name].lab, own.parameters),
+        dict(_differences(name, own.parameters)),
         capture_path(own.editor.design, paths) if own.editor else Path(),
-        {n: value for n, value in start.items() if value},
+        dict(_start_of(own.start)),
         () if wall is None else (_rounded(wall.z1), _rounded(wall.z2), _rounded(wall.angle)),
     )
 
 
-def _differences(lab: Parameters, own: Parameters) -> dict[str, int | float | str]:
-    found: dict[str, int | float | str] = {}
+@lru_cache(maxsize=128)  # every lab is captured once a second
+def _start_of(start: Start) -> dict[str, float]:
+    found = {n: _rounded(value) for n, value in asdict(start).items()}
+    return {n: value for n, value in found.items() if value}
+
+
+@lru_cache(maxsize=256)
+def _differences(name: str, own: Parameters) -> dict[str, int | float | str]:
+    """What differs from the parameters of a new lab with this robot."""
+    lab, found = ROBOTS[name].lab, dict[str, int | float | str]()
     for name, spec in specs(own).items():
         value, default = getattr(own, name), getattr(lab, name)
         if value != default and kept(spec, value) != default:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import lru_cache
+
 import numpy as np
 import viser
 
@@ -18,10 +21,11 @@ from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
 from onpath.models.control.law_poles import channels_of
 from onpath.models.control.laws.own import is_text
+from onpath.models.control.place import Place
 from onpath.models.control.poles import Channel
 from onpath.models.errors import Message
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import specs
+from onpath.models.systems.parameters import Parameters, specs
 
 BASIC = ["speed", "K1", "K2", "K5"]
 ADVANCED = ["speed_profile", "profile_period", "ramp", "task", "target"]
@@ -72,9 +76,10 @@ class GainsPanel:
         self._shown = now
         for widgets in self._widgets:
             widgets.follow(snapshot)
-        channels = channels_by_owner(snapshot, self._words)
-        self._settling.content = "\n\n".join(lines_of_poles(channels, self._words))
-        self._picture.content = pole_picture(channels, self._words)
+        laws = tuple(snapshot.run.laws.items())
+        places = snapshot.places if snapshot.places.of else None
+        shown = _text_and_picture(parameters_of(snapshot), laws, places, self._words)
+        self._settling.content, self._picture.content = shown
 
 
 def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
@@ -84,13 +89,27 @@ def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:
     on_press(button, lambda: post(Identify()))
 
 
-def channels_by_owner(snapshot: PageSnapshot, words: Words) -> Channels:
+@lru_cache(maxsize=256)
+def _text_and_picture(
+    parameters: Parameters,
+    laws: tuple[tuple[str, str], ...],
+    places: LawPlaces | None,
+    words: Words,
+) -> tuple[str, str]:
+    """The lines of the poles, and their picture; students of one class mostly see the same."""
+    places_of = {} if places is None else places.of
+    channels = channels_by_owner(parameters, dict(laws), places_of, words)
+    return "\n\n".join(lines_of_poles(channels, words)), pole_picture(channels, words)
+
+
+def channels_by_owner(
+    parameters: Parameters, laws: Mapping[str, str], places: Mapping[str, Place], words: Words
+) -> Channels:
     """The channels of the laws by whose they are, those with the same gains once."""
-    found, titles = Channels(), bench_titles(snapshot.run.laws, words)
-    parameters = parameters_of(snapshot)
-    for bench, law in snapshot.run.laws.items():
-        channels = channels_of(law, parameters, snapshot.places.of.get(bench))
-        own = bench in snapshot.places.of or is_text(law) or isinstance(channels, Message)
+    found, titles = Channels(), bench_titles(laws, words)
+    for bench, law in laws.items():
+        channels = channels_of(law, parameters, places.get(bench))
+        own = bench in places or is_text(law) or isinstance(channels, Message)
         found[titles[bench] if own else ""] = channels
     return found
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.panels.gains_panel import channels_by_owner, lines_of_poles
@@ -29,7 +29,9 @@ def taken_after(seconds: float, *commands: c.Command) -> tuple[PageSnapshot, Pag
 
 def lines(snapshot: PageSnapshot, words: Words) -> list[str]:
     """What the panel says of the poles."""
-    return lines_of_poles(channels_by_owner(snapshot, words), words)
+    places = snapshot.places.of
+    found = channels_by_owner(parameters_of(snapshot), snapshot.run.laws, places, words)
+    return lines_of_poles(found, words)
 
 
 @pytest.mark.parametrize("language", ["en", "de"])

@@ -9,7 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.simulation.display_rate import STRIDES, is_turn
-from onpath.app.simulation.slow_updates import FREQUENT, RARE, SLOWEST, SlowUpdates
+from onpath.app.simulation.slow_updates import (
+    FEW,
+    FREQUENT,
+    RARE,
+    SLOWEST,
+    USUAL,
+    SlowUpdates,
+    interval,
+)
 
 FRAMES = 600
 
@@ -50,19 +58,24 @@ def test_they_keep_to_their_time_and_no_page_waits_for_ever(
     pages, longest = updated(count, cost, seconds, stride)
     overdue = ceil(count / SLOWEST)
     assert longest <= max(seconds + cost, overdue * cost) + 1e-9
-    interval = FREQUENT if stride == STRIDES[0] else RARE
+    wanted = interval(count, stride)
     for page in pages:
         gaps = [b - a for a, b in zip([0, *page.at], [*page.at, FRAMES], strict=True)]
-        assert max(gaps) <= max(interval, SLOWEST) + stride
-        assert min(gaps[1:-1], default=interval) >= interval
+        assert max(gaps) <= max(wanted, SLOWEST) + stride
+        assert min(gaps[1:-1], default=wanted) >= wanted
         assert all(page.is_turn(frame, stride) for frame in page.at)
 
 
-@pytest.mark.parametrize(("stride", "interval"), [(2, FREQUENT), (2.5, RARE), (3, RARE), (4, 16)])
-def test_where_there_is_time_they_are_as_frequent_as_wanted(stride: float, interval: int) -> None:
+@pytest.mark.parametrize(
+    ("count", "stride", "frames"),
+    [(FEW, 2, FREQUENT), (FEW + 1, 2, USUAL), (20, 2.5, RARE), (20, 3, RARE), (20, 4, 16)],
+)
+def test_where_there_is_time_they_are_as_frequent_as_wanted(
+    count: int, stride: float, frames: int
+) -> None:
     """At a stride of 4, a page's turn is never 15 frames after another one."""
-    pages, _ = updated(20, 1e-4, 0.01, stride)
-    assert all(abs(len(page.at) - FRAMES / interval) < 1 for page in pages)
+    pages, _ = updated(count, 1e-4, 0.01, stride)
+    assert all(abs(len(page.at) - FRAMES / frames) < 1 for page in pages)
 
 
 def test_an_outdated_page_does_not_wait_for_its_turn() -> None:
