@@ -38,7 +38,7 @@ _ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[FrameChannel]] = WeakK
 
 
 def update_node(handle: Any, **given: np.ndarray | str) -> None:
-    """Set float32 arrays and texts of a scene node, without viser's check of type and of changes."""
+    """Set float32 arrays and texts of a scene node, without viser's checks of types and changes."""
     values = {
         name: value if isinstance(value, str) else np.array(value, np.float32, order="C")
         for name, value in given.items()

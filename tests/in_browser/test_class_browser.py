@@ -31,6 +31,10 @@ SMALLEST = """() => Math.min(...[...document.querySelectorAll(".op-class *")]
     .filter(each => [...each.childNodes].some(node => node.nodeType === 3 && node.data.trim()))
     .map(each => [each, each.getScreenCTM?.() ?? {a: 1, b: 0}])
     .map(([each, to]) => parseFloat(getComputedStyle(each).fontSize) * Math.hypot(to.a, to.b)))"""
+IN_SIGHT = """box => {
+    const {left, top, width, height} = box.getBoundingClientRect()
+    return box.contains(document.elementFromPoint(left + width / 2, top + height / 2))
+}"""
 WINDOWS = ((1100, 600), (800, 400), (800, 400))
 
 
@@ -88,12 +92,19 @@ def test_students_join_and_the_teacher_sees_them(tabs: Class) -> None:
         student.page.get_by_text("You are in the class as").wait_for()
     teacher = tabs.teacher
     teacher.open("Teacher…")
+    for label in ("Class code", "Nickname", "Teacher's key"):
+        assert teacher.field(label).get_attribute("aria-required") == "true"
     fill(teacher, "Teacher's key", "2222-2222-2222")
     teacher.press("Open the teacher's page")
-    teacher.page.get_by_text("this is not the teacher's key").wait_for()
+    refusal = teacher.page.get_by_role("alert").filter(has_text="this is not the teacher's key")
+    refusal.wait_for()
+    assert placed(refusal)["y"] > placed(teacher.button("Open the teacher's page"))["y"]
+    assert refusal.evaluate(IN_SIGHT)
     fill(teacher, "Teacher's key", shown(tabs.room.key))
     teacher.press("Open the teacher's page")
     teacher.page.get_by_text("2 in the class").first.wait_for()
+    teacher.wait_until_built()
+    wait_for(lambda: placed(teacher.page.locator("canvas[data-engine]"))["height"] == WINDOWS[0][1])
     for name in ("Ada", HOSTILE):
         teacher.page.get_by_role("cell", name=name, exact=True).wait_for()
     assert teacher.page.locator("img[src=x]").count() == 0

@@ -23,8 +23,18 @@ from tests.support.built_in import built_in_course
 
 COURSE, _ = built_in_course()
 PRESENTED = 1900  # [px], from this width on the steps are shown in large type
-RARELY = "requestAnimationFrame = act => setTimeout(() => act(performance.now()), 400)"
-"""The scene is drawn in software: at a lower rate, the page has time to answer."""
+DRAWS = "drawn = true"
+"""The scene is drawn in software, which takes a second: only for the pictures."""
+SELDOM_DRAWN = """
+    drawn = false
+    requestAnimationFrame = act => setTimeout(() => act(performance.now()), drawn ? 400 : 50)
+    const context = WebGL2RenderingContext.prototype
+    for (const what of Object.keys(Object.getOwnPropertyDescriptors(context))) {
+        if (!/^(draw|clear|blit)[A-Z]?/.test(what) || /^(drawingBuffer|clear[CDS])/.test(what)) continue
+        const does = context[what]
+        context[what] = function (...given) { if (drawn) does.apply(this, given) }
+    }
+"""
 ACROSS, DOWN = 4, 3  # pictures on a sheet
 WRONG = """() => {
     const RAW = /.{0,20}(\\$|\\\\[a-z]|\\{\\{|\\*\\*).{0,20}/g
@@ -57,9 +67,11 @@ def shots(tab: Tab, name: str, folder: Path) -> Iterator[Path]:
             read.click()
             read.wait_for(state="detached")
         tab.settle()
+        tab.page.evaluate(DRAWS)
         tab.page.evaluate(THREE_FRAMES)
         file = folder / f"{name}-{index + 1:02}.png"
         tab.page.screenshot(path=file, type="png")
+        tab.page.evaluate("drawn = false")
         for fault in tab.page.evaluate(WRONG):
             sys.stdout.write(f"{name} {index + 1}: {fault}\n")
         yield file
@@ -86,7 +98,7 @@ def photograph(
     files = list[Path]()
     for name in sys.argv[5:] or COURSE.lessons:
         context = browser.new_context(viewport={"width": width, "height": height})
-        context.add_init_script(RARELY)
+        context.add_init_script(SELDOM_DRAWN)
         tab = Tab(server, context)
         tab.ask(c.SetLanguage(language), c.SetPresenting(width >= PRESENTED))
         tab.wait_until_built()

@@ -9,7 +9,7 @@ import viser
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.page_context import ClassSeat
-from onpath.app.page.panels.widgets import note, on_slow_press
+from onpath.app.page.panels.widgets import on_slow_press, refused
 from onpath.lessons.words import Words
 
 
@@ -22,22 +22,24 @@ class ClassPanel:
         self._words = words
         with gui.add_folder(words("class.title"), expand_by_default=not first.nickname):
             self._member = gui.add_html("")
-            self._code = gui.add_text(
-                words("class.code"), seat.code.upper(), hint=words("class.code_hint")
-            )
+            code = seat.code.upper()
+            gui.add_html(render("panel/needed.html", secret=False))
+            self._code = gui.add_text(words("class.code"), code, hint=words("class.code_hint"))
+            gui.add_html(render("panel/needed.html", secret=False))
             self._name = gui.add_text(
                 words("class.nickname"), "", hint=words("class.nickname_hint")
             )
             self._join = gui.add_button(words("class.join"), icon=viser.Icon.LOGIN)
             self._leave = gui.add_button(words("class.leave"), color="gray", icon=viser.Icon.LOGOUT)
-            self._said = gui.add_html("")
+            said = gui.add_html("")
             with gui.add_folder(words("class.teacher"), expand_by_default=False):
-                gui.add_html(render("panel/secret.html"))
+                gui.add_html(render("panel/needed.html", secret=True))
                 key = gui.add_text(words("class.key"), "", hint=words("class.key_hint"))
                 teach = gui.add_button(words("class.teach"), color="gray", icon=viser.Icon.KEY)
-        self._try(self._join, lambda: seat.join(self._code.value, self._name.value))
-        self._try(self._leave, lambda: seat.leave() or "")
-        self._try(teach, lambda: seat.teach(key.value))
+                answer = gui.add_html("")
+        self._try(self._join, lambda: seat.join(self._code.value, self._name.value), said)
+        self._try(self._leave, lambda: seat.leave() or "", said)
+        self._try(teach, lambda: seat.teach(key.value), answer)
         self._shown: str | None = None
         self.follow(first)
 
@@ -53,16 +55,20 @@ class ClassPanel:
             handle.visible = not name
         self._leave.visible = bool(name)
 
-    def _try(self, button: viser.GuiButtonHandle, act: Callable[[], str]) -> None:
+    def _try(
+        self, button: viser.GuiButtonHandle, act: Callable[[], str], said: viser.GuiHtmlHandle
+    ) -> None:
+        """Act when a button is pressed; what is to be said stands below it."""
+
         def tried() -> None:
-            self._said.content = ""
+            said.content = ""
             try:
                 address = act()  # may rebuild the page without this panel
                 if address:
-                    self._said.content = render(
+                    said.content = render(
                         "panel/class_link.html", address=address, words=self._words
                     )
             except (ValueError, OSError) as error:
-                self._said.content = note(self._words.sentence(error), small=True)
+                said.content = refused(self._words.sentence(error))
 
         on_slow_press(button, tried)

@@ -10,7 +10,7 @@ from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.page_context import PageContext
-from onpath.app.page.panels.widgets import Post, note, on_press, on_slow_press
+from onpath.app.page.panels.widgets import Post, note, on_press, on_slow_press, refused
 from onpath.lessons.words import Words
 
 
@@ -55,7 +55,7 @@ class KeepPanel:
         try:
             self._desk.enter(self._typed.value)  # rebuilds the page without this panel
         except (ValueError, OSError) as error:
-            self._say(self._words.sentence(error))
+            self._said.content = refused(self._words.sentence(error))
 
     def _say(self, said: str) -> None:
         self._said.content = render("lesson/text.html", content=said)

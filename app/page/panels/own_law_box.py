@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 import viser
 
-from onpath.app.common.templates import render
-from onpath.app.page.panels.widgets import on_press
+from onpath.app.page.panels.widgets import on_press, refused
 from onpath.lessons.words import Words
 from onpath.models.control.laws.own import PATH_FOLLOWING, is_text, tidy
 
@@ -54,7 +53,7 @@ class OwnLawBox:
         """Show why the last text was refused."""
         if refusal != self._refusal:
             self._refusal = refusal
-            self._why.content = render("panel/law_refusal.html", said=refusal) if refusal else ""
+            self._why.content = refused(refusal) if refusal else ""
 
 
 def lines_of(law: str) -> str:

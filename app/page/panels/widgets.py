@@ -149,6 +149,11 @@ def note(said: str, small: bool = False) -> str:
     return render("panel/note.html", said=said, small=small)
 
 
+def refused(why: str) -> str:
+    """Why what was typed is refused, to be shown below the button."""
+    return render("panel/refusal.html", said=why)
+
+
 def set_number(handle: viser.GuiInputHandle[float], value: float) -> None:
     """Show a number in a box, to a tenth, unless it is shown already."""
     shown = round(value, 1) + 0.0  # turns -0 into 0

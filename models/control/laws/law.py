@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Literal
 
 import casadi as ca
 
@@ -174,7 +175,8 @@ class Law:
         memory: what it keeps from tick to tick; all of it is 0 at the start.
         square: whether it needs as many motors and outputs as coordinates, n = m = p.
         commands_acceleration: whether it commands y'' rather than torques.
-        travels: whether it moves along the path at a wanted speed, or slides on it.
+        pace: what sets its speed along the path: "wanted", the wanted speed; "energy", the energy
+            that it has; "free", whatever pushes it; "none", it does not move along the path.
         linear: whether its error has the poles of its gains; see `models/control/poles.py`.
         channels: the motion across and along the path near a place, if it is not `linear`; None if
             that has no poles either.
@@ -195,7 +197,7 @@ class Law:
     memory: Memory = ()
     square: bool = False
     commands_acceleration: bool = True
-    travels: bool = True
+    pace: Literal["wanted", "energy", "free", "none"] = "wanted"
     linear: bool = False
     channels: Callable[[Parameters, Place], tuple[Channel, Channel]] | None = None
     motors: int | None = None
@@ -203,6 +205,11 @@ class Law:
     always_integrates: bool = False
     good: str = ""
     limits: str = ""
+
+    @property
+    def travels(self) -> bool:
+        """Whether it moves along the path, by itself or pushed."""
+        return self.pace != "none"
 
     def suits(self, system: MechanicalSystem) -> bool:
         """Whether the law can be used with a robot."""

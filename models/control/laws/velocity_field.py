@@ -132,6 +132,7 @@ LAW = Law(
     memory=((FLYWHEEL, 1),),
     square=True,
     commands_acceleration=False,
+    pace="energy",
     good="Pulled off the curve, it gives the hand less energy than any law that keeps a timetable.",
     limits="It regulates its energy and not its speed, so that it comes too early or too late"
     " even when nobody holds it.",

@@ -71,6 +71,7 @@ LAW = Law(
     command=virtual_constraint,
     aim="theta",
     square=True,
+    pace="free",
     channels=wire_channels,
     good="It keeps to the curve and leaves the pace to whoever pushes it along.",
     limits="It does not travel by itself: at rest it stays where it is.",

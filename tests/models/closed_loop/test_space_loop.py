@@ -37,7 +37,7 @@ from onpath.models.systems.spatial_arm import SpatialParameters, spatial_arm_rob
 ARM, DEFAULTS = spatial_arm_robot(), SpatialParameters(K3=0.0)
 SADDLE = saddle(circle(0.05), 0.03)
 NEAR = 2e-5  # [m], what sampling leaves of a law that is exact
-AT_REST = ("set_point", "virtual_constraint")  # these do not move along the path
+AT_REST = [name for name, law in LAWS.items() if law.pace in ("none", "free")]
 
 
 def start(
@@ -118,7 +118,7 @@ def test_every_law_leads_along_the_saddle(law: str) -> None:
     assert path_distance(ARM.frame, SADDLE, log["y"]).max() < limit
 
 
-@pytest.mark.parametrize("law", ["set_point", "virtual_constraint"])
+@pytest.mark.parametrize("law", AT_REST)
 def test_laws_that_rest_hold_the_end_point_on_the_saddle(law: str) -> None:
     q, v = start(SADDLE, 0.3, 0.0, np.zeros(3))
     parameters = replace(DEFAULTS, target=0.3, task="position")

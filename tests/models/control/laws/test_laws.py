@@ -111,7 +111,7 @@ def test_every_law_says_what_it_is_and_where_it_comes_from(law: Any) -> None:
 
 
 @pytest.mark.parametrize("curve", PATHS, ids=("circle", "ellipse"))
-@pytest.mark.parametrize("law", sorted(LAWS.keys() - {"set_point", "virtual_constraint"}))
+@pytest.mark.parametrize("law", [n for n, law in LAWS.items() if law.pace in ("wanted", "energy")])
 def test_undisturbed_every_law_ends_up_on_the_path_at_the_wanted_speed(
     law: str, curve: Curve
 ) -> None:
@@ -119,7 +119,7 @@ def test_undisturbed_every_law_ends_up_on_the_path_at_the_wanted_speed(
     bench.run(4.0)
     log = bench.run(1.0)
     assert bench.distance(log).max() < NEAR
-    if law != "velocity_field":  # its speed follows from the energy that it has
+    if LAWS[law].pace == "wanted":
         assert log["theta_rate"].mean() == pytest.approx(bench.parameters.speed, rel=5e-3)
 
 
@@ -152,7 +152,7 @@ def test_every_law_moves_every_robot_that_it_suits(law: str, name: str) -> None:
     log = kernel.log.unpack(InterpretedLoop(kernel).run(state, settings, CIRCLE.table(), 320)[1])
     assert robot.fault(log["q"], log["v"], parameters) is None
     moved = np.abs(log["theta"] - log["theta"][0]).max()
-    assert moved < 1e-3 if law == "virtual_constraint" else moved > 0.2
+    assert moved < 1e-3 if LAWS[law].pace == "free" else moved > 0.2
 
 
 def test_laws_that_command_torques_refuse_composite_control() -> None:
