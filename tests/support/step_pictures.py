@@ -30,7 +30,7 @@ SELDOM_DRAWN = """
     requestAnimationFrame = act => setTimeout(() => act(performance.now()), drawn ? 400 : 50)
     const context = WebGL2RenderingContext.prototype
     for (const what of Object.keys(Object.getOwnPropertyDescriptors(context))) {
-        if (!/^(draw|clear|blit)[A-Z]?/.test(what) || /^(drawingBuffer|clear[CDS])/.test(what)) continue
+        if (!/^(draw[EAR]|clear$|clearB|blit)/.test(what)) continue
         const does = context[what]
         context[what] = function (...given) { if (drawn) does.apply(this, given) }
     }
