@@ -23,8 +23,6 @@ from tests.support.built_in import built_in_course
 
 COURSE, _ = built_in_course()
 PRESENTED = 1900  # [px], from this width on the steps are shown in large type
-DRAWS = "drawn = true"
-"""The scene is drawn in software, which takes a second: only for the pictures."""
 SELDOM_DRAWN = """
     drawn = false
     requestAnimationFrame = act => setTimeout(() => act(performance.now()), drawn ? 400 : 50)
@@ -35,6 +33,7 @@ SELDOM_DRAWN = """
         context[what] = function (...given) { if (drawn) does.apply(this, given) }
     }
 """
+"""The scene is drawn in software, which takes a second: only for the pictures, while `drawn`."""
 ACROSS, DOWN = 4, 3  # pictures on a sheet
 WRONG = """() => {
     const RAW = /.{0,20}(\\$|\\\\[a-z]|\\{\\{|\\*\\*).{0,20}/g
@@ -67,11 +66,11 @@ def shots(tab: Tab, name: str, folder: Path) -> Iterator[Path]:
             read.click()
             read.wait_for(state="detached")
         tab.settle()
-        tab.page.evaluate(DRAWS)
+        tab.page.evaluate("drawn = true")
         tab.page.evaluate(THREE_FRAMES)
+        tab.page.evaluate("drawn = false")  # what is drawn stays
         file = folder / f"{name}-{index + 1:02}.png"
         tab.page.screenshot(path=file, type="png")
-        tab.page.evaluate("drawn = false")
         for fault in tab.page.evaluate(WRONG):
             sys.stdout.write(f"{name} {index + 1}: {fault}\n")
         yield file
