@@ -18,11 +18,15 @@ from playwright.sync_api import Browser, sync_playwright
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import CHROMIUM, PLAIN, THREE_FRAMES, Tab, wait_for
+from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
 from tests.support.built_in import built_in_course
 
 COURSE, _ = built_in_course()
 PRESENTED = 1900  # [px], from this width on the steps are shown in large type
+ONE_PICTURE = """() => new Promise(done => {
+    drawn = true
+    requestAnimationFrame(() => requestAnimationFrame(() => { drawn = false; done() }))
+})"""
 SELDOM_DRAWN = """
     drawn = false
     requestAnimationFrame = act => setTimeout(() => act(performance.now()), drawn ? 400 : 50)
@@ -33,7 +37,7 @@ SELDOM_DRAWN = """
         context[what] = function (...given) { if (drawn) does.apply(this, given) }
     }
 """
-"""The scene is drawn in software, which takes a second: only for the pictures, while `drawn`."""
+"""The scene is drawn in software, which takes seconds: only for the pictures, and then it stays."""
 ACROSS, DOWN = 4, 3  # pictures on a sheet
 WRONG = """() => {
     const RAW = /.{0,20}(\\$|\\\\[a-z]|\\{\\{|\\*\\*).{0,20}/g
@@ -66,9 +70,7 @@ def shots(tab: Tab, name: str, folder: Path) -> Iterator[Path]:
             read.click()
             read.wait_for(state="detached")
         tab.settle()
-        tab.page.evaluate("drawn = true")
-        tab.page.evaluate(THREE_FRAMES)
-        tab.page.evaluate("drawn = false")  # what is drawn stays
+        tab.page.evaluate(ONE_PICTURE)
         file = folder / f"{name}-{index + 1:02}.png"
         tab.page.screenshot(path=file, type="png")
         for fault in tab.page.evaluate(WRONG):
