@@ -31,9 +31,12 @@ LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and t
 MARKS = ("―", "╌", "┈")  # for these patterns in the legend, which shows colours only
 ROW = 22  # height of a row of the legend, [px]
 PER_ROW = 2  # lines in a row of the legend
-_LARGE: uplot.Axis = {"font": '17px "Inter", Arial, sans-serif', "ticks": {"show": False}}
+_PLAIN: uplot.Axis = {"ticks": {"show": False}}
+_LARGE: uplot.Axis = {**_PLAIN, "font": '17px "Inter", Arial, sans-serif'}
+AXES: tuple[uplot.Axis, ...] = (_PLAIN, {**_PLAIN, "space": 20})
+"""Of time and values; low charts, too, have several numbers at the side."""
 LARGE: tuple[uplot.Axis, ...] = (_LARGE, {**_LARGE, "size": 60})
-"""Axes for a projector."""
+"""The same for a projector."""
 
 
 Fields = tuple[tuple[str, int], ...]
@@ -50,7 +53,7 @@ class Plot:
         scale: factor from SI to displayed units.
         lines: names of the field's components; one name for a single line.
         least: minimum range of the axis, so that a ripple of a micrometre is not magnified to full
-            height. None to fit the data.
+            height, and a robot at rest has numbers on it. None to fit the data.
     """
 
     name: str
@@ -80,16 +83,16 @@ MORE = {
     plot.name: plot
     for plot in (
         PHASE,
-        Plot("speed", "speed", 1e3, _alone),
-        Plot("torques", "u", 1.0, _numbered("u", "u")),
+        Plot("speed", "speed", 1e3, _alone, least=(0.0, 10.0)),
+        Plot("torques", "u", 1.0, _numbered("u", "u"), least=(-0.01, 0.01)),
         Plot("across", "xi", 1e3, _numbered("ξ", "xi"), least=(-1.0, 1.0)),
         Plot("across_rate", "xi_rate", 1e3, _numbered("ξ'", "xi_rate"), least=(-10.0, 10.0)),
-        Plot("place", "theta", 1.0, _alone),
-        Plot("rate", "theta_rate", 1.0, _alone),
-        Plot("modes", "modes", 1e3, _numbered("f", "modes")),
-        Plot("deflection", "deflection", 1e3, _alone),
-        Plot("energy", "internal_energy", 1e3, _alone),
-        Plot("force", "force", 1.0, _numbered("F", "force")),
+        Plot("place", "theta", 1.0, _alone, least=(-0.1, 0.1)),
+        Plot("rate", "theta_rate", 1.0, _alone, least=(-0.1, 0.1)),
+        Plot("modes", "modes", 1e3, _numbered("f", "modes"), least=(-0.01, 0.01)),
+        Plot("deflection", "deflection", 1e3, _alone, least=(-0.01, 0.01)),
+        Plot("energy", "internal_energy", 1e3, _alone, least=(0.0, 0.01)),
+        Plot("force", "force", 1.0, _numbered("F", "force"), least=(-0.1, 0.1)),
     )
 }
 
@@ -136,7 +139,7 @@ class LivePlot:
         self._empty = (np.array([0.0, PLOT_WINDOW]), *[nothing] * lines)
         self._title = words(f"axis.{plot.name}{'-level_set' if in_level_set else ''}")
         self._height = height if lines <= PER_ROW else height - ROW
-        self._least, self._axes = least, LARGE if large else None
+        self._least, self._axes = least, LARGE if large else AXES
         self._handle = self._chart(None)
 
     def _chart(self, order: float | None) -> viser.GuiUplotHandle:

@@ -85,3 +85,10 @@ def test_the_legend_tells_the_lines_of_a_robot_apart() -> None:
     labels = [series.get("label", "") for series in made[0][1:]]
     assert [label.split()[-2:] for label in labels] == 2 * [["u1", "―"], ["u2", "╌"]]
     assert made[1][1].get("label") == "Trajectory tracking"
+
+
+def test_every_plot_over_time_of_robots_at_rest_has_numbers_on_its_axis() -> None:
+    """Else what is left of zero, 1e-17, would be drawn at full height beside numbers like -0."""
+    for plot in (plots.DISTANCE, *plots.MORE.values()):
+        if plot is not plots.PHASE:
+            assert plot.least is not None and plot.least[0] <= 0 < plot.least[1]
