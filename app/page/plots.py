@@ -91,7 +91,7 @@ MORE = {
         Plot("rate", "theta_rate", 1.0, _alone, least=(-0.1, 0.1)),
         Plot("modes", "modes", 1e3, _numbered("f", "modes"), least=(-0.01, 0.01)),
         Plot("deflection", "deflection", 1e3, _alone, least=(-0.01, 0.01)),
-        Plot("energy", "internal_energy", 1e3, _alone, least=(0.0, 0.01)),
+        Plot("energy", "internal_energy", 1e3, _alone, least=(0.0, 0.005)),
         Plot("force", "force", 1.0, _numbered("F", "force"), least=(-0.1, 0.1)),
     )
 }
