@@ -13,7 +13,7 @@ ELSEWHERE = ("parameter.", "machine.", "path.", "law.")
 
 
 class Words:
-    """The texts of one language.
+    """The texts of one language; those of the same language are equal, so that caches share them.
 
     Args:
         language: code of the language; English if there is no catalogue for it.
