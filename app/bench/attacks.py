@@ -35,7 +35,7 @@ from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 
 SOURCE = "127.0.0.2" if sys.platform == "linux" else "127.0.0.1"
-RATE = 450.0  # messages per second of a tab; more than 500 would close it
+RATE = 180.0  # messages per second of a tab; more than 200 would close it
 TURNED_AWAY = 0.1  # [s] until it comes back
 GREETING = frames(packed("ViewerCameraMessage", **CAMERA))
 UNFINISHED = frames(bytes(980_000))[:-1]
