@@ -194,7 +194,7 @@ PLACES: dict[str, Callable[[str], str]] = {
     "task": task,
     "message": message,
     "note": lambda text: render("panel/note.html", said=text, small=False),
-    "refusal of a law": lambda text: render("panel/law_refusal.html", said=text),
+    "refusal of a law": lambda text: render("panel/refusal.html", said=text),
     "own law": lambda text: render("panel/laws.html", laws=[("#123456", "Own law", text)]),
     "text": lesson_html.text,
     "remark": lambda text: lesson_html.remark(text, italic=True),
