@@ -28,8 +28,8 @@ class Limits:
         message_seconds: time from a message's first byte to its last, [s]; more closes the
             connection.
         max_request_bytes: of an HTTP request, [B]; a larger one closes the connection.
-        messages_per_second: sustained rate; more closes the connection. viser's page sends at most 20
-            for a drag, 20 for a widget and 50 for the camera.
+        messages_per_second: sustained rate; more closes the connection. viser's page sends at
+            most 20 for a drag, 20 for a widget and 50 for the camera.
         message_burst: messages at once; every 4 kB of a long message counts as one more.
         max_text_length: of a text widget, [characters]; longer texts are cut.
         max_magnitude: of any number in a drag, pointer, gizmo or camera message.
