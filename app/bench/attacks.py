@@ -31,11 +31,12 @@ from onpath.app.bench.hostile_messages import (
 from onpath.app.bench.raw_socket import frames, handshake
 from onpath.app.bench.simulated_browser import Browser, stand_back
 from onpath.app.page.panels.robot_panel import label_of
+from onpath.app.viser_adapter.message_filter import Limits
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 
 SOURCE = "127.0.0.2" if sys.platform == "linux" else "127.0.0.1"
-RATE = 180.0  # messages per second of a tab; more than 200 would close it
+RATE = 0.9 * Limits().messages_per_second  # of a tab, which is not closed for that
 TURNED_AWAY = 0.1  # [s] until it comes back
 GREETING = frames(packed("ViewerCameraMessage", **CAMERA))
 UNFINISHED = frames(bytes(980_000))[:-1]

@@ -89,7 +89,7 @@ class Guest:
         """
         for uuid, value in product(uuids, values):
             self.update(uuid, value)
-            time.sleep(1 / 450)
+            time.sleep(1 / (0.9 * Limits().messages_per_second))
 
     @property
     def let_in(self) -> bool:
