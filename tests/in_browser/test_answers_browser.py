@@ -77,6 +77,7 @@ def test_how_sure_why_a_number_and_a_text_are_typed_and_kept(
     tab.page.get_by_text("Both poles are then at −30 per second").wait_for()
     tab.ask(c.TakeStep(WAITS, 8))
     tab.page.get_by_label("Your answer, in your own words").fill("It waits. <b>So</b> what?")
+    tab.answer()  # the lab has heard it
     tab.ask(c.ShowHint("throw-it-off"))  # builds the page anew
     tab.page.get_by_text("Which jump would be larger?", exact=False).first.wait_for()
     tab.press("Keep my answer")

@@ -95,7 +95,7 @@ def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
     box.press_sequentially("along = -K5*(dtheta + speed)")
     box.press("Enter")
     said = "line 1, column 14: there is no 'xii': did you mean xi?"
-    expect(page.get_by_role("note").get_by_text(said)).to_be_visible()
+    expect(page.get_by_role("alert").get_by_text(said)).to_be_visible()
     assert session.laws == DEFAULT_LAWS and session.running
     box.press("ArrowUp")
     box.press("Home")
