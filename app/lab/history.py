@@ -229,6 +229,5 @@ def _columns_of(
         rows.append(part[:, place.size : -2])
         numbers.append(part[:, -2:])
     log_rows = np.concatenate(rows, axis=1).reshape(len(frames), len(rows), -1)
-    distances_and_most = np.concatenate(numbers, axis=1)
-    distances, most = distances_and_most[:, ::2], distances_and_most[:, 1::2]
-    return np.concatenate(states, axis=1), log_rows, distances, most
+    both = np.concatenate(numbers, axis=1)
+    return np.concatenate(states, axis=1), log_rows, both[:, ::2], both[:, 1::2]

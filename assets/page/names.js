@@ -17,13 +17,13 @@
   }
 
   // A slider's handle, the box beside it and a field to type in are named by the label of their row.
-  // What must not stay empty is marked before it, by panel/needed.html.
+  // A required field has a mark before it, see panel/required.html.
   function nameFields() {
     for (const field of document.querySelectorAll(FIELD)) {
       if (field.labels?.length) continue;
       set(field, "aria-label", field.closest(ROW)?.querySelector("label").textContent);
     }
-    for (const mark of document.querySelectorAll("[data-needed]")) {
+    for (const mark of document.querySelectorAll("[data-required]")) {
       set(mark.closest("div")?.nextElementSibling?.querySelector("input"), "aria-required", "true");
     }
   }

@@ -181,10 +181,9 @@ class FlexibleFiveBar:
             bent = np.abs(self.deflection(q)) > MOST_BENT * self.links.beam
             bent |= np.abs(self.deflection(v)) > FASTEST_TIP
             found = first_fault(q, v, (bent, BENT), collapse(q))
-        known = bool(np.isfinite(q[0, :RIGID]).all())
-        if found is not None and found[1] == BENT and known:
-            return found[0], UNSTABLE if self.is_unstable_inside(q[0], parameters) else BENT
-        return found
+        if found is None or found[1] != BENT or not np.isfinite(q[0, :RIGID]).all():
+            return found
+        return found[0], UNSTABLE if self.is_unstable_inside(q[0], parameters) else BENT
 
     def is_unstable_inside(self, q: Array, parameters: Parameters) -> bool:
         """Whether the zero dynamics at rest are unstable, at the joint angles in q, shape (n,).

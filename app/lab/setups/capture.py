@@ -50,6 +50,7 @@ def _captured(name: str, own: Belongings, paths: Mapping[str, PathDesign]) -> Ro
 
 @lru_cache(maxsize=128)  # every lab is captured once a second
 def _start_of(start: Start) -> dict[str, float]:
+    """The numbers of a start that are not 0."""
     found = {n: _rounded(value) for n, value in asdict(start).items()}
     return {n: value for n, value in found.items() if value}
 

@@ -22,19 +22,16 @@ class ClassPanel:
         self._words = words
         with gui.add_folder(words("class.title"), expand_by_default=not first.nickname):
             self._member = gui.add_html("")
-            code = seat.code.upper()
-            gui.add_html(render("panel/needed.html", secret=False))
-            self._code = gui.add_text(words("class.code"), code, hint=words("class.code_hint"))
-            gui.add_html(render("panel/needed.html", secret=False))
-            self._name = gui.add_text(
-                words("class.nickname"), "", hint=words("class.nickname_hint")
-            )
+            code, hint = seat.code.upper(), words("class.code_hint")
+            self._code = _required_text(gui, words("class.code"), hint, code)
+            hint = words("class.nickname_hint")
+            self._name = _required_text(gui, words("class.nickname"), hint)
             self._join = gui.add_button(words("class.join"), icon=viser.Icon.LOGIN)
             self._leave = gui.add_button(words("class.leave"), color="gray", icon=viser.Icon.LOGOUT)
             said = gui.add_html("")
             with gui.add_folder(words("class.teacher"), expand_by_default=False):
-                gui.add_html(render("panel/needed.html", secret=True))
-                key = gui.add_text(words("class.key"), "", hint=words("class.key_hint"))
+                hint = words("class.key_hint")
+                key = _required_text(gui, words("class.key"), hint, secret=True)
                 teach = gui.add_button(words("class.teach"), color="gray", icon=viser.Icon.KEY)
                 answer = gui.add_html("")
         self._try(self._join, lambda: seat.join(self._code.value, self._name.value), said)
@@ -58,7 +55,7 @@ class ClassPanel:
     def _try(
         self, button: viser.GuiButtonHandle, act: Callable[[], str], said: viser.GuiHtmlHandle
     ) -> None:
-        """Act when a button is pressed; what is to be said stands below it."""
+        """Act when a button is pressed, and show below it what came of that."""
 
         def tried() -> None:
             said.content = ""
@@ -72,3 +69,11 @@ class ClassPanel:
                 said.content = refused(self._words.sentence(error))
 
         on_slow_press(button, tried)
+
+
+def _required_text(
+    gui: viser.GuiApi, label: str, hint: str, value: str = "", secret: bool = False
+) -> viser.GuiTextHandle:
+    """Add a text field that is marked as required; what is typed is hidden if it is secret."""
+    gui.add_html(render("panel/required.html", secret=secret))
+    return gui.add_text(label, value, hint=hint)

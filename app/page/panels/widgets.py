@@ -150,7 +150,7 @@ def note(said: str, small: bool = False) -> str:
 
 
 def refused(why: str) -> str:
-    """Why what was typed is refused, to be shown below the button."""
+    """The reason why an input is refused, as HTML, to be shown below the button."""
     return render("panel/refusal.html", said=why)
 
 

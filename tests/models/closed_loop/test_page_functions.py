@@ -15,11 +15,10 @@ MISSING = (np.nan, np.inf, -np.inf)
 
 
 def states(n: int) -> Array:
-    """Random q and v, shape (STATES, 2, n): of all sizes, near faults, and not finite."""
+    """Random q and v, shape (STATES, 2, n): small and large, too fast, and not finite."""
     rng = np.random.default_rng(n)
     found = rng.uniform(-np.pi, np.pi, (STATES, 2, n))
     found *= 10.0 ** rng.integers(-3, 1, (STATES, 2, n))
-    found[rng.random(STATES) < 0.5, 0, :3] = rng.uniform(-np.pi, np.pi, 3)[:n]
     found[rng.random((STATES, 2, n)) < 0.02] = FASTEST_JOINT * 1.1
     for value in MISSING:
         found[rng.random((STATES, 2, n)) < 0.005] = value
