@@ -59,6 +59,8 @@ class ExternalForces:
         self.grabbed: str | None = None
         self.pushes: dict[str, Push] = dict.fromkeys(BENCHES, FREE)
         self._offsets: dict[str, Array] = {}
+        home, reach = robot.frame.lift(np.zeros(2)), robot.reach[1]
+        self._lowest, self._highest = home - reach, home + reach  # of targets
         if wall is not None:
             self.set_wall(wall)
 
@@ -111,9 +113,8 @@ class ExternalForces:
             self.grabbed = next(iter(targets))
             self._offsets = {}
             self._note("pull", benches=tuple(targets))
-        home, reach = self._robot.frame.lift(np.zeros(2)), self._robot.reach[1]
         for name, target in targets.items():
-            self.hands[name] = target.clip(home - reach, home + reach)
+            self.hands[name] = np.minimum(np.maximum(target, self._lowest), self._highest)
             self.pushes[name] = replace(self.pushes[name], hand=self.hands[name])
 
     def release(self) -> None:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
-from onpath.app.lab.segments import HistoryCopy, HistoryFrame, Inputs, Segment, segment_at
+from onpath.app.lab.segments import HistoryCopy, HistoryFrame, Segment, segment_at
 from onpath.models.arrays import Array
 
 SECONDS = 60.0
@@ -82,14 +82,14 @@ class History:
 
     def _put(self, frames: Sequence[HistoryFrame]) -> None:
         self._list = None
-        for inputs, alike in groupby(frames, lambda frame: frame.inputs):
-            self._put_alike(inputs, list(alike))
+        for _, alike in groupby(frames, _sizes_of):
+            self._put_alike(list(alike))
         reached = self._find(frames[-1].time - SECONDS, "right") - 1
         self._begin = max(self._begin, reached, self._end - MOST)
 
-    def _put_alike(self, inputs: Inputs, frames: Sequence[HistoryFrame]) -> None:
-        """Store frames with the same inputs."""
-        states, rows, distances, most = _columns_of(inputs, frames)
+    def _put_alike(self, frames: Sequence[HistoryFrame]) -> None:
+        """Store frames whose loops have vectors of the same sizes."""
+        states, rows, distances, most = _columns_of(frames)
         samples = self._sample(rows.reshape(-1, rows.shape[-1]), distances.ravel())
         samples = samples.reshape(*distances.shape, -1)
         if not self._columns or self._end + len(frames) > len(self._columns["time"]):
@@ -99,7 +99,7 @@ class History:
         columns, place = self._columns, slice(self._end, self._end + len(frames))
         columns["time"][place] = [frame.time for frame in frames]
         columns["ticks"][place] = [frame.ticks for frame in frames]
-        columns["inputs"][place] = inputs
+        columns["inputs"][place] = [frame.inputs for frame in frames]
         columns["state"][place, : states.shape[1]] = states
         columns["most"][place] = most
         columns["sample"][place] = samples
@@ -211,10 +211,16 @@ class History:
         return columns["time"][row] + columns["ticks"][row] * columns["inputs"][row].dt
 
 
-def _columns_of(
-    inputs: Inputs, frames: Sequence[HistoryFrame]
-) -> tuple[Array, Array, Array, Array]:
-    """States as recorded, log rows, distances and largest distances of frames with the same inputs.
+def _sizes_of(frame: HistoryFrame) -> list[tuple[int, int, int]]:
+    """Of each loop: sizes of the recorded part of its state, of its state, and of its record."""
+    return [
+        (own.size, states.size, states.records.shape[1])
+        for (states, _), own in zip(frame.places, frame.inputs.of.values(), strict=True)
+    ]
+
+
+def _columns_of(frames: Sequence[HistoryFrame]) -> tuple[Array, Array, Array, Array]:
+    """States as recorded, log rows, distances and largest distances of frames of the same sizes.
 
     Returns:
         Shapes (frames, size), (frames, robots, row size), and twice (frames, robots).
@@ -222,11 +228,11 @@ def _columns_of(
     flat = np.concatenate([states.records[i] for frame in frames for states, i in frame.places])
     records, begin = flat.reshape(len(frames), -1), 0
     states, rows, numbers = list[Array](), list[Array](), list[Array]()
-    for (place, _), own in zip(frames[0].places, inputs.of.values(), strict=True):
-        part = records[:, begin : begin + place.records.shape[1]]
-        begin += part.shape[1]
-        states.append(part[:, : own.size])
-        rows.append(part[:, place.size : -2])
+    for recorded, size, width in _sizes_of(frames[0]):
+        part = records[:, begin : begin + width]
+        begin += width
+        states.append(part[:, :recorded])
+        rows.append(part[:, size:-2])
         numbers.append(part[:, -2:])
     log_rows = np.concatenate(rows, axis=1).reshape(len(frames), len(rows), -1)
     both = np.concatenate(numbers, axis=1)

@@ -23,7 +23,8 @@ class Pointer:
     """
 
     def __init__(self, stage: Stage) -> None:
-        self._stage, self._bases = stage, list(stage.bases.values())
+        self._plane, self._bases = stage.path_plane, list(stage.bases.values())
+        self._reachable = stage.reachable
 
     def place(
         self,
@@ -42,11 +43,8 @@ class Pointer:
         Returns:
             The place in the robot's frame, shape (3,), [m], or None if there is none.
         """
-        camera, stage = event.client.camera.position, self._stage
-        plane = plane or stage.path_plane
-        return pointer_on_plane(
-            camera, np.array(pointer), self._bases[robot], plane, stage.reachable
-        )
+        camera, plane = event.client.camera.position, plane or self._plane
+        return pointer_on_plane(camera, pointer, self._bases[robot], plane, self._reachable)
 
 
 class DragByOffset:

@@ -8,6 +8,7 @@ from math import hypot, isfinite
 from operator import mul, sub
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot
@@ -46,9 +47,10 @@ class Box:
     lower: np.ndarray
     upper: np.ndarray
 
-    def clamp(self, point: np.ndarray) -> np.ndarray:
+    def clamp(self, point: Iterable[float]) -> Array:
         """The nearest point of the box, shape (3,), [m]."""
-        return np.minimum(np.maximum(point, self.lower), self.upper)
+        bounds = zip(point, self.lower.tolist(), self.upper.tolist(), strict=True)
+        return np.array([min(max(x, low), high) for x, low, high in bounds])
 
 
 VERTICAL_PLANE = DragPlane(np.zeros(3), np.array([0.0, 1.0, 0.0]))
@@ -69,10 +71,19 @@ def intersect_ray_plane(
         The point, shape (3,), [m]; None when the ray runs parallel to the plane, when the plane
         lies behind its origin, or when anything is not finite.
     """
-    start, way, there, normal = (
-        np.asarray(vector, dtype=float).tolist()  # quicker for three numbers
-        for vector in (origin, direction, plane_point, plane_normal)
-    )
+    point = _meeting(*map(_numbers, (origin, direction, plane_point, plane_normal)))
+    return None if point is None else np.array(point)
+
+
+def _numbers(vector: ArrayLike) -> list[float]:
+    """The numbers of a vector; with three of them, lists are quicker than arrays."""
+    return np.asarray(vector, dtype=float).tolist()
+
+
+def _meeting(
+    start: list[float], way: list[float], there: list[float], normal: list[float]
+) -> list[float] | None:
+    """See `intersect_ray_plane`."""
     lengths, closing = hypot(*way) * hypot(*normal), _dot(way, normal)
     if not isfinite(lengths) or abs(closing) <= PARALLEL_COSINE * lengths:
         return None
@@ -80,7 +91,7 @@ def intersect_ray_plane(
     if not along >= 0.0:
         return None
     point = [x + along * dx for x, dx in zip(start, way, strict=True)]
-    return np.array(point) if all(map(isfinite, point)) else None
+    return point if all(map(isfinite, point)) else None
 
 
 def _dot(a: Iterable[float], b: Iterable[float]) -> float:
@@ -88,8 +99,8 @@ def _dot(a: Iterable[float], b: Iterable[float]) -> float:
 
 
 def pointer_on_plane(
-    camera: np.ndarray,
-    pointer: np.ndarray,
+    camera: ArrayLike,
+    pointer: ArrayLike,
     base: np.ndarray,
     plane: DragPlane,
     box: Box,
@@ -109,7 +120,7 @@ def pointer_on_plane(
     Returns:
         The point in the robot's frame, shape (3,), [m], or None if there is none.
     """
-    origin = np.asarray(camera, dtype=float)
-    direction = np.asarray(pointer, dtype=float) - origin
-    hit = intersect_ray_plane(origin - base, direction, plane.point, plane.normal)
+    origin, there, foot = map(_numbers, (camera, pointer, base))
+    start, way = list(map(sub, origin, foot)), list(map(sub, there, origin))
+    hit = _meeting(start, way, _numbers(plane.point), _numbers(plane.normal))
     return None if hit is None else box.clamp(hit)

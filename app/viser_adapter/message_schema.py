@@ -1,4 +1,7 @@
-"""Validates messages of a browser against viser's dataclasses before they are decoded."""
+"""Decodes messages of a browser, and validates them against viser's dataclasses.
+
+viser, which would decode them without any check, takes them over as they are (`Decoded`).
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,14 @@ from collections.abc import Iterable
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import msgspec
+from viser import _messages as wire
 
 UNREADABLE = (ValueError, RecursionError, MemoryError)
 """What msgspec raises for malformed or malicious bytes, for instance deeply nested ones."""
+
+
+class InvalidMessage(ValueError):
+    """A browser may not send this; the text says why, and never quotes the message."""
 
 
 class MessageSchemas:
@@ -24,23 +32,31 @@ class MessageSchemas:
         self._limit = msgspec.Meta(ge=-max_magnitude, le=max_magnitude)  # NaN is neither
         whole = int(max_magnitude)
         self._whole_limit = msgspec.Meta(ge=-whole, le=whole)
-        structs = [self._struct(form) for form in forms]
+        structs = {self._struct(form): form for form in forms}
         self._decoder = msgspec.msgpack.Decoder(Union[tuple(structs)])  # noqa: UP007
         self._names = frozenset(struct.__name__ for struct in structs)
+        self._forms: dict[type[Any], type[Any]] = structs
 
-    def fault(self, raw: bytes | str) -> str | None:
-        """What is wrong with a websocket message, or None; never quotes the message."""
+    def decoded(self, raw: bytes | str) -> Any:
+        """The message in the bytes of a websocket message.
+
+        Raises:
+            InvalidMessage: it is not valid.
+        """
         if isinstance(raw, str):
-            return "a text frame"
+            raise InvalidMessage("a text frame")
         try:
-            message = self._decoder.decode(raw)
-        except msgspec.ValidationError:
+            found = self._decoder.decode(raw)
+        except msgspec.ValidationError as error:
             name = _name(raw)
             known = name in self._names
-            return f"{name} with wrong fields" if known else "a message that no browser may send"
-        except UNREADABLE:
-            return "what is no message"
-        return None if _is_coherent(message) else f"{type(message).__name__} that makes no sense"
+            what = f"{name} with wrong fields" if known else "a message that no browser may send"
+            raise InvalidMessage(what) from error
+        except UNREADABLE as error:
+            raise InvalidMessage("what is no message") from error
+        if not _is_coherent(found):
+            raise InvalidMessage(f"{type(found).__name__} that makes no sense")
+        return self._forms[type(found)](**msgspec.structs.asdict(found))
 
     def _struct(self, form: type[Any]) -> type[msgspec.Struct]:
         hints, fields = get_type_hints(form), list[Any]()

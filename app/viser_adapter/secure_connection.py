@@ -13,7 +13,7 @@ from websockets.protocol import State
 
 from onpath.app.viser_adapter.connection_limits import CountedConnection
 from onpath.app.viser_adapter.message_filter import Limits, warn_once
-from onpath.app.viser_adapter.message_schema import MessageSchemas
+from onpath.app.viser_adapter.message_schema import InvalidMessage, MessageSchemas
 
 FROM_BROWSER: tuple[type[Any], ...] = (
     wire.ViewerCameraMessage,
@@ -34,6 +34,35 @@ FROM_BROWSER: tuple[type[Any], ...] = (
     wire.FileTransferPart,
 )
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
+
+
+class Received(bytes):
+    """A decoded message, in place of its bytes, which viser would decode once more.
+
+    Attributes:
+        message: of viser.
+    """
+
+    message: Any
+
+    @classmethod
+    def of(cls, message: Any) -> Received:
+        """Stands for a message."""
+        received = cls()
+        received.message = message
+        return received
+
+
+_deserialize = wire.Message.deserialize
+
+
+def take_decoded_messages() -> None:
+    """Have viser take messages that are decoded already. This patches it for the whole process."""
+
+    def deserialize(raw: bytes) -> wire.Message:
+        return raw.message if isinstance(raw, Received) else _deserialize(raw)
+
+    wire.Message.deserialize = deserialize
 
 
 class UnfinishedMessages:
@@ -169,7 +198,7 @@ class SecureConnection(CountedConnection):
     async def recv(self, decode: bool | None = None) -> Any:
         while True:
             raw = await super().recv(decode)
-            wrong = self._forms.fault(raw)
-            if wrong is None:
-                return raw
-            warn_once(self, wrong)
+            try:
+                return Received.of(self._forms.decoded(raw))
+            except InvalidMessage as wrong:
+                warn_once(self, str(wrong))

@@ -42,7 +42,11 @@ from onpath.app.viser_adapter.request_filter import (
     well,
     without_repeats,
 )
-from onpath.app.viser_adapter.secure_connection import SecureConnection, UnfinishedMessages
+from onpath.app.viser_adapter.secure_connection import (
+    SecureConnection,
+    UnfinishedMessages,
+    take_decoded_messages,
+)
 from onpath.app.viser_adapter.sockets import PortInUse, listen, listen_unix
 from onpath.app.viser_adapter.viser_caches import keep_what_is_constant
 
@@ -87,6 +91,7 @@ def make_server(
     connections = ConnectionLimits(limits, Proxies(trusted_proxies))
     share_compressors()
     keep_what_is_constant()
+    take_decoded_messages()
     logging.getLogger("websockets.server").addFilter(_is_news)
     listener = listen_unix(unix_socket) if unix_socket else listen(host, port)
     port = 0 if unix_socket else listener.getsockname()[1]

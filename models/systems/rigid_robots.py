@@ -106,5 +106,4 @@ class PlanarRobot(RigidRobot):
 
     def unplace(self, point: Array) -> Array:
         """See `Robot.unplace`."""
-        x, z = self.home
-        return np.stack([point[..., 0] - x, point[..., 2] - z], axis=-1)
+        return point[..., ::2] - np.array(self.home)
