@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 import msgspec
 from msgspec.structs import replace
 
 from onpath.lessons.action_schema import StepSetup
-from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
+from onpath.lessons.concept_test.concept_test import FOLDER, TESTS, both_tests
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem, line_of, near
 from onpath.lessons.routes import FOLDER as ROUTES
@@ -42,9 +43,9 @@ class Course:
         tests: name -> language -> lesson; the concept test before and after the course, or nothing.
     """
 
-    lessons: dict[str, dict[str, Lesson]]
+    lessons: dict[str, Mapping[str, Lesson]]
     routes: dict[str, Route] = field(default_factory=dict[str, Route])
-    tests: dict[str, dict[str, Lesson]] = field(default_factory=dict[str, dict[str, Lesson]])
+    tests: dict[str, Mapping[str, Lesson]] = field(default_factory=dict[str, Mapping[str, Lesson]])
 
     def has(self, name: str) -> bool:
         """Whether there is a lesson or a test of this name."""
@@ -81,11 +82,63 @@ class Course:
 NO_LESSONS = Course({})
 
 
-def read_course(folders: Iterable[Path]) -> tuple[Course, list[Problem]]:
-    """All valid lessons in some folders, and the problems of the others."""
-    lessons: dict[str, dict[str, Lesson]] = {}
-    routes: dict[str, Route] = {}
-    tests: dict[str, dict[str, Lesson]] = {}
+@dataclass(frozen=True, slots=True)
+class Versions(Mapping[str, Lesson]):
+    """A lesson without problems in its languages, each read when it is first asked for.
+
+    Attributes:
+        home: the folder of the lesson.
+        name: of the lesson.
+        languages: the first is that of its keys.
+    """
+
+    home: Path
+    name: str
+    languages: tuple[str, ...]
+
+    def __getitem__(self, language: str) -> Lesson:
+        if language not in self.languages:
+            raise KeyError(language)
+        return _version(self, language)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.languages)
+
+    def __len__(self) -> int:
+        return len(self.languages)
+
+
+@cache
+def _version(versions: Versions, language: str) -> Lesson:
+    lesson = read_lesson(versions.home / f"{language}.md")
+    first = versions.languages[0]
+    keys = lesson.keys if language == first else versions[first].keys
+    return replace(lesson, name=versions.name, keys=keys)
+
+
+@cache
+def built_in_course() -> Course:
+    """The built-in course. Its lessons, which tests have checked, are read as they are needed."""
+
+    def versions(home: Path, name: str) -> Mapping[str, Lesson]:
+        languages = {file.stem for file in home.glob("??.md")} - {DEFAULT}
+        return Versions(home, name, (DEFAULT, *sorted(languages)))
+
+    homes = sorted(file.parent for file in BUILT_IN.glob(f"*/{DEFAULT}.md"))
+    lessons = {home.name: versions(home, home.name) for home in homes if home.name != FOLDER}
+    tests = {name: versions(BUILT_IN / FOLDER, name) for name in TESTS}
+    return Course(lessons, read_routes(BUILT_IN).routes, tests)
+
+
+def read_course(
+    folders: Iterable[Path], first: Course = NO_LESSONS
+) -> tuple[Course, list[Problem]]:
+    """All valid lessons in some folders, and the problems of the others.
+
+    Args:
+        first: a course to which these are added.
+    """
+    lessons, routes, tests = dict(first.lessons), first.routes, first.tests
     problems: list[Problem] = []
     for folder in folders:
         found = sorted({file.parent for file in folder.glob("*/*.md") if file.stem != "README"})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import sys
 from dataclasses import dataclass
@@ -58,6 +59,7 @@ class Serve:
             raise ValueError(f"--most-clients {self.most_clients}: expected 1 or more")
         if self.hang_seconds and self.hang_seconds < SHORTEST_HANG:
             raise ValueError(f"--hang-seconds {self.hang_seconds:g}: expected 1 or more, or 0")
+        gc.disable()  # a collection finds nothing while modules are imported; see SimulationThread
         from onpath.app.server.lab_server import serve
         from onpath.app.storage.database_url import database_url
         from onpath.app.storage.expiry import Retention

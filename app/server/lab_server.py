@@ -45,7 +45,7 @@ from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.places import storage_key
 from onpath.app.viser_adapter.secure_server import disconnect, make_server
-from onpath.lessons.course import BUILT_IN, Course, read_course
+from onpath.lessons.course import Course, built_in_course, read_course
 from onpath.lessons.problems import LessonError
 from onpath.models.systems.catalogue import FIVE_BAR
 
@@ -89,7 +89,7 @@ class LabServer:
     ) -> None:
         self._store = store
         self._room = AdmissionQueue(most_clients)
-        self._course = lessons = course or read_course([BUILT_IN])[0]
+        self._course = lessons = course or built_in_course()
         self.simulation = SimulationThread()
         self._watchdog = Watchdog(hang_seconds)
         self._memory = Periodic("memory", INTERVAL, MemoryRelease().look)
@@ -286,7 +286,7 @@ def serve(
         LessonError: a lesson has errors.
     """
     limit_heap()
-    course, problems = read_course([BUILT_IN, *([lessons] if lessons else [])])
+    course, problems = read_course([lessons] if lessons else [], built_in_course())
     if problems:
         raise LessonError(problems)
     records = Records(database)
@@ -295,7 +295,7 @@ def serve(
     store = LoopCache()
     lab = LabServer(host, port, store, course, records, classrooms, **listening)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    warm_up(store)
+    warm_up(store, course)
     log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
     if open_browser:
         webbrowser.open(lab.address)

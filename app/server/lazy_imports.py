@@ -1,6 +1,6 @@
-"""Loads slow modules in the background, after the first picture has been shown.
+"""Loads slow modules, and reads lessons, in the background, after the first picture.
 
-Functions that need them earlier import them themselves.
+What is needed earlier is imported, or read, where it is needed.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from threading import Thread
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.assets.messages import catalogue, languages
+from onpath.lessons.course import Course
 
 LATER = (
     "onpath.app.scene.strokes.sketch_board",
@@ -23,8 +24,11 @@ LATER = (
 REST = 3.0  # [s] in which the first browser can open its lab
 
 
-def warm_up(store: LoopCache, rest: float = REST) -> Thread:
-    """Import these modules and compile the loops of a new lab, in a thread, after `rest` [s]."""
+def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
+    """After `rest` [s], in a thread, do what the first lab and its user will need next.
+
+    The loops of a new lab are compiled, these modules imported, and the lessons read.
+    """
 
     def work() -> None:
         time.sleep(rest)
@@ -35,6 +39,8 @@ def warm_up(store: LoopCache, rest: float = REST) -> Thread:
             import_module(name)
         for language in languages():
             catalogue(language)
+        for versions in (*course.lessons.values(), *course.tests.values()):
+            list(versions.values())
 
     thread = Thread(target=work, name="warm-up", daemon=True)
     thread.start()

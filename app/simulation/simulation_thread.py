@@ -185,6 +185,7 @@ class SimulationThread:
 
     def start(self) -> None:
         """Start the thread."""
+        gc.enable()
         gc.freeze()  # excludes loaded modules from collections, which would take 0.2 s longer
         gc.set_threshold(*SELDOM)
         sys.setswitchinterval(HANDOVER)

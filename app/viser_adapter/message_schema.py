@@ -10,7 +10,6 @@ from collections.abc import Iterable
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import msgspec
-from viser import _messages as wire
 
 UNREADABLE = (ValueError, RecursionError, MemoryError)
 """What msgspec raises for malformed or malicious bytes, for instance deeply nested ones."""

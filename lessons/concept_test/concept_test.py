@@ -7,7 +7,7 @@ when the second one has been handed in.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from msgspec.structs import replace
 
@@ -33,7 +33,7 @@ def lacks_of_test(steps: Sequence[Step]) -> Iterator[str]:
             yield f"{where}: a test has no optional steps and no scripts"
 
 
-def both_tests(versions: dict[str, Lesson]) -> dict[str, dict[str, Lesson]]:
+def both_tests(versions: Mapping[str, Lesson]) -> dict[str, Mapping[str, Lesson]]:
     """Name of each test -> language -> lesson.
 
     Args:

@@ -45,6 +45,20 @@ def closed_through(points: Array) -> Curve:
     return _fourier_of(_equal_arc(spline, endpoint=False))
 
 
+def closed_along(points: Array) -> Curve:
+    """A closed curve along many points that lie close together, in their order.
+
+    Between them it is taken as straight; see `closed_through` for the series.
+
+    Args:
+        points: shape (n, 2), many times `SAMPLES`, [m].
+    """
+    ring = np.vstack([points, points[:1]])
+    s = _arc_length(ring)
+    even = _even(0, s[-1], SAMPLES, endpoint=False)
+    return _fourier_of(np.column_stack([np.interp(even, s, z) for z in ring.T]))
+
+
 def open_through(points: Array) -> Curve:
     """A smooth open curve near the given points, from the first to the last.
 

@@ -14,7 +14,13 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_blend import aligned
-from onpath.models.paths.curve_fit import closed_through, control_points, from_stroke, open_through
+from onpath.models.paths.curve_fit import (
+    closed_along,
+    closed_through,
+    control_points,
+    from_stroke,
+    open_through,
+)
 from onpath.models.paths.curves import Curve, circle, ellipse, fourier, segment
 
 MOST_POINTS = 24
@@ -129,10 +135,10 @@ def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
 
 def _rounded_square(half: float = 0.05, power: float = 5.0) -> Curve:
     """The superellipse |z1|^power + |z2|^power = half^power, half in [m]."""
-    angle = np.linspace(-np.pi, np.pi, 96, endpoint=False)
+    angle = np.linspace(-np.pi, np.pi, 4096, endpoint=False)
     c, s = np.cos(angle), np.sin(angle)
     radius = half / (np.abs(c) ** power + np.abs(s) ** power) ** (1 / power)
-    return closed_through(radius[:, None] * np.column_stack([c, s]))
+    return closed_along(radius[:, None] * np.column_stack([c, s]))
 
 
 def _clover() -> Curve:

@@ -20,6 +20,7 @@ from onpath.app.lab.loops import compile_queue
 from onpath.app.lab.loops import loop_cache as loop_store
 from onpath.app.lab.loops.loop_cache import MOST, LoopCache
 from onpath.app.server.lazy_imports import LATER, warm_up
+from onpath.lessons.course import NO_LESSONS
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
@@ -131,7 +132,7 @@ def test_closing_gives_up_what_is_waiting(store: LoopCache, gate: Gate) -> None:
 
 def test_a_first_lab_finds_its_loops_compiled(store: LoopCache) -> None:
     """Free and held: whoever comes after a while meets no interpreted loop."""
-    warm_up(store, rest=0.0).join(PATIENCE)
+    warm_up(store, NO_LESSONS, rest=0.0).join(PATIENCE)
     finish(store)
     assert all(name in sys.modules for name in LATER)
     lab = Lab(store)
