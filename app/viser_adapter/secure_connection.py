@@ -59,8 +59,8 @@ _deserialize = wire.Message.deserialize
 def take_decoded_messages() -> None:
     """Have viser take messages that are decoded already. This patches it for the whole process."""
 
-    def deserialize(raw: bytes) -> wire.Message:
-        return raw.message if isinstance(raw, Received) else _deserialize(raw)
+    def deserialize(message: bytes) -> Any:
+        return message.message if isinstance(message, Received) else _deserialize(message)
 
     wire.Message.deserialize = deserialize
 

@@ -56,7 +56,7 @@ def closed_along(points: Array) -> Curve:
     ring = np.vstack([points, points[:1]])
     s = _arc_length(ring)
     even = _even(0, s[-1], SAMPLES, endpoint=False)
-    return _fourier_of(np.column_stack([np.interp(even, s, z) for z in ring.T]))
+    return _fourier_of(np.stack([np.interp(even, s, ring[:, i]) for i in (0, 1)], axis=1))
 
 
 def open_through(points: Array) -> Curve:
