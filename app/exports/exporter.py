@@ -12,6 +12,7 @@ from typing import Any
 import viser
 
 from onpath.app.common.error_log import log_error
+from onpath.app.common.processors import run_anywhere
 from onpath.app.exports.comparison import Results, compared
 from onpath.app.exports.export_process import ExportProcess
 from onpath.app.exports.files import csv_file, film_file, picture_file, report_file
@@ -22,7 +23,8 @@ from onpath.models.systems.parameters import Parameters
 
 PATIENCE = 120.0  # [s], time-out of a file, including the files queued before it
 process = ExportProcess()
-_queue = ThreadPoolExecutor(1, "exports")  # passes one file at a time to the process, for all tabs
+_queue = ThreadPoolExecutor(1, "exports", run_anywhere)
+"""Passes one file at a time to the process, for all tabs."""
 
 
 class Exporter:

@@ -165,6 +165,7 @@ class SimulationThread:
         clock, sleep: passed in for tests.
 
     Attributes:
+        thread: that runs them.
         frames: start and lateness of the latest frames, [s].
     """
 
@@ -177,7 +178,7 @@ class SimulationThread:
         self._labs: list[ScheduledLab] = []
         self._lock = threading.Lock()
         self._stop = threading.Event()
-        self._thread = threading.Thread(target=self.run, name="simulation", daemon=True)
+        self.thread = threading.Thread(target=self.run, name="simulation", daemon=True)
         self.frames: deque[tuple[float, float]] = deque(maxlen=3600)
         self._calls: deque[tuple[Callable[[], Any], Future[Any]]] = deque()
         self._slow_updates, self._drawing = SlowUpdates(clock), 0.0
@@ -189,13 +190,13 @@ class SimulationThread:
         gc.freeze()  # excludes loaded modules from collections, which would take 0.2 s longer
         gc.set_threshold(*SELDOM)
         sys.setswitchinterval(HANDOVER)
-        self._thread.start()
+        self.thread.start()
 
     def stop(self) -> None:
         """Stop after the current frame."""
         self._stop.set()
-        if self._thread.is_alive():
-            self._thread.join(timeout=2.0)
+        if self.thread.is_alive():
+            self.thread.join(timeout=2.0)
 
     def add(self, lab: ScheduledLab) -> None:
         """Add a lab. Thread-safe."""
@@ -216,7 +217,7 @@ class SimulationThread:
             TimeoutError: the thread does not run.
             Exception: of the function.
         """
-        if threading.current_thread() is self._thread:
+        if threading.current_thread() is self.thread:
             return function()
         answer: Future[T] = Future()
         self._calls.append((function, answer))
