@@ -13,7 +13,7 @@ from viser import _messages as wire
 from viser.infra import ClientId, WebsockMessageHandler
 from websockets.asyncio.server import ServerConnection
 
-from onpath.app.common.error_log import log_warning
+from onpath.app.common.error_log import log_error, log_warning
 from onpath.app.viser_adapter.widget_validation import Refused, accepted_value
 
 
@@ -74,6 +74,17 @@ class MessageFilter:
         self._limits = limits
         self._deliver = scope._handle_incoming_message
         scope._handle_incoming_message = self._receive
+
+    def receive(self, client_id: ClientId, message: Any) -> None:
+        """Handle a message at once, for which no handler waits for anything."""
+        try:
+            self._receive(client_id, message).send(None)
+        except StopIteration:
+            return
+        except Exception as error:
+            log_error(error)
+        else:
+            log_error(RuntimeError(f"a handler of {type(message).__name__} waits"))
 
     async def _receive(self, client_id: ClientId, message: Any) -> None:
         # Every message reaches both scopes; the one that does not know its widget ignores it.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -33,6 +34,8 @@ FROM_BROWSER: tuple[type[Any], ...] = (
     wire.FileTransferStartUpload,
     wire.FileTransferPart,
 )
+GESTURES = (wire.ViewerCameraMessage, wire.SceneNodeDragMessage, wire.GuiUpdateMessage)
+"""Of these a browser sends many in succession; none of their handlers waits for anything."""
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 
 
@@ -97,9 +100,16 @@ class SecureConnection(CountedConnection):
 
     websockets answers GET alone; a HEAD request is passed on to it as GET.
 
+    A message of `GESTURES` is handled as soon as it has come, if nothing that came before it still
+    waits. viser would handle it two turns of the event loop later, and make two tasks for it, which
+    takes half as long again.
+
     Attributes:
         is_head: whether the request was HEAD, so that the response has no body.
+        handle: handles a message at once; None until the client has been accepted.
     """
+
+    handle: Callable[[Any], None] | None = None
 
     def __init__(
         self, *args: Any, limits: Limits, unfinished: UnfinishedMessages, **kwargs: Any
@@ -113,6 +123,7 @@ class SecureConnection(CountedConnection):
         self._deadline: asyncio.TimerHandle | None = None
         self._begun: bytes | None = b""  # of the request, while its method is not known
         self._request_size, self.is_head = 0, False
+        self._is_next = False  # whether nothing that came before a message still waits
 
     def data_received(self, data: bytes) -> None:
         """See `asyncio.Protocol`."""
@@ -141,7 +152,23 @@ class SecureConnection(CountedConnection):
                 return
             if event.fin and event.opcode in _DATA:
                 self._stop_waiting()
+            whole = event.fin and event.opcode is Opcode.BINARY
+            if whole and self._is_next and self._handles(bytes(event.data)):
+                return
+            self._is_next = self._is_next and event.opcode not in _DATA
         super().process_event(event)
+
+    def _handles(self, raw: bytes) -> bool:
+        """Handle a message at once, if it is one of `GESTURES` or invalid."""
+        try:
+            message = self._forms.decoded(raw)
+        except InvalidMessage as wrong:
+            warn_once(self, str(wrong))
+            return True
+        if self.handle is None or not isinstance(message, GESTURES):
+            return False
+        self.handle(message)
+        return True
 
     def cut_off(self) -> None:
         """Close a connection whose unfinished message takes too much memory, or too long."""
@@ -197,6 +224,9 @@ class SecureConnection(CountedConnection):
 
     async def recv(self, decode: bool | None = None) -> Any:
         while True:
+            if not self.recv_messages.frames:
+                await asyncio.sleep(0)  # until what came before has been handled
+                self._is_next = self.handle is not None and not self.recv_messages.frames
             raw = await super().recv(decode)
             try:
                 return Received.of(self._forms.decoded(raw))

@@ -24,7 +24,7 @@ import viser
 import websockets.asyncio.server
 from viser import _gui_api, _gui_handles, _scene_api, _viser
 from viser import _messages as wire
-from viser.infra import WebsockClientConnection
+from viser.infra import ClientId, WebsockClientConnection
 from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
@@ -117,9 +117,18 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
 
     def guard(connection: WebsockClientConnection) -> None:
         handler: Any = connection._incoming_handlers[wire.GuiUpdateMessage][0]
-        MessageFilter(server, connection, handler.__self__, limits)
+        own = MessageFilter(server, connection, handler.__self__, limits)
+        client = ClientId(connection.client_id)
 
-    MessageFilter(server, websock, server.gui, limits)
+        def handle(message: Any) -> None:
+            for scope in (general, own):
+                scope.receive(client, message)
+
+        socket = websock._live_connections.get(client)
+        if isinstance(socket, SecureConnection):
+            socket.handle = handle
+
+    general = MessageFilter(server, websock, server.gui, limits)
     websock.on_client_connect(guard)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import http.client
 import inspect
 import logging
@@ -10,6 +11,7 @@ import socket
 import threading
 from collections.abc import Callable, Iterator
 from functools import partial
+from random import Random
 from types import SimpleNamespace
 from typing import Any
 
@@ -473,6 +475,47 @@ def test_honest_scene_messages_arrive(lab: Lab, attacker: Browser) -> None:
 
 
 @pytest.mark.usefixtures("no_errors")
+def test_messages_are_handled_in_the_order_in_which_they_were_sent(
+    lab: Lab, attacker: Browser
+) -> None:
+    """Those that are handled at once (see `GESTURES`), and those that wait for viser."""
+    sent, random = list[tuple[str, Any]](), Random(1)
+    for i in range(200):
+        kind = random.choice(["slider", "drag", "click", "camera"])
+        number = float(i)
+        if kind == "slider":
+            sent.append((kind, 0.1 + 9.0 * i / 200))
+            attacker.update(kind, value=sent[-1][1])
+        elif kind == "camera":
+            sent.append((kind, (number, 0.0, 0.0)))
+            attacker.send("ViewerCameraMessage", **CAMERA | {"position": [number, 0.0, 0.0]})
+        elif kind == "drag":
+            sent.append((kind, (number, 0.0, 0.0)))
+            place = {"end_position": [number, 0.0, 0.0]}
+            attacker.send("SceneNodeDragMessage", **drag(attacker) | place)
+        else:
+            sent.append((kind, (number, 0.0, 0.0)))
+            ray = {"ray_origin": [number, 0.0, 0.0]}
+            attacker.send("SceneNodeClickMessage", **click(attacker) | ray)
+    attacker.settle()
+    assert lab.heard(attacker) == sent
+
+
+def test_a_callback_of_a_gesture_that_waits_is_an_error(
+    lab: Lab, attacker: Browser, bystander: Browser, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def waits(_: Any) -> None:
+        await asyncio.sleep(0.0)
+        lab.events.append((attacker.id, "waited", None))
+
+    lab.widgets[attacker.id]["number"].on_update(waits)
+    attacker.update("number", value=5.0)
+    attacker.settle()
+    assert lab.heard(attacker) == [("number", 5.0)]
+    assert "a handler of GuiUpdateMessage waits" in caplog.text
+
+
+@pytest.mark.usefixtures("no_errors")
 def test_impossible_scene_messages_reach_no_callback(
     lab: Lab, attacker: Browser, bystander: Browser
 ) -> None:
@@ -773,6 +816,7 @@ def test_viser_has_the_version_that_hardening_was_written_against(
         (_scene_api, "print_threadpool_errors print_awaited_callback_error"),
         (_viser, "print_threadpool_errors print_awaited_callback_error print_task_error"),
         (ServerConnection, "process_event recv close respond"),
+        (_messages.Message, "deserialize"),
         (Frame(Opcode.PING, b""), "opcode data"),
     ]
     for thing, names in needed:
@@ -784,7 +828,8 @@ def test_viser_calls_what_hardening_replaces() -> None:
     assert worker.count("websockets.asyncio.server.serve(") == 1
     assert "self._handle_incoming_message(client_id, message)" in worker
     assert "client_connection._handle_incoming_message(client_id, message)" in worker
-    assert "await websocket.recv()" in inspect.getsource(_infra._message_consumer)
+    consumer = inspect.getsource(_infra._message_consumer)
+    assert "await websocket.recv()" in consumer and "message_class.deserialize(raw)" in consumer
     producer = inspect.getsource(_infra._message_producer)
     assert f"zstandard.ZstdCompressor(level={LEVEL})" in producer and "zstd.compress(" in producer
 
