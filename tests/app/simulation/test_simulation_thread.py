@@ -281,7 +281,7 @@ def test_labs_come_and_go_from_other_threads_while_it_runs() -> None:
         thread.remove(labs[1])  # twice does no harm
     finally:
         thread.stop()
-    assert not thread._thread.is_alive()
+    assert not thread.thread.is_alive()
 
 
 class Asking(Lab):
