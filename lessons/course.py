@@ -6,14 +6,13 @@ import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
 
 import msgspec
 from msgspec.structs import replace
 
 from onpath.lessons.action_schema import StepSetup
-from onpath.lessons.concept_test.concept_test import FOLDER, TESTS, both_tests
+from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem, line_of, near
 from onpath.lessons.routes import FOLDER as ROUTES
@@ -80,54 +79,6 @@ class Course:
 
 
 NO_LESSONS = Course({})
-
-
-@dataclass(frozen=True, slots=True)
-class Versions(Mapping[str, Lesson]):
-    """A lesson without problems in its languages, each read when it is first asked for.
-
-    Attributes:
-        home: the folder of the lesson.
-        name: of the lesson.
-        languages: the first is that of its keys.
-    """
-
-    home: Path
-    name: str
-    languages: tuple[str, ...]
-
-    def __getitem__(self, language: str) -> Lesson:
-        if language not in self.languages:
-            raise KeyError(language)
-        return _version(self, language)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.languages)
-
-    def __len__(self) -> int:
-        return len(self.languages)
-
-
-@cache
-def _version(versions: Versions, language: str) -> Lesson:
-    lesson = read_lesson(versions.home / f"{language}.md")
-    first = versions.languages[0]
-    keys = lesson.keys if language == first else versions[first].keys
-    return replace(lesson, name=versions.name, keys=keys)
-
-
-@cache
-def built_in_course() -> Course:
-    """The built-in course. Its lessons, which tests have checked, are read as they are needed."""
-
-    def versions(home: Path, name: str) -> Mapping[str, Lesson]:
-        languages = {file.stem for file in home.glob("??.md")} - {DEFAULT}
-        return Versions(home, name, (DEFAULT, *sorted(languages)))
-
-    homes = sorted(file.parent for file in BUILT_IN.glob(f"*/{DEFAULT}.md"))
-    lessons = {home.name: versions(home, home.name) for home in homes if home.name != FOLDER}
-    tests = {name: versions(BUILT_IN / FOLDER, name) for name in TESTS}
-    return Course(lessons, read_routes(BUILT_IN).routes, tests)
 
 
 def read_course(

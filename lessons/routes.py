@@ -87,7 +87,7 @@ def read_routes(folder: Path, lessons: Lessons | None = None) -> ReadRoutes:
     """The routes of a folder of lessons, in the order of their files' names.
 
     Args:
-        lessons: of the course; None if the routes have no problems.
+        lessons: of the course; None: the routes are known to be sound, and not checked.
     """
     read = ReadRoutes({}, [])
     for file in sorted((folder / FOLDER).glob("*.toml")):

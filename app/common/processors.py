@@ -1,8 +1,9 @@
-"""On which processors threads run, as far as the operating system says and allows: on Linux."""
+"""On which processors threads run; known and settable on Linux only."""
 
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -26,8 +27,10 @@ def times(thread: int) -> Times:
     Raises:
         OSError: there is no such thread, or the system does not say.
     """
-    run, waited, _ = (TASKS / str(thread) / "schedstat").read_text().split()
-    return Times(1e-9 * int(run), 1e-9 * int(waited))
+    run, waited, *_ = map(int, (TASKS / str(thread) / "schedstat").read_text().split())
+    if not run:
+        raise OSError("this kernel does not measure how long threads wait")
+    return Times(1e-9 * run, 1e-9 * waited)
 
 
 def processor(thread: int) -> int:
@@ -39,7 +42,8 @@ def processor(thread: int) -> int:
     return int((TASKS / str(thread) / "stat").read_text().rpartition(")")[2].split()[LATEST])
 
 
-def run_anywhere() -> None:
-    """Let this thread, and the threads and processes that it starts, run on all processors."""
-    if KNOWN:
-        os.sched_setaffinity(0, ALL)
+def run_anywhere(thread: int = 0) -> None:
+    """Let a thread, by default this one, and what it starts run on all processors."""
+    with suppress(OSError):  # it has ended, or the processors have been taken from this process
+        if KNOWN:
+            os.sched_setaffinity(thread, ALL)

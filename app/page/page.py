@@ -10,7 +10,7 @@ from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.lab.snapshots.snapshot import Motion
-from onpath.app.page.build_queue import one_at_a_time
+from onpath.app.page.build_queue import in_turn, one_at_a_time
 from onpath.app.page.first_minute import FirstMinute
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel
@@ -122,7 +122,7 @@ class Page:
             self._rebuilds.submit(lambda: self._rebuild(snapshot))
 
     def _rebuild(self, first: PageSnapshot) -> None:
-        with one_at_a_time, self._client.atomic():
+        with in_turn(), self._client.atomic():
             self._client.scene.reset()
             self._client.gui.reset()
             self._framed, self._settling = 0.0, SETTLING

@@ -30,6 +30,7 @@ from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server import memory_release, shared_processor
 from onpath.app.server.admission_queue import AdmissionQueue
 from onpath.app.server.arrivals import Arrival, Arrivals
+from onpath.app.server.built_in_course import built_in_course
 from onpath.app.server.class_directory import ClassDirectory
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
 from onpath.app.server.lab_feed import LabFeed
@@ -47,7 +48,7 @@ from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.places import storage_key
 from onpath.app.viser_adapter.secure_server import disconnect, make_server
-from onpath.lessons.course import Course, built_in_course, read_course
+from onpath.lessons.course import Course, read_course
 from onpath.lessons.problems import LessonError
 from onpath.models.systems.catalogue import FIVE_BAR
 

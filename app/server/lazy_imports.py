@@ -25,13 +25,12 @@ REST = 3.0  # [s] in which the first browser can open its lab
 
 
 def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
-    """After `rest` [s], in a thread, do what the first lab and its user will need next.
-
-    The loops of a new lab are compiled, these modules imported, and the lessons read.
-    """
+    """After `rest` [s], in a thread: read the lessons, compile loops, import these modules."""
 
     def work() -> None:
         time.sleep(rest)
+        for versions in (*course.lessons.values(), *course.tests.values()):
+            list(versions.values())
         for run in Session(store).runs.values():
             for free in (True, False):
                 store.prepare(run.robot, replace(run.kind, free=free))
@@ -39,8 +38,6 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
             import_module(name)
         for language in languages():
             catalogue(language)
-        for versions in (*course.lessons.values(), *course.tests.values()):
-            list(versions.values())
 
     thread = Thread(target=work, name="warm-up", daemon=True)
     thread.start()

@@ -31,7 +31,7 @@ FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; when further behind, the schedule restarts
 PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not starved
 SELDOM = (1_000, 4, 1_000)  # allocations before a collection, which stops all threads for 10 ms
-HANDOVER = 2e-4  # [s] that another thread goes on once this one wants the interpreter back
+HANDOVER = 1e-4  # [s] that another thread goes on once this one wants the interpreter back
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
 ALL_COMMANDS, FEWEST = 8e-3, 2e-3  # [s] of a frame for the commands of all labs: most, and least
 MOST = 0.75  # share of a frame up to which slow updates are made
@@ -263,7 +263,7 @@ class SimulationThread:
         advance_together([lab.frame(seconds, length) for lab in labs], log_error)
         ended = self._clock()
         self._advancing += FADING * (ended - applied - self._advancing)
-        left = min(SHARE * FRAME, MOST * FRAME - (ended - begun) - self._drawing)
+        left = min(SHARE * FRAME, MOST * FRAME - late - (ended - begun) - self._drawing)
         seen = [lab for lab in labs if lab.is_seen]
         self._slow_updates.run(seen, count, left, stride)
         drawing = self._clock()

@@ -46,7 +46,7 @@ class Limits:
     max_unfinished_bytes: int = 32_000_000
     message_seconds: float = 10.0
     max_request_bytes: int = 65_536
-    messages_per_second: float = 200.0
+    messages_per_second: float = 120.0
     message_burst: float = 1000.0
     max_text_length: int = 2000
     max_magnitude: float = 1e9
@@ -76,15 +76,15 @@ class MessageFilter:
         scope._handle_incoming_message = self._receive
 
     def receive(self, client_id: ClientId, message: Any) -> None:
-        """Handle a message at once, for which no handler waits for anything."""
+        """Handle at once a message for which no handler waits."""
+        handling = self._receive(client_id, message)
         try:
-            self._receive(client_id, message).send(None)
+            handling.send(None)
+            handling.throw(RuntimeError(f"a handler of {type(message).__name__} waits"))
         except StopIteration:
             return
         except Exception as error:
             log_error(error)
-        else:
-            log_error(RuntimeError(f"a handler of {type(message).__name__} waits"))
 
     async def _receive(self, client_id: ClientId, message: Any) -> None:
         # Every message reaches both scopes; the one that does not know its widget ignores it.

@@ -1,7 +1,4 @@
-"""Decodes messages of a browser, and validates them against viser's dataclasses.
-
-viser, which would decode them without any check, takes them over as they are (`Decoded`).
-"""
+"""Decodes messages of a browser into viser's dataclasses, if they are valid."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A browser's websocket: yields only valid messages, and limits their rate, size and duration."""
+"""A browser's websocket: yields or handles only valid messages; limits rate, size and duration."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ FROM_BROWSER: tuple[type[Any], ...] = (
     wire.FileTransferPart,
 )
 GESTURES = (wire.ViewerCameraMessage, wire.SceneNodeDragMessage, wire.GuiUpdateMessage)
-"""Of these a browser sends many in succession; none of their handlers waits for anything."""
+"""Handled at once: a browser may send many in succession, and no handler of them waits."""
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 
 
@@ -101,12 +101,12 @@ class SecureConnection(CountedConnection):
     websockets answers GET alone; a HEAD request is passed on to it as GET.
 
     A message of `GESTURES` is handled as soon as it has come, if nothing that came before it still
-    waits. viser would handle it two turns of the event loop later, and make two tasks for it, which
-    takes half as long again.
+    waits. viser would handle it two turns of the event loop later, and would make two tasks for it,
+    which costs half as much time again.
 
     Attributes:
         is_head: whether the request was HEAD, so that the response has no body.
-        handle: handles a message at once; None until the client has been accepted.
+        handle: handles a message at once; None until viser knows the client.
     """
 
     handle: Callable[[Any], None] | None = None
@@ -124,6 +124,7 @@ class SecureConnection(CountedConnection):
         self._begun: bytes | None = b""  # of the request, while its method is not known
         self._request_size, self.is_head = 0, False
         self._is_next = False  # whether nothing that came before a message still waits
+        self._decoded: Any = None  # the message that waits, if it is decoded already
 
     def data_received(self, data: bytes) -> None:
         """See `asyncio.Protocol`."""
@@ -136,6 +137,7 @@ class SecureConnection(CountedConnection):
     def connection_lost(self, exc: Exception | None) -> None:
         """See `asyncio.Protocol`."""
         super().connection_lost(exc)
+        self.handle = None
         self._stop_waiting()
         self._unfinished.hold(self, 0)
 
@@ -152,7 +154,7 @@ class SecureConnection(CountedConnection):
                 return
             if event.fin and event.opcode in _DATA:
                 self._stop_waiting()
-            whole = event.fin and event.opcode is Opcode.BINARY
+            whole = event.fin and event.opcode is Opcode.BINARY and self.state is State.OPEN
             if whole and self._is_next and self._handles(bytes(event.data)):
                 return
             self._is_next = self._is_next and event.opcode not in _DATA
@@ -166,6 +168,7 @@ class SecureConnection(CountedConnection):
             warn_once(self, str(wrong))
             return True
         if self.handle is None or not isinstance(message, GESTURES):
+            self._decoded = message
             return False
         self.handle(message)
         return True
@@ -228,7 +231,8 @@ class SecureConnection(CountedConnection):
                 await asyncio.sleep(0)  # until what came before has been handled
                 self._is_next = self.handle is not None and not self.recv_messages.frames
             raw = await super().recv(decode)
+            message, self._decoded = self._decoded, None
             try:
-                return Received.of(self._forms.decoded(raw))
+                return Received.of(self._forms.decoded(raw) if message is None else message)
             except InvalidMessage as wrong:
                 warn_once(self, str(wrong))

@@ -1,8 +1,8 @@
 """Fits curves to control points and to freehand strokes.
 
-A cubic spline through the points is resampled at equal arc length. A closed curve is then the
-Fourier series of the samples, truncated after `HARMONICS`; an open curve is their Chebyshev series
-of that degree, fitted by least squares.
+A cubic spline through the points, or the polyline through many of them, is resampled at equal arc
+length. A closed curve is then the Fourier series of the samples, truncated after `HARMONICS`; an
+open curve is their Chebyshev series of that degree, fitted by least squares.
 """
 
 from __future__ import annotations

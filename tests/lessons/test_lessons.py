@@ -13,12 +13,9 @@ from onpath.app.lab.dry_runs.course_check import lab_at, play, play_course, solv
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.page.lesson_html import task as task_html
-from onpath.lessons import course
 from onpath.lessons.checks import judge
-from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.labels import setting_label
-from onpath.lessons.parse import read_lesson
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import Choice, Lesson, Quiz, Step
 from onpath.lessons.task_schema import Order, Setting, Task
@@ -46,25 +43,6 @@ def label(value: object) -> str:
 def test_every_lesson_is_all_right() -> None:
     assert PROBLEMS == []
     assert len(ENGLISH) >= 8 and "de" in COURSE.languages()
-
-
-def test_lessons_that_are_read_as_they_are_needed_are_the_same() -> None:
-    found = course.built_in_course()
-    for same, own in ((COURSE.lessons, found.lessons), (COURSE.tests, found.tests)):
-        assert [(name, dict(own[name])) for name in own] == list(same.items())
-    assert found.routes == COURSE.routes
-    assert found.languages() == COURSE.languages() and "xx" not in found.lessons[ENGLISH[0].name]
-
-
-def test_no_lesson_is_read_before_it_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
-    read = list[Path]()
-    monkeypatch.setattr(course, "read_lesson", lambda file: read.append(file) or read_lesson(file))
-    course._version.cache_clear()
-    found = course.built_in_course.__wrapped__()
-    assert found.numbers() and found.languages() and found.has(BEFORE) and not read
-    name = ENGLISH[2].name
-    assert found.lesson(name, "de") is found.lesson(name, "de")
-    assert [file.parent.name for file in read] == [name, name]
 
 
 def test_no_rule_of_thumb_finds_the_right_options() -> None:

@@ -13,7 +13,7 @@ import pytest
 from onpath.app.common.processors import ALL, KNOWN, Times, processor, run_anywhere
 from onpath.app.exports.exporter import process
 from onpath.app.server import shared_processor
-from onpath.app.server.shared_processor import REST, SharedProcessor
+from onpath.app.server.shared_processor import REST, TERM, SharedProcessor
 
 pytestmark = pytest.mark.skipif(not KNOWN, reason="the system does not say where threads run")
 
@@ -68,7 +68,7 @@ def test_threads_run_anywhere_for_a_while_when_others_crowd_the_processor(
         waited = 1e6  # [s]
         shared.look()
         assert allowed(first) == allowed(second) == ALL
-        for _ in range(REST):
+        for _ in range(REST - 1):
             shared.look()
             assert allowed(first) == ALL
         shared.look()
@@ -98,6 +98,19 @@ def test_waiting_for_this_process_s_own_threads_is_no_crowding(
         for _ in range(3):
             shared.look()
         assert (len(allowed(first)) == 1) == (shares or len(ALL) == 1)
+
+
+def test_the_system_chooses_anew_after_a_term(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For one look the threads run anywhere."""
+    monkeypatch.setattr(shared_processor, "times", lambda _: Times(1.0, 0.0))
+    with waiting("first") as first:
+        shared = SharedProcessor([first])
+        shares = list[bool]()
+        for _ in range(2 * TERM):
+            shared.look()
+            shares.append(len(allowed(first)) == 1)
+        assert shares == [i % (TERM + 1) != TERM for i in range(2 * TERM)] or len(ALL) == 1
+        shared.release()
 
 
 def test_what_has_been_started_is_released_too() -> None:

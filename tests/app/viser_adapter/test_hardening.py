@@ -22,6 +22,7 @@ import websockets.sync.client
 import zstandard
 from viser import _gui_api, _gui_handles, _messages, _scene_api, _viser
 from viser.infra import _infra
+from websockets.asyncio.messages import Assembler
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.frames import Frame, Opcode
@@ -30,6 +31,7 @@ from websockets.typing import Origin, Subprotocol
 from onpath.app.common import error_log
 from onpath.app.viser_adapter import secure_connection
 from onpath.app.viser_adapter.compression import LEVEL, compress, stored_head
+from onpath.app.viser_adapter.message_filter import MessageFilter
 from onpath.app.viser_adapter.secure_server import Limits, PortInUse, make_server
 from tests.support import waiting
 
@@ -476,11 +478,18 @@ def test_honest_scene_messages_arrive(lab: Lab, attacker: Browser) -> None:
 
 @pytest.mark.usefixtures("no_errors")
 def test_messages_are_handled_in_the_order_in_which_they_were_sent(
-    lab: Lab, attacker: Browser
+    lab: Lab, attacker: Browser, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Those that are handled at once (see `GESTURES`), and those that wait for viser."""
-    sent, random = list[tuple[str, Any]](), Random(1)
+    sent, random, at_once = list[tuple[str, Any]](), Random(1), list[object]()
+    receive = MessageFilter.receive
+    counted = lambda own, *told: (at_once.append(told), receive(own, *told))  # noqa: E731
+    monkeypatch.setattr(MessageFilter, "receive", counted)
     for i in range(200):
+        if random.random() < 0.1:
+            attacker.settle()
+        if random.random() < 0.1:
+            attacker.socket.ping()
         kind = random.choice(["slider", "drag", "click", "camera"])
         number = float(i)
         if kind == "slider":
@@ -499,6 +508,8 @@ def test_messages_are_handled_in_the_order_in_which_they_were_sent(
             attacker.send("SceneNodeClickMessage", **click(attacker) | ray)
     attacker.settle()
     assert lab.heard(attacker) == sent
+    gestures = sum(kind != "click" for kind, _ in sent)
+    assert 20 < len(at_once) / 2 < gestures  # each in two scopes: the server's and the client's
 
 
 def test_a_callback_of_a_gesture_that_waits_is_an_error(
@@ -807,6 +818,7 @@ def test_viser_has_the_version_that_hardening_was_written_against(
         (lab.server, "_websock_server _event_loop"),
         (lab.server._websock_server, "_live_connections _incoming_handlers on_client_connect"),
         (lab.server._websock_server, "_handle_incoming_message unregister_handler"),
+        (lab.server._websock_server, "_server_thread"),
         (client._websock_connection, "_incoming_handlers _handle_incoming_message"),
         (client.gui, "_gui_input_handle_from_uuid _container_handle_from_uuid"),
         (client.gui, "_current_file_upload_states _websock_interface"),
@@ -828,6 +840,7 @@ def test_viser_calls_what_hardening_replaces() -> None:
     assert worker.count("websockets.asyncio.server.serve(") == 1
     assert "self._handle_incoming_message(client_id, message)" in worker
     assert "client_connection._handle_incoming_message(client_id, message)" in worker
+    assert "self.frames: SimpleQueue[" in inspect.getsource(Assembler.__init__)
     consumer = inspect.getsource(_infra._message_consumer)
     assert "await websocket.recv()" in consumer and "message_class.deserialize(raw)" in consumer
     producer = inspect.getsource(_infra._message_producer)

@@ -1,0 +1,69 @@
+"""The built-in course, whose lessons are read as they are needed, not all before the first page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from threading import RLock
+
+from msgspec.structs import replace
+
+from onpath.lessons.concept_test.concept_test import FOLDER, TESTS
+from onpath.lessons.course import BUILT_IN, Course
+from onpath.lessons.parse import read_lesson
+from onpath.lessons.routes import read_routes
+from onpath.lessons.schema import Lesson
+from onpath.lessons.words import DEFAULT
+
+_one_reader = RLock()
+"""Held while a lesson is read; a translation asks for the first language."""
+
+
+@dataclass(frozen=True, slots=True)
+class Versions(Mapping[str, Lesson]):
+    """A lesson that is known to be sound; each language is read when first asked for. Thread-safe.
+
+    Attributes:
+        home: the folder of the lesson.
+        name: of the lesson.
+        languages: the first is the one whose keys the others take over.
+    """
+
+    home: Path
+    name: str
+    languages: tuple[str, ...]
+
+    def __getitem__(self, language: str) -> Lesson:
+        if language not in self.languages:
+            raise KeyError(language)
+        with _one_reader:
+            return _read(self, language)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.languages)
+
+    def __len__(self) -> int:
+        return len(self.languages)
+
+
+@cache
+def _read(versions: Versions, language: str) -> Lesson:
+    lesson, first = read_lesson(versions.home / f"{language}.md"), versions.languages[0]
+    keys = lesson.keys if language == first else _read(versions, first).keys
+    return replace(lesson, name=versions.name, keys=keys)
+
+
+@cache
+def built_in_course() -> Course:
+    """The built-in course. Tests have looked for its problems; nobody does so here."""
+
+    def versions(home: Path, name: str) -> Mapping[str, Lesson]:
+        languages = {file.stem for file in home.glob("??.md")} - {DEFAULT}
+        return Versions(home, name, (DEFAULT, *sorted(languages)))
+
+    homes = sorted(file.parent for file in BUILT_IN.glob(f"*/{DEFAULT}.md"))
+    lessons = {home.name: versions(home, home.name) for home in homes if home.name != FOLDER}
+    tests = {name: versions(BUILT_IN / FOLDER, name) for name in TESTS}
+    return Course(lessons, read_routes(BUILT_IN).routes, tests)
