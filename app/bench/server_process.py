@@ -16,7 +16,7 @@ from typing import IO
 
 import msgspec
 
-from onpath.app.server.lazy_imports import REST
+from onpath.app.server.warm_up import REST
 from onpath.app.simulation.metrics import WINDOW, Metrics
 from onpath.app.viser_adapter.request_filter import HEALTH
 

@@ -28,7 +28,7 @@ class SketchAnswer:
         self, client: viser.ClientHandle, scene: Scene, block: Sketch, run: LessonView, drawn: Drawn
     ) -> None:
         from onpath.app.scene.strokes.sketch_board import (
-            SketchBoard,  # see app/server/lazy_imports.py
+            SketchBoard,  # see app/server/warm_up.py
         )
 
         self._scene, words = scene, run.words

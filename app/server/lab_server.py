@@ -27,7 +27,6 @@ from onpath.app.page.page_context import PageContext
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.scene.stage import set_initial_camera
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.app.server import memory_release, shared_processor
 from onpath.app.server.admission_queue import AdmissionQueue
 from onpath.app.server.arrivals import Arrival, Arrivals
 from onpath.app.server.built_in_course import built_in_course
@@ -35,11 +34,11 @@ from onpath.app.server.class_directory import ClassDirectory
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
-from onpath.app.server.lazy_imports import warm_up
-from onpath.app.server.memory_release import MemoryRelease, limit_heap
+from onpath.app.server.memory_release import INTERVAL, MemoryRelease, limit_heap
 from onpath.app.server.new_lab import new_lab
 from onpath.app.server.shared_processor import SharedProcessor
 from onpath.app.server.tab_visibility import TabVisibilities
+from onpath.app.server.warm_up import warm_up
 from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
@@ -95,7 +94,7 @@ class LabServer:
         self._course = lessons = course or built_in_course()
         self.simulation = SimulationThread()
         self._watchdog = Watchdog(hang_seconds)
-        self._memory = Periodic("memory", memory_release.INTERVAL, MemoryRelease().look)
+        self._memory = Periodic("memory", INTERVAL, MemoryRelease().look)
         health = partial(metrics_json, self.simulation)
         well = {"health": health, "trouble": lambda: self._watchdog.trouble}
         self.server = make_server(host, port, label="OnPath", **well, **listening)
@@ -121,9 +120,8 @@ class LabServer:
         self._memory.start()
         threads = [self.simulation.thread, self.server._websock_server._server_thread]
         threads += [] if self._keeper is None else [self._keeper.thread]
-        self._shared = SharedProcessor(list(filter(None, threads)))
-        self._processors = Periodic("processors", shared_processor.INTERVAL, self._shared.look)
-        self._processors.start()
+        self._processor = SharedProcessor(list(filter(None, threads)))
+        self._processor.start()
         if self._expiry is not None:
             self._expiry.start()
         self._watchdog.start(signs_of_life(self.simulation, self.server.get_event_loop()))
@@ -139,8 +137,7 @@ class LabServer:
         """Stop the server and all its threads."""
         self._watchdog.stop()
         self._memory.stop()
-        self._processors.stop()
-        self._shared.release()
+        self._processor.stop()
         self._newcomers.stop()
         self.simulation.stop()
         self._store.close()

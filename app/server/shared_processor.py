@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Sequence
 
+from onpath.app.common.periodic import Periodic
 from onpath.app.common.processors import KNOWN, TASKS, processor, run_anywhere, times
 
 INTERVAL = 1.0  # [s] between looks
@@ -37,6 +38,16 @@ class SharedProcessor:
         self._shares = False
         self._looks = 0  # until that changes
         self._seen = (0.0, 0.0, 0.0)
+        self._periodic = Periodic("processor", INTERVAL, self.look)
+
+    def start(self) -> None:
+        """Look from now on."""
+        self._periodic.start()
+
+    def stop(self) -> None:
+        """Look no more, and let all threads run anywhere."""
+        self._periodic.stop()
+        self.release()
 
     def look(self) -> None:
         """Look once. Does nothing where the system does not say how long threads wait."""

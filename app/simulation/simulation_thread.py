@@ -165,7 +165,7 @@ class SimulationThread:
         clock, sleep: passed in for tests.
 
     Attributes:
-        thread: that runs them.
+        thread: the thread that runs them.
         frames: start and lateness of the latest frames, [s].
     """
 

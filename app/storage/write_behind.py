@@ -37,7 +37,7 @@ class WriteBehind:
         lost: called with the code of a lab that another process has claimed.
 
     Attributes:
-        thread: that writes.
+        thread: the thread that writes.
         warning: why the latest states are not saved yet, in words; empty when they are. Failed
             writes are repeated.
     """

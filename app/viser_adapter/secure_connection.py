@@ -50,7 +50,7 @@ class Received(bytes):
 
     @classmethod
     def of(cls, message: Any) -> Received:
-        """Stands for a message."""
+        """What takes the place of a message's bytes."""
         received = cls()
         received.message = message
         return received

@@ -140,7 +140,7 @@ def turning_channel(
         turn: Ω, (2, 2) or (3, 3), [rad/s].
         at: θ at which this is so, [rad]; NaN: everywhere.
     """
-    from scipy.linalg import block_diag, expm  # slow to import; see app/server/lazy_imports.py
+    from scipy.linalg import block_diag, expm  # slow to import; see app/server/warm_up.py
 
     t, directions = 1 / parameters.control_rate, len(turn) - 1
     one = _sampled(t, look_ahead_time(parameters), parameters.delay, gains)

@@ -181,7 +181,7 @@ def _even(low: float, high: float, count: int, endpoint: bool = True) -> Array:
 
 
 def _spline_through(points: Array, ends: Literal["periodic", "natural"]) -> CubicSpline:
-    from scipy.interpolate import CubicSpline  # slow to import; see app/server/lazy_imports.py
+    from scipy.interpolate import CubicSpline  # slow to import; see app/server/warm_up.py
 
     return CubicSpline(_chords(points), points, bc_type=ends)
 

@@ -115,7 +115,7 @@ def smooth_velocities(q: Array, dt: float) -> Array:
     Raises:
         ValueError: fewer than `SMOOTHING` samples.
     """
-    from scipy.signal import savgol_filter  # slow to import; see app/server/lazy_imports.py
+    from scipy.signal import savgol_filter  # slow to import; see app/server/warm_up.py
 
     if len(q) < SMOOTHING:
         raise CodedError("error.hardly_any_data")

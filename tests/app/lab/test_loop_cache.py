@@ -19,7 +19,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops import compile_queue
 from onpath.app.lab.loops import loop_cache as loop_store
 from onpath.app.lab.loops.loop_cache import MOST, LoopCache
-from onpath.app.server.lazy_imports import LATER, warm_up
+from onpath.app.server.warm_up import LATER, warm_up
 from onpath.lessons.course import NO_LESSONS
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind

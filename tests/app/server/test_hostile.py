@@ -27,7 +27,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scipy.interpolate  # noqa: F401  a server loads it soon after its start: see lazy_imports
+import scipy.interpolate  # noqa: F401  a server loads it soon after its start: see warm_up
 import websockets.sync.client
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol

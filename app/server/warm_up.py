@@ -1,4 +1,4 @@
-"""Loads slow modules, and reads lessons, in the background, after the first picture.
+"""What is read, compiled and imported in the background, after the first picture.
 
 What is needed earlier is imported, or read, where it is needed.
 """
