@@ -13,9 +13,9 @@ from typing import Protocol
 
 from onpath.app.simulation.display_rate import STRIDES
 
-FREQUENT, USUAL, RARE = 6, 8, 15  # frames between updates of a page; see `interval`
-FEW = 10  # pages
-SLOWEST = 60  # frames in which every page gets an update, whatever it costs
+INTERVALS = {10: 6, 40: 8}  # frames between updates of a page, by the number of pages up to which
+MANY, RARE = 12, 15  # the same for more pages, and under load
+SLOWEST = 100  # frames in which every page gets an update, whatever it costs
 SHARE = 0.25  # of a frame, at most, for all slow updates
 
 
@@ -74,7 +74,7 @@ class SlowUpdates:
 
 
 def interval(pages: int, stride: float) -> int:
-    """Frames between updates of a page: 10 Hz for a few pages, 7.5 Hz, and 4 Hz under load.
+    """Frames between updates of a page: 10, 7.5 or 5 Hz by the number of pages, 4 Hz under load.
 
     Args:
         pages: number of pages.
@@ -82,4 +82,4 @@ def interval(pages: int, stride: float) -> int:
     """
     if stride > STRIDES[0]:
         return RARE
-    return FREQUENT if pages <= FEW else USUAL
+    return next((frames for most, frames in INTERVALS.items() if pages <= most), MANY)

@@ -81,16 +81,21 @@ def go_to(tab: Tab, lesson: str, index: int) -> None:
 
 
 def do(hands: Hands, lesson: str, task: str, gestures: tuple[Gesture, ...]) -> None:
-    """Do the gestures, and assert that the page shows the task as passed."""
+    """Do the gestures, and assert that the page shows the task as passed.
+
+    After a failure the step is set up again, since a second attempt is made on the same page.
+    """
     index, wanted = TASKS[lesson, task]
     go_to(hands.tab, lesson, index)
-    for gesture in gestures:
-        gesture(hands)
     try:
+        for gesture in gestures:
+            gesture(hands)
         wait_for(lambda: passed(hands.tab, wanted), seconds=10.0)
-    except AssertionError:
+    except Exception as error:
         points = np.round(hands.session.editor.design.points * 1e3).tolist()
-        pytest.fail("\n".join([*verdicts(hands.tab, wanted), hands.lab.message, f"{points}"]))
+        found = [*verdicts(hands.tab, wanted), hands.lab.message, f"{points}"]
+        hands.tab.ask(c.BeginStepAnew())
+        raise AssertionError("\n".join(found)) from error
 
 
 def test_every_task_of_every_lesson_has_gestures_here() -> None:

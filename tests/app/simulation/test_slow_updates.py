@@ -9,15 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.simulation.display_rate import STRIDES, is_turn
-from onpath.app.simulation.slow_updates import (
-    FEW,
-    FREQUENT,
-    RARE,
-    SLOWEST,
-    USUAL,
-    SlowUpdates,
-    interval,
-)
+from onpath.app.simulation.slow_updates import RARE, SLOWEST, SlowUpdates, interval
 
 FRAMES = 600
 
@@ -68,7 +60,7 @@ def test_they_keep_to_their_time_and_no_page_waits_for_ever(
 
 @pytest.mark.parametrize(
     ("count", "stride", "frames"),
-    [(FEW, 2, FREQUENT), (FEW + 1, 2, USUAL), (20, 2.5, RARE), (20, 3, RARE), (20, 4, 16)],
+    [(10, 2, 6), (11, 2, 8), (40, 2, 8), (41, 2, 12), (20, 2.5, RARE), (20, 3, RARE), (20, 4, 16)],
 )
 def test_where_there_is_time_they_are_as_frequent_as_wanted(
     count: int, stride: float, frames: int
