@@ -28,6 +28,7 @@ log = logging.getLogger(__name__)
 CODE = re.compile(r"[a-z0-9]{12}")
 MOST_CODES = 8
 KEPT = 15 * 60.0  # [s] that an abandoned session is kept
+RECALLED = 60.0  # [s] that it keeps its last minute, which is most of its memory
 MOST_ABANDONED = 60
 
 
@@ -244,6 +245,24 @@ class LabRegistry:
 
     def __len__(self) -> int:
         return len(self._entries)
+
+    def free_memory(self) -> None:
+        """Delete the histories of labs that were left a while ago, unless a past instant is shown.
+
+        Not to be called by the simulation thread, for which this waits.
+        """
+        with self._lock:
+            left = [e for e in self._entries.values() if e.client is None]
+            left = [e for e in left if self.clock() - e.left > RECALLED]
+        sessions = [e.scheduled.session for e in left]
+        histories = [s.history for s in sessions if s.viewing is None and len(s.history)]
+
+        def clear() -> None:
+            for history in histories:
+                history.clear()
+
+        if histories:
+            self.simulation.call(clear)
 
     def _drop_old(self) -> None:
         idle = [e for e in self._entries.values() if e.client is None]

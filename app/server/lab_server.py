@@ -94,12 +94,12 @@ class LabServer:
         self._course = lessons = course or built_in_course()
         self.simulation = SimulationThread()
         self._watchdog = Watchdog(hang_seconds)
-        self._memory = Periodic("memory", INTERVAL, MemoryRelease().look)
         health = partial(metrics_json, self.simulation)
         well = {"health": health, "trouble": lambda: self._watchdog.trouble}
         self.server = make_server(host, port, label="OnPath", **well, **listening)
         self._records = records
         self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons))
+        self._memory = Periodic("memory", INTERVAL, MemoryRelease(self.sessions.free_memory).look)
         self._keeper = self._expiry = None
         if records is not None:
             self._keeper = WriteBehind(records, lost=self._lost)

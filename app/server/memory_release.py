@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import gc
 import sys
+from collections.abc import Callable
 
 from onpath.app.viser_adapter.connection_limits import CountedConnection
 
@@ -22,14 +23,19 @@ class MemoryRelease:
     it. That stops all threads, with 60 labs for some 170 ms, so `SELDOM` in
     `app.simulation.simulation_thread` makes it rare, and it is done here only when many connections
     have ended, or when a tab has been closed and no other one for a while.
+
+    Args:
+        forget: called at each look, to drop what is no longer needed.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, forget: Callable[[], None]) -> None:
+        self._forget = forget
         self._ended, self._tabs_ended = CountedConnection.ended, CountedConnection.tabs_ended
         self._tabs_seen, self._calm = self._tabs_ended, 0
 
     def look(self) -> None:
         """Collect garbage, and give free memory back, if it is time to."""
+        self._forget()
         ended, tabs_ended = CountedConnection.ended, CountedConnection.tabs_ended
         self._calm = self._calm + 1 if tabs_ended == self._tabs_seen else 0
         self._tabs_seen = tabs_ended

@@ -8,11 +8,13 @@ import pytest
 
 from onpath.app.lab.commands import SetLanguage
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.looking_back import look_back
 from onpath.app.server.lab_registry import (
     CODE,
     KEPT,
     MOST_ABANDONED,
     MOST_CODES,
+    RECALLED,
     LabRegistry,
     RegisteredLab,
 )
@@ -177,3 +179,24 @@ def test_leaving_twice_or_never_having_come_does_no_harm(desk: Desk) -> None:
     assert desk.sessions.leave(99) is None
     assert desk.sessions.leave(client) is entry and desk.sessions.leave(client) is None
     assert len(desk.sessions) == 1
+
+
+def test_a_lab_that_was_left_a_while_ago_keeps_no_history(monkeypatch: pytest.MonkeyPatch) -> None:
+    desk = Desk()
+    monkeypatch.setattr(desk.simulation, "call", lambda function: function())
+    (_, used), (left, gone), (paused, looking) = (desk.open(name) for name in "abc")
+    for entry in (used, gone, looking):
+        entry.scheduled.lab.advance(0.5)
+    look_back(looking.scheduled.session, 0.2)
+    desk.sessions.leave(left)
+    desk.sessions.leave(paused)
+    lengths: list[list[bool]] = []
+    for seconds in (0.0, RECALLED + 1):
+        desk.now += seconds
+        desk.sessions.free_memory()
+        histories = [entry.scheduled.session.history for entry in (used, gone, looking)]
+        lengths.append([len(history) > 0 for history in histories])
+    assert lengths == [[True, True, True], [True, False, True]]
+    _, back = desk.open("b")
+    back.scheduled.lab.advance(0.5)
+    assert back is gone and len(back.scheduled.session.history)

@@ -6,6 +6,7 @@ import gc
 import socket
 import weakref
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -46,7 +47,7 @@ def old_garbage() -> weakref.ref[Circle]:
 def test_garbage_is_collected_when_many_connections_have_ended(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    garbage, memory = old_garbage(), MemoryRelease()
+    garbage, memory = old_garbage(), MemoryRelease(lambda: None)
     monkeypatch.setattr(CountedConnection, "ended", CountedConnection.ended + MANY - 1)
     memory.look()
     assert garbage() is not None
@@ -61,7 +62,7 @@ def test_garbage_is_collected_when_many_connections_have_ended(
 def test_what_a_tab_leaves_is_collected_once_no_other_is_closed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    memory = MemoryRelease()
+    memory = MemoryRelease(lambda: None)
     monkeypatch.setattr(CountedConnection, "tabs_ended", CountedConnection.tabs_ended)
     for closed in (0, 1, 1):
         garbage = old_garbage()
@@ -75,6 +76,35 @@ def test_what_a_tab_leaves_is_collected_once_no_other_is_closed(
     for _ in range(3 * CALM):
         memory.look()
     assert left() is not None  # nobody has left since
+
+
+@pytest.mark.parametrize(
+    "said", [b"", b"nonsense\r\n\r\n", b"GET /none HTTP/1.1\r\nHost: a\r\n\r\n"]
+)
+def test_a_connection_that_is_no_tab_is_free_as_soon_as_it_ends(
+    monkeypatch: pytest.MonkeyPatch, said: bytes
+) -> None:
+    """Without a collection, until which thousands could come and go."""
+    made, opened = list[weakref.ref[Any]](), CountedConnection.connection_made
+
+    def connection_made(connection: CountedConnection, transport: Any) -> None:
+        made.extend([weakref.ref(connection), weakref.ref(transport)])
+        opened(connection, transport)
+
+    monkeypatch.setattr(CountedConnection, "connection_made", connection_made)
+    server = make_server(port=0)
+    gc.disable()
+    try:
+        for _ in range(3):
+            with socket.create_connection(("127.0.0.1", server.get_port())) as client:
+                client.sendall(said)
+                client.shutdown(socket.SHUT_WR)
+                while client.recv(4096):
+                    pass
+        wait_for(lambda: len(made) == 6 and not any(ref() for ref in made[:-2]), WAIT)
+    finally:
+        gc.enable()
+        server.stop()
 
 
 def test_websockets_that_end_are_counted() -> None:
