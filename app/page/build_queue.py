@@ -17,6 +17,7 @@ from onpath.lessons.words import Words
 one_at_a_time = threading.Lock()
 """Held while a page is built or rebuilt, but never while waiting for a browser."""
 MOST_REST = 0.5  # [s], longest pause after a page; the pause is as long as the build, up to this
+REST = 2.0  # pause after a rebuilt page or a window, in builds: to send it takes time as well
 FEW = 2  # from so many clients ahead on, a waiting client is shown a notice
 
 
@@ -26,7 +27,7 @@ def in_turn() -> Iterator[None]:
     with one_at_a_time:
         begun = time.monotonic()
         yield
-        time.sleep(min(time.monotonic() - begun, MOST_REST))
+        time.sleep(REST * min(time.monotonic() - begun, MOST_REST))
 
 
 class BuildQueue:
