@@ -23,11 +23,19 @@ FEW = 2  # from so many clients ahead on, a waiting client is shown a notice
 
 @contextmanager
 def in_turn() -> Iterator[None]:
-    """Build part of a page, one at a time and with a pause, however many tabs ask for it."""
-    with one_at_a_time:
-        begun = time.monotonic()
+    """Build part of a page, one at a time and with a pause, however many tabs ask for it.
+
+    Only the next build waits for the end of the pause, not whoever has built this one.
+    """
+    one_at_a_time.acquire()
+    begun = time.monotonic()
+    try:
         yield
-        time.sleep(REST * min(time.monotonic() - begun, MOST_REST))
+    finally:
+        rest = REST * min(time.monotonic() - begun, MOST_REST)
+        ending = threading.Timer(rest, one_at_a_time.release)
+        ending.daemon = True
+        ending.start()
 
 
 class BuildQueue:

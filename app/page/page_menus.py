@@ -12,7 +12,8 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.glossary import glossary_html
 from onpath.app.page.panels.keys import help_text
-from onpath.app.page.panels.widgets import Post, add_menu, on_menu_press, on_user_update
+from onpath.app.page.panels.slow_presses import on_menu_press
+from onpath.app.page.panels.widgets import Post, add_menu, on_user_update
 from onpath.app.page.preferences import Preferences
 from onpath.lessons.words import Words, languages
 

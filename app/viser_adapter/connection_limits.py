@@ -16,11 +16,13 @@ from typing import Any, ClassVar, Generic, TypeVar
 from websockets.asyncio.server import ServerConnection
 from websockets.http11 import Request
 
+from onpath.app.common.allowance import Allowance
 from onpath.app.viser_adapter.message_filter import Limits
 
 _log = logging.getLogger("websockets.server")
 
 T = TypeVar("T")
+MOST_ADDRESSES = 4096  # of which is known how many tabs they opened lately
 
 
 class PerAddress(Generic[T]):
@@ -132,7 +134,8 @@ class ConnectionLimits:
     """Limits on open connections, in total and per address. Use it on one event loop."""
 
     def __init__(self, limits: Limits, proxies: Proxies) -> None:
-        self._proxies = proxies
+        self._proxies, self._limits = proxies, limits
+        self._tabs: dict[str, Allowance] = {}
         self._waiting = PerAddress[CountedConnection](limits.max_waiting, limits.max_waiting_each)
         self._inside = PerAddress[CountedConnection](
             limits.max_connections, limits.max_connections_each
@@ -153,6 +156,26 @@ class ConnectionLimits:
             self._waiting.discard(connection)
             self._inside.add(connection, connection.address)
         return connection in self._inside
+
+    def refusal(
+        self, connection: CountedConnection, request: Request
+    ) -> tuple[HTTPStatus, str] | None:
+        """Why a request is refused, or None: too many connections, or too many new tabs lately."""
+        if not self.admits(connection, request):
+            return HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n"
+        if "Upgrade" in request.headers and not self._allowance_of(connection.address).take():
+            return HTTPStatus.TOO_MANY_REQUESTS, "Too many tabs at once.\n"
+        return None
+
+    def _allowance_of(self, address: str) -> Allowance:
+        """Of tabs that an address may open; those of addresses not seen for long are forgotten."""
+        own = self._tabs.pop(address, None)
+        if own is None:
+            own = Allowance(self._limits.tab_burst_each, self._limits.tabs_per_second_each)
+        self._tabs[address] = own  # the latest
+        if len(self._tabs) > MOST_ADDRESSES:
+            del self._tabs[next(iter(self._tabs))]
+        return own
 
     def closed(self, connection: CountedConnection) -> None:
         """Stop counting a connection."""

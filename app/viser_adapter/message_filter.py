@@ -38,6 +38,8 @@ class Limits:
         max_connections_each: per address; sixty students behind one address have five each.
         max_waiting: further connections that have not sent a complete request yet.
         max_waiting_each: of those, per address.
+        tabs_per_second_each: that one address may open in the long run.
+        tab_burst_each: that it may open at once: a class whose pages are all loaded again.
         silence: time after which a browser is pinged, and time that it has to answer, [s].
         farewell: time that a browser has to acknowledge that its connection is closed, [s].
     """
@@ -55,6 +57,8 @@ class Limits:
     max_connections_each: int = 300
     max_waiting: int = 250
     max_waiting_each: int = 200
+    tabs_per_second_each: float = 10.0
+    tab_burst_each: float = 300.0
     silence: float = 20.0
     farewell: float = 2.0
 

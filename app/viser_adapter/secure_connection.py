@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -12,6 +11,7 @@ from viser import _messages as wire
 from websockets.frames import CloseCode, Frame, Opcode
 from websockets.protocol import State
 
+from onpath.app.common.allowance import Allowance
 from onpath.app.viser_adapter.connection_limits import CountedConnection
 from onpath.app.viser_adapter.message_filter import Limits, warn_once
 from onpath.app.viser_adapter.message_schema import InvalidMessage, MessageSchemas
@@ -36,6 +36,7 @@ FROM_BROWSER: tuple[type[Any], ...] = (
 )
 GESTURES = (wire.ViewerCameraMessage, wire.SceneNodeDragMessage, wire.GuiUpdateMessage)
 """Handled at once: a browser may send many in succession, and no handler of them waits."""
+LONG = 4096  # [B]; a message counts once more for each
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 
 
@@ -116,8 +117,7 @@ class SecureConnection(CountedConnection):
     ) -> None:
         super().__init__(*args, **kwargs)
         self._limits, self._forms = limits, _forms(limits.max_magnitude)
-        self._allowance = limits.message_burst
-        self._counted_at = time.monotonic()
+        self._allowance = Allowance(limits.message_burst, limits.messages_per_second)
         self._closing: asyncio.Task[None] | None = None
         self._unfinished = unfinished
         self._deadline: asyncio.TimerHandle | None = None
@@ -144,7 +144,7 @@ class SecureConnection(CountedConnection):
     def process_event(self, event: Any) -> None:
         """Count all frames, including pings and fragments, and drop those that exceed the rate."""
         if isinstance(event, Frame) and event.opcode is not Opcode.CLOSE:
-            if self._closing is None and not self._affords(event):
+            if self._closing is None and not self._allowance.take(1 + len(event.data) / LONG):
                 warn_once(self, "a flood of messages")
                 reason = f"more than {self._limits.messages_per_second:g} messages per second"
                 self._closing = self.loop.create_task(
@@ -216,14 +216,6 @@ class SecureConnection(CountedConnection):
         if self._deadline is not None:
             self._deadline.cancel()
             self._deadline = None
-
-    def _affords(self, frame: Frame) -> bool:
-        now = time.monotonic()
-        earned = (now - self._counted_at) * self._limits.messages_per_second
-        self._allowance = min(self._allowance + earned, self._limits.message_burst)
-        self._counted_at = now
-        self._allowance -= 1 + len(frame.data) / 4096
-        return self._allowance >= 0
 
     async def recv(self, decode: bool | None = None) -> Any:
         while True:

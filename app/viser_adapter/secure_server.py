@@ -181,10 +181,9 @@ def _guarded_serve(
         async def answer_request(connection: SecureConnection, request: Request) -> Response | None:
             await _opened(requests)
             without_repeats(request, connection.is_head)
-            if refusal := requests.refusal(request, connection.peer):  # or the health report
+            refusal = requests.refusal(request, connection.peer)  # or the health report
+            if refusal := refusal or counts.refusal(connection, request):
                 return connection.respond(*refusal)
-            if not counts.admits(connection, request):
-                return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n")
             if elsewhere := to_page(connection, request):
                 return elsewhere
             connection.place, request.path = place_of(request.path), without_place(request.path)

@@ -9,7 +9,8 @@ import viser
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.page_context import ClassSeat
-from onpath.app.page.panels.widgets import on_slow_press, refused
+from onpath.app.page.panels.slow_presses import on_slow_press
+from onpath.app.page.panels.widgets import refused
 from onpath.lessons.words import Words
 
 

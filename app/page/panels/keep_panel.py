@@ -10,7 +10,8 @@ from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.page_context import PageContext
-from onpath.app.page.panels.widgets import Post, note, on_press, on_slow_press, refused
+from onpath.app.page.panels.slow_presses import on_slow_press
+from onpath.app.page.panels.widgets import Post, note, on_press, refused
 from onpath.lessons.words import Words
 
 

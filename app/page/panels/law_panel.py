@@ -14,7 +14,8 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.law_help import law_help
 from onpath.app.page.panels.own_law_box import OwnLawBox
-from onpath.app.page.panels.widgets import Post, add_menu, on_menu_press
+from onpath.app.page.panels.slow_presses import on_menu_press
+from onpath.app.page.panels.widgets import Post, add_menu
 from onpath.lessons.benches import law_label, law_text
 from onpath.lessons.words import Words
 from onpath.models.control.benches import BENCHES

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import math
-import threading
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any, TypeVar
-from weakref import WeakKeyDictionary
 
 import viser
 
-from onpath.app.common.error_log import log_error
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import Command, SetParameter
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues
-from onpath.app.page.build_queue import in_turn
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
@@ -91,51 +87,6 @@ def add_buttons(
     group = gui.add_button_group(label, list(options))
     on_press(group, lambda: act(options[group.value]))
     return group
-
-
-_slow_presses: WeakKeyDictionary[Any, threading.Lock] = WeakKeyDictionary()
-"""Per tab; accessed on viser's event loop."""
-
-
-def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
-    """Call `act()` in a separate thread when the button is pressed.
-
-    It may block or rebuild the page. Presses from the same tab are dropped while it runs.
-    """
-
-    def run(under_way: threading.Lock) -> None:
-        try:
-            act()
-        except Exception as error:
-            log_error(error)
-        finally:
-            under_way.release()
-
-    async def pressed(event: viser.GuiEvent[Any]) -> None:
-        under_way = _slow_presses.setdefault(event.client or handle, threading.Lock())
-        if under_way.acquire(blocking=False):
-            threading.Thread(target=run, args=[under_way], name="press", daemon=True).start()
-
-    handle.on_click(pressed)
-
-
-def on_menu_press(handle: Any, open_menu: Callable[[], Callable[[], None]]) -> None:
-    """Open a window when the button is pressed, in place of the one that it opened before.
-
-    A browser does not say that its user has closed a window, and a press may come at any rate.
-
-    Args:
-        open_menu: opens the window, and returns what closes it; called in a separate thread.
-    """
-    opened: list[Callable[[], None]] = []
-
-    def press() -> None:
-        with in_turn():
-            while opened:
-                opened.pop()()
-            opened.append(open_menu())
-
-    on_slow_press(handle, press)
 
 
 def close_once(window: Any) -> None:

@@ -45,7 +45,7 @@ def test_both_tests_are_in_the_overview_and_open_from_it(
     title = TEST.front.title
     for key in ("test.title_before", "test.title_after"):
         student.read(lambda key=key: student.sees(ENGLISH(key, title=title)))
-    assert student.count(ENGLISH("test.open")) == 2
+    student.read(lambda: student.count(ENGLISH("test.open")) == 2)
     student.set(ENGLISH("test.open"), True)  # the one that was added last
     wait_for(lambda: lab.lessons.progress.lesson == AFTER)
 

@@ -18,7 +18,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.strokes.sketch_line import MOST, SketchLine
 from onpath.app.server.lab_server import LabServer
-from onpath.app.simulation.slow_updates import FREQUENT
+from onpath.app.simulation.slow_updates import INTERVALS
 from onpath.lessons.schema import Sketch
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support import waiting
@@ -60,7 +60,7 @@ class Page:
         """A frame as in the simulation thread, with a slow update if it is due, or `whole`."""
         self._showing = True
         self.lab.drain()
-        if whole or self.frame % FREQUENT == 0:
+        if whole or self.frame % min(INTERVALS.values()) == 0:
             self.view.refresh(self.lab, 1.0)
         self.view.show(self.lab, self.frame, 2.0)
         self.view.send()

@@ -14,7 +14,7 @@ from onpath.app.common.access_codes import new_code
 from onpath.app.common.throttle import TRIES
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.page.panels.widgets import on_slow_press
+from onpath.app.page.panels.slow_presses import on_slow_press
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import SimulationThread

@@ -198,3 +198,10 @@ def test_nobody_holds_more_than_a_share_and_the_oldest_goes_first(
             mine = [each for each, whose in held if whose == where]
             assert len(mine) <= 3
             assert holders.has_room(where) == (len(mine) < 3 and len(held) < 5)
+
+
+def test_an_address_that_opens_too_many_tabs_is_refused_those_and_nothing_else() -> None:
+    with serving(Limits(tab_burst_each=3, tabs_per_second_each=1e-6)) as site:
+        assert [site.websocket(ONE) for _ in range(4)] == [101, 101, 101, 429]
+        assert site.ask("/index.html", ONE) == 200
+        assert site.websocket(OTHER) == 101

@@ -29,6 +29,7 @@ from websockets.frames import Frame, Opcode
 from websockets.typing import Origin, Subprotocol
 
 from onpath.app.common import error_log
+from onpath.app.common.allowance import Allowance
 from onpath.app.viser_adapter import secure_connection
 from onpath.app.viser_adapter.compression import LEVEL, compress, stored_head
 from onpath.app.viser_adapter.message_filter import MessageFilter
@@ -612,8 +613,9 @@ def test_a_brisk_but_honest_client_is_served(monkeypatch: pytest.MonkeyPatch) ->
     And so for longer than a burst can carry.
     """
     limits = Limits(message_burst=30)
-    clock = SimpleNamespace(monotonic=lambda: clock.now, now=0.0)
-    monkeypatch.setattr(secure_connection, "time", clock)
+    clock = SimpleNamespace(now=0.0)
+    timed = partial(Allowance, clock=lambda: clock.now)
+    monkeypatch.setattr(secure_connection, "Allowance", timed)
     brisk = Lab(limits=limits)
     browser = Browser(brisk)
     for i in range(200):
