@@ -9,8 +9,8 @@ from __future__ import annotations
 from math import inf
 
 STRIDES = (2.0, 2.5, 3.0, 4.0)  # frames of simulation per frame of display
-ENOUGH = (0.4, 0.5, 0.65)  # load up to which the first, second, third stride is chosen
-BUSY = (0.5, 0.65, 0.8)  # load that is too much for the first, second, third
+ENOUGH = (0.4, 0.65, 0.75)  # load up to which the first, second, third stride is chosen
+BUSY = (0.5, 0.8, 0.9)  # load that is too much for the first, second, third
 FADING = 1 / 60  # low-pass gain of the measured load, per frame
 BEHIND, HURRIED = 1 / 60, 8.0  # [s] of lateness from which this stride is used
 WORTH = 0.1  # share of time spent on drawing above which drawing less helps
