@@ -90,15 +90,15 @@ class Forget:
         print(f"deleted: {gone.labs} labs, {len(gone.files)} files moved aside as broken")
 
 
-class Runs(Protocol):
-    """A command with its options."""
+class Subcommand(Protocol):
+    """A subcommand with its options."""
 
     def run(self) -> int | None:
-        """Do what it says; returns the exit code, None for 0."""
+        """Run it; return the exit code, None for 0."""
         ...
 
 
-COMMANDS: dict[str, type[Runs]] = {
+COMMANDS: dict[str, type[Subcommand]] = {
     "serve": Serve,
     "experiment": ExperimentCommand,
     "compare": CompareCommand,
@@ -147,8 +147,8 @@ def unknown_command(name: str) -> str:
     return f"unknown command {name!r}: there are {', '.join(COMMANDS)}"
 
 
-def _parse(arguments: list[str]) -> Runs:
-    """The command that is wanted. tyro reads its options alone, which takes half the time."""
+def _parse(arguments: list[str]) -> Subcommand:
+    """Parse a command line. Only the options of its subcommand are set up, so it starts sooner."""
     complaint, (name, *options) = io.StringIO(), arguments
     try:
         with contextlib.redirect_stderr(complaint):

@@ -14,28 +14,49 @@ from onpath.app.common.error_log import log_error
 from onpath.app.page.notice import show_notice
 from onpath.lessons.words import Words
 
-one_at_a_time = threading.Lock()
-"""Held while a page is built or rebuilt, but never while waiting for a browser."""
-MOST_REST = 0.5  # [s], longest pause after a page; the pause is as long as the build, up to this
-REST = 2.0  # pause after a rebuilt page or a window, in builds: to send it takes time as well
+MOST_REST = (
+    0.5  # [s], longest pause after a new page; the pause is as long as the build, up to this
+)
+REST = 2.0  # factor of the pause after a rebuilt page or a window, which takes time to send as well
 FEW = 2  # from so many clients ahead on, a waiting client is shown a notice
+
+
+class BuildLock:
+    """A lock, which may also be kept from the next thread for a while. Use it with `with`."""
+
+    def __init__(self) -> None:
+        self._lock, self._free_at = threading.Lock(), 0.0
+
+    def __enter__(self) -> None:
+        self._lock.acquire()
+        rest = self._free_at - time.monotonic()
+        if rest > 0:
+            time.sleep(rest)
+
+    def __exit__(self, *_: object) -> None:
+        self._lock.release()
+
+    def pause(self, seconds: float) -> None:
+        """Make the next thread wait for so long from now. Call it while holding the lock."""
+        self._free_at = time.monotonic() + seconds
+
+
+one_at_a_time = BuildLock()
+"""Held while a page is built or rebuilt, but never while waiting for a browser."""
 
 
 @contextmanager
 def in_turn() -> Iterator[None]:
     """Build part of a page, one at a time and with a pause, however many tabs ask for it.
 
-    Only the next build waits for the end of the pause, not whoever has built this one.
+    Only the next build waits for the end of the pause.
     """
-    one_at_a_time.acquire()
-    begun = time.monotonic()
-    try:
-        yield
-    finally:
-        rest = REST * min(time.monotonic() - begun, MOST_REST)
-        ending = threading.Timer(rest, one_at_a_time.release)
-        ending.daemon = True
-        ending.start()
+    with one_at_a_time:
+        begun = time.monotonic()
+        try:
+            yield
+        finally:
+            one_at_a_time.pause(REST * min(time.monotonic() - begun, MOST_REST))
 
 
 class BuildQueue:

@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 CODE = re.compile(r"[a-z0-9]{12}")
 MOST_CODES = 8
 KEPT = 15 * 60.0  # [s] that an abandoned session is kept
-RECALLED = 60.0  # [s] that it keeps its last minute, which is most of its memory
+HISTORY_KEPT = 60.0  # [s] that its history is kept, which is most of its memory
 MOST_ABANDONED = 60
 
 
@@ -253,7 +253,7 @@ class LabRegistry:
         """
         with self._lock:
             left = [e for e in self._entries.values() if e.client is None]
-            left = [e for e in left if self.clock() - e.left > RECALLED]
+            left = [e for e in left if self.clock() - e.left > HISTORY_KEPT]
         sessions = [e.scheduled.session for e in left]
         histories = [s.history for s in sessions if s.viewing is None and len(s.history)]
 

@@ -25,7 +25,7 @@ class MemoryRelease:
     have ended, or when a tab has been closed and no other one for a while.
 
     Args:
-        forget: called at each look, to drop what is no longer needed.
+        forget: deletes what is no longer needed; called at each look.
     """
 
     def __init__(self, forget: Callable[[], None]) -> None:

@@ -34,7 +34,7 @@ SELDOM = (1_000, 4, 1_000)  # allocations before a collection, which stops all t
 HANDOVER = 1e-4  # [s] that another thread goes on once this one wants the interpreter back
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
 ALL_COMMANDS, FEWEST = 8e-3, 2e-3  # [s] of a frame for the commands of all labs: most, and least
-MOST = 0.6  # share of a frame up to which slow updates are made; the network needs up to 0.25
+MOST = 0.6  # share of a frame up to which slow updates are made; the network takes up to 0.25
 NEVER = -1_000_000  # number of a frame long ago
 ANSWER = 30.0  # [s] that another thread waits to be called at the beginning of a frame
 

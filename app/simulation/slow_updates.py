@@ -13,8 +13,8 @@ from typing import Protocol
 
 from onpath.app.simulation.display_rate import STRIDES
 
-INTERVALS = {10: 6, 40: 8}  # frames between updates of a page, by the number of pages up to which
-MANY, RARE = 12, 15  # the same for more pages, and under load
+INTERVALS = {10: 6, 40: 8}  # frames between updates of a page, while there are at most so many
+MANY, RARE = 12, 15  # the same with more pages, and under load
 SLOWEST = 100  # frames in which every page gets an update, whatever it costs
 SHARE = 0.25  # of a frame, at most, for all slow updates
 

@@ -22,7 +22,7 @@ from onpath.app.viser_adapter.message_filter import Limits
 _log = logging.getLogger("websockets.server")
 
 T = TypeVar("T")
-MOST_ADDRESSES = 4096  # of which is known how many tabs they opened lately
+MOST_ADDRESSES = 4096  # whose new tabs are counted
 
 
 class PerAddress(Generic[T]):
@@ -168,11 +168,11 @@ class ConnectionLimits:
         return None
 
     def _allowance_of(self, address: str) -> Allowance:
-        """Of tabs that an address may open; those of addresses not seen for long are forgotten."""
+        """How many tabs an address may open. The addresses seen longest ago are forgotten."""
         own = self._tabs.pop(address, None)
         if own is None:
             own = Allowance(self._limits.tab_burst_each, self._limits.tabs_per_second_each)
-        self._tabs[address] = own  # the latest
+        self._tabs[address] = own  # now the last in order
         if len(self._tabs) > MOST_ADDRESSES:
             del self._tabs[next(iter(self._tabs))]
         return own
@@ -186,10 +186,9 @@ class ConnectionLimits:
 class CountedConnection(ServerConnection):
     """A connection that counts towards the limits.
 
-    Once it has ended it does not refer to itself, as one of websockets does by its logger, its task
-    of pings, its choice of a protocol and the error of its handshake, and asyncio's transport by
-    what it calls to read. So their memory is free at once, and not only after a complete
-    collection, until which an attacker can open and close 30,000 connections.
+    When it ends, its reference cycles are broken, so that its memory is freed at once. Otherwise
+    that would wait for the next full garbage collection, and an attacker can open and close tens of
+    thousands of connections before it.
 
     Attributes:
         peer: the address at its other end, which may be a proxy's.
@@ -204,7 +203,7 @@ class CountedConnection(ServerConnection):
 
     def __init__(self, *args: Any, connections: ConnectionLimits, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self.logger = self.protocol.logger = logging.LoggerAdapter(_log, {})
+        self.logger = self.protocol.logger = logging.LoggerAdapter(_log, {})  # holds no connection
         self._connections = connections
         self.peer = self.address = self.place = ""
 
@@ -223,14 +222,17 @@ class CountedConnection(ServerConnection):
         if response is not None and response.status_code == HTTPStatus.SWITCHING_PROTOCOLS:
             CountedConnection.tabs_ended += 1
         super().connection_lost(exc)
+        self._break_cycles()
+
+    def _break_cycles(self) -> None:
         self.keepalive_task = None
-        vars(self.protocol).pop("select_subprotocol", None)
-        vars(self.transport).pop("_read_ready_cb", None)
+        vars(self.protocol).pop("select_subprotocol", None)  # a function that holds the connection
+        getattr(self.transport, "__dict__", {}).pop("_read_ready_cb", None)  # its own bound method
 
     async def handshake(self, *args: Any, **kwargs: Any) -> None:
         """See `ServerConnection`."""
         try:
             await super().handshake(*args, **kwargs)
         except BaseException:
-            self.protocol.handshake_exc = None
+            self.protocol.handshake_exc = None  # its traceback holds the connection
             raise

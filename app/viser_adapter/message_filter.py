@@ -38,8 +38,8 @@ class Limits:
         max_connections_each: per address; sixty students behind one address have five each.
         max_waiting: further connections that have not sent a complete request yet.
         max_waiting_each: of those, per address.
-        tabs_per_second_each: that one address may open in the long run.
-        tab_burst_each: that it may open at once: a class whose pages are all loaded again.
+        tabs_per_second_each: sustained rate of new tabs, per address.
+        tab_burst_each: new tabs at once, per address; a class that reloads all its pages has fewer.
         silence: time after which a browser is pinged, and time that it has to answer, [s].
         farewell: time that a browser has to acknowledge that its connection is closed, [s].
     """

@@ -36,7 +36,7 @@ FROM_BROWSER: tuple[type[Any], ...] = (
 )
 GESTURES = (wire.ViewerCameraMessage, wire.SceneNodeDragMessage, wire.GuiUpdateMessage)
 """Handled at once: a browser may send many in succession, and no handler of them waits."""
-LONG = 4096  # [B]; a message counts once more for each
+LONG = 4096  # [B]; a message counts once more for every so many bytes
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 
 

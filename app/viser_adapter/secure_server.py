@@ -181,9 +181,9 @@ def _guarded_serve(
         async def answer_request(connection: SecureConnection, request: Request) -> Response | None:
             await _opened(requests)
             without_repeats(request, connection.is_head)
-            refusal = requests.refusal(request, connection.peer)  # or the health report
-            if refusal := refusal or counts.refusal(connection, request):
-                return connection.respond(*refusal)
+            answered = requests.refusal(request, connection.peer)  # or the health report
+            if answer := answered or counts.refusal(connection, request):
+                return connection.respond(*answer)
             if elsewhere := to_page(connection, request):
                 return elsewhere
             connection.place, request.path = place_of(request.path), without_place(request.path)

@@ -1,4 +1,4 @@
-"""Presses that may block or rebuild the page: each in a thread, and not too many of a tab."""
+"""Button presses that may block or rebuild the page: each in its own thread, few for each tab."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MOST, APART = 5, 0.25
 
 
 class Presses:
-    """Those of one tab: one at a time. To be used on one event loop.
+    """Limits the presses of one tab: one at a time, and few per second. Use it on one event loop.
 
     Args:
         clock: monotonic time, [s].
@@ -47,8 +47,8 @@ _presses: WeakKeyDictionary[Any, Presses] = WeakKeyDictionary()
 def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
     """Call `act()` in a separate thread when the button is pressed.
 
-    It may block or rebuild the page. Presses from the same tab are dropped while it runs, and those
-    that are too many, which only a program makes.
+    It may block or rebuild the page. A press from the same tab is dropped while it runs, or if
+    there are more of them than any user makes; see `MOST`.
     """
 
     def run(presses: Presses) -> None:

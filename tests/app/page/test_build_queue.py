@@ -56,6 +56,7 @@ class Builds:
         monkeypatch.setattr(Page, "_build", build)
         clock = SimpleNamespace(monotonic=count().__next__, sleep=self.rests.append)
         monkeypatch.setattr(build_queue, "time", clock)
+        monkeypatch.setattr(build_queue.one_at_a_time, "_free_at", 0.0)
 
 
 @pytest.fixture

@@ -11,10 +11,10 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.looking_back import look_back
 from onpath.app.server.lab_registry import (
     CODE,
+    HISTORY_KEPT,
     KEPT,
     MOST_ABANDONED,
     MOST_CODES,
-    RECALLED,
     LabRegistry,
     RegisteredLab,
 )
@@ -191,7 +191,7 @@ def test_a_lab_that_was_left_a_while_ago_keeps_no_history(monkeypatch: pytest.Mo
     desk.sessions.leave(left)
     desk.sessions.leave(paused)
     lengths: list[list[bool]] = []
-    for seconds in (0.0, RECALLED + 1):
+    for seconds in (0.0, HISTORY_KEPT + 1):
         desk.now += seconds
         desk.sessions.free_memory()
         histories = [entry.scheduled.session.history for entry in (used, gone, looking)]
