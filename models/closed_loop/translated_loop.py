@@ -10,11 +10,15 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loops import CompiledLoop
+
+if TYPE_CHECKING:
+    from llvmlite.binding import TargetMachine
 
 _LIBRARY = ("sin", "cos", "log", "tanh")  # LLVM calls these from the C library
 OPERATIONS = {
@@ -204,12 +208,21 @@ def translate_loop(kernel: Kernel) -> CompiledLoop:
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    machine = llvm.Target.from_default_triple().create_target_machine(
-        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten()
-    )
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(translate(kernel)), machine)
+    module = llvm.parse_assembly(translate(kernel), llvm.create_context())
+    code = _machine().emit_object(module)
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     missing = [name for name in _LIBRARY if llvm.address_of_symbol(name) is None]
     if missing:  # otherwise LLVM would abort the process
         raise RuntimeError(f"not found in this process: {', '.join(missing)}")
     engine.finalize_object()
     return CompiledLoop(kernel, engine.get_function_address("onpath_run"), engine)
+
+
+def _machine() -> TargetMachine:
+    """A compiler for this processor. What has compiled something keeps 0.8 MB for that."""
+    import llvmlite.binding as llvm
+
+    return llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten()
+    )

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 
 import casadi as ca
 import numpy as np
@@ -116,3 +117,17 @@ assert not any("llvm" in name for name in sys.modules)
 """
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     subprocess.run([sys.executable, "-c", script], check=True, env=environment)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads the resident memory from /proc")
+def test_a_compiled_loop_keeps_its_machine_code_and_not_its_compiler() -> None:
+    kernel = kernel_of(rigid_five_bar(), Kind("path_following"))
+    loops = [translate_loop(kernel) for _ in range(4)]
+    before = resident()
+    loops += [translate_loop(kernel) for _ in range(24)]
+    assert resident() - before < 24 * 0.6e6  # [B]
+
+
+def resident() -> int:
+    """Memory of this process, [B]."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
