@@ -19,12 +19,12 @@ from onpath.models.arrays import Array
 
 SECONDS = 60.0
 LONGEST = 17  # maximum ticks in a segment
-RECENT = 12.0  # [s] stored at the full rate; older segments are merged
+RECENT = 10.0  # [s] stored at the full rate, which plots show; older segments are merged
 COARSE = 4 * LONGEST  # maximum ticks in an older segment
 MOST = 7200
 BATCH = 16  # maximum frames to collect before they are stored together, which is much faster
-FIRST = 256  # initial capacity, in segments
-FULL = 0.9  # fraction of the capacity in use after which it is enlarged
+MORE = 256  # segments by which the capacity is enlarged
+FULL = 0.9  # fraction of it in use after which that is done
 
 
 class History:
@@ -172,7 +172,7 @@ class History:
         if len(kept):
             old["ticks"][kept] = np.add.reduceat(old["ticks"][: self._end], kept)
         if len(kept) + frames > FULL * size:
-            rows, robots = max(2 * size, FIRST), samples.shape[1]
+            rows, robots = size + MORE, samples.shape[1]
             width = old["state"].shape[1] if old else 0
             self._columns = {
                 "time": np.empty(rows),

@@ -8,37 +8,66 @@ from operator import is_
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from onpath.app.lab.loop_states import Place
+from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 
+FEW = 8  # settings that are stored one by one
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Input:
+
+class Input(Struct, frozen=True, eq=False, gc=False):
     """The input of one robot; the same object until something changes.
+
+    Not examined for garbage, since labs have many; nothing in it refers to it. While somebody
+    pulls, a lab makes one per frame, so that it stores only where its settings differ from earlier
+    ones.
 
     Attributes:
         kind: of the loop.
-        settings: of the loop.
+        base: settings of an earlier input, or its own.
         frozen: whether the robot has diverged and stands still.
         size: length of the part of the loop's state that it changes, which is recorded.
         parameters: with which the robot was made, None if that does not matter.
         rest: length of the rest, which a loop of another kind changes; restored as 0.
+        places, values: where the settings differ from `base`, uint16, and how, float64.
     """
 
     kind: Kind
-    settings: np.ndarray
+    base: np.ndarray
     frozen: bool
     size: int
     rest: int = 0
     parameters: Parameters | None = None
+    places: bytes = b""
+    values: bytes = b""
+
+    @property
+    def settings(self) -> Array:
+        """Settings of the loop."""
+        if not self.places:
+            return self.base
+        settings = self.base.copy()
+        settings[np.frombuffer(self.places, np.uint16)] = np.frombuffer(self.values)
+        return settings
+
+    def like(self, earlier: Input) -> Input:
+        """This input, with the base of an earlier one if its settings differ in few places."""
+        base = earlier.base
+        if base.shape != self.base.shape:
+            return self
+        places = np.flatnonzero(base.view(np.int64) != self.base.view(np.int64))
+        if len(places) > FEW:
+            return self
+        given = places.astype(np.uint16).tobytes(), self.base[places].tobytes()
+        return replace(self, base=base, places=given[0], values=given[1])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Inputs:
-    """All inputs of a segment.
+class Inputs(Struct, frozen=True, eq=False, gc=False):
+    """All inputs of a segment. Not examined for garbage, as `Input`.
 
     Attributes:
         curve: the path.

@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 
+from msgspec import Struct
+
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.history import History
 from onpath.models.paths.curves import Curve
 
 
-@dataclass(frozen=True, slots=True)
-class LabEvent:
-    """A user action or an incident.
+class LabEvent(Struct, frozen=True, gc=False):
+    """A user action or an incident. Not examined for garbage, since labs have many.
 
     Attributes:
         run: number of resets before it.

@@ -138,7 +138,7 @@ def _setting(robot: Robot, drive: Drive, name: str) -> Array:
 def _rows(robot: Robot, segments: list[Segment]) -> Array:
     """Recompute the right robot's log rows, in one call for segments with the same inputs."""
     rows = list[Array]()
-    runs = groupby(segments, lambda s: (id(s.drives[MEASURED].settings), id(s.curve)))
+    runs = groupby(segments, lambda s: (s.drives[MEASURED].settings.tobytes(), id(s.curve)))
     for _, group in runs:
         members = list(group)
         drive, table = members[0].drives[MEASURED], members[0].curve.table()

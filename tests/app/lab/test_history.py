@@ -17,7 +17,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.history import COARSE, LONGEST, MOST, RECENT, SECONDS, History
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_states import single
-from onpath.app.lab.segments import HistoryFrame, Input, Inputs, Segment
+from onpath.app.lab.segments import FEW, HistoryFrame, Input, Inputs, Segment
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.closed_loop.loop_kind import Kind
@@ -365,3 +365,33 @@ def test_a_page_may_be_built_while_the_robot_is_changed(
     size = lab.session.sample_layout.size
     do(lab, c.ChooseRobot(robot))
     assert [samples.shape[2] for samples in seen] == [size] and len(seen[0])
+
+
+@given(
+    st.lists(st.floats(allow_nan=False), min_size=12, max_size=12),
+    st.dictionaries(st.integers(0, 11), st.floats(allow_nan=False)),
+)
+def test_an_input_stores_its_settings_exactly(
+    before: list[float], changes: dict[int, float]
+) -> None:
+    """To the last bit, also the sign of zero, whether many of them have changed or few."""
+    base, later = np.array(before), np.array(before)
+    later[list(changes)] = list(changes.values())
+    made = Input(KIND, later, False, 1).like(Input(KIND, base, False, 1))
+    assert made.settings.tobytes() == later.tobytes()
+    assert made.base is (base if len(changes) <= FEW else made.base)
+
+
+def test_inputs_that_differ_in_the_push_alone_share_their_settings() -> None:
+    lab = new_lab(0.1)
+    run_ = lab.session.runs[FOLLOWER]
+    for k in range(5):
+        do(lab, c.Grab(FOLLOWER, np.array([0.01 * k, 0.15])))
+        lab.session.simulate(17)
+        assert np.array_equal(run_.input().settings, run_.settings)
+    drives = [s.drives[FOLLOWER] for s in lab.session.history.all()[-4:]]
+    assert len({d.settings.tobytes() for d in drives}) == 4
+    assert (
+        len({id(i.of[FOLLOWER].base) for i in lab.session.history.copy().columns["inputs"][-4:]})
+        == 1
+    )
