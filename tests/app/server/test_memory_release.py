@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 
 from onpath.app.bench.raw_socket import knock
-from onpath.app.server.memory_release import CALM, MANY, MemoryRelease
+from onpath.app.server import memory_release
+from onpath.app.server.memory_release import CALM, MANY, PARTIAL, MemoryRelease
 from onpath.app.simulation.simulation_thread import SELDOM
 from onpath.app.viser_adapter.connection_limits import CountedConnection
 from onpath.app.viser_adapter.secure_server import make_server
@@ -34,6 +35,7 @@ def as_served() -> Iterator[None]:
     gc.collect()
     gc.set_threshold(*SELDOM)
     yield
+    gc.unfreeze()
     gc.set_threshold(*before)
 
 
@@ -76,6 +78,41 @@ def test_what_a_tab_leaves_is_collected_once_no_other_is_closed(
     for _ in range(3 * CALM):
         memory.look()
     assert left() is not None  # nobody has left since
+
+
+def test_pages_that_are_built_anew_are_collected_although_nobody_leaves(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(memory_release, "MUCH", 1_000)
+    memory = MemoryRelease(lambda: None)
+    garbage = old_garbage()
+    memory.look()
+    assert garbage() is not None
+    kept = [Circle() for _ in range(1_000)]
+    memory.look()
+    assert garbage() is None and kept
+
+
+def test_what_was_in_use_at_a_collection_is_examined_by_complete_ones_only(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(CountedConnection, "ended", CountedConnection.ended)
+    memory = MemoryRelease(lambda: None)
+
+    def collect() -> None:
+        CountedConnection.ended += MANY
+        memory.look()
+
+    thing, old = Circle(), gc.get_freeze_count()
+    collect()
+    assert gc.get_freeze_count() > old
+    left = weakref.ref(thing)
+    del thing
+    for _ in range(PARTIAL - 1):
+        collect()
+        assert left() is not None
+    collect()
+    assert left() is None
 
 
 @pytest.mark.parametrize(
