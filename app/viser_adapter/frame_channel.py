@@ -150,7 +150,10 @@ class FrameChannel:
 
     def _enqueue(self, *messages: Message | GroupUpdate) -> None:
         for message in expanded(messages):
-            self._queue(message)
+            # viser wakes the sending task from this thread; if that wakes up meanwhile, asyncio
+            # raises "deque mutated during iteration". The message has been queued by then.
+            with suppress(RuntimeError):
+                self._queue(message)
 
     def _packed(self) -> tuple[list[Message | GroupUpdate], bytes]:
         messages, self._messages = self._messages, []

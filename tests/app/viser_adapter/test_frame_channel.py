@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from threading import Event, Thread
+from threading import Event, Thread, get_ident
 from typing import Any
 
 import numpy as np
@@ -173,3 +173,23 @@ def test_a_page_is_not_told_what_it_has_just_said(server: viser.ViserServer) -> 
         buffer = client._websock_connection._state.message_buffer
         # A picture need not wait for what nobody gets.
         wait_for(lambda: not buffer.message_from_id, 30.0)
+
+
+def test_what_a_thread_tells_while_the_network_wakes_up_is_told(
+    server: viser.ViserServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Then asyncio's event raises an error in that thread, see `FrameChannel._enqueue`."""
+    with browser(server) as (client, socket):
+        FrameChannel(client)
+        event = client._websock_connection._state.message_buffer.message_event
+        wake, ours = event.set, get_ident()
+
+        def set_() -> None:
+            wake()
+            if get_ident() == ours:
+                raise RuntimeError("deque mutated during iteration")
+
+        monkeypatch.setattr(event, "set", set_)
+        for name in ("/0", "/1"):
+            client.scene.add_point_cloud(name, np.zeros((1, 3)), (0, 0, 0))
+        assert [name for frame in told_until(socket, "new /1") for name in frame]
