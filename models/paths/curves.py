@@ -197,7 +197,8 @@ def nearest(curve: Callable[[Array], Array], grid: Array, points: Array) -> tupl
     for _ in range(36):
         span = ratio * (high - low)
         left, right = high - span, low + span
-        nearer_left = squared(left) < squared(right)
+        at_left, at_right = np.split(squared(np.concatenate([left, right], axis=1)), 2, axis=1)
+        nearer_left = at_left < at_right
         low, high = np.where(nearer_left, low, left), np.where(nearer_left, right, high)
     theta = (low + high) / 2
     found = squared(theta)
