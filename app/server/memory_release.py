@@ -13,7 +13,7 @@ INTERVAL = 10.0  # [s] between looks
 MANY = 20  # connections
 MUCH = 100_000  # blocks of memory that Python has allocated; a page takes some 15,000
 CALM = 3  # looks
-PARTIAL = 3  # collections between complete ones
+GROWTH = 0.125  # of all blocks since the last complete collection, that makes another one worth it
 LARGE = 320_000  # [B]; more than what a connection reads at once, 256 KiB, as which that is made
 SPARE = 4_000_000  # [B]
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD, M_ARENA_MAX = -1, -3, -8  # of glibc's malloc.h
@@ -25,7 +25,7 @@ class MemoryRelease:
     What is kept of a tab or a page refers to itself, so that only a collection finds it. That stops
     all threads, with 40 labs for 0.3 s if it examines everything. Therefore whatever is left by one
     collection is not examined by the next ones ("frozen"), until a complete one is made: when a tab
-    has been closed and no other one for a while, and after some that were not complete.
+    has been closed and no other one for a while, or when an eighth more is allocated than after it.
 
     Args:
         forget: deletes what is no longer needed; called at each look.
@@ -34,8 +34,8 @@ class MemoryRelease:
     def __init__(self, forget: Callable[[], None]) -> None:
         self._forget = forget
         self._tabs_seen, self._calm = CountedConnection.tabs_ended, 0
-        self._partial = 0
         self._remember()
+        self._tabs_ended, self._after_complete = self._tabs_seen, self._blocks
 
     def look(self) -> None:
         """Collect garbage, and give free memory back, if it is time to."""
@@ -44,22 +44,22 @@ class MemoryRelease:
         self._calm = self._calm + 1 if tabs_ended == self._tabs_seen else 0
         self._tabs_seen = tabs_ended
         is_calm = tabs_ended > self._tabs_ended and self._calm >= CALM
-        is_much = sys.getallocatedblocks() > self._blocks + MUCH
-        if is_calm or is_much or ended >= self._ended + MANY:
-            self._collect(is_complete=is_calm or self._partial >= PARTIAL)
-            self._remember()
-
-    def _remember(self) -> None:
-        self._ended, self._tabs_ended = CountedConnection.ended, CountedConnection.tabs_ended
-        self._blocks = sys.getallocatedblocks()
-
-    def _collect(self, is_complete: bool) -> None:
-        self._partial = 0 if is_complete else self._partial + 1
-        if is_complete:
+        blocks = sys.getallocatedblocks()
+        if is_calm or blocks > (1 + GROWTH) * self._after_complete:
             gc.unfreeze()
+            self._collect()
+            self._tabs_ended, self._after_complete = tabs_ended, self._blocks
+        elif blocks > self._blocks + MUCH or ended >= self._ended + MANY:
+            self._collect()
+
+    def _collect(self) -> None:
         gc.collect()
         gc.freeze()
         _call_glibc("malloc_trim", 0)
+        self._remember()
+
+    def _remember(self) -> None:
+        self._ended, self._blocks = CountedConnection.ended, sys.getallocatedblocks()
 
 
 def limit_heap() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import socket
+import sys
 import weakref
 from collections.abc import Iterator
 from typing import Any
@@ -12,7 +13,7 @@ import pytest
 
 from onpath.app.bench.raw_socket import knock
 from onpath.app.server import memory_release
-from onpath.app.server.memory_release import CALM, MANY, PARTIAL, MemoryRelease
+from onpath.app.server.memory_release import CALM, GROWTH, MANY, MemoryRelease
 from onpath.app.simulation.simulation_thread import SELDOM
 from onpath.app.viser_adapter.connection_limits import CountedConnection
 from onpath.app.viser_adapter.secure_server import make_server
@@ -80,6 +81,27 @@ def test_what_a_tab_leaves_is_collected_once_no_other_is_closed(
     assert left() is not None  # nobody has left since
 
 
+def test_many_tabs_that_are_closed_together_are_collected_once_no_other_one_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Also if a collection that was not complete has come before."""
+    for name in ("ended", "tabs_ended"):
+        monkeypatch.setattr(CountedConnection, name, getattr(CountedConnection, name))
+    memory = MemoryRelease(lambda: None)
+    page = Circle()
+    CountedConnection.ended += MANY
+    memory.look()  # the page is in use
+    left = weakref.ref(page)
+    del page
+    CountedConnection.ended += MANY
+    CountedConnection.tabs_ended += MANY
+    for _ in range(CALM):
+        memory.look()
+        assert left() is not None
+    memory.look()
+    assert left() is None
+
+
 def test_pages_that_are_built_anew_are_collected_although_nobody_leaves(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -108,11 +130,12 @@ def test_what_was_in_use_at_a_collection_is_examined_by_complete_ones_only(
     assert gc.get_freeze_count() > old
     left = weakref.ref(thing)
     del thing
-    for _ in range(PARTIAL - 1):
-        collect()
-        assert left() is not None
     collect()
-    assert left() is None
+    assert left() is not None
+    monkeypatch.setattr(memory_release, "MUCH", 10**9)
+    kept = [Circle() for _ in range(int(GROWTH * sys.getallocatedblocks()))]
+    memory.look()
+    assert left() is None and kept
 
 
 @pytest.mark.parametrize(
