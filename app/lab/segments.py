@@ -22,9 +22,8 @@ FEW = 8  # settings that are stored one by one
 class Input(Struct, frozen=True, eq=False, gc=False):
     """The input of one robot; the same object until something changes.
 
-    Not examined for garbage, since labs have many; nothing in it refers to it. While somebody
-    pulls, a lab makes one per frame, so that it stores only where its settings differ from earlier
-    ones.
+    While somebody pulls, a lab makes one in every frame. Therefore it stores only where its
+    settings differ from earlier ones, and is not examined for garbage; nothing in it refers to it.
 
     Attributes:
         kind: of the loop.

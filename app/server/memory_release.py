@@ -14,7 +14,7 @@ MANY = 20  # connections
 MUCH = 100_000  # blocks of memory that Python has allocated; a page takes some 15,000
 CALM = 3  # looks
 GROWTH = 0.125  # of all blocks since the last complete collection, that makes another one worth it
-LARGE = 320_000  # [B]; more than what a connection reads at once, 256 KiB, as which that is made
+LARGE = 320_000  # [B]; more than the 256 KiB that asyncio allocates whenever it reads
 SPARE = 4_000_000  # [B]
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD, M_ARENA_MAX = -1, -3, -8  # of glibc's malloc.h
 
@@ -66,8 +66,8 @@ def limit_heap() -> None:
     """Let the C library use one heap, not one for each thread, and none for large blocks.
 
     Large messages would leave holes in it that cannot be given back. What is free at its end is
-    given back from `SPARE` on: otherwise each message that is received changes the size of the heap
-    twice, which takes 14 µs. To be called before other threads begin.
+    given back from `SPARE` on; otherwise the heap would grow and shrink with each message that is
+    received, which takes 10 µs. To be called before other threads begin.
     """
     _call_glibc("mallopt", M_ARENA_MAX, 1)
     _call_glibc("mallopt", M_MMAP_THRESHOLD, LARGE)

@@ -210,6 +210,7 @@ def translate_loop(kernel: Kernel) -> CompiledLoop:
     llvm.initialize_native_asmprinter()
     module = llvm.parse_assembly(translate(kernel), llvm.create_context())
     code = _machine().emit_object(module)
+    # The engine's own module is empty and in the global context: any other one is freed too early.
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     missing = [name for name in _LIBRARY if llvm.address_of_symbol(name) is None]
@@ -220,7 +221,7 @@ def translate_loop(kernel: Kernel) -> CompiledLoop:
 
 
 def _machine() -> TargetMachine:
-    """A compiler for this processor. What has compiled something keeps 0.8 MB for that."""
+    """A compiler for this processor, new, since one that has been used keeps 0.8 MB."""
     import llvmlite.binding as llvm
 
     return llvm.Target.from_default_triple().create_target_machine(

@@ -23,7 +23,7 @@ from onpath.models.control.speed_limit import prepare_speed_limit
 from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
-MOST = 64  # loops that are kept besides those in use; 0.2 to 0.6 MB each
+MOST = 64  # loops that are kept besides those in use; 0.2 to 0.5 MB each
 
 
 class LoopCache:
