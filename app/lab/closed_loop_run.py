@@ -201,12 +201,12 @@ class ClosedLoopRun:
         """Current input, for the history; the same object until something changes."""
         frozen = self.diverged is not None
         if self._recorded is not self.settings or self._input.frozen != frozen:
-            self._input = self._made_input(frozen).like(self._input)
+            self._input = self._made_input(frozen).based_on(self._input)
         return self._input
 
     def _made_input(self, frozen: bool) -> Input:
         assert self._inputs is not None
-        self._recorded = self.settings
+        self._recorded = self.settings  # those of the input
         size, rest = self._kernel.changed, self._kernel.state.size - self._kernel.changed
         return Input(self.kind, self.settings, frozen, size, rest, self._inputs[0])
 

@@ -24,7 +24,7 @@ COARSE = 4 * LONGEST  # maximum ticks in an older segment
 MOST = 7200
 BATCH = 16  # maximum frames to collect before they are stored together, which is much faster
 MORE = 256  # segments by which the capacity is enlarged
-FULL = 0.9  # fraction of it in use after which that is done
+FULL = 0.9  # fraction of the capacity in use from which it is enlarged
 
 
 class History:

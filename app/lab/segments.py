@@ -53,7 +53,7 @@ class Input(Struct, frozen=True, eq=False, gc=False):
         settings[np.frombuffer(self.places, np.uint16)] = np.frombuffer(self.values)
         return settings
 
-    def like(self, earlier: Input) -> Input:
+    def based_on(self, earlier: Input) -> Input:
         """This input, with the base of an earlier one if its settings differ in few places."""
         base = earlier.base
         if base.shape != self.base.shape:

@@ -13,7 +13,7 @@ INTERVAL = 10.0  # [s] between looks
 MANY = 20  # connections
 MUCH = 100_000  # blocks of memory that Python has allocated; a page takes some 15,000
 CALM = 3  # looks
-GROWTH = 0.125  # of all blocks since the last complete collection, that makes another one worth it
+GROWTH = 0.125  # of the number of blocks, since the last complete collection
 LARGE = 320_000  # [B]; more than the 256 KiB that asyncio allocates whenever it reads
 SPARE = 4_000_000  # [B]
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD, M_ARENA_MAX = -1, -3, -8  # of glibc's malloc.h
@@ -24,8 +24,9 @@ class MemoryRelease:
 
     What is kept of a tab or a page refers to itself, so that only a collection finds it. That stops
     all threads, with 40 labs for 0.3 s if it examines everything. Therefore whatever is left by one
-    collection is not examined by the next ones ("frozen"), until a complete one is made: when a tab
-    has been closed and no other one for a while, or when an eighth more is allocated than after it.
+    collection is not examined by the next ones ("frozen"), until a complete one is made. That is
+    when a tab has been closed and no other one for a while, or when an eighth more is allocated
+    than after the last complete one.
 
     Args:
         forget: deletes what is no longer needed; called at each look.

@@ -221,7 +221,7 @@ def translate_loop(kernel: Kernel) -> CompiledLoop:
 
 
 def _machine() -> TargetMachine:
-    """A compiler for this processor, new, since one that has been used keeps 0.8 MB."""
+    """A new compiler for this processor; one that has been used holds 0.8 MB."""
     import llvmlite.binding as llvm
 
     return llvm.Target.from_default_triple().create_target_machine(

@@ -377,21 +377,20 @@ def test_an_input_stores_its_settings_exactly(
     """To the last bit, also the sign of zero, whether many of them have changed or few."""
     base, later = np.array(before), np.array(before)
     later[list(changes)] = list(changes.values())
-    made = Input(KIND, later, False, 1).like(Input(KIND, base, False, 1))
+    made = Input(KIND, later, False, 1).based_on(Input(KIND, base, False, 1))
     assert made.settings.tobytes() == later.tobytes()
-    assert made.base is (base if len(changes) <= FEW else made.base)
+    if len(changes) <= FEW:
+        assert made.base is base
 
 
 def test_inputs_that_differ_in_the_push_alone_share_their_settings() -> None:
     lab = new_lab(0.1)
-    run_ = lab.session.runs[FOLLOWER]
+    follower = lab.session.runs[FOLLOWER]
     for k in range(5):
         do(lab, c.Grab(FOLLOWER, np.array([0.01 * k, 0.15])))
         lab.session.simulate(17)
-        assert np.array_equal(run_.input().settings, run_.settings)
+        assert np.array_equal(follower.input().settings, follower.settings)
     drives = [s.drives[FOLLOWER] for s in lab.session.history.all()[-4:]]
     assert len({d.settings.tobytes() for d in drives}) == 4
-    assert (
-        len({id(i.of[FOLLOWER].base) for i in lab.session.history.copy().columns["inputs"][-4:]})
-        == 1
-    )
+    inputs = lab.session.history.copy().columns["inputs"][-4:]
+    assert len({id(each.of[FOLLOWER].base) for each in inputs}) == 1
