@@ -35,6 +35,7 @@ from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tones import DARK, LIGHT
 from onpath.app.viser_adapter.frame_channel import FrameChannel
+from onpath.app.viser_adapter.page_release import clear_page
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot
@@ -123,8 +124,7 @@ class Page:
 
     def _rebuild(self, first: PageSnapshot) -> None:
         with in_turn(), self._client.atomic():
-            self._client.scene.reset()
-            self._client.gui.reset()
+            clear_page(self._client)
             self._framed, self._settling = 0.0, SETTLING
             self._build(first)
 

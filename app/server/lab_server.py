@@ -45,6 +45,7 @@ from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.expiry import Expiry, Retention
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
+from onpath.app.viser_adapter.page_release import clear_page, release_page
 from onpath.app.viser_adapter.places import storage_key
 from onpath.app.viser_adapter.secure_server import disconnect, make_server
 from onpath.lessons.course import Course, read_course
@@ -255,8 +256,7 @@ class LabServer:
         if view is not None:
             view.page.close()
         with one_at_a_time:  # a part of the page may just be built
-            client.scene.reset()
-            client.gui.reset()
+            clear_page(client)
         self._show(client, entry, None)
 
     def _disconnected(self, client: viser.ClientHandle) -> None:
@@ -269,6 +269,7 @@ class LabServer:
         view = self._views.pop(client.client_id, None)
         if view is not None:
             view.page.close()
+        release_page(client)
         self._room.leave(client.client_id)
 
 

@@ -226,6 +226,10 @@ class CountedConnection(ServerConnection):
 
     def _break_cycles(self) -> None:
         self.keepalive_task = None
+        self.protocol.parser.close()  # a generator, which holds the protocol
+        for error in (self.recv_exc, self.protocol.parser_exc):
+            if error is not None:
+                error.__traceback__ = None  # which holds this connection and its protocol
         vars(self.protocol).pop("select_subprotocol", None)  # a function that holds the connection
         getattr(self.transport, "__dict__", {}).pop("_read_ready_cb", None)  # its own bound method
 

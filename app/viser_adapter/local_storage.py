@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import viser
 from viser import _messages
+
+_ANSWER = _messages.LocalStorageGetItemResponseMessage
 
 
 def ask_item(client: viser.ClientHandle, key: str, answer: Callable[[str], None]) -> None:
@@ -15,13 +18,22 @@ def ask_item(client: viser.ClientHandle, key: str, answer: Callable[[str], None]
         answer: called once with the value, "" if there is none, on viser's event loop; never if the
             browser does not answer.
     """
-    connection, question = client._websock_connection, f"kept:{key}"
-    kind = _messages.LocalStorageGetItemResponseMessage
+    question = _Question(client._websock_connection, f"kept:{key}", answer)
+    question.ask(key)
 
-    async def answered(_: int, message: _messages.LocalStorageGetItemResponseMessage) -> None:
-        if message.request_uuid == question:
-            connection.unregister_handler(kind, answered)
-            answer(message.value or "")
 
-    connection.register_handler(kind, answered)
-    connection.queue_message(_messages.LocalStorageGetItemRequestMessage(key, question))
+class _Question:
+    """Waits for the answer to one question. It does not refer to itself, so it is free after it."""
+
+    def __init__(self, connection: Any, name: str, answer: Callable[[str], None]) -> None:
+        self._connection, self._name, self._answer = connection, name, answer
+
+    def ask(self, key: str) -> None:
+        self._connection.register_handler(_ANSWER, self._heard)
+        message = _messages.LocalStorageGetItemRequestMessage(key, self._name)
+        self._connection.queue_message(message)
+
+    async def _heard(self, _: int, message: _messages.LocalStorageGetItemResponseMessage) -> None:
+        if message.request_uuid == self._name:
+            self._connection.unregister_handler(_ANSWER, self._heard)
+            self._answer(message.value or "")

@@ -5,9 +5,11 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from functools import cache
+from traceback import clear_frames
 from typing import Any
 
 from viser import _messages as wire
+from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode, Frame, Opcode
 from websockets.protocol import State
 
@@ -125,6 +127,7 @@ class SecureConnection(CountedConnection):
         self._request_size, self.is_head = 0, False
         self._is_next = False  # whether nothing that came before a message still waits
         self._decoded: Any = None  # the message that waits, if it is decoded already
+        self._end: ConnectionClosed | None = None  # raised to whoever waited for a message
 
     def data_received(self, data: bytes) -> None:
         """See `asyncio.Protocol`."""
@@ -217,12 +220,25 @@ class SecureConnection(CountedConnection):
             self._deadline.cancel()
             self._deadline = None
 
+    def handled(self) -> None:
+        """Break the reference cycles of what has handled this connection, once it has returned.
+
+        Its tasks keep the error that ended them, whose traceback keeps its variables: the tasks.
+        """
+        end, self._end = self._end, None
+        if end is not None:
+            clear_frames(end.__traceback__)
+
     async def recv(self, decode: bool | None = None) -> Any:
         while True:
             if not self.recv_messages.frames:
                 await asyncio.sleep(0)  # until what came before has been handled
                 self._is_next = self.handle is not None and not self.recv_messages.frames
-            raw = await super().recv(decode)
+            try:
+                raw = await super().recv(decode)
+            except ConnectionClosed as end:
+                self._end = end
+                raise
             message, self._decoded = self._decoded, None
             try:
                 return Received.of(self._forms.decoded(raw) if message is None else message)

@@ -207,12 +207,13 @@ def _guarded_serve(
             library.serve = genuine
 
 
-def _of_our_version(handler: Any) -> Callable[[ServerConnection], Awaitable[None]]:
+def _of_our_version(handler: Any) -> Callable[[SecureConnection], Awaitable[None]]:
     """The handler for pages of this version; connections of others are closed with a reason."""
 
-    async def handle(connection: ServerConnection) -> None:
+    async def handle(connection: SecureConnection) -> None:
         if connection.subprotocol == _SUBPROTOCOL:
             await handler(connection)
+            connection.handled()
         else:  # viser would print what the browser sent
             reason = "this page is of another version of the server: reload it"
             await connection.close(CloseCode.PROTOCOL_ERROR, reason)

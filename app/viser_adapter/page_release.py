@@ -1,0 +1,57 @@
+"""Frees what a page is made of as soon as its tab has closed, or as soon as it is built anew.
+
+Widgets and nodes refer to their API, which refers to them, and to callbacks, which refer to what
+owns the widgets. Without this, only a collection of garbage would find the five thousand objects of
+a page, and tabs can come and go faster than garbage is collected. This uses private parts of viser,
+which tests pin.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import Any
+
+import viser
+
+
+def clear_page(client: viser.ClientHandle) -> None:
+    """Remove all widgets and nodes of a page, and forget their callbacks."""
+    widgets, nodes = _widgets(client), list(client.scene._handle_from_node_name.values())
+    client.scene.reset()
+    client.gui.reset()
+    _forget_callbacks(widgets, nodes)
+
+
+def release_page(client: viser.ClientHandle) -> None:
+    """Forget the widgets and nodes of a client that has disconnected."""
+    gui, scene = client.gui, client.scene
+    nodes = list(scene._handle_from_node_name.values())
+    _forget_callbacks(_widgets(client), nodes)
+    for node in nodes:
+        node._impl.drag_cb.clear()
+    containers: list[Any] = list(gui._container_handle_from_uuid.values())
+    for container in containers:
+        container._children.clear()
+    gui._gui_input_handle_from_uuid.clear()
+    gui._command_handle_from_uuid.clear()
+    scene._handle_from_node_name.clear()
+    scene._children_from_node_name.clear()
+    client._websock_connection._incoming_handlers = defaultdict(list)
+
+
+def _widgets(client: viser.ClientHandle) -> list[Any]:
+    gui = client.gui
+    return [*gui._gui_input_handle_from_uuid.values(), *gui._command_handle_from_uuid.values()]
+
+
+def _forget_callbacks(widgets: list[Any], nodes: list[Any]) -> None:
+    """Forget all callbacks but those of drags, which viser calls when a drag ends."""
+    for widget in widgets:
+        state = widget._impl
+        for name in ("update_cb", "trigger_cb", "hold_cbs_from_freq"):
+            getattr(state, name, []).clear()
+        state.sync_cb = None
+    for node in nodes:
+        node._impl.click_cb.clear()
+        if hasattr(node, "_impl_aux"):  # a gizmo
+            node._impl_aux.update_cb.clear()

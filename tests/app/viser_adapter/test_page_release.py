@@ -1,0 +1,104 @@
+"""Pages and websockets are free as soon as they end, without a collection of garbage."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from onpath.app.bench.client_protocol import CAMERA, packed
+from onpath.app.bench.raw_socket import frames, knock
+from onpath.app.lab.commands import SetLanguage
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.server.lab_server import LabServer
+from onpath.app.viser_adapter.connection_limits import CountedConnection
+from onpath.app.viser_adapter.secure_server import make_server
+from tests.support.student import Student
+from tests.support.waiting import wait_for
+
+WAIT = 20.0  # [s]
+
+
+@pytest.fixture
+def server() -> Iterator[LabServer]:
+    """A server in a process that collects no garbage."""
+    server = LabServer("127.0.0.1", 0, LoopCache())
+    gc.disable()
+    yield server
+    gc.enable()
+    server.stop()
+
+
+def arrived(server: LabServer) -> Student:
+    """A tab whose page is shown."""
+    student = Student(f"ws://127.0.0.1:{server.server.get_port()}")
+    student.open()
+    student.read(lambda: student.has_widget("K2") and student.moving > 5)
+    return student
+
+
+def parts_of(server: LabServer) -> list[weakref.ref[Any]]:
+    """What the only page is made of."""
+    (view,), (client,) = server._views.values(), server.server.get_clients().values()
+    page: Any = view.page
+    widgets = client.gui._gui_input_handle_from_uuid.values()
+    nodes = client.scene._handle_from_node_name.values()
+    commands = client.gui._command_handle_from_uuid.values()
+    assert widgets and nodes and commands
+    return [weakref.ref(each) for each in (page._scene, *page._parts, *widgets, *nodes, *commands)]
+
+
+def test_a_page_is_free_as_soon_as_its_tab_closes(server: LabServer) -> None:
+    student = arrived(server)
+    parts = parts_of(server)
+    student.close()
+    wait_for(lambda: not any(part() for part in parts), WAIT)
+
+
+def test_a_page_that_is_built_anew_leaves_nothing(server: LabServer) -> None:
+    student = arrived(server)
+    parts = parts_of(server)
+    (entry,) = server.sessions._entries.values()
+    entry.scheduled.lab.post(SetLanguage("de"))
+    student.read(lambda: student.has_widget("Für beide"))
+    wait_for(lambda: not any(part() for part in parts), WAIT)
+    student.close()
+
+
+GREETING = frames(packed("ViewerCameraMessage", **CAMERA))
+SAID = {
+    "nothing": b"",
+    "a greeting": GREETING,
+    "an unfinished message": GREETING[:-5],
+    "no message": frames(b"nonsense"),
+    "no frame": b"\xff\xff nonsense",
+}
+
+
+@pytest.mark.parametrize("said", SAID.values(), ids=SAID)
+def test_a_websocket_is_free_as_soon_as_it_ends(
+    monkeypatch: pytest.MonkeyPatch, said: bytes
+) -> None:
+    made, opened = list[weakref.ref[Any]](), CountedConnection.connection_made
+
+    def connection_made(connection: CountedConnection, transport: Any) -> None:
+        kept = (connection, connection.protocol.reader, transport)
+        made.extend(weakref.ref(each) for each in kept)
+        opened(connection, transport)
+
+    monkeypatch.setattr(CountedConnection, "connection_made", connection_made)
+    server = make_server(port=0)
+    gc.disable()
+    try:
+        for _ in range(3):
+            tab = knock(server.get_port())
+            assert tab.recv(1)
+            tab.sendall(said)
+            tab.close()
+        wait_for(lambda: len(made) == 9 and not any(ref() for ref in made[:-3]), WAIT)
+    finally:
+        gc.enable()
+        server.stop()
