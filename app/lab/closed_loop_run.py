@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import is_
 
@@ -29,7 +30,7 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.distance import closest_parameter, near_distance
+from onpath.models.paths.distance import closest_parameters, near_distance
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
@@ -135,18 +136,16 @@ class ClosedLoopRun:
     def change_path(self, curve: Curve) -> None:
         """Switch to another path: keep the reference point, search the closest point globally."""
         reference = self.fields()["theta_ref"].copy()
-        self.project(curve)
+        project([self], curve)
         self.fields()["theta_ref"][:] = reference
         self._fill_row(curve)
 
-    def project(self, curve: Curve) -> None:
-        """Restart at the globally closest point, after a jump: reference there, integral zero."""
+    def restart_at(self, theta: float, curve: Curve) -> None:
+        """Restart at a parameter of the path, [rad]: reference there, integral zero."""
         self._change()
         fields = self.fields()
-        y = self.robot.endpoint(fields["q"])
-        fields["theta"][:] = closest_parameter(self.robot.frame, curve, y)
+        fields["theta"][:] = fields["theta_ref"][:] = theta
         fields["theta_rate"][:] = 0.0
-        fields["theta_ref"][:] = fields["theta"]
         fields["integral"][:] = 0.0
         self._fill_row(curve)
 
@@ -308,3 +307,11 @@ class ClosedLoopRun:
         row["speed"][:] = state["theta_rate"] * np.linalg.norm(curve.at(state["theta"], 1), axis=1)
         found = near_distance(self.robot.frame, curve, row["y"][None], row["theta"])
         self.place[0].distances[:] = found
+
+
+def project(runs: Sequence[ClosedLoopRun], curve: Curve) -> None:
+    """Restart runs of one robot at their globally closest points, after a jump of the path."""
+    robot = runs[0].robot
+    y = np.stack([robot.endpoint(run.fields()["q"]) for run in runs])
+    for run, theta in zip(runs, closest_parameters(robot.frame, curve, y), strict=True):
+        run.restart_at(float(theta), curve)

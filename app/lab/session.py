@@ -12,7 +12,7 @@ import numpy as np
 
 from onpath.app.lab.advance_together import NO_FRAME, Frame, Ticks, advance_together
 from onpath.app.lab.belongings import Belongings
-from onpath.app.lab.closed_loop_run import ClosedLoopRun
+from onpath.app.lab.closed_loop_run import ClosedLoopRun, project
 from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.history import History
 from onpath.app.lab.loops.law_changes import LawChanges, suits
@@ -231,8 +231,7 @@ class Session:
     def _bend(self, seconds: float) -> None:
         """Advance the blend of an edited path."""
         if self.editor.advance(seconds):
-            for run in self.runs.values():
-                run.project(self.editor.curve)
+            project(list(self.runs.values()), self.editor.curve)
 
     def step_once(self) -> None:
         """Make one step of a paused lab: the controller's next sample, at least a millisecond.

@@ -83,10 +83,14 @@ def closest_parameter(frame: Frame, curve: Curve, y: Array) -> float:
     Args:
         y: shape (p,), [m].
     """
+    return float(closest_parameters(frame, curve, y[None])[0])
+
+
+def closest_parameters(frame: Frame, curve: Curve, y: Array) -> Array:
+    """The same for several points, shape (n, p) -> (n,), which takes hardly longer than for one."""
     if curve.dimension == 2:
-        return float(curve.nearest(frame.planar(y)[None])[0][0])
-    found, _ = nearest(lambda theta: frame.lift(curve.at(theta)), curve.sample(256), y[None])
-    return float(found[0])
+        return curve.nearest(frame.planar(y))[0]
+    return nearest(lambda theta: frame.lift(curve.at(theta)), curve.sample(256), y)[0]
 
 
 def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:
