@@ -45,7 +45,7 @@ class Limits:
     """
 
     max_message_bytes: int = 1_000_000
-    max_unfinished_bytes: int = 32_000_000
+    max_unfinished_bytes: int = 8_000_000
     message_seconds: float = 10.0
     max_request_bytes: int = 65_536
     messages_per_second: float = 120.0
