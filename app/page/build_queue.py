@@ -14,10 +14,10 @@ from onpath.app.common.error_log import log_error
 from onpath.app.page.notice import show_notice
 from onpath.lessons.words import Words
 
-MOST_REST = (
-    0.5  # [s], longest pause after a new page; the pause is as long as the build, up to this
+REST = (
+    2.0  # pause after a build, relative to its duration; what is built takes time to send as well
 )
-REST = 2.0  # factor of the pause after a rebuilt page or a window, which takes time to send as well
+LONG = 0.5  # [s]; a longer build has the same pause
 FEW = 2  # from so many clients ahead on, a waiting client is shown a notice
 
 
@@ -47,7 +47,7 @@ one_at_a_time = BuildLock()
 
 @contextmanager
 def in_turn() -> Iterator[None]:
-    """Build part of a page, one at a time and with a pause, however many tabs ask for it.
+    """Build a page or part of one, one at a time and with a pause, however many tabs ask for it.
 
     Only the next build waits for the end of the pause.
     """
@@ -56,7 +56,7 @@ def in_turn() -> Iterator[None]:
         try:
             yield
         finally:
-            one_at_a_time.pause(REST * min(time.monotonic() - begun, MOST_REST))
+            one_at_a_time.pause(REST * min(time.monotonic() - begun, LONG))
 
 
 class BuildQueue:
@@ -91,14 +91,12 @@ class BuildQueue:
     def _build(
         self, client: int, close_notice: Callable[[], None] | None, build: Callable[[], None]
     ) -> None:
-        begun = time.monotonic()
         try:
             if close_notice is not None and client in self._server.get_clients():
                 close_notice()
             build()
         except Exception as error:
             log_error(error)
-        time.sleep(min(time.monotonic() - begun, MOST_REST))
         with self._lock:
             self._ahead -= 1
 

@@ -10,7 +10,7 @@ from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.lab.snapshots.snapshot import Motion
-from onpath.app.page.build_queue import in_turn, one_at_a_time
+from onpath.app.page.build_queue import in_turn
 from onpath.app.page.first_minute import FirstMinute
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel
@@ -70,7 +70,7 @@ class Page:
         if not self._is_phone:
             client.gui.main_panel.dock_right()
             client.gui.main_panel.set_width(CONTROL_WIDTH)
-        with one_at_a_time, client.atomic():  # the browser gets no widget without its callbacks
+        with in_turn(), client.atomic():  # the browser gets no widget without its callbacks
             self._build(first)
 
     def close(self) -> None:

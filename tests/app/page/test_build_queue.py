@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
-from itertools import count
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,7 +15,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import build_queue, page
-from onpath.app.page.build_queue import FEW, MOST_REST
+from onpath.app.page.build_queue import FEW, LONG, REST
 from onpath.app.page.page import Page
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.words import ENGLISH
@@ -34,11 +33,11 @@ class Builds:
 
     Attributes:
         may_begin: until it is set, the first page is under construction.
-        rests: pauses of the queue, in seconds of a clock that goes on by one at each look.
+        rests: pauses before a build, in seconds of a clock that each build advances by one.
     """
 
     def __init__(self) -> None:
-        self.done, self.most, self._now = 0, 0, 0
+        self.done, self.most, self._now, self._time = 0, 0, 0, 0.0
         self.may_begin = threading.Event()
         self.rests: list[float] = []
 
@@ -51,12 +50,17 @@ class Builds:
             assert self.may_begin.wait(60)
             genuine(view, first)
             self._now -= 1
+            self._time += 1.0
             self.done += 1
 
         monkeypatch.setattr(Page, "_build", build)
-        clock = SimpleNamespace(monotonic=count().__next__, sleep=self.rests.append)
+        clock = SimpleNamespace(monotonic=lambda: self._time, sleep=self._rest)
         monkeypatch.setattr(build_queue, "time", clock)
         monkeypatch.setattr(build_queue.one_at_a_time, "_free_at", 0.0)
+
+    def _rest(self, seconds: float) -> None:
+        self.rests.append(seconds)
+        self._time += seconds
 
 
 @pytest.fixture
@@ -121,8 +125,7 @@ def test_pages_are_built_one_at_a_time_and_waiting_clients_are_told(
         wait_for_views(server, CROWD)
         assert builds.done == CROWD and builds.most == 1
         assert not any(comer.student.sees(MOMENT) for comer in crowd)
-        wait_for(lambda: len(builds.rests) == CROWD, 60)  # after each page
-        assert set(builds.rests) == {MOST_REST}
+        assert builds.rests == (CROWD - 1) * [REST * LONG]  # between two pages
         for lab in server.simulation.labs:  # a teacher opens a lesson for all
             lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
         wait_for(lambda: builds.done >= 2 * CROWD, 60)
