@@ -39,7 +39,7 @@ class MemoryRelease:
         self._tabs_ended, self._after_complete = self._tabs_seen, self._blocks
 
     def look(self) -> None:
-        """Collect garbage, and give free memory back, if it is time to."""
+        """Collect garbage if it is time to, and give free memory back, which takes 1 ms."""
         self._forget()
         ended, tabs_ended = CountedConnection.ended, CountedConnection.tabs_ended
         self._calm = self._calm + 1 if tabs_ended == self._tabs_seen else 0
@@ -52,11 +52,11 @@ class MemoryRelease:
             self._tabs_ended, self._after_complete = tabs_ended, self._blocks
         elif blocks > self._blocks + MUCH or ended >= self._ended + MANY:
             self._collect()
+        _call_glibc("malloc_trim", 0)
 
     def _collect(self) -> None:
         gc.collect()
         gc.freeze()
-        _call_glibc("malloc_trim", 0)
         self._remember()
 
     def _remember(self) -> None:
