@@ -22,11 +22,11 @@ M_TRIM_THRESHOLD, M_MMAP_THRESHOLD, M_ARENA_MAX = -1, -3, -8  # of glibc's mallo
 class MemoryRelease:
     """Collects the garbage of connections that have ended, and of pages that were built anew.
 
-    What is kept of a tab or a page refers to itself, so that only a collection finds it. That stops
-    all threads, with 40 labs for 0.3 s if it examines everything. Therefore whatever is left by one
-    collection is not examined by the next ones ("frozen"), until a complete one is made. That is
-    when a tab has been closed and no other one for a while, or when an eighth more is allocated
-    than after the last complete one.
+    What `release_page` leaves of a tab refers to itself, so that only a collection finds it. That
+    stops all threads, with 40 labs for 0.3 s if it examines everything. Therefore whatever is left
+    by one collection is not examined by the next ones ("frozen"), until a complete one is made.
+    That is when a tab has been closed and no other one for a while, or when an eighth more is
+    allocated than after the last complete one.
 
     Args:
         forget: deletes what is no longer needed; called at each look.

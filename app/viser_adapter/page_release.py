@@ -36,6 +36,7 @@ def release_page(client: viser.ClientHandle) -> None:
     gui._command_handle_from_uuid.clear()
     scene._handle_from_node_name.clear()
     scene._children_from_node_name.clear()
+    # Not cleared, since viser may be looking up the handlers of a message.
     client._websock_connection._incoming_handlers = defaultdict(list)
 
 
