@@ -14,9 +14,7 @@ from onpath.app.common.error_log import log_error
 from onpath.app.page.notice import show_notice
 from onpath.lessons.words import Words
 
-REST = (
-    2.0  # pause after a build, relative to its duration; what is built takes time to send as well
-)
+REST = 2.0  # pause after a build, relative to its duration; sending it takes time as well
 LONG = 0.5  # [s]; a longer build has the same pause
 FEW = 2  # from so many clients ahead on, a waiting client is shown a notice
 

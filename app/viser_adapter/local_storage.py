@@ -23,7 +23,7 @@ def ask_item(client: viser.ClientHandle, key: str, answer: Callable[[str], None]
 
 
 class _Question:
-    """Waits for the answer to one question. It does not refer to itself, so it is free after it."""
+    """Waits for one answer. It does not refer to itself, so that it is freed after that."""
 
     def __init__(self, connection: Any, name: str, answer: Callable[[str], None]) -> None:
         self._connection, self._name, self._answer = connection, name, answer
