@@ -23,7 +23,7 @@ def clear_page(client: viser.ClientHandle) -> None:
 
 
 def release_page(client: viser.ClientHandle) -> None:
-    """Forget the widgets and nodes of a client that has disconnected."""
+    """Forget the widgets and nodes of a client that has disconnected, and what was not sent."""
     gui, scene = client.gui, client.scene
     nodes = list(scene._handle_from_node_name.values())
     _forget_callbacks(_widgets(client), nodes)
@@ -36,8 +36,10 @@ def release_page(client: viser.ClientHandle) -> None:
     gui._command_handle_from_uuid.clear()
     scene._handle_from_node_name.clear()
     scene._children_from_node_name.clear()
+    connection = client._websock_connection
+    connection.get_message_buffer().remove_from_buffer(lambda _: True)
     # Not cleared, since viser may be looking up the handlers of a message.
-    client._websock_connection._incoming_handlers = defaultdict(list)
+    connection._incoming_handlers = defaultdict(list)
 
 
 def _widgets(client: viser.ClientHandle) -> list[Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import threading
 import weakref
 from collections.abc import Iterator
 from typing import Any
@@ -15,6 +16,7 @@ from onpath.app.lab.commands import SetLanguage
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.connection_limits import CountedConnection
+from onpath.app.viser_adapter.page_release import release_page
 from onpath.app.viser_adapter.secure_server import make_server
 from tests.support.student import Student
 from tests.support.waiting import wait_for
@@ -65,6 +67,20 @@ def test_a_page_that_is_built_anew_leaves_nothing(server: LabServer) -> None:
     entry.scheduled.lab.post(SetLanguage("de"))
     student.read(lambda: student.has_widget("Für beide"))
     wait_for(lambda: not any(part() for part in parts), WAIT)
+    student.close()
+
+
+def test_what_was_not_sent_is_forgotten(server: LabServer) -> None:
+    student = arrived(server)
+    (client,) = server.server.get_clients().values()
+    buffer = client._websock_connection.get_message_buffer()
+    may_send = threading.Event()
+    server.server.get_event_loop().call_soon_threadsafe(may_send.wait, WAIT)
+    client.gui.add_markdown("never seen")
+    assert buffer.message_from_id
+    release_page(client)
+    assert not buffer.message_from_id
+    may_send.set()
     student.close()
 
 
