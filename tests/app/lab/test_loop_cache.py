@@ -38,8 +38,11 @@ PATIENCE = 60.0  # [s]
 @pytest.fixture
 def store() -> Iterator[LoopCache]:
     made = LoopCache()
+    pool = made._pool
     yield made
     made.close()
+    assert pool is not None
+    pool.shutdown()  # it makes nothing while the next test runs
 
 
 class Gate(threading.Event):
@@ -59,7 +62,8 @@ class Gate(threading.Event):
 
 
 @pytest.fixture
-def gate(monkeypatch: pytest.MonkeyPatch) -> Iterator[Gate]:
+def gate(store: LoopCache, monkeypatch: pytest.MonkeyPatch) -> Iterator[Gate]:
+    """It is opened before the store waits for what is being made."""
     made = Gate(loop_store.translate_loop)
     monkeypatch.setattr(loop_store, "translate_loop", made)
     yield made
