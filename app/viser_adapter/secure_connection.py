@@ -220,8 +220,8 @@ class SecureConnection(CountedConnection):
             self._deadline.cancel()
             self._deadline = None
 
-    def handled(self) -> None:
-        """Break the reference cycles of what has handled this connection, once it has returned.
+    def forget_handler(self) -> None:
+        """Break the reference cycles of viser's handler of this connection, once it has returned.
 
         Its tasks keep the error that ended them, whose traceback keeps its variables: the tasks.
         """

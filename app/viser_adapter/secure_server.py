@@ -213,7 +213,7 @@ def _of_our_version(handler: Any) -> Callable[[SecureConnection], Awaitable[None
     async def handle(connection: SecureConnection) -> None:
         if connection.subprotocol == _SUBPROTOCOL:
             await handler(connection)
-            connection.handled()
+            connection.forget_handler()
         else:  # viser would print what the browser sent
             reason = "this page is of another version of the server: reload it"
             await connection.close(CloseCode.PROTOCOL_ERROR, reason)

@@ -87,7 +87,7 @@ def closest_parameter(frame: Frame, curve: Curve, y: Array) -> float:
 
 
 def closest_parameters(frame: Frame, curve: Curve, y: Array) -> Array:
-    """The same for several points, shape (n, p) -> (n,), which takes hardly longer than for one."""
+    """θ of the closest points of several y, shape (n, p) -> (n,), [rad]; hardly slower than one."""
     if curve.dimension == 2:
         return curve.nearest(frame.planar(y))[0]
     return nearest(lambda theta: frame.lift(curve.at(theta)), curve.sample(256), y)[0]

@@ -7,7 +7,6 @@ import socket
 import sys
 import weakref
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
 
@@ -136,35 +135,6 @@ def test_what_was_in_use_at_a_collection_is_examined_by_complete_ones_only(
     kept = [Circle() for _ in range(int(GROWTH * sys.getallocatedblocks()))]
     memory.look()
     assert left() is None and kept
-
-
-@pytest.mark.parametrize(
-    "said", [b"", b"nonsense\r\n\r\n", b"GET /none HTTP/1.1\r\nHost: a\r\n\r\n"]
-)
-def test_a_connection_that_is_no_tab_is_free_as_soon_as_it_ends(
-    monkeypatch: pytest.MonkeyPatch, said: bytes
-) -> None:
-    """Without a collection, until which thousands could come and go."""
-    made, opened = list[weakref.ref[Any]](), CountedConnection.connection_made
-
-    def connection_made(connection: CountedConnection, transport: Any) -> None:
-        made.extend([weakref.ref(connection), weakref.ref(transport)])
-        opened(connection, transport)
-
-    monkeypatch.setattr(CountedConnection, "connection_made", connection_made)
-    server = make_server(port=0)
-    gc.disable()
-    try:
-        for _ in range(3):
-            with socket.create_connection(("127.0.0.1", server.get_port())) as client:
-                client.sendall(said)
-                client.shutdown(socket.SHUT_WR)
-                while client.recv(4096):
-                    pass
-        wait_for(lambda: len(made) == 6 and not any(ref() for ref in made[:-2]), WAIT)
-    finally:
-        gc.enable()
-        server.stop()
 
 
 def test_websockets_that_end_are_counted() -> None:

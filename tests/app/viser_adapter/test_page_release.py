@@ -1,8 +1,9 @@
-"""Pages and websockets are free as soon as they end, without a collection of garbage."""
+"""Pages and connections are free as soon as they end, without a collection of garbage."""
 
 from __future__ import annotations
 
 import gc
+import socket
 import threading
 import weakref
 from collections.abc import Iterator
@@ -94,27 +95,57 @@ SAID = {
 }
 
 
-@pytest.mark.parametrize("said", SAID.values(), ids=SAID)
-def test_a_websocket_is_free_as_soon_as_it_ends(
-    monkeypatch: pytest.MonkeyPatch, said: bytes
-) -> None:
-    made, opened = list[weakref.ref[Any]](), CountedConnection.connection_made
+class Connections:
+    """A server in a process that collects no garbage, and what its connections are made of."""
 
-    def connection_made(connection: CountedConnection, transport: Any) -> None:
-        kept = (connection, connection.protocol.reader, transport)
-        made.extend(weakref.ref(each) for each in kept)
-        opened(connection, transport)
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self._parts, opened = list[list[weakref.ref[Any]]](), CountedConnection.connection_made
 
-    monkeypatch.setattr(CountedConnection, "connection_made", connection_made)
-    server = make_server(port=0)
+        def connection_made(connection: CountedConnection, transport: Any) -> None:
+            parts = (connection, connection.protocol.reader, transport)
+            self._parts.append([weakref.ref(part) for part in parts])
+            opened(connection, transport)
+
+        monkeypatch.setattr(CountedConnection, "connection_made", connection_made)
+        self.server = make_server(port=0)
+        self.port = self.server.get_port()
+
+    def are_free(self, number: int) -> bool:
+        """Whether so many have been made, and all but the last one are free."""
+        freed = [not any(part() for part in parts) for parts in self._parts[:-1]]
+        return len(self._parts) == number and all(freed)
+
+
+@pytest.fixture
+def connections(monkeypatch: pytest.MonkeyPatch) -> Iterator[Connections]:
+    connections = Connections(monkeypatch)
     gc.disable()
-    try:
-        for _ in range(3):
-            tab = knock(server.get_port())
-            assert tab.recv(1)
-            tab.sendall(said)
-            tab.close()
-        wait_for(lambda: len(made) == 9 and not any(ref() for ref in made[:-3]), WAIT)
-    finally:
-        gc.enable()
-        server.stop()
+    yield connections
+    gc.enable()
+    connections.server.stop()
+
+
+@pytest.mark.parametrize("said", SAID.values(), ids=SAID)
+def test_a_websocket_is_free_as_soon_as_it_ends(connections: Connections, said: bytes) -> None:
+    for _ in range(3):
+        tab = knock(connections.port)
+        assert tab.recv(1)
+        tab.sendall(said)
+        tab.close()
+    wait_for(lambda: connections.are_free(3), WAIT)
+
+
+@pytest.mark.parametrize(
+    "said", [b"", b"nonsense\r\n\r\n", b"GET /none HTTP/1.1\r\nHost: a\r\n\r\n"]
+)
+def test_a_connection_that_is_no_tab_is_free_as_soon_as_it_ends(
+    connections: Connections, said: bytes
+) -> None:
+    """Without a collection, until which thousands could come and go."""
+    for _ in range(3):
+        with socket.create_connection(("127.0.0.1", connections.port)) as client:
+            client.sendall(said)
+            client.shutdown(socket.SHUT_WR)
+            while client.recv(4096):
+                pass
+    wait_for(lambda: connections.are_free(3), WAIT)
