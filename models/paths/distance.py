@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.paths.curves import Curve, local_minima, nearest
-from onpath.models.paths.frames import Frame
+from onpath.models.paths.frames import Frame, Plane
 
 CHUNK = 4096  # points per array operation, which bounds the memory
 MOST = 4  # local minima of a distance that are refined
@@ -28,19 +28,30 @@ def path_distance(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> A
         y: points, shape (n, p), [m].
         samples: size of the grid.
     """
-    grid = curve.sample(samples)
-    points, step = frame.lift(curve.at(grid)), float(grid[1] - grid[0])
     distances = np.empty(len(y))
     for begin in range(0, len(y), CHUNK):
         some = y[begin : begin + CHUNK]
-        row, column = _candidates(_squared(some, points))
-        each, theta = some[row], grid[column]
-        for _ in range(3):
-            theta = _refined(frame, curve, each, theta, step)[0]
-        found = np.linalg.norm(frame.lift(curve.at(theta)) - each, axis=1)
+        row, _, found = _minima(frame, curve, some, samples)
         first = np.searchsorted(row, np.arange(len(some)))
         distances[begin : begin + CHUNK] = np.minimum.reduceat(found, first)
     return distances if curve.closed else np.minimum(distances, _beyond_the_ends(frame, curve, y))
+
+
+def _minima(
+    frame: Frame, curve: Curve, y: Array, samples: int
+) -> tuple[NDArray[np.intp], Array, Array]:
+    """The lowest local minima of the distance from every y to the path, row by row.
+
+    Returns:
+        Row of y, θ [rad] and distance [m], each shape (m,).
+    """
+    grid = curve.sample(samples)
+    step = float(grid[1] - grid[0])
+    row, column = _candidates(_squared(y, frame.lift(curve.at(grid))))
+    each, theta = y[row], grid[column]
+    for _ in range(3):
+        theta = _refined(frame, curve, each, theta, step)[0]
+    return row, theta, np.linalg.norm(frame.lift(curve.at(theta)) - each, axis=1)
 
 
 def _candidates(squared: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -83,14 +94,23 @@ def closest_parameter(frame: Frame, curve: Curve, y: Array) -> float:
     Args:
         y: shape (p,), [m].
     """
-    return float(closest_parameters(frame, curve, y[None])[0])
-
-
-def closest_parameters(frame: Frame, curve: Curve, y: Array) -> Array:
-    """θ of the closest points of several y, shape (n, p) -> (n,), [rad]; hardly slower than one."""
     if curve.dimension == 2:
-        return curve.nearest(frame.planar(y))[0]
-    return nearest(lambda theta: frame.lift(curve.at(theta)), curve.sample(256), y)[0]
+        return float(curve.nearest(frame.planar(y[None]))[0][0])
+    found = nearest(lambda theta: frame.lift(curve.at(theta)), curve.sample(256), y[None])
+    return float(found[0][0])
+
+
+def closest_parameters(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> Array:
+    """The same of several y, shape (n, p) -> (n,), [rad], by Newton steps as in `path_distance`.
+
+    On an open curve, θ is between its ends.
+    """
+    if curve.dimension == 2:
+        frame, y = Plane(), frame.planar(y)
+    row, theta, distance = _minima(frame, curve, y, samples)
+    own = [np.flatnonzero(row == number) for number in range(len(y))]
+    found = np.array([theta[each[distance[each].argmin()]] for each in own])
+    return found if curve.closed else np.clip(found, -np.pi, np.pi)
 
 
 def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:

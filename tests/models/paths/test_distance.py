@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from onpath.models.paths.curves import circle
-from onpath.models.paths.distance import near_distance, near_distances, path_distance
+from onpath.models.paths.distance import (
+    closest_parameter,
+    closest_parameters,
+    near_distance,
+    near_distances,
+    path_distance,
+)
 from onpath.models.paths.frames import Plane, SlantedPlane
 from onpath.models.paths.path_design import presets
 
@@ -69,3 +75,17 @@ def test_several_curves_at_once_are_as_one_by_one(frame, closed, n):
     together = near_distances(frame, curves, y, theta)
     for i, curve in enumerate(curves):
         assert np.array_equal(together[i], near_distance(frame, curve, y[i], theta[i]))
+
+
+@pytest.mark.parametrize("frame", [Plane(), SlantedPlane()], ids=["plane", "slanted"])
+@pytest.mark.parametrize("design", presets().values(), ids=lambda design: design.name)
+def test_closest_points_of_several_robots_are_as_one_by_one(design, frame):
+    rng = np.random.default_rng(5)
+    curve, y = design.curve, frame.lift(rng.uniform(-0.12, 0.12, (60, 2)))
+    together = closest_parameters(frame, curve, y)
+    alone = np.array([closest_parameter(frame, curve, each) for each in y])
+    if not curve.closed:
+        alone = alone.clip(-np.pi, np.pi)
+    z = frame.planar(y)
+    found, best = (np.linalg.norm(curve.at(theta) - z, axis=1) for theta in (together, alone))
+    np.testing.assert_allclose(found, best, atol=1e-9)
