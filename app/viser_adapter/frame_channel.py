@@ -150,10 +150,7 @@ class FrameChannel:
 
     def _enqueue(self, *messages: Message | GroupUpdate) -> None:
         for message in expanded(messages):
-            # viser wakes the sending task from this thread; if that wakes up meanwhile, asyncio
-            # raises "deque mutated during iteration". The message has been queued by then.
-            with suppress(RuntimeError):
-                self._queue(message)
+            self._queue(message)
 
     def _packed(self) -> tuple[list[Message | GroupUpdate], bytes]:
         messages, self._messages = self._messages, []

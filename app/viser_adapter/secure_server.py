@@ -32,6 +32,7 @@ from websockets.http11 import Request, Response
 from onpath.app.common.error_log import log_error
 from onpath.app.viser_adapter.compression import share_compressors
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
+from onpath.app.viser_adapter.message_event import let_threads_send
 from onpath.app.viser_adapter.message_filter import Limits, MessageFilter
 from onpath.app.viser_adapter.page_scripts import add_scripts
 from onpath.app.viser_adapter.places import place_of, redirection, without_place
@@ -116,6 +117,7 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
     _log_errors_of_callbacks(server)
 
     def guard(connection: WebsockClientConnection) -> None:
+        let_threads_send(connection)
         handler: Any = connection._incoming_handlers[wire.GuiUpdateMessage][0]
         own = MessageFilter(server, connection, handler.__self__, limits)
         client = ClientId(connection.client_id)
@@ -128,6 +130,7 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
         if isinstance(socket, SecureConnection):
             socket.handle = handle
 
+    let_threads_send(websock)
     general = MessageFilter(server, websock, server.gui, limits)
     websock.on_client_connect(guard)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Event, Thread, get_ident
@@ -178,18 +179,18 @@ def test_a_page_is_not_told_what_it_has_just_said(server: viser.ViserServer) -> 
 def test_what_a_thread_tells_while_the_network_wakes_up_is_told(
     server: viser.ViserServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Then asyncio's event raises an error in that thread, see `FrameChannel._enqueue`."""
+    """Then asyncio's event raises an error in that thread, see `MessageEvent`."""
     with browser(server) as (client, socket):
-        FrameChannel(client)
-        event = client._websock_connection._state.message_buffer.message_event
-        wake, ours = event.set, get_ident()
+        wake, ours = asyncio.Event.set, get_ident()
 
-        def set_() -> None:
-            wake()
+        def set_(event: asyncio.Event) -> None:
+            wake(event)
             if get_ident() == ours:
                 raise RuntimeError("deque mutated during iteration")
 
-        monkeypatch.setattr(event, "set", set_)
+        monkeypatch.setattr(asyncio.Event, "set", set_)
         for name in ("/0", "/1"):
             client.scene.add_point_cloud(name, np.zeros((1, 3)), (0, 0, 0))
         assert [name for frame in told_until(socket, "new /1") for name in frame]
+        server.scene.add_point_cloud("/2", np.zeros((1, 3)), (0, 0, 0))
+        assert [name for frame in told_until(socket, "new /2") for name in frame]
