@@ -36,7 +36,8 @@ from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 
 SOURCE = "127.0.0.2" if sys.platform == "linux" else "127.0.0.1"
-RATE = 0.9 * Limits().messages_per_second  # of a tab, which is not closed for that
+RATE = 0.9 * Limits().changes_per_second  # of changed widgets or drags; no tab is closed for that
+MIXED = 0.75 * Limits().messages_per_second  # of messages, a quarter of which are drags
 TURNED_AWAY = 0.1  # [s] until it comes back
 GREETING = frames(packed("ViewerCameraMessage", **CAMERA))
 UNFINISHED = frames(bytes(980_000))[:-1]
@@ -50,14 +51,17 @@ Misuse = Callable[["Intruder"], AsyncIterator[bytes]]
 class Intruder(Browser):
     """A tab that receives its lab like any other, and sends what `misuse` yields.
 
+    Args:
+        rate: messages per second.
+
     Attributes:
         widgets: the ids of its widgets by label.
         socket: its connection, once it has begun.
     """
 
-    def __init__(self, port: int, misuse: Misuse) -> None:
+    def __init__(self, port: int, misuse: Misuse, rate: float = RATE) -> None:
         super().__init__(port, 0, SOURCE)
-        self._misuse = misuse
+        self._misuse, self._rate = misuse, rate
         self.widgets: dict[str, str] = {}
 
     async def find(self, label: str) -> str:
@@ -85,7 +89,7 @@ class Intruder(Browser):
         self.socket = socket
         async for message in self._misuse(self):
             await socket.send(message)
-            await asyncio.sleep(1 / RATE)
+            await asyncio.sleep(1 / self._rate)
 
 
 def update(uuid: str, value: Any) -> bytes:
@@ -126,9 +130,9 @@ async def send_nonsense(tab: Intruder) -> AsyncIterator[bytes]:
     """Any field of any message with any value, any index of a drag, any value of any widget."""
     await tab.find("K1")
     while True:
-        kind = random.choice(list(HONEST))
-        field = random.choice(list(HONEST[kind]))
-        yield packed(kind, **HONEST[kind] | {field: random.choice(HOSTILE)})
+        for kind in random.choices(list(HONEST), k=3):
+            field = random.choice(list(HONEST[kind]))
+            yield packed(kind, **HONEST[kind] | {field: random.choice(HOSTILE)})
         at = {"name": "/grips", "owner": tab.owner, "instance_index": random.choice(INDEXES)}
         yield packed("SceneNodeDragMessage", **DRAG | at)
         yield update(random.choice(list(tab.widgets.values())), random.choice(HOSTILE))
@@ -165,12 +169,12 @@ async def again(visit: Callable[[], Coroutine[Any, Any, None]]) -> None:
         await asyncio.sleep(TURNED_AWAY)
 
 
-def tabs(number: int, misuse: Misuse) -> Attack:
-    """A number of tabs that all make the same attack."""
+def tabs(number: int, misuse: Misuse, rate: float = RATE) -> Attack:
+    """A number of tabs that all make the same attack; see `Intruder`."""
 
     async def attack(port: int) -> None:
         await asyncio.gather(
-            *(again(lambda: Intruder(port, misuse).browse(inf)) for _ in range(number))
+            *(again(lambda: Intruder(port, misuse, rate).browse(inf)) for _ in range(number))
         )
 
     return attack
@@ -227,7 +231,7 @@ ATTACKS: dict[str, Attack] = {
     "menus": tabs(8, pressing(("Robot…", True))),
     "robots": tabs(8, pressing(("Robot…", True), *((label, True) for label in ROBOT_LABELS))),
     "all places": tabs(66, look_on),  # D10
-    "nonsense": tabs(8, send_nonsense),  # D16
+    "nonsense": tabs(8, send_nonsense, MIXED),  # D16
     "come and go": tabs(20, leave),  # D18
     "floods": connections(20, [100 * GREETING, TOO_LARGE]),
     "broken frames": connections(20, [GREETING + broken for broken in BROKEN.values()]),

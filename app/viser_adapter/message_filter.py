@@ -31,6 +31,9 @@ class Limits:
         messages_per_second: sustained rate; more closes the connection. viser's page sends at
             most 20 for a drag, 20 for a widget and 50 for the camera.
         message_burst: messages at once; every 4 kB of a long message counts as one more.
+        changes_per_second: sustained rate of changed widgets, and of drags; more closes the
+            connection.
+        change_burst: of those at once.
         max_text_length: of a text widget, [characters]; longer texts are cut.
         max_magnitude: of any number in a drag, pointer, gizmo or camera message.
         max_upload_bytes: of a file, one file at a time, [B]; 0 refuses all.
@@ -50,6 +53,8 @@ class Limits:
     max_request_bytes: int = 65_536
     messages_per_second: float = 120.0
     message_burst: float = 1000.0
+    changes_per_second: float = 25.0
+    change_burst: float = 300.0
     max_text_length: int = 2000
     max_magnitude: float = 1e9
     max_upload_bytes: int = 0
@@ -57,7 +62,7 @@ class Limits:
     max_connections_each: int = 300
     max_waiting: int = 250
     max_waiting_each: int = 200
-    tabs_per_second_each: float = 10.0
+    tabs_per_second_each: float = 5.0
     tab_burst_each: float = 300.0
     silence: float = 20.0
     farewell: float = 2.0

@@ -38,6 +38,8 @@ FROM_BROWSER: tuple[type[Any], ...] = (
 )
 GESTURES = (wire.ViewerCameraMessage, wire.SceneNodeDragMessage, wire.GuiUpdateMessage)
 """Handled at once: a browser may send many in succession, and no handler of them waits."""
+CHANGES = (wire.SceneNodeDragMessage, wire.GuiUpdateMessage)
+"""What a lab may have to compute for; the rate of each kind is limited."""
 LONG = 4096  # [B]; a message counts once more for every so many bytes
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 
@@ -120,6 +122,9 @@ class SecureConnection(CountedConnection):
         super().__init__(*args, **kwargs)
         self._limits, self._forms = limits, _forms(limits.max_magnitude)
         self._allowance = Allowance(limits.message_burst, limits.messages_per_second)
+        self._changes = {
+            kind: Allowance(limits.change_burst, limits.changes_per_second) for kind in CHANGES
+        }
         self._closing: asyncio.Task[None] | None = None
         self._unfinished = unfinished
         self._deadline: asyncio.TimerHandle | None = None
@@ -147,12 +152,8 @@ class SecureConnection(CountedConnection):
     def process_event(self, event: Any) -> None:
         """Count all frames, including pings and fragments, and drop those that exceed the rate."""
         if isinstance(event, Frame) and event.opcode is not Opcode.CLOSE:
-            if self._closing is None and not self._allowance.take(1 + len(event.data) / LONG):
-                warn_once(self, "a flood of messages")
-                reason = f"more than {self._limits.messages_per_second:g} messages per second"
-                self._closing = self.loop.create_task(
-                    self.close(CloseCode.POLICY_VIOLATION, reason)
-                )
+            if not self._allowance.take(1 + len(event.data) / LONG):
+                self._flood(f"{self._limits.messages_per_second:g} messages")
             if self._closing is not None:
                 return
             if event.fin and event.opcode in _DATA:
@@ -163,10 +164,31 @@ class SecureConnection(CountedConnection):
             self._is_next = self._is_next and event.opcode not in _DATA
         super().process_event(event)
 
+    def _flood(self, most: str) -> None:
+        """Close the connection, since at most `most` per second are allowed."""
+        if self._closing is not None:
+            return
+        warn_once(self, "a flood of messages")
+        reason = f"more than {most} per second"
+        self._closing = self.loop.create_task(self.close(CloseCode.POLICY_VIOLATION, reason))
+
+    def _decode(self, raw: bytes | str) -> Any:
+        """Decode a message.
+
+        Raises:
+            InvalidMessage: it is invalid, or there were too many of its kind.
+        """
+        message = self._forms.decoded(raw)
+        allowance = self._changes.get(type(message))
+        if allowance is not None and not allowance.take():
+            self._flood(f"{self._limits.changes_per_second:g} changes")
+            raise InvalidMessage("a flood of changes")
+        return message
+
     def _handles(self, raw: bytes) -> bool:
         """Handle a message at once, if it is one of `GESTURES` or invalid."""
         try:
-            message = self._forms.decoded(raw)
+            message = self._decode(raw)
         except InvalidMessage as wrong:
             warn_once(self, str(wrong))
             return True
@@ -241,6 +263,6 @@ class SecureConnection(CountedConnection):
                 raise
             message, self._decoded = self._decoded, None
             try:
-                return Received.of(self._forms.decoded(raw) if message is None else message)
+                return Received.of(self._decode(raw) if message is None else message)
             except InvalidMessage as wrong:
                 warn_once(self, str(wrong))

@@ -26,7 +26,7 @@ from tests.support.student import Student
 from tests.support.waiting import wait_for
 
 WAIT = 60.0  # [s]; only ends a test that would hang
-WIDE = Limits(messages_per_second=1e6, message_burst=1_000_000)
+WIDE = Limits(message_burst=1_000_000, change_burst=1_000_000)
 UPDATES = ({}, {"value": None}, {"value": math.nan}, {"value": []}, {"no": 1}, {"removed": True})
 
 

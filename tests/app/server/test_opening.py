@@ -28,7 +28,7 @@ from tests.support.waiting import wait_for
 
 WAIT = 20.0  # [s]
 SLOW, QUICK = "s" * 12, "q" * 12
-WIDE = Limits(messages_per_second=1e6, message_burst=1_000_000)
+WIDE = Limits(message_burst=1_000_000, change_burst=1_000_000)
 PRESSES = 2000
 
 

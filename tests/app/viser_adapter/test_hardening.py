@@ -583,7 +583,7 @@ def test_a_message_that_is_too_large_closes_its_connection(
     assert lab.heard(attacker) == []
 
 
-@pytest.mark.parametrize("flood", ["messages", "pings", "fragments"])
+@pytest.mark.parametrize("flood", ["changes", "drags", "messages", "pings", "fragments"])
 @pytest.mark.usefixtures("no_errors")
 def test_a_flood_of_messages_closes_its_connection_and_says_why(
     lab: Lab, attacker: Browser, bystander: Browser, flood: str
@@ -591,8 +591,12 @@ def test_a_flood_of_messages_closes_its_connection_and_says_why(
     def pour() -> None:
         with pytest.raises(ConnectionClosed):
             while True:
-                if flood == "messages":
+                if flood == "changes":
                     attacker.update("checkbox", value="no")
+                elif flood == "drags":
+                    attacker.send("SceneNodeDragMessage", **drag(attacker))
+                elif flood == "messages":
+                    attacker.send("ViewerCameraMessage", **camera(attacker))
                 elif flood == "pings":
                     attacker.socket.ping()
                 else:
@@ -604,7 +608,9 @@ def test_a_flood_of_messages_closes_its_connection_and_says_why(
     pouring.join(WAIT)
     assert not pouring.is_alive()
     assert closed is not None and closed.code == 1008
-    assert f"{Limits().messages_per_second:g} messages per second" in closed.reason
+    counts_changes = flood in ("changes", "drags")
+    limit = "more than 25 changes" if counts_changes else "more than 120 messages"
+    assert closed.reason == f"{limit} per second"
 
 
 def test_a_brisk_but_honest_client_is_served(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -612,7 +618,7 @@ def test_a_brisk_but_honest_client_is_served(monkeypatch: pytest.MonkeyPatch) ->
 
     And so for longer than a burst can carry.
     """
-    limits = Limits(message_burst=30)
+    limits = Limits(message_burst=30, change_burst=30)
     clock = SimpleNamespace(now=0.0)
     timed = partial(Allowance, clock=lambda: clock.now)
     monkeypatch.setattr(secure_connection, "Allowance", timed)
