@@ -34,6 +34,17 @@ def test_modules_that_are_named_exist(name: str) -> None:
     assert [each for each in named if not any(file.endswith(f"/{each}") for file in files)] == []
 
 
+def test_tests_that_are_named_exist() -> None:
+    """A test is named by its file, or by its own name or a part of it."""
+    rows = re.findall(r"^\|.*\|(.*)\|$", (ROOT / "SECURITY.md").read_text("utf-8"), re.MULTILINE)
+    named = {name for row in rows for name in re.findall(r"`(\w+)`", row)}
+    files = list((ROOT / "tests").rglob("test_*.py"))
+    text = "\n".join(file.read_text("utf-8") for file in files)
+    exist = {file.stem for file in files} | set(re.findall(r"def test_(\w+)", text))
+    assert len(named) > 20
+    assert [each for each in named if not any(each in name for name in exist)] == []
+
+
 @pytest.mark.parametrize("file", READMES, ids=lambda file: str(file.relative_to(ROOT)))
 def test_no_text_breaks_off(file: Path) -> None:
     assert re.search(r"(\.|\||```|-->)\n\Z", file.read_text("utf-8"))
