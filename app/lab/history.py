@@ -9,6 +9,8 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Sequence
 from itertools import groupby
+from math import prod
+from mmap import ACCESS_COPY, mmap
 from typing import Any
 
 import numpy as np
@@ -23,7 +25,7 @@ RECENT = 10.0  # [s] stored at the full rate, which plots show; older segments a
 COARSE = 4 * LONGEST  # maximum ticks in an older segment
 MOST = 7200
 BATCH = 16  # maximum frames to collect before they are stored together, which is much faster
-MORE = 256  # segments by which the capacity is enlarged
+FIRST, MORE = 1024, 256  # segments: first capacity, and by how many it is enlarged
 FULL = 0.9  # fraction of the capacity in use from which it is enlarged
 
 
@@ -92,10 +94,9 @@ class History:
         states, rows, distances, most = _columns_of(frames)
         samples = self._sample(rows.reshape(-1, rows.shape[-1]), distances.ravel())
         samples = samples.reshape(*distances.shape, -1)
-        if not self._columns or self._end + len(frames) > len(self._columns["time"]):
-            self._make_room(len(frames), samples)
-        if states.shape[1] > self._columns["state"].shape[1]:
-            self._widen(states.shape[1])
+        room = self._columns["state"][self._end :].shape if self._columns else (0, 0)
+        if len(frames) > room[0] or states.shape[1] > room[1]:
+            self._make_room(len(frames), states.shape[1], samples.shape[1:])
         columns, place = self._columns, slice(self._end, self._end + len(frames))
         columns["time"][place] = [frame.time for frame in frames]
         columns["ticks"][place] = [frame.ticks for frame in frames]
@@ -160,30 +161,23 @@ class History:
         times = self._columns["time"][self._begin : self._end]
         return self._begin + int(times.searchsorted(time, side))
 
-    def _widen(self, width: int) -> None:
-        """Make room for longer states; all are padded to the same length."""
-        old = self._columns["state"]
-        self._columns["state"] = np.zeros((len(old), width))
-        self._columns["state"][:, : old.shape[1]] = old
+    def _make_room(self, frames: int, width: int, sample: tuple[int, ...]) -> None:
+        """Make free rows at the end: merge older rows, and enlarge the arrays if necessary.
 
-    def _make_room(self, frames: int, samples: np.ndarray) -> None:
-        """Make free rows at the end: merge older rows, and enlarge the arrays if necessary."""
-        kept, old, size = self._kept(), self._columns, len(self._columns.get("time", ()))
+        Args:
+            width: length of the states of the next rows; all are padded to the longest.
+            sample: shape of a sample, (robots, fields).
+        """
+        kept, old = self._kept(), self._columns
+        size, widest = old["state"].shape if old else (0, 0)
         if len(kept):
             old["ticks"][kept] = np.add.reduceat(old["ticks"][: self._end], kept)
-        if len(kept) + frames > FULL * size:
-            rows, robots = size + MORE, samples.shape[1]
-            width = old["state"].shape[1] if old else 0
-            self._columns = {
-                "time": np.empty(rows),
-                "ticks": np.empty(rows, dtype=int),
-                "inputs": np.empty(rows, dtype=object),
-                "state": np.zeros((rows, width)),
-                "most": np.empty((rows, robots)),
-                "sample": np.empty((rows, *samples.shape[1:]), dtype=np.float32),
-            }
+        rows = max(size + MORE, FIRST) if len(kept) + frames > FULL * size else size
+        if rows > size or width > widest:
+            self._columns = _empty_columns(rows, max(width, widest), sample)
         for name, column in old.items():
-            self._columns[name][: len(kept)] = column[kept]
+            part = tuple(map(slice, (len(kept), *column.shape[1:])))
+            self._columns[name][part] = column[kept]
         self._columns["inputs"][len(kept) :] = None  # release references
         self._before += self._end - len(kept)
         self._begin, self._end = 0, len(kept)
@@ -209,6 +203,32 @@ class History:
         """Time at which a row ends, [s]."""
         columns = self._columns
         return columns["time"][row] + columns["ticks"][row] * columns["inputs"][row].dt
+
+
+def _empty_columns(rows: int, width: int, sample: tuple[int, ...]) -> dict[str, np.ndarray]:
+    """Columns for some segments, filled with zeros.
+
+    The numbers are in memory of their own, not in the heap: what is not used takes none, and the
+    system takes it back at once when it is free.
+
+    Args:
+        width: length of the states.
+        sample: shape of a sample, (robots, fields).
+    """
+    kinds = {
+        "time": (np.float64, (rows,)),
+        "ticks": (np.int64, (rows,)),
+        "state": (np.float64, (rows, width)),
+        "most": (np.float64, (rows, sample[0])),
+        "sample": (np.float32, (rows, *sample)),
+    }
+    sizes = [prod(shape) * np.dtype(kind).itemsize for kind, shape in kinds.values()]
+    block = np.frombuffer(mmap(-1, sum(sizes), access=ACCESS_COPY), dtype=np.uint8)
+    parts = np.split(block, np.cumsum(sizes)[:-1])
+    columns = {"inputs": np.empty(rows, dtype=object)}
+    for part, (name, (kind, shape)) in zip(parts, kinds.items(), strict=True):
+        columns[name] = part.view(kind).reshape(shape)
+    return columns
 
 
 def _sizes_of(frame: HistoryFrame) -> list[tuple[int, int, int]]:

@@ -229,6 +229,7 @@ class LabRegistry:
     def _remove(self, entry: RegisteredLab) -> None:
         self.simulation.remove(entry.scheduled)
         self._entries.pop(entry.code, None)
+        entry.scheduled.session.history.clear()  # the rest waits until garbage is collected
 
     def _abandon(self, client: int) -> RegisteredLab | None:
         for entry in self._entries.values():
