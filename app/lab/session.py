@@ -36,7 +36,7 @@ from onpath.models.systems.parameters import TICK, Parameters, rise_of, time_ste
 from onpath.models.systems.robots import Robot
 
 MOST_TICKS = 200  # per frame
-MOST_EVENTS = 1500  # 0.2 MB
+MOST_EVENTS = 500  # 0.05 MB
 
 
 class Session:
@@ -175,8 +175,10 @@ class Session:
         return self.law_changes.follow(self.runs, self.parameters, curve, pushes)
 
     def note(self, name: str, detail: str = "", benches: tuple[str, ...] = BENCHES) -> None:
-        """Record an event."""
-        self.events.append(LabEvent(self.run_number, self.time, name, detail, benches))
+        """Record an event; what a drag of a slider repeats within a second is recorded once."""
+        event = LabEvent(self.run_number, self.time, name, detail, benches)
+        if not self.events or not event.repeats(self.events[-1]):
+            self.events.append(event)
 
     # Time
 

@@ -31,6 +31,14 @@ class LabEvent(Struct, frozen=True, gc=False):
     detail: str
     benches: tuple[str, ...]
 
+    def repeats(self, earlier: LabEvent) -> bool:
+        """Whether it sets the same parameter again, less than a second after an earlier event."""
+        return (
+            self.name == earlier.name == "set"
+            and (self.run, self.detail) == (earlier.run, earlier.detail)
+            and 0.0 <= self.time - earlier.time < 1.0
+        )
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Timeline:

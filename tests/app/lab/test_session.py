@@ -761,3 +761,13 @@ def test_a_session_never_notices_another() -> None:
     for name, state in states(alone.session).items():
         assert np.array_equal(state, beside.session.runs[name].state)
     assert beside.message == "" and beside.session.parameters == alone.session.parameters
+
+
+def test_a_dragged_slider_is_recorded_once_a_second() -> None:
+    lab = Lab(store())
+    for step in range(170):
+        do(lab, c.SetParameter("K1", 500.0 + step))
+        lab.advance(FRAME)
+    do(lab, c.SetParameter("K2", 50.0), c.SetParameter("K1", 300.0))
+    told = [(event.detail, round(event.time, 1)) for event in lab.session.events]
+    assert told == [("K1", 0.0), ("K1", 1.0), ("K1", 2.0), ("K2", 2.8), ("K1", 2.8)]
